@@ -1,0 +1,3 @@
+//! The `plunge` command.
+
+fn main() {}

@@ -1,0 +1,34 @@
+//! What a law says of itself, and how it is built by name.
+
+use engine::ledger::Channel;
+use engine::params::ParamSpec;
+
+/// What a law acts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ActsOn {
+    /// Contacts of grains with grains, walls and intruders: the base law of a bed.
+    ContactBase,
+    /// Contacts, as an effect added to a base law.
+    ContactEffect,
+}
+
+/// One law or effect: its one line in [`crate::LAWS`] makes it exist for `run`, `effects`, the docs
+/// and the shared tests.
+pub struct LawEntry {
+    /// The name in TOML, kebab-case.
+    pub name: &'static str,
+    /// Where it acts.
+    pub acts_on: ActsOn,
+    /// What it is, in one sentence.
+    pub summary: &'static str,
+    /// The law as a formula, in plain text.
+    pub formula: &'static str,
+    /// What it does to depth, stopping time and forces.
+    pub signature: &'static str,
+    /// Paper and equation.
+    pub source: &'static str,
+    /// The parameters it takes.
+    pub params: &'static [ParamSpec],
+    /// The accounts it books energy to.
+    pub channels: &'static [Channel],
+}
