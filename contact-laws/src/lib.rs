@@ -1,8 +1,16 @@
 //! The contact laws and effects of plunge, each in a file of its own and one line of [`LAWS`].
 
+mod linear_spring_dashpot;
 mod registry;
+mod rolling_resistance;
 
 pub use registry::{ActsOn, LawEntry};
 
 /// Every law and effect, in the order of the docs.
-pub static LAWS: &[&LawEntry] = &[];
+pub static LAWS: &[&LawEntry] = &[&linear_spring_dashpot::ENTRY, &rolling_resistance::ENTRY];
+
+/// The law or effect called `name`.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static LawEntry> {
+    LAWS.iter().find(|entry| entry.name == name).copied()
+}

@@ -1,1 +1,15 @@
-//! plunge.
+//! The shapes that plunge drops into sand, each in a file of its own and one line of [`SHAPES`].
+
+mod registry;
+mod sphere;
+
+pub use registry::ShapeEntry;
+
+/// Every shape, in the order of the docs.
+pub static SHAPES: &[&ShapeEntry] = &[&sphere::DISC, &sphere::SPHERE];
+
+/// The shape called `name`.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static ShapeEntry> {
+    SHAPES.iter().find(|entry| entry.name == name).copied()
+}
