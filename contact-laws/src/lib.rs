@@ -4,7 +4,7 @@ mod linear_spring_dashpot;
 mod registry;
 mod rolling_resistance;
 
-pub use registry::{ActsOn, LawEntry};
+pub use registry::{ActsOn, FromParams, LawEntry};
 
 /// Every law and effect, in the order of the docs.
 pub static LAWS: &[&LawEntry] = &[&linear_spring_dashpot::ENTRY, &rolling_resistance::ENTRY];

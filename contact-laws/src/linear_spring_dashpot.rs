@@ -1,10 +1,147 @@
 //! Linear spring–dashpot with a tangential spring and a Coulomb limit.
 
+use engine::contact::{Contact, ContactLaw, Partner, Response, Slot};
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, Range};
+use engine::math::Vec3;
+use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
-use crate::registry::{ActsOn, LawEntry};
+use crate::registry::{ActsOn, FromParams, LawEntry};
+
+/// Linear springs along the normal and in the contact plane, damping scaled with the reduced mass,
+/// and a Coulomb limit.
+///
+/// F_n = k_n δ + m_r γ_n dδ/dt   [N], repulsion positive; it may attract while damping exceeds the
+/// spring, as the source prints it
+///
+/// F_t = −(k_t ξ + m_r γ_t v_t), |F_t| ≤ μ |F_n|
+///
+/// ξ [m] is the tangential spring, kept in [`Memory`] and turned with the contact plane. Above the
+/// limit the viscous part is dropped and ξ = −F_t/k_t: with the γ_t of the source the dashpot alone
+/// exceeds the limit almost always, and keeping it would wind the spring backwards.
+///
+/// Channels: `normal`, `tangential` (stored); `normal-damping`, `tangential-damping`, `sliding`.
+///
+/// Source: Wang, Ye & Zheng, Eur. Phys. J. E 35, 7 (2012), eqs 3 and 4. Differs from it in the sign
+/// of the damping in eq. 4, which as printed pumps energy while the spring loads.
+pub(crate) struct LinearSpringDashpot {
+    normal_stiffness: f64,
+    tangential_stiffness: f64,
+    normal_damping_rate: f64,
+    tangential_damping_rate: f64,
+    friction: [f64; 3],
+}
+
+/// The law for one kind of partner.
+#[derive(Clone, Copy)]
+pub(crate) struct Pair {
+    normal_stiffness: f64,
+    tangential_stiffness: f64,
+    normal_damping_rate: f64,
+    tangential_damping_rate: f64,
+    friction: f64,
+}
+
+/// What a contact remembers.
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(crate) struct Memory {
+    /// ξ [m].
+    spring: Vec3,
+    /// Damping force at the end of the last step [N].
+    normal_damping: f64,
+    /// Viscous resistance at the end of the last step [N].
+    tangential_damping: Vec3,
+}
+
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(crate) struct Energy {
+    normal: f64,
+    tangential: f64,
+    normal_damping: f64,
+    tangential_damping: f64,
+    sliding: f64,
+}
+
+impl ContactLaw for LinearSpringDashpot {
+    const NAME: &'static str = "linear-spring-dashpot";
+    const SLOT: Slot = Slot::Base;
+    const CHANNELS: &'static [Channel] = CHANNELS;
+    type Pair = Pair;
+    type History = Memory;
+    type Energy = Energy;
+
+    fn pair(&self, partner: Partner) -> Pair {
+        Pair {
+            normal_stiffness: self.normal_stiffness,
+            tangential_stiffness: self.tangential_stiffness,
+            normal_damping_rate: self.normal_damping_rate,
+            tangential_damping_rate: self.tangential_damping_rate,
+            friction: self.friction[partner.index()],
+        }
+    }
+
+    #[inline]
+    fn act(
+        pair: &Pair,
+        contact: &Contact,
+        _dt: f64,
+        history: &mut Memory,
+        response: &mut Response,
+        energy: &mut Energy,
+    ) {
+        let touching = contact.overlap > 0.0;
+        let overlap = contact.overlap.max(0.0);
+        let mass = if touching { contact.mass_eff } else { 0.0 };
+
+        let (k_n, k_t) = (pair.normal_stiffness, pair.tangential_stiffness);
+        let damping = mass * pair.normal_damping_rate * contact.overlap_rate;
+        let normal_force = k_n * overlap + damping;
+        energy.normal += 0.5 * k_n * overlap * overlap;
+        energy.normal_damping += 0.5 * (history.normal_damping + damping) * contact.overlap_step;
+
+        let limit = pair.friction * normal_force.abs();
+        let before = contact.turn(history.spring);
+        let stretched = before + contact.slip_step;
+        let viscous = contact.slip_velocity * (mass * pair.tangential_damping_rate);
+        let trial = -(stretched * k_t + viscous);
+        let trial_2 = trial.norm_squared();
+        let (force, spring, viscous) = if trial_2 > limit * limit {
+            let force = trial * (limit / trial_2.sqrt());
+            let spring = force / -k_t;
+            let slipped = stretched - spring;
+            energy.sliding += 0.5 * k_t * (before + spring).dot(&slipped);
+            (force, spring, Vec3::zeros())
+        } else {
+            (trial, stretched, viscous)
+        };
+        energy.tangential += 0.5 * k_t * spring.norm_squared();
+        energy.tangential_damping +=
+            0.5 * (history.tangential_damping + viscous).dot(&contact.slip_step);
+
+        *history = Memory { spring, normal_damping: damping, tangential_damping: viscous };
+        response.normal_force += normal_force;
+        response.normal_stiffness += k_n;
+        response.tangential_force += force;
+    }
+
+    fn collision_time(pair: &Pair, mass_eff: f64) -> Option<f64> {
+        Some(std::f64::consts::PI * (mass_eff / pair.normal_stiffness).sqrt())
+    }
+}
+
+impl FromParams for LinearSpringDashpot {
+    fn from_params(params: &ParamTable) -> Self {
+        Self {
+            normal_stiffness: params.get("normal_stiffness"),
+            tangential_stiffness: params.get("tangential_stiffness"),
+            normal_damping_rate: params.get("normal_damping_rate"),
+            tangential_damping_rate: params.get("tangential_damping_rate"),
+            friction: ["friction", "wall_friction", "intruder_friction"].map(|key| params.get(key)),
+        }
+    }
+}
 
 const CHANNELS: &[Channel] = &[
     Channel { name: "normal", kind: ChannelKind::Stored },
@@ -27,7 +164,7 @@ const PARAMS: &[ParamSpec] = &[
         key: "tangential_stiffness",
         dimension: Dimension::STIFFNESS,
         default: Default::SameAs("normal_stiffness"),
-        allowed: Range::NOT_NEGATIVE,
+        allowed: Range::POSITIVE,
         plausible: Range::closed(1e2, 1e8),
         meaning: "k_t, force per length of the tangential spring",
     },
@@ -75,12 +212,11 @@ const PARAMS: &[ParamSpec] = &[
 
 /// The registry's line.
 pub(crate) const ENTRY: LawEntry = LawEntry {
-    name: "linear-spring-dashpot",
     acts_on: ActsOn::ContactBase,
     summary: "Linear normal and tangential springs with mass-scaled damping and a Coulomb limit.",
     formula: "F_n = k_n δ + m_r γ_n dδ/dt;  F_t = −(k_t ξ + m_r γ_t v_t), |F_t| ≤ μ |F_n|",
     signature: "The base law of a bed; μ sets the depth-linear friction, γ_n the restitution.",
     source: "Wang, Ye & Zheng, Eur. Phys. J. E 35, 7 (2012), eqs 3–4; Cundall & Strack (1979)",
     params: PARAMS,
-    channels: CHANNELS,
+    ..LawEntry::of::<LinearSpringDashpot>()
 };

@@ -1,7 +1,8 @@
 //! What a law says of itself, and how it is built by name.
 
+use engine::contact::{ContactLaw, ContactStage, Stage};
 use engine::ledger::Channel;
-use engine::params::ParamSpec;
+use engine::params::{ParamSpec, ParamTable};
 
 /// What a law acts on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,4 +32,31 @@ pub struct LawEntry {
     pub params: &'static [ParamSpec],
     /// The accounts it books energy to.
     pub channels: &'static [Channel],
+    /// Makes it from SI values that fill `params`.
+    pub build: fn(&ParamTable) -> Box<dyn ContactStage>,
+}
+
+impl LawEntry {
+    /// The parts of an entry that follow from the law itself; the texts and parameters are to be
+    /// filled in.
+    #[must_use]
+    pub const fn of<L: FromParams>() -> Self {
+        Self {
+            name: L::NAME,
+            acts_on: ActsOn::ContactBase,
+            summary: "",
+            formula: "",
+            signature: "",
+            source: "",
+            params: &[],
+            channels: L::CHANNELS,
+            build: |params| Box::new(Stage::new(&L::from_params(params))),
+        }
+    }
+}
+
+/// A law that can be made from the parameters of its entry.
+pub trait FromParams: ContactLaw {
+    /// Takes SI values that fill the entry's specs and lie in their allowed ranges.
+    fn from_params(params: &ParamTable) -> Self;
 }

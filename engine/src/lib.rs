@@ -1,10 +1,25 @@
 //! The engine of plunge: grain beds, rigid intruders, contacts, the energy ledger and the log.
 //!
-//! It knows no contact law, no shape and no TOML; it defines the traits that those implement.
+//! Open [`simulation`] first, then [`step`]: a run is a loop of steps, and a step a list of phases.
+//! [`contact`] says what a contact law is. The engine knows no law, no shape and no TOML; it defines
+//! the traits that those implement.
 
+pub mod body;
+pub mod boundary;
+pub mod clock;
 pub mod contact;
+mod contacts;
+pub mod error;
+pub mod grain_bed;
+pub mod grains;
 pub mod ledger;
 pub mod math;
+mod neighbours;
+pub mod parallel;
 pub mod params;
 pub mod record;
+pub mod simulation;
+pub mod step;
+pub mod stopping;
+pub mod surface;
 pub mod units;

@@ -8,3 +8,19 @@ pub type Vec3 = nalgebra::Vector3<f64>;
 
 /// A rotation from a body frame to the world frame.
 pub type Quat = nalgebra::UnitQuaternion<f64>;
+
+/// The rotation by about |`angle`| radians around `angle` (Cayley map: exact to second order,
+/// symmetric in time, and free of functions whose bits depend on the system).
+pub(crate) fn cayley(angle: Vec3) -> Quat {
+    Quat::new_normalize(nalgebra::Quaternion::from_parts(1.0, angle * 0.5))
+}
+
+/// Scalar and vector part of a rotation.
+pub(crate) fn quat_parts(rotation: Quat) -> [f64; 4] {
+    [rotation.w, rotation.i, rotation.j, rotation.k]
+}
+
+/// The rotation with these parts, which [`quat_parts`] gave: normalising again would change bits.
+pub(crate) fn quat_from_parts([w, x, y, z]: [f64; 4]) -> Quat {
+    Quat::new_unchecked(nalgebra::Quaternion::new(w, x, y, z))
+}

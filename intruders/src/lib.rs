@@ -1,9 +1,10 @@
 //! The shapes that plunge drops into sand, each in a file of its own and one line of [`SHAPES`].
 
+mod parry_surface;
 mod registry;
 mod sphere;
 
-pub use registry::ShapeEntry;
+pub use registry::{Body, ShapeEntry};
 
 /// Every shape, in the order of the docs.
 pub static SHAPES: &[&ShapeEntry] = &[&sphere::DISC, &sphere::SPHERE];

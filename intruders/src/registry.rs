@@ -1,6 +1,11 @@
 //! What a shape says of itself, and how it is built by name.
 
-use engine::params::ParamSpec;
+use std::sync::Arc;
+
+use engine::grains::Space;
+use engine::math::Vec3;
+use engine::params::{ParamSpec, ParamTable};
+use engine::surface::Surface;
 
 /// One shape of intruder.
 pub struct ShapeEntry {
@@ -14,4 +19,16 @@ pub struct ShapeEntry {
     pub spatial: bool,
     /// The parameters it takes, besides the mass or density that every intruder has.
     pub params: &'static [ParamSpec],
+    /// Makes it from SI values that fill `params`.
+    pub build: fn(&ParamTable, Space) -> Body,
+}
+
+/// A shape with its distribution of mass.
+pub struct Body {
+    /// Surface about the centre of mass, along the principal axes.
+    pub surface: Arc<dyn Surface>,
+    /// Principal moments of inertia of one kilogram of it [m²].
+    pub inertia_per_mass: Vec3,
+    /// Volume [m³], or area [m²] of a planar shape.
+    pub volume: f64,
 }

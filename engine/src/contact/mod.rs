@@ -1,1 +1,154 @@
 //! What a contact is and what a law makes of it: the page a physicist reads.
+//!
+//! A law sees one [`Contact`] at one instant, adds to its [`Response`] and books, from the same
+//! intermediate values, what became of the energy. The engine finds the contacts
+//! ([`geometry`]), keeps their histories ([`table`]) and lowers a law to a loop over many contacts
+//! ([`stage`]).
+
+pub mod geometry;
+pub mod stage;
+pub mod table;
+
+use crate::ledger::Channel;
+use crate::math::Vec3;
+
+pub use stage::{ContactStage, Stage};
+
+/// What a grain touches; each kind has its own parameters of a law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Partner {
+    /// Another grain.
+    Grain,
+    /// A wall of the container.
+    Wall,
+    /// The intruder.
+    Intruder,
+}
+
+impl Partner {
+    /// Every kind, in the order of [`Partner::index`].
+    pub const ALL: [Self; 3] = [Self::Grain, Self::Wall, Self::Intruder];
+
+    /// Position in a table with one entry per kind.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// One contact of grain i with j (a grain, a wall or the intruder) at one instant, world frame.
+///
+/// `normal` is a unit vector from j to i: a repulsive force on i is `+normal_force * normal`.
+/// Rates belong to the end of the step, steps to what was done during it (see [`crate::step`]).
+///
+/// A law sees a contact at every step in which it overlaps, and once more in the step in which it
+/// has opened, with `overlap <= 0`: the force is then zero and what the contact still stored has to
+/// be booked.
+#[derive(Clone, Copy, Debug)]
+pub struct Contact {
+    /// n, from j to i [–].
+    pub normal: Vec3,
+    /// δ [m]; zero or less once the contact has opened.
+    pub overlap: f64,
+    /// dδ/dt [m/s], positive while the two approach.
+    pub overlap_rate: f64,
+    /// Overlap gained in this step [m].
+    pub overlap_step: f64,
+    /// v_t [m/s], of i relative to j at the contact point, spin included.
+    pub slip_velocity: Vec3,
+    /// Slip made in this step [m], turned into the present contact plane.
+    pub slip_step: Vec3,
+    /// ω_i − ω_j [rad/s].
+    pub relative_spin: Vec3,
+    /// Rotation of i relative to j in this step [rad].
+    pub relative_turn: Vec3,
+    /// R* [m], 1/R* = 1/R_i + 1/R_j; a flat face has no curvature.
+    pub radius_eff: f64,
+    /// m* [kg], 1/m* = 1/m_i + 1/m_j; a wall has infinite mass.
+    pub mass_eff: f64,
+    /// I_r [kg m²], 1/I_r = Σ 1/(I + m R²): the inertia of rolling.
+    pub rolling_inertia_eff: f64,
+    /// What j is.
+    pub partner: Partner,
+}
+
+impl Contact {
+    /// Turns a vector that lay in an earlier contact plane into the present one, its length kept
+    /// (Luding, Granul. Matter 10, 235 (2008), eq. 17).
+    #[inline]
+    #[must_use]
+    pub fn turn(&self, vector: Vec3) -> Vec3 {
+        turn_into_plane(vector, self.normal)
+    }
+}
+
+/// The projection of `vector` on the plane of `normal`, scaled to the length of `vector`.
+#[inline]
+pub(crate) fn turn_into_plane(vector: Vec3, normal: Vec3) -> Vec3 {
+    let projected = vector - normal * vector.dot(&normal);
+    let projected_2 = projected.norm_squared();
+    if projected_2 > 0.0 {
+        projected * (vector.norm_squared() / projected_2).sqrt()
+    } else {
+        Vec3::zeros()
+    }
+}
+
+/// What the laws of a contact build up. Force and couple act on i; j receives the opposite.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Response {
+    /// F_n [N], repulsion positive.
+    pub normal_force: f64,
+    /// dF_n/dδ [N/m], which rolling resistance scales with.
+    pub normal_stiffness: f64,
+    /// F_t [N].
+    pub tangential_force: Vec3,
+    /// Couple [N m] of rolling resistance; the torque of F_t about the centres is the engine's job.
+    pub couple: Vec3,
+}
+
+/// The order in which the laws of a contact act: a later one may use what an earlier one answered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Slot {
+    /// Normal and tangential force; every bed has exactly one.
+    Base,
+    /// A couple against rolling, limited by the normal force.
+    Rolling,
+}
+
+/// A contact law, or an effect added to one.
+///
+/// Force and energy are computed together: a dissipated channel takes the mean of the dissipative
+/// force over the step times the displacement made in it, a stored channel takes the energy held
+/// now. That is second order in the step, also where a contact opens.
+pub trait ContactLaw: Send + Sync + 'static {
+    /// The name in TOML.
+    const NAME: &'static str;
+    /// When it acts.
+    const SLOT: Slot;
+    /// Names and kinds of the fields of [`Self::Energy`], in order.
+    const CHANNELS: &'static [Channel];
+    /// Its parameters for one kind of partner.
+    type Pair: Copy + Send + Sync;
+    /// What it remembers of a contact, zero at first touch.
+    type History: bytemuck::Pod;
+    /// One `f64` [J] per channel.
+    type Energy: bytemuck::Pod;
+
+    /// Its parameters for contacts of grains with `partner`.
+    fn pair(&self, partner: Partner) -> Self::Pair;
+
+    /// Adds the force of one contact to `response` and its energy to `energy`; `dt` [s] is the step.
+    fn act(
+        pair: &Self::Pair,
+        contact: &Contact,
+        dt: f64,
+        history: &mut Self::History,
+        response: &mut Response,
+        energy: &mut Self::Energy,
+    );
+
+    /// How long a head-on collision of two bodies of reduced mass `mass_eff` [kg] lasts [s];
+    /// `None` if this law does not decide it. Sets `time_step = "auto"`.
+    fn collision_time(pair: &Self::Pair, mass_eff: f64) -> Option<f64>;
+}

@@ -1,0 +1,350 @@
+//! A bed of grains in a container: the state, and the phases that [`crate::step`] puts in order.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::body::{Mechanism, Part};
+use crate::boundary::Container;
+use crate::contact::{ContactStage, Partner};
+use crate::contacts::{ContactSums, Contacts, Memory, SavedBlock};
+use crate::error::StepError;
+use crate::grains::{Grain, Grains, Space};
+use crate::ledger::{ChannelKind, Term, TermKind};
+use crate::math::Vec3;
+use crate::neighbours::{CellGrid, Freshness, spatial_order};
+use crate::parallel::BLOCK;
+use crate::surface::Placement;
+
+/// Gap up to which grains are listed as neighbours, in mean grain diameters.
+const PAIR_MARGIN: f64 = 0.2;
+
+/// Gap up to which grains are listed as near the intruder, in mean grain diameters.
+const INTRUDER_MARGIN: f64 = 0.4;
+
+/// A bed of grains under gravity.
+pub struct GrainBed {
+    /// The grains.
+    pub grains: Grains,
+    /// [m/s²].
+    pub gravity: Vec3,
+    container: Container,
+    walls: Vec<Part>,
+    contacts: Contacts,
+    sums: ContactSums,
+    energy: Vec<GrainEnergy>,
+    grid: CellGrid,
+    pair_list: Freshness,
+    intruder_list: Freshness,
+    /// Greatest speed of a grain in the last drift [m/s].
+    fastest: f64,
+}
+
+/// Energies of the grains of a block [J].
+#[derive(Clone, Copy, Debug, Default)]
+struct GrainEnergy {
+    translation: f64,
+    rotation: f64,
+    potential: f64,
+}
+
+/// Everything of a bed that changes during a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct SavedBed {
+    grains: Grains,
+    blocks: Vec<SavedBlock>,
+    pair_list: Freshness,
+    intruder_list: Freshness,
+}
+
+/// A bed at rest as it is stored: grains in the order of memory, and what their contacts remember.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RestingBed {
+    /// Discs or spheres.
+    pub space: Space,
+    /// The grains.
+    pub grains: Vec<Grain>,
+    /// Names of the stages whose histories are remembered.
+    stages: Vec<String>,
+    memories: Vec<Memory>,
+}
+
+impl RestingBed {
+    /// A bed that nobody has touched yet: grains without contact histories, put in spatial order.
+    #[must_use]
+    pub fn without_history(space: Space, grains: &[Grain]) -> Self {
+        let order = spatial_order(&Grains::new(space, grains));
+        let grains = order.into_iter().map(|i| grains[i]).collect();
+        Self { space, grains, stages: Vec::new(), memories: Vec::new() }
+    }
+}
+
+impl GrainBed {
+    /// The bed `resting` in `container`, under the laws `stages`, ready for an intruder of
+    /// `n_intruder_parts` convex parts. The laws act in the order of their slots.
+    ///
+    /// # Panics
+    /// If there are no grains.
+    #[must_use]
+    pub fn new(
+        resting: &RestingBed,
+        container: Container,
+        gravity: Vec3,
+        mut stages: Vec<Box<dyn ContactStage>>,
+        n_intruder_parts: usize,
+    ) -> Self {
+        assert!(!resting.grains.is_empty(), "a bed has grains");
+        stages.sort_by_key(|stage| stage.slot());
+        let grains = Grains::new(resting.space, &resting.grains);
+        let walls: Vec<Part> = container
+            .walls(resting.space)
+            .into_iter()
+            .map(|wall| Part {
+                surface: Arc::new(wall),
+                placement: Placement::fixed(),
+                partner: Partner::Wall,
+            })
+            .collect();
+        let mean_diameter = 2.0 * grains.radius.iter().sum::<f64>() / grains.len() as f64;
+        let mut bed = Self {
+            gravity,
+            container,
+            contacts: Contacts::new(stages, grains.len(), walls.len() + n_intruder_parts),
+            sums: ContactSums::default(),
+            energy: vec![GrainEnergy::default(); grains.len().div_ceil(BLOCK)],
+            grid: CellGrid::default(),
+            pair_list: Freshness::stale(PAIR_MARGIN * mean_diameter),
+            intruder_list: Freshness::stale(INTRUDER_MARGIN * mean_diameter),
+            fastest: 0.0,
+            walls,
+            grains,
+        };
+        bed.list_pairs_and_walls();
+        bed.contacts.remember(&resting.memories, &resting.stages);
+        bed
+    }
+
+    /// The container.
+    #[must_use]
+    pub fn container(&self) -> &Container {
+        &self.container
+    }
+
+    /// The laws, in the order in which they act.
+    #[must_use]
+    pub fn stages(&self) -> &[Box<dyn ContactStage>] {
+        self.contacts.stages()
+    }
+
+    /// The bed as it stands, to be stored.
+    #[must_use]
+    pub fn resting(&self) -> RestingBed {
+        RestingBed {
+            space: self.grains.space,
+            grains: self.grains.iter().collect(),
+            stages: self.stages().iter().map(|stage| stage.name().to_owned()).collect(),
+            memories: self.contacts.memories(),
+        }
+    }
+
+    /// Mean number of contacts of a grain, walls counted, the intruder not.
+    #[must_use]
+    pub fn coordination(&self) -> f64 {
+        let (pairs, surfaces) = self.contacts.count();
+        let walls: usize = surfaces[..self.walls.len()].iter().sum();
+        (2 * pairs + walls) as f64 / self.grains.len() as f64
+    }
+
+    /// Half a kick and the drift of the grains; `dt` [s].
+    pub(crate) fn kick_drift(&mut self, dt: f64) {
+        self.fastest = self.grains.kick_drift(dt);
+    }
+
+    /// Lists neighbours again where the lists may have become stale.
+    pub(crate) fn refresh_neighbours(&mut self, intruder: &dyn Mechanism, dt: f64) {
+        if self.pair_list.spend(2.0 * self.fastest * dt) {
+            self.list_pairs_and_walls();
+        }
+        let parts = intruder.parts();
+        let approach = parts
+            .iter()
+            .map(|part| part.placement.max_speed(part.surface.bounding_radius()))
+            .fold(self.fastest, |fastest, speed| fastest.max(self.fastest + speed));
+        if self.intruder_list.spend(approach * dt) {
+            for (k, part) in parts.iter().enumerate() {
+                let index = self.walls.len() + k;
+                self.contacts.list_surface(
+                    &self.grains,
+                    (index, part),
+                    self.intruder_list.margin(),
+                );
+            }
+            self.intruder_list.renew();
+        }
+    }
+
+    fn list_pairs_and_walls(&mut self) {
+        let margin = self.pair_list.margin();
+        let largest = self.grains.radius.iter().fold(0.0_f64, |largest, &r| largest.max(r));
+        self.grid.fill(&self.grains, 2.0 * largest + margin);
+        self.contacts.list_pairs(&self.grains, &self.grid, margin);
+        for (index, wall) in self.walls.iter().enumerate() {
+            self.contacts.list_surface(&self.grains, (index, wall), margin);
+        }
+        self.pair_list.renew();
+    }
+
+    /// Finds what touches and lets the laws act; forces that cross blocks are still to be gathered.
+    pub(crate) fn evaluate_contacts(&mut self, intruder: &dyn Mechanism, dt: f64) {
+        self.contacts.evaluate(&mut self.grains, &self.walls, intruder.parts(), dt);
+        self.contacts.sum(&mut self.sums);
+    }
+
+    /// Hands the load of the bed and of gravity to the intruder.
+    pub(crate) fn load_intruder(&self, intruder: &mut dyn Mechanism) {
+        intruder.load(&self.sums.wrenches[self.walls.len()..], self.gravity);
+    }
+
+    /// Completes the force on each grain with the parts from other blocks and gravity, and gives it
+    /// the second half of its kick.
+    pub(crate) fn gather_and_kick(&mut self, dt: f64) {
+        let half = 0.5 * dt;
+        let gravity = self.gravity;
+        let contacts = &self.contacts;
+        let Grains { load, velocity, spin, position, mass, inertia, inverse_mass, .. } =
+            &mut self.grains;
+        (
+            load.par_chunks_mut(BLOCK),
+            velocity.par_chunks_mut(BLOCK),
+            spin.par_chunks_mut(BLOCK),
+            self.energy.par_iter_mut(),
+        )
+            .into_par_iter()
+            .enumerate()
+            .for_each(|(block, (load, velocity, spin, energy))| {
+                contacts.deliver(block, load);
+                *energy = GrainEnergy::default();
+                for k in 0..load.len() {
+                    let i = block * BLOCK + k;
+                    load[k].force += gravity * mass[i];
+                    velocity[k] += load[k].force * (half * inverse_mass[i]);
+                    spin[k] += load[k].torque * (half / inertia[i]);
+                    energy.translation += 0.5 * mass[i] * velocity[k].norm_squared();
+                    energy.rotation += 0.5 * inertia[i] * spin[k].norm_squared();
+                    energy.potential -= mass[i] * gravity.dot(&position[i]);
+                }
+            });
+    }
+
+    /// The terms of the ledger of this bed: motion, gravity, then the channels of the laws.
+    #[must_use]
+    pub fn terms(&self) -> Vec<Term> {
+        let kinetic = |name| Term { name, kind: TermKind::Kinetic };
+        let potential = |name| Term { name, kind: TermKind::Potential };
+        let mut terms = vec![
+            kinetic("intruder-translation"),
+            kinetic("intruder-rotation"),
+            kinetic("grains-translation"),
+            kinetic("grains-rotation"),
+            potential("intruder"),
+            potential("grains"),
+        ];
+        terms.extend(self.stages().iter().flat_map(|stage| stage.channels()).map(|channel| Term {
+            name: channel.name,
+            kind: TermKind::Channel(channel.kind),
+        }));
+        terms.push(Term { name: "walls", kind: TermKind::Channel(ChannelKind::Dissipated) });
+        terms
+    }
+
+    /// What the ledger is to hold for each term of [`GrainBed::terms`] after this step.
+    pub(crate) fn entries(&self, intruder: &dyn Mechanism, entries: &mut Vec<f64>) {
+        let mut bodies = [0.0; 3];
+        for body in intruder.bodies() {
+            let [translation, rotation] = body.kinetic_energy();
+            bodies[0] += translation;
+            bodies[1] += rotation;
+            bodies[2] -= body.mass * self.gravity.dot(&body.position);
+        }
+        let grains = self.energy.iter().fold(GrainEnergy::default(), |sum, block| GrainEnergy {
+            translation: sum.translation + block.translation,
+            rotation: sum.rotation + block.rotation,
+            potential: sum.potential + block.potential,
+        });
+        entries.clear();
+        entries.extend([bodies[0], bodies[1], grains.translation, grains.rotation]);
+        entries.extend([bodies[2], grains.potential]);
+        let channels = self.contacts.stages().iter().flat_map(|stage| stage.channels());
+        let mut walls = 0.0;
+        for ((channel, &energy), &at_walls) in
+            channels.zip(&self.sums.energy).zip(&self.sums.wall_energy)
+        {
+            // What springs at walls hold is elastic energy like any other; what walls dissipate has
+            // an account of its own.
+            if channel.kind == ChannelKind::Dissipated {
+                walls += at_walls;
+                entries.push(energy);
+            } else {
+                entries.push(energy + at_walls);
+            }
+        }
+        entries.push(walls);
+    }
+
+    /// Mean kinetic energy of a grain [J].
+    #[must_use]
+    pub fn mean_kinetic_energy(&self) -> f64 {
+        let total: f64 = self.energy.iter().map(|block| block.translation + block.rotation).sum();
+        total / self.grains.len() as f64
+    }
+
+    /// Whether the step can be trusted.
+    pub(crate) fn check(&self, step: u64, dt: f64) -> Result<(), StepError> {
+        let total: f64 = self.energy.iter().map(|block| block.translation + block.potential).sum();
+        if !total.is_finite() {
+            return Err(StepError::NotFinite { step, what: "the energy of the grains", dt });
+        }
+        let (relative, grain) = self.sums.overlap;
+        if relative > 1.0 {
+            let radius = self.grains.radius[grain as usize];
+            return Err(StepError::OverlapTooLarge {
+                step,
+                grain: self.grains.id[grain as usize],
+                overlap: relative * radius,
+                radius,
+                dt,
+            });
+        }
+        Ok(())
+    }
+
+    /// Largest overlap [m], and the identity of the grain that has it.
+    #[must_use]
+    pub fn largest_overlap(&self) -> (f64, u32) {
+        let (relative, grain) = self.sums.overlap;
+        let grain = grain as usize;
+        (relative * self.grains.radius[grain], self.grains.id[grain])
+    }
+
+    pub(crate) fn save(&self) -> SavedBed {
+        SavedBed {
+            grains: self.grains.clone(),
+            blocks: self.contacts.save(),
+            pair_list: self.pair_list,
+            intruder_list: self.intruder_list,
+        }
+    }
+
+    /// Takes back a saved state; `false` if it does not fit.
+    pub(crate) fn restore(&mut self, saved: SavedBed) -> bool {
+        let n = self.grains.len();
+        if !saved.grains.is_consistent(n) || !self.contacts.restore(saved.blocks, n) {
+            return false;
+        }
+        self.grains = saved.grains;
+        self.pair_list = saved.pair_list;
+        self.intruder_list = saved.intruder_list;
+        true
+    }
+}

@@ -1,0 +1,168 @@
+//! Which grains are near each other: a cell grid, rebuilt when grains have moved far enough.
+
+use serde::{Deserialize, Serialize};
+
+use crate::grains::{Grains, Space};
+use crate::math::Vec3;
+
+/// Counts down to the next rebuild of a neighbour list: the list holds everything nearer than
+/// `margin`, so it is good until the relative displacement of any two bodies may exceed that.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Freshness {
+    margin: f64,
+    left: f64,
+}
+
+impl Freshness {
+    /// A list that is stale from the start; `margin` [m].
+    pub(crate) fn stale(margin: f64) -> Self {
+        Self { margin, left: -1.0 }
+    }
+
+    /// The gap [m] up to which the list has to hold pairs.
+    pub(crate) fn margin(&self) -> f64 {
+        self.margin
+    }
+
+    /// Takes note of a relative displacement [m]; returns whether the list has to be rebuilt now.
+    pub(crate) fn spend(&mut self, displacement: f64) -> bool {
+        self.left -= displacement;
+        self.left < 0.0
+    }
+
+    /// The list has just been rebuilt.
+    pub(crate) fn renew(&mut self) {
+        self.left = self.margin;
+    }
+}
+
+/// Grains sorted into square (cubic) cells as wide as the reach of the largest grain.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CellGrid {
+    origin: Vec3,
+    inverse_width: f64,
+    /// Cells along x, y, z.
+    n: [usize; 3],
+    starts: Vec<u32>,
+    members: Vec<u32>,
+    cell_of: Vec<u32>,
+}
+
+impl CellGrid {
+    /// Sorts the grains into cells of at least `reach` [m], the largest distance of centres that
+    /// counts as near.
+    pub(crate) fn fill(&mut self, grains: &Grains, reach: f64) {
+        let mut low = grains.position[0];
+        let mut high = low;
+        for position in &grains.position {
+            low = low.inf(position);
+            high = high.sup(position);
+        }
+        let extent = high - low;
+        // A grain thrown far out must not cost memory: wider cells are slower, never wrong.
+        let mut width = reach;
+        loop {
+            let cells = [extent.x, extent.y, extent.z].map(|length| (length / width) as usize + 1);
+            self.n = match grains.space {
+                Space::Planar => [cells[0], 1, cells[2]],
+                Space::Spatial => cells,
+            };
+            let product = self.n.iter().try_fold(1_usize, |all, &n| all.checked_mul(n));
+            if product.is_some_and(|product| product <= 4 * grains.len() + 64) {
+                break;
+            }
+            width *= 1.5;
+        }
+        self.origin = low;
+        self.inverse_width = 1.0 / width;
+
+        let mut cell_of = std::mem::take(&mut self.cell_of);
+        cell_of.clear();
+        cell_of.extend(grains.position.iter().map(|&position| {
+            let [x, y, z] = self.cell(position);
+            ((z * self.n[1] + y) * self.n[0] + x) as u32
+        }));
+        // Two places behind its cell, a count becomes the place that is filled next, and so in the
+        // end the start of the cell after.
+        let n_cells = self.n.iter().product::<usize>();
+        self.starts.clear();
+        self.starts.resize(n_cells + 2, 0);
+        for &cell in &cell_of {
+            self.starts[cell as usize + 2] += 1;
+        }
+        for cell in 2..n_cells + 2 {
+            self.starts[cell] += self.starts[cell - 1];
+        }
+        self.members.clear();
+        self.members.resize(grains.len(), 0);
+        for (grain, &cell) in cell_of.iter().enumerate() {
+            let next = &mut self.starts[cell as usize + 1];
+            self.members[*next as usize] = grain as u32;
+            *next += 1;
+        }
+        self.cell_of = cell_of;
+    }
+
+    fn cell(&self, position: Vec3) -> [usize; 3] {
+        let offset = (position - self.origin) * self.inverse_width;
+        [
+            (offset.x as usize).min(self.n[0] - 1),
+            (offset.y as usize).min(self.n[1] - 1),
+            (offset.z as usize).min(self.n[2] - 1),
+        ]
+    }
+
+    /// Appends to `keys` every pair (i, j) with j > i whose gap is below `margin` [m], j ascending.
+    pub(crate) fn pairs_of(&self, grains: &Grains, i: usize, margin: f64, keys: &mut Vec<[u32; 2]>) {
+        let from = keys.len();
+        let position = grains.position[i];
+        let radius = grains.radius[i] + margin;
+        let cell = self.cell(position);
+        let span = |axis: usize| {
+            cell[axis].saturating_sub(1)..=(cell[axis] + 1).min(self.n[axis] - 1)
+        };
+        for z in span(2) {
+            for y in span(1) {
+                let row = (z * self.n[1] + y) * self.n[0];
+                let xs = span(0);
+                let first = self.starts[row + xs.start()] as usize;
+                let last = self.starts[row + xs.end() + 1] as usize;
+                for &j in &self.members[first..last] {
+                    if j as usize <= i {
+                        continue;
+                    }
+                    let near = radius + grains.radius[j as usize];
+                    if (position - grains.position[j as usize]).norm_squared() < near * near {
+                        keys.push([i as u32, j]);
+                    }
+                }
+            }
+        }
+        keys[from..].sort_unstable();
+    }
+}
+
+/// Order of grains in which neighbours in space are near in memory: by cell along a Morton curve,
+/// then by identity.
+pub(crate) fn spatial_order(grains: &Grains) -> Vec<usize> {
+    let low = grains.position.iter().fold(grains.position[0], |low, x| low.inf(x));
+    let width = 2.0 * grains.radius.iter().fold(0.0_f64, |largest, &radius| largest.max(radius));
+    let axes: &[usize] = match grains.space {
+        Space::Planar => &[0, 2],
+        Space::Spatial => &[0, 1, 2],
+    };
+    let curve = |i: usize| {
+        let offset = (grains.position[i] - low) / width;
+        axes.iter().enumerate().fold(0, |key, (shift, &axis)| {
+            key | interleave(offset[axis] as u32, axes.len()) << shift
+        })
+    };
+    let mut order: Vec<usize> = (0..grains.len()).collect();
+    order.sort_by_cached_key(|&i| (curve(i), grains.id[i]));
+    order
+}
+
+/// The low 20 bits of `coordinate`, `stride` places apart.
+fn interleave(coordinate: u32, stride: usize) -> u64 {
+    (0..20).fold(0, |key, bit| key | u64::from(coordinate >> bit & 1) << (bit * stride))
+}

@@ -1,0 +1,39 @@
+//! Shapes of parry as surfaces: the only file where parry's vectors meet ours.
+
+use engine::math::Vec3;
+use engine::surface::{Surface, SurfacePoint};
+use parry3d_f64::math::Vector;
+use parry3d_f64::query::PointQuery;
+use parry3d_f64::shape::{Ball, Shape, SupportMap};
+
+fn to_parry(v: Vec3) -> Vector {
+    Vector::new(v.x, v.y, v.z)
+}
+
+fn from_parry(v: Vector) -> Vec3 {
+    Vec3::new(v.x, v.y, v.z)
+}
+
+/// A parry ball about the origin.
+pub(crate) struct BallSurface(pub(crate) Ball);
+
+impl Surface for BallSurface {
+    fn closest(&self, point: Vec3) -> SurfacePoint {
+        let local = to_parry(point);
+        SurfacePoint {
+            // Radial, not from the projected point: on the surface their difference has no direction.
+            normal: from_parry(local.try_normalize().unwrap_or(Vector::Z)),
+            gap: self.0.distance_to_local_point(local, false),
+            curvature: 1.0 / self.0.radius,
+        }
+    }
+
+    fn support(&self, direction: Vec3) -> f64 {
+        let direction = to_parry(direction);
+        self.0.local_support_point(direction).dot(direction)
+    }
+
+    fn bounding_radius(&self) -> f64 {
+        self.0.compute_local_bounding_sphere().radius()
+    }
+}
