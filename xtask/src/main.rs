@@ -1,3 +1,153 @@
 //! Chores of the repository: `cargo xtask <task>`.
+//!
+//! It links none of our crates, so it starts at once; whatever runs a bed is started in release.
 
-fn main() {}
+#![allow(
+    clippy::print_stdout,
+    reason = "stdout is where a command's result belongs"
+)]
+
+mod lint;
+mod tidy;
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result};
+use lexopt::Arg;
+use xshell::{Shell, cmd};
+
+const HELP: &str = "\
+Chores of the repository.
+
+Usage: cargo xtask <task>
+
+  lint               fmt, clippy, doc and tidy, then cargo-deny and typos where installed
+  tidy               the rules of the repository that no other tool knows
+  validate [ARG]...  the validation rows, in release; the arguments go to the program as they are
+  help               this text
+
+Exit status: 0 done, 1 something was found, 2 the command line was not understood.
+";
+
+/// What the command line asks for.
+#[derive(Debug, PartialEq, Eq)]
+enum Task {
+    Help,
+    Lint,
+    Tidy,
+    Validate(Vec<OsString>),
+}
+
+fn main() -> ExitCode {
+    let outcome = match parse(std::env::args_os().skip(1)) {
+        Ok(task) => run(task),
+        Err(error) => {
+            eprintln!("error: {error}\n\n{HELP}");
+            return ExitCode::from(2);
+        }
+    };
+    outcome.unwrap_or_else(|error| {
+        eprintln!("error: {error:#}");
+        ExitCode::FAILURE
+    })
+}
+
+fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
+    let mut parser = lexopt::Parser::from_args(args);
+    let Some(first) = parser.next()? else {
+        return Err("a task is missing".into());
+    };
+    let task = match first {
+        Arg::Short('h') | Arg::Long("help") => return Ok(Task::Help),
+        Arg::Value(name) => match name.to_str() {
+            Some("help") => Task::Help,
+            Some("lint") => Task::Lint,
+            Some("tidy") => Task::Tidy,
+            Some("validate") => return Ok(Task::Validate(parser.raw_args()?.collect())),
+            _ => return Err(format!("no task is called `{}`", name.display()).into()),
+        },
+        other => return Err(other.unexpected()),
+    };
+    match parser.next()? {
+        None => Ok(task),
+        Some(Arg::Short('h') | Arg::Long("help")) => Ok(Task::Help),
+        Some(other) => Err(other.unexpected()),
+    }
+}
+
+fn run(task: Task) -> Result<ExitCode> {
+    let sh = Shell::new()?;
+    match task {
+        Task::Help => {
+            print!("{HELP}");
+            Ok(ExitCode::SUCCESS)
+        }
+        Task::Lint => {
+            sh.change_dir(root()?);
+            lint::run(&sh)
+        }
+        Task::Tidy => {
+            sh.change_dir(root()?);
+            tidy::run(&sh)
+        }
+        Task::Validate(args) => validate(&sh, &args),
+    }
+}
+
+/// Runs the validation program from where the user stands and hands its exit status on.
+fn validate(sh: &Shell, args: &[OsString]) -> Result<ExitCode> {
+    let cargo = cmd!(
+        sh,
+        "cargo run --quiet --release --locked -p validation --bin validate -- {args...}"
+    );
+    let status = std::process::Command::from(cargo)
+        .status()
+        .context("cannot start cargo")?;
+    let code = status.code().and_then(|code| u8::try_from(code).ok());
+    Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
+}
+
+/// The folder of the workspace.
+fn root() -> Result<PathBuf> {
+    let manifest_dir = std::env::var_os("CARGO_MANIFEST_DIR")
+        .context("start this as `cargo xtask`: cargo says where the workspace is")?;
+    let root = PathBuf::from(manifest_dir).parent().map(PathBuf::from);
+    root.context("the xtask crate stands one level below the workspace")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(args: &[&str]) -> Result<Task, String> {
+        parse(args.iter().map(OsString::from)).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn each_task_is_reached_by_its_name() {
+        assert_eq!(parsed(&["lint"]), Ok(Task::Lint));
+        assert_eq!(parsed(&["tidy"]), Ok(Task::Tidy));
+        for help in ["help", "-h", "--help"] {
+            assert_eq!(parsed(&[help]), Ok(Task::Help));
+        }
+        assert_eq!(parsed(&["lint", "--help"]), Ok(Task::Help));
+    }
+
+    #[test]
+    fn everything_after_validate_is_passed_on_untouched() {
+        let task = parsed(&["validate", "--only", "row 3", "--", "--help"]);
+        let args = ["--only", "row 3", "--", "--help"]
+            .map(OsString::from)
+            .to_vec();
+        assert_eq!(task, Ok(Task::Validate(args)));
+    }
+
+    #[test]
+    fn what_is_not_understood_is_named() {
+        assert_eq!(parsed(&[]), Err("a task is missing".into()));
+        assert_eq!(parsed(&["tydi"]), Err("no task is called `tydi`".into()));
+        assert!(parsed(&["lint", "--fast"]).is_err_and(|error| error.contains("--fast")));
+    }
+}
