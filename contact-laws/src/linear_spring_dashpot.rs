@@ -37,6 +37,8 @@ pub(crate) struct LinearSpringDashpot {
 pub(crate) struct Pair {
     normal_stiffness: f64,
     tangential_stiffness: f64,
+    /// 1/k_t [m/N].
+    tangential_compliance: f64,
     normal_damping_rate: f64,
     tangential_damping_rate: f64,
     friction: f64,
@@ -76,6 +78,7 @@ impl ContactLaw for LinearSpringDashpot {
         Pair {
             normal_stiffness: self.normal_stiffness,
             tangential_stiffness: self.tangential_stiffness,
+            tangential_compliance: 1.0 / self.tangential_stiffness,
             normal_damping_rate: self.normal_damping_rate,
             tangential_damping_rate: self.tangential_damping_rate,
             friction: self.friction[partner.index()],
@@ -93,7 +96,7 @@ impl ContactLaw for LinearSpringDashpot {
     ) {
         let touching = contact.overlap > 0.0;
         let overlap = contact.overlap.max(0.0);
-        let mass = if touching { contact.mass_eff } else { 0.0 };
+        let mass = if touching { contact.mass_eff() } else { 0.0 };
 
         let (k_n, k_t) = (pair.normal_stiffness, pair.tangential_stiffness);
         let damping = mass * pair.normal_damping_rate * contact.overlap_rate;
@@ -109,7 +112,7 @@ impl ContactLaw for LinearSpringDashpot {
         let trial_2 = trial.norm_squared();
         let (force, spring, viscous) = if trial_2 > limit * limit {
             let force = trial * (limit / trial_2.sqrt());
-            let spring = force / -k_t;
+            let spring = force * -pair.tangential_compliance;
             let slipped = stretched - spring;
             energy.sliding += 0.5 * k_t * (before + spring).dot(&slipped);
             (force, spring, Vec3::zeros())

@@ -75,10 +75,10 @@ impl ContactLaw for RollingResistance {
         response: &mut Response,
         energy: &mut Energy,
     ) {
-        let lever = pair.rolling_friction * contact.radius_eff;
+        let lever = pair.rolling_friction * contact.radius_eff();
         let k_r = 2.25 * response.normal_stiffness * lever * lever;
         let c_r = if contact.overlap > 0.0 {
-            2.0 * pair.rolling_damping_ratio * (contact.rolling_inertia_eff * k_r).sqrt()
+            2.0 * pair.rolling_damping_ratio * (k_r / contact.rolling_mobility).sqrt()
         } else {
             0.0
         };

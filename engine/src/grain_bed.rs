@@ -212,8 +212,17 @@ impl GrainBed {
         let half = 0.5 * dt;
         let gravity = self.gravity;
         let contacts = &self.contacts;
-        let Grains { load, velocity, spin, position, mass, inertia, inverse_mass, .. } =
-            &mut self.grains;
+        let Grains {
+            load,
+            velocity,
+            spin,
+            position,
+            mass,
+            inertia,
+            inverse_mass,
+            inverse_inertia,
+            ..
+        } = &mut self.grains;
         (
             load.par_chunks_mut(BLOCK),
             velocity.par_chunks_mut(BLOCK),
@@ -229,7 +238,7 @@ impl GrainBed {
                     let i = block * BLOCK + k;
                     load[k].force += gravity * mass[i];
                     velocity[k] += load[k].force * (half * inverse_mass[i]);
-                    spin[k] += load[k].torque * (half / inertia[i]);
+                    spin[k] += load[k].torque * (half * inverse_inertia[i]);
                     energy.translation += 0.5 * mass[i] * velocity[k].norm_squared();
                     energy.rotation += 0.5 * inertia[i] * spin[k].norm_squared();
                     energy.potential -= mass[i] * gravity.dot(&position[i]);
@@ -250,10 +259,12 @@ impl GrainBed {
             potential("intruder"),
             potential("grains"),
         ];
-        terms.extend(self.stages().iter().flat_map(|stage| stage.channels()).map(|channel| Term {
-            name: channel.name,
-            kind: TermKind::Channel(channel.kind),
-        }));
+        terms.extend(
+            self.stages()
+                .iter()
+                .flat_map(|stage| stage.channels())
+                .map(|channel| Term { name: channel.name, kind: TermKind::Channel(channel.kind) }),
+        );
         terms.push(Term { name: "walls", kind: TermKind::Channel(ChannelKind::Dissipated) });
         terms
     }

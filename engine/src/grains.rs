@@ -60,8 +60,12 @@ pub struct Grains {
     pub mass: Vec<f64>,
     /// [kg m²].
     pub inertia: Vec<f64>,
-    /// 1/m [1/kg].
+    /// 1/r (1/m).
+    pub inverse_radius: Vec<f64>,
+    /// 1/m (1/kg).
     pub inverse_mass: Vec<f64>,
+    /// 1/I (1/(kg m²)).
+    pub inverse_inertia: Vec<f64>,
     /// 1/(I + m r²) [1/(kg m²)], a grain's part of the inertia of rolling.
     pub rolling_mobility: Vec<f64>,
     /// Centres [m].
@@ -111,7 +115,9 @@ impl Grains {
             radius: list.iter().map(|grain| grain.radius).collect(),
             mass: list.iter().map(|grain| grain.mass).collect(),
             inertia: list.iter().map(inertia).collect(),
+            inverse_radius: list.iter().map(|grain| 1.0 / grain.radius).collect(),
             inverse_mass: list.iter().map(|grain| 1.0 / grain.mass).collect(),
+            inverse_inertia: list.iter().map(|grain| 1.0 / inertia(grain)).collect(),
             rolling_mobility: list
                 .iter()
                 .map(|grain| 1.0 / (inertia(grain) + grain.mass * grain.radius * grain.radius))
@@ -139,8 +145,15 @@ impl Grains {
 
     /// Whether all arrays hold `n` finite entries, for grains that were read from a file.
     pub(crate) fn is_consistent(&self, n: usize) -> bool {
-        let scalars =
-            [&self.radius, &self.mass, &self.inertia, &self.inverse_mass, &self.rolling_mobility];
+        let scalars = [
+            &self.radius,
+            &self.mass,
+            &self.inertia,
+            &self.inverse_radius,
+            &self.inverse_mass,
+            &self.inverse_inertia,
+            &self.rolling_mobility,
+        ];
         let vectors =
             [&self.position, &self.velocity, &self.spin, &self.velocity_now, &self.spin_now];
         let finite = |v: &Vec3| v.iter().all(|x| x.is_finite());
@@ -166,7 +179,8 @@ impl Grains {
     /// Half a kick, then the drift; `dt` [s]. Returns the greatest speed [m/s] of a grain.
     pub(crate) fn kick_drift(&mut self, dt: f64) -> f64 {
         let half = 0.5 * dt;
-        let (inverse_mass, inertia, load) = (&self.inverse_mass, &self.inertia, &self.load);
+        let (inverse_mass, inverse_inertia, load) =
+            (&self.inverse_mass, &self.inverse_inertia, &self.load);
         let fastest_2 = (
             self.position.par_chunks_mut(BLOCK),
             self.velocity.par_chunks_mut(BLOCK),
@@ -181,7 +195,7 @@ impl Grains {
                 for k in 0..position.len() {
                     let i = block * BLOCK + k;
                     let dv = load[i].force * (half * inverse_mass[i]);
-                    let dw = load[i].torque * (half / inertia[i]);
+                    let dw = load[i].torque * (half * inverse_inertia[i]);
                     velocity[k] += dv;
                     spin[k] += dw;
                     position[k] += velocity[k] * dt;

@@ -4,8 +4,10 @@
 //! [`contact`] says what a contact law is. The engine knows no law, no shape and no TOML; it defines
 //! the traits that those implement.
 
+pub mod bed;
 pub mod body;
 pub mod boundary;
+pub mod checkpoint;
 pub mod clock;
 pub mod contact;
 mod contacts;

@@ -113,14 +113,19 @@ impl CellGrid {
     }
 
     /// Appends to `keys` every pair (i, j) with j > i whose gap is below `margin` [m], j ascending.
-    pub(crate) fn pairs_of(&self, grains: &Grains, i: usize, margin: f64, keys: &mut Vec<[u32; 2]>) {
+    pub(crate) fn pairs_of(
+        &self,
+        grains: &Grains,
+        i: usize,
+        margin: f64,
+        keys: &mut Vec<[u32; 2]>,
+    ) {
         let from = keys.len();
         let position = grains.position[i];
         let radius = grains.radius[i] + margin;
         let cell = self.cell(position);
-        let span = |axis: usize| {
-            cell[axis].saturating_sub(1)..=(cell[axis] + 1).min(self.n[axis] - 1)
-        };
+        let span =
+            |axis: usize| cell[axis].saturating_sub(1)..=(cell[axis] + 1).min(self.n[axis] - 1);
         for z in span(2) {
             for y in span(1) {
                 let row = (z * self.n[1] + y) * self.n[0];

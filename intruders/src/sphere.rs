@@ -57,11 +57,7 @@ fn sphere(params: &ParamTable, space: Space) -> Body {
         Space::Planar => PI * radius * radius,
         Space::Spatial => 4.0 / 3.0 * PI * radius.powi(3),
     };
-    Body {
-        surface: surface(radius),
-        inertia_per_mass: Vec3::repeat(0.4 * radius * radius),
-        volume,
-    }
+    Body { surface: surface(radius), inertia_per_mass: Vec3::repeat(0.4 * radius * radius), volume }
 }
 
 fn surface(radius: f64) -> Arc<BallSurface> {

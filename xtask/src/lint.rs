@@ -12,13 +12,7 @@ pub(crate) fn run(sh: &Shell) -> Result<ExitCode> {
     let mut failed = Vec::new();
     let checks = [
         ("fmt", cmd!(sh, "cargo fmt --all --check")),
-        (
-            "clippy",
-            cmd!(
-                sh,
-                "cargo clippy --workspace --all-targets --locked -- --deny warnings"
-            ),
-        ),
+        ("clippy", cmd!(sh, "cargo clippy --workspace --all-targets --locked -- --deny warnings")),
         (
             "doc",
             cmd!(sh, "cargo doc --workspace --no-deps --locked")
@@ -37,11 +31,7 @@ pub(crate) fn run(sh: &Shell) -> Result<ExitCode> {
     }
 
     let tools = [
-        (
-            "cargo-deny",
-            cmd!(sh, "cargo deny --version"),
-            cmd!(sh, "cargo deny --locked check"),
-        ),
+        ("cargo-deny", cmd!(sh, "cargo deny --version"), cmd!(sh, "cargo deny --locked check")),
         ("typos", cmd!(sh, "typos --version"), cmd!(sh, "typos")),
     ];
     for (name, version, check) in tools {
@@ -66,18 +56,11 @@ fn heading(name: &str) {
 
 fn passes(name: &str, check: Cmd<'_>) -> bool {
     heading(name);
-    check
-        .quiet()
-        .run()
-        .inspect_err(|error| eprintln!("{error}"))
-        .is_ok()
+    check.quiet().run().inspect_err(|error| eprintln!("{error}")).is_ok()
 }
 
 fn is_installed(version: Cmd<'_>) -> bool {
     let mut command = Command::from(version);
-    command
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null());
+    command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     command.status().is_ok_and(|status| status.success())
 }

@@ -2,10 +2,7 @@
 //!
 //! It links none of our crates, so it starts at once; whatever runs a bed is started in release.
 
-#![allow(
-    clippy::print_stdout,
-    reason = "stdout is where a command's result belongs"
-)]
+#![allow(clippy::print_stdout, reason = "stdout is where a command's result belongs")]
 
 mod lint;
 mod tidy;
@@ -98,13 +95,9 @@ fn run(task: Task) -> Result<ExitCode> {
 
 /// Runs the validation program from where the user stands and hands its exit status on.
 fn validate(sh: &Shell, args: &[OsString]) -> Result<ExitCode> {
-    let cargo = cmd!(
-        sh,
-        "cargo run --quiet --release --locked -p validation --bin validate -- {args...}"
-    );
-    let status = std::process::Command::from(cargo)
-        .status()
-        .context("cannot start cargo")?;
+    let cargo =
+        cmd!(sh, "cargo run --quiet --release --locked -p validation --bin validate -- {args...}");
+    let status = std::process::Command::from(cargo).status().context("cannot start cargo")?;
     let code = status.code().and_then(|code| u8::try_from(code).ok());
     Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
 }
@@ -138,9 +131,7 @@ mod tests {
     #[test]
     fn everything_after_validate_is_passed_on_untouched() {
         let task = parsed(&["validate", "--only", "row 3", "--", "--help"]);
-        let args = ["--only", "row 3", "--", "--help"]
-            .map(OsString::from)
-            .to_vec();
+        let args = ["--only", "row 3", "--", "--help"].map(OsString::from).to_vec();
         assert_eq!(task, Ok(Task::Validate(args)));
     }
 

@@ -62,35 +62,43 @@ pub struct Contact {
     pub relative_spin: Vec3,
     /// Rotation of i relative to j in this step [rad].
     pub relative_turn: Vec3,
-    /// R* [m], 1/R* = 1/R_i + 1/R_j; a flat face has no curvature.
-    pub radius_eff: f64,
-    /// m* [kg], 1/m* = 1/m_i + 1/m_j; a wall has infinite mass.
-    pub mass_eff: f64,
-    /// I_r [kg m²], 1/I_r = Σ 1/(I + m R²): the inertia of rolling.
-    pub rolling_inertia_eff: f64,
+    /// 1/R* = 1/R_i + 1/R_j (1/m); a flat face has no curvature.
+    pub inverse_radius_eff: f64,
+    /// 1/m* = 1/m_i + 1/m_j (1/kg); a wall has infinite mass.
+    pub inverse_mass_eff: f64,
+    /// 1/I_r = Σ 1/(I + m R²) (1/(kg m²)), I_r the inertia of rolling.
+    pub rolling_mobility: f64,
     /// What j is.
     pub partner: Partner,
 }
 
 impl Contact {
+    /// R* (m).
+    #[inline]
+    #[must_use]
+    pub fn radius_eff(&self) -> f64 {
+        1.0 / self.inverse_radius_eff
+    }
+
+    /// m* (kg).
+    #[inline]
+    #[must_use]
+    pub fn mass_eff(&self) -> f64 {
+        1.0 / self.inverse_mass_eff
+    }
+
     /// Turns a vector that lay in an earlier contact plane into the present one, its length kept
     /// (Luding, Granul. Matter 10, 235 (2008), eq. 17).
     #[inline]
     #[must_use]
     pub fn turn(&self, vector: Vec3) -> Vec3 {
-        turn_into_plane(vector, self.normal)
-    }
-}
-
-/// The projection of `vector` on the plane of `normal`, scaled to the length of `vector`.
-#[inline]
-pub(crate) fn turn_into_plane(vector: Vec3, normal: Vec3) -> Vec3 {
-    let projected = vector - normal * vector.dot(&normal);
-    let projected_2 = projected.norm_squared();
-    if projected_2 > 0.0 {
-        projected * (vector.norm_squared() / projected_2).sqrt()
-    } else {
-        Vec3::zeros()
+        let projected = vector - self.normal * vector.dot(&self.normal);
+        let projected_2 = projected.norm_squared();
+        if projected_2 > 0.0 {
+            projected * (vector.norm_squared() / projected_2).sqrt()
+        } else {
+            Vec3::zeros()
+        }
     }
 }
 

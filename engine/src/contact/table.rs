@@ -121,7 +121,10 @@ impl ContactTable {
         self.history_len == history_len
             && self.touching.len() == self.keys.len()
             && self.keys.is_sorted()
-            && self.keys.iter().all(|&[i, j]| own.contains(&(i as usize)) && (j as usize) < n_grains)
+            && self
+                .keys
+                .iter()
+                .all(|&[i, j]| own.contains(&(i as usize)) && (j as usize) < n_grains)
             && self.history.len() == history_len.len()
             && self.history.iter().zip(history_len).all(|(rows, len)| {
                 rows.len() == self.keys.len() * len && rows.iter().all(|value| value.is_finite())

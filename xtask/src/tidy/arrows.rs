@@ -14,10 +14,7 @@ const ALLOWED: [(&str, &[&str]); 8] = [
     ("intruders", &["engine"]),
     ("configs", &["engine", "contact-laws", "intruders"]),
     ("exchange", &["engine", "configs"]),
-    (
-        "validation",
-        &["engine", "contact-laws", "intruders", "configs"],
-    ),
+    ("validation", &["engine", "contact-laws", "intruders", "configs"]),
     ("plunge", &["engine", "configs", "exchange", "validation"]),
     ("xtask", &[]),
 ];
@@ -60,25 +57,17 @@ pub(crate) fn check(metadata: &str, files: &[TextFile]) -> Result<Vec<Problem>> 
     let metadata: Value = serde_json::from_str(metadata)?;
     let root = field(&metadata, "workspace_root")?;
     let packages = list(&metadata, "packages")?;
-    let names = packages
-        .iter()
-        .map(|p| field(p, "name"))
-        .collect::<Result<Vec<_>>>()?;
+    let names = packages.iter().map(|p| field(p, "name")).collect::<Result<Vec<_>>>()?;
 
     let mut problems = Vec::new();
     for package in packages {
         let from = field(package, "name")?;
         let manifest = Path::new(field(package, "manifest_path")?);
         let file = manifest.strip_prefix(root).unwrap_or(manifest).to_owned();
-        let text = files
-            .iter()
-            .find(|f| f.path == file)
-            .map_or("", |f| f.text.as_str());
+        let text = files.iter().find(|f| f.path == file).map_or("", |f| f.text.as_str());
         if !ALLOWED.iter().any(|(name, _)| *name == from) {
             problems.push(Problem {
-                line: numbered(text)
-                    .find(|(_, l)| l.starts_with("name"))
-                    .map_or(1, |(n, _)| n),
+                line: numbered(text).find(|(_, l)| l.starts_with("name")).map_or(1, |(n, _)| n),
                 file: file.clone(),
                 what: format!("the crate `{from}` is not in the table of crates"),
                 right: "add its row, with what it may import, to xtask/src/tidy/arrows.rs".into(),
@@ -112,32 +101,18 @@ fn check_arrow(arrow: &Arrow<'_>, ours: &[&str], file: &Path, text: &str) -> Opt
         if allowed.contains(&from) {
             return None;
         }
-        format!(
-            "only {} may import `{to}`: ask it for what is needed",
-            names(allowed)
-        )
+        format!("only {} may import `{to}`: ask it for what is needed", names(allowed))
     };
     let what = format!("`{from}` imports `{to}`");
-    Some(Problem {
-        file: file.to_owned(),
-        line: line_of(text, key),
-        what,
-        right,
-    })
+    Some(Problem { file: file.to_owned(), line: line_of(text, key), what, right })
 }
 
 fn row<'t>(table: &'t [(&str, &'t [&'t str])], name: &str) -> Option<&'t [&'t str]> {
-    table
-        .iter()
-        .find(|(key, _)| *key == name)
-        .map(|(_, values)| *values)
+    table.iter().find(|(key, _)| *key == name).map(|(_, values)| *values)
 }
 
 fn names(list: &[&str]) -> String {
-    list.iter()
-        .map(|name| format!("`{name}`"))
-        .collect::<Vec<_>>()
-        .join(", ")
+    list.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
 /// The line of `manifest` on which the dependency `key` stands, dev-dependencies aside; 1 if none.
@@ -145,10 +120,7 @@ fn line_of(manifest: &str, key: &str) -> usize {
     let mut in_dependencies = false;
     for (line, content) in numbered(manifest) {
         let content = content.trim();
-        if let Some(header) = content
-            .strip_prefix('[')
-            .and_then(|rest| rest.strip_suffix(']'))
-        {
+        if let Some(header) = content.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')) {
             let is_dev = header.contains("dev-dependencies");
             in_dependencies = header.ends_with("dependencies") && !is_dev;
             if !is_dev && header.ends_with(&format!("dependencies.{key}")) {
@@ -165,15 +137,11 @@ fn line_of(manifest: &str, key: &str) -> usize {
 }
 
 fn field<'v>(value: &'v Value, key: &str) -> Result<&'v str> {
-    value[key]
-        .as_str()
-        .with_context(|| format!("cargo metadata without `{key}`"))
+    value[key].as_str().with_context(|| format!("cargo metadata without `{key}`"))
 }
 
 fn list<'v>(value: &'v Value, key: &str) -> Result<&'v [Value]> {
-    let list = value[key]
-        .as_array()
-        .with_context(|| format!("cargo metadata without `{key}`"))?;
+    let list = value[key].as_array().with_context(|| format!("cargo metadata without `{key}`"))?;
     Ok(list)
 }
 
@@ -197,10 +165,7 @@ mod tests {
     }
 
     fn whats(crates: &[(&str, &[(&str, Value)])]) -> Vec<String> {
-        problems(crates)
-            .into_iter()
-            .map(|problem| problem.what)
-            .collect()
+        problems(crates).into_iter().map(|problem| problem.what).collect()
     }
 
     const NORMAL: Value = Value::Null;
@@ -227,31 +192,19 @@ mod tests {
         assert!(whats(&[("engine", &[("rayon", NORMAL), ("serde", NORMAL)])]).is_empty());
         let found = problems(&[("contact-laws", &[("rayon", NORMAL)])]);
         assert_eq!(found[0].what, "`contact-laws` imports `rayon`");
-        assert_eq!(
-            found[0].right,
-            "only `engine` may import `rayon`: ask it for what is needed"
-        );
+        assert_eq!(found[0].right, "only `engine` may import `rayon`: ask it for what is needed");
     }
 
     #[test]
     fn a_crate_without_a_row_is_reported() {
-        assert_eq!(
-            whats(&[("viewer", &[])]),
-            ["the crate `viewer` is not in the table of crates"]
-        );
+        assert_eq!(whats(&[("viewer", &[])]), ["the crate `viewer` is not in the table of crates"]);
     }
 
     #[test]
     fn every_arrow_of_the_table_points_to_a_crate_further_up() {
         for (index, (from, imports)) in ALLOWED.iter().enumerate() {
-            let above = ALLOWED[..index]
-                .iter()
-                .map(|(name, _)| *name)
-                .collect::<Vec<_>>();
-            assert!(
-                imports.iter().all(|to| above.contains(to)),
-                "`{from}` imports downwards"
-            );
+            let above = ALLOWED[..index].iter().map(|(name, _)| *name).collect::<Vec<_>>();
+            assert!(imports.iter().all(|to| above.contains(to)), "`{from}` imports downwards");
         }
     }
 

@@ -16,12 +16,7 @@ struct Registered<'a> {
 
 /// Checks every entry of the tables in the registry's file.
 pub(crate) fn check(files: &[TextFile]) -> Vec<Problem> {
-    let text_of = |path: &Path| {
-        files
-            .iter()
-            .find(|f| f.path == path)
-            .map(|f| f.text.as_str())
-    };
+    let text_of = |path: &Path| files.iter().find(|f| f.path == path).map(|f| f.text.as_str());
     let Some(registry) = text_of(Path::new(REGISTRY)) else {
         return vec![Problem {
             file: REGISTRY.into(),
@@ -42,19 +37,10 @@ pub(crate) fn check(files: &[TextFile]) -> Vec<Problem> {
 
     let mut problems = Vec::new();
     for entry in entries {
-        let Registered {
-            module,
-            constant,
-            line,
-        } = entry;
-        let candidates = [
-            format!("contact-laws/src/{module}.rs"),
-            format!("contact-laws/src/{module}/mod.rs"),
-        ];
-        let file = candidates
-            .iter()
-            .map(PathBuf::from)
-            .find(|path| text_of(path).is_some());
+        let Registered { module, constant, line } = entry;
+        let candidates =
+            [format!("contact-laws/src/{module}.rs"), format!("contact-laws/src/{module}/mod.rs")];
+        let file = candidates.iter().map(PathBuf::from).find(|path| text_of(path).is_some());
         let Some(file) = file else {
             problems.push(Problem {
                 file: REGISTRY.into(),
@@ -75,12 +61,7 @@ pub(crate) fn check(files: &[TextFile]) -> Vec<Problem> {
             continue;
         };
         let mut problem = |what, right| {
-            problems.push(Problem {
-                file: file.clone(),
-                line: name_line,
-                what,
-                right,
-            });
+            problems.push(Problem { file: file.clone(), line: name_line, what, right });
         };
         if name.replace('-', "_") != module {
             let right = format!("call the file {}.rs", name.replace('-', "_"));
@@ -90,10 +71,7 @@ pub(crate) fn check(files: &[TextFile]) -> Vec<Problem> {
             let right = "add a case solved by hand at the bottom of the file".into();
             problem(format!("`{name}` has no test beside it"), right);
         }
-        if !files
-            .iter()
-            .any(|f| is_model(&f.path) && model_names(&f.text, name))
-        {
+        if !files.iter().any(|f| is_model(&f.path) && model_names(&f.text, name)) {
             let right = format!("add one that says `name = \"{name}\"` to its law or effect");
             problem(format!("no model in configs/*.toml uses `{name}`"), right);
         }
@@ -109,11 +87,7 @@ fn registered(registry: &str) -> Vec<Registered<'_>> {
         let code = content.split("//").next().unwrap_or_default();
         let values = if in_table {
             code
-        } else if code
-            .trim_start()
-            .trim_start_matches("pub ")
-            .starts_with("static ")
-        {
+        } else if code.trim_start().trim_start_matches("pub ").starts_with("static ") {
             code.split_once('=').map_or("", |(_, values)| values)
         } else {
             continue;
@@ -121,11 +95,7 @@ fn registered(registry: &str) -> Vec<Registered<'_>> {
         for value in values.split([',', '[', ']', ';']) {
             let path = value.trim().trim_start_matches('&');
             if let Some((module, constant)) = path.split_once("::") {
-                entries.push(Registered {
-                    module,
-                    constant,
-                    line,
-                });
+                entries.push(Registered { module, constant, line });
             }
         }
         in_table = !code.trim_end().ends_with(';');
@@ -163,9 +133,7 @@ fn model_names(model: &str, law: &str) -> bool {
             return false;
         }
         let value = line.strip_prefix("name").map(str::trim_start);
-        let value = value
-            .and_then(|rest| rest.strip_prefix('='))
-            .map(str::trim_start);
+        let value = value.and_then(|rest| rest.strip_prefix('=')).map(str::trim_start);
         let quoted = value.and_then(|rest| rest.strip_prefix(['"', '\'']));
         let name = quoted.and_then(|rest| rest.split(['"', '\'']).next());
         name == Some(law) && !table.starts_with("[run]")
@@ -192,15 +160,9 @@ fn find() { LAWS.iter().find(|entry| entry.name == name).copied() }
     fn whats(files: &[(&str, &str)]) -> Vec<String> {
         let files = files
             .iter()
-            .map(|(path, text)| TextFile {
-                path: path.into(),
-                text: (*text).to_owned(),
-            })
+            .map(|(path, text)| TextFile { path: path.into(), text: (*text).to_owned() })
             .collect::<Vec<_>>();
-        check(&files)
-            .into_iter()
-            .map(|problem| problem.what)
-            .collect()
+        check(&files).into_iter().map(|problem| problem.what).collect()
     }
 
     const ONE_LAW: (&str, &str) = (REGISTRY, "static LAWS: &[&LawEntry] = &[&rolling::ENTRY];");
@@ -209,15 +171,9 @@ fn find() { LAWS.iter().find(|entry| entry.name == name).copied() }
     #[test]
     fn every_table_of_the_registry_is_read() {
         let found = registered(REGISTRY_TEXT);
-        let found = found
-            .iter()
-            .map(|e| (e.module, e.constant, e.line))
-            .collect::<Vec<_>>();
-        let expected = [
-            ("linear_spring", "ENTRY", 3),
-            ("rolling", "ENTRY", 3),
-            ("drag", "LINEAR", 6),
-        ];
+        let found = found.iter().map(|e| (e.module, e.constant, e.line)).collect::<Vec<_>>();
+        let expected =
+            [("linear_spring", "ENTRY", 3), ("rolling", "ENTRY", 3), ("drag", "LINEAR", 6)];
         assert_eq!(found, expected);
     }
 
@@ -234,26 +190,19 @@ fn find() { LAWS.iter().find(|entry| entry.name == name).copied() }
             "const ENTRY: LawEntry = LawEntry {\nname: \"rolling\",\n};",
         );
         let beds = ("configs/beds/m.toml", MODEL.1);
-        let expected = [
-            "`rolling` has no test beside it",
-            "no model in configs/*.toml uses `rolling`",
-        ];
+        let expected =
+            ["`rolling` has no test beside it", "no model in configs/*.toml uses `rolling`"];
         assert_eq!(whats(&[ONE_LAW, law, beds]), expected);
     }
 
     #[test]
     fn a_law_stands_in_the_file_of_its_name() {
-        let law = (
-            "contact-laws/src/rolling.rs",
-            LAW.replace("\"rolling\"", "\"rolling-friction\""),
-        );
+        let law =
+            ("contact-laws/src/rolling.rs", LAW.replace("\"rolling\"", "\"rolling-friction\""));
         let model = MODEL.1.replace("rolling", "rolling-friction");
         let found = whats(&[ONE_LAW, (law.0, &law.1), (MODEL.0, &model)]);
         assert_eq!(found, ["`rolling-friction` stands in the module `rolling`"]);
-        assert_eq!(
-            whats(&[ONE_LAW, MODEL]),
-            ["`rolling::ENTRY` has no file of its own"]
-        );
+        assert_eq!(whats(&[ONE_LAW, MODEL]), ["`rolling::ENTRY` has no file of its own"]);
     }
 
     #[test]
@@ -268,26 +217,14 @@ fn find() { LAWS.iter().find(|entry| entry.name == name).copied() }
     #[test]
     fn the_name_of_a_run_is_not_the_name_of_a_law() {
         assert!(!model_names("[run]\nname = \"rolling\"\n", "rolling"));
-        assert!(!model_names(
-            "[[effect]]\nname = \"rolling-resistance\"\n",
-            "rolling"
-        ));
-        assert!(!model_names(
-            "[[effect]]\n# name = \"rolling\"\n",
-            "rolling"
-        ));
-        assert!(model_names(
-            "[run]\nname = 'a'\n[[effect]]\nname='rolling' # q\n",
-            "rolling"
-        ));
+        assert!(!model_names("[[effect]]\nname = \"rolling-resistance\"\n", "rolling"));
+        assert!(!model_names("[[effect]]\n# name = \"rolling\"\n", "rolling"));
+        assert!(model_names("[run]\nname = 'a'\n[[effect]]\nname='rolling' # q\n", "rolling"));
     }
 
     #[test]
     fn a_registry_that_is_not_understood_is_itself_a_problem() {
         assert_eq!(whats(&[]), ["the registry of laws is not there"]);
-        assert_eq!(
-            whats(&[(REGISTRY, "mod a;")]),
-            ["no table of laws is recognised"]
-        );
+        assert_eq!(whats(&[(REGISTRY, "mod a;")]), ["no table of laws is recognised"]);
     }
 }

@@ -28,12 +28,7 @@ pub(crate) struct Problem {
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            file,
-            line,
-            what,
-            right,
-        } = self;
+        let Self { file, line, what, right } = self;
         write!(f, "{}:{line}: {what}\n    {right}", file.display())
     }
 }
@@ -55,11 +50,7 @@ pub(crate) fn run(sh: &Shell) -> Result<ExitCode> {
 
     let mut problems = arrows::check(&metadata, &files)?;
     problems.extend(laws::check(&files));
-    problems.extend(
-        files
-            .iter()
-            .flat_map(|file| text::check(&file.path, &file.text)),
-    );
+    problems.extend(files.iter().flat_map(|file| text::check(&file.path, &file.text)));
     problems.sort();
 
     for problem in &problems {
@@ -79,13 +70,10 @@ pub(crate) fn run(sh: &Shell) -> Result<ExitCode> {
 
 /// Every text file that git knows or would offer to add, so a rule speaks before the commit does.
 fn text_files(sh: &Shell) -> Result<Vec<TextFile>> {
-    let list = cmd!(
-        sh,
-        "git ls-files -z --cached --others --exclude-standard --deduplicate"
-    )
-    .quiet()
-    .read()
-    .context("tidy checks what git tracks, so it needs git and a clone")?;
+    let list = cmd!(sh, "git ls-files -z --cached --others --exclude-standard --deduplicate")
+        .quiet()
+        .read()
+        .context("tidy checks what git tracks, so it needs git and a clone")?;
     let mut files = Vec::new();
     for path in list.split_terminator('\0').map(Path::new) {
         let full = sh.current_dir().join(path);
@@ -98,10 +86,7 @@ fn text_files(sh: &Shell) -> Result<Vec<TextFile>> {
             continue;
         }
         if let Ok(text) = String::from_utf8(bytes) {
-            files.push(TextFile {
-                path: path.to_owned(),
-                text,
-            });
+            files.push(TextFile { path: path.to_owned(), text });
         }
     }
     Ok(files)
@@ -109,9 +94,7 @@ fn text_files(sh: &Shell) -> Result<Vec<TextFile>> {
 
 /// The lines of a text with their numbers, counted from 1.
 fn numbered(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    text.lines()
-        .enumerate()
-        .map(|(index, line)| (index + 1, line))
+    text.lines().enumerate().map(|(index, line)| (index + 1, line))
 }
 
 #[cfg(test)]
@@ -126,9 +109,6 @@ mod tests {
             what: "a thing".into(),
             right: "do this instead".into(),
         };
-        assert_eq!(
-            problem.to_string(),
-            "engine/src/step.rs:7: a thing\n    do this instead"
-        );
+        assert_eq!(problem.to_string(), "engine/src/step.rs:7: a thing\n    do this instead");
     }
 }

@@ -23,22 +23,13 @@ pub(crate) fn check(path: &Path, text: &str) -> Vec<Problem> {
     let mut problems = Vec::new();
     let extension = path.extension().and_then(|extension| extension.to_str());
     let mut problem = |line, what, right: &str| {
-        problems.push(Problem {
-            file: path.to_owned(),
-            line,
-            what,
-            right: right.to_owned(),
-        });
+        problems.push(Problem { file: path.to_owned(), line, what, right: right.to_owned() });
     };
 
     let n_lines = text.lines().count();
     if extension == Some("rs") && n_lines > MAX_LINES {
         let what = format!("the file has {n_lines} lines, {MAX_LINES} are allowed");
-        problem(
-            MAX_LINES + 1,
-            what,
-            "split it by concept; aim below 400, tests included",
-        );
+        problem(MAX_LINES + 1, what, "split it by concept; aim below 400, tests included");
     }
     // `.ci/run` and its like are programs without an extension.
     let is_code = extension.is_none_or(|extension| CODE.contains(&extension));
@@ -89,10 +80,7 @@ mod tests {
     use super::*;
 
     fn found(path: &str, text: &str) -> Vec<(usize, String)> {
-        check(Path::new(path), text)
-            .into_iter()
-            .map(|p| (p.line, p.what))
-            .collect()
+        check(Path::new(path), text).into_iter().map(|p| (p.line, p.what)).collect()
     }
 
     #[test]
@@ -107,19 +95,13 @@ mod tests {
     fn an_open_end_needs_the_number_of_its_issue() {
         for marker in MARKERS {
             let bare = format!("fn f() {{}}\n// {marker}: later");
-            assert_eq!(
-                found("a.rs", &bare),
-                [(2, format!("`{marker}` without an issue"))]
-            );
+            assert_eq!(found("a.rs", &bare), [(2, format!("`{marker}` without an issue"))]);
             assert_eq!(found(".ci/run", &bare).len(), 1);
             assert_eq!(found("a.rs", &format!("// {marker}(#31): later")), []);
             assert_eq!(found("a.rs", &format!("// {marker}: later, see #31")), []);
             assert_eq!(found("a.rs", &format!("// {marker} # later")).len(), 1);
             assert_eq!(found("a.rs", &format!("const {marker}_LIST: u8 = 1;")), []);
-            assert_eq!(
-                found("guide.md", &format!("no {marker} without an issue")),
-                []
-            );
+            assert_eq!(found("guide.md", &format!("no {marker} without an issue")), []);
         }
     }
 
@@ -130,14 +112,8 @@ mod tests {
             assert_eq!(found("guide.md", &line).len(), 1, "{line}");
         }
         let [unix, ..] = MACHINE_FOLDERS;
-        assert_eq!(
-            found("a.toml", &format!("file = \"{unix}me/a.csv\"")).len(),
-            1
-        );
-        assert_eq!(
-            found("a.rs", &format!("// https://example.org{unix}page")),
-            []
-        );
+        assert_eq!(found("a.toml", &format!("file = \"{unix}me/a.csv\"")).len(), 1);
+        assert_eq!(found("a.rs", &format!("// https://example.org{unix}page")), []);
         assert_eq!(found("a.rs", &format!("data{unix}a.csv")), []);
     }
 }

@@ -5,136 +5,25 @@
 //! grain of another block finds it in this block's outbox, in a second pass. Nothing is locked, and
 //! every sum has one order.
 
+mod block;
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::body::Part;
-use crate::contact::geometry::{Located, between_grains, with_surface};
-use crate::contact::stage::Batch;
+use crate::contact::ContactStage;
 use crate::contact::table::ContactTable;
-use crate::contact::{Contact, ContactStage, Response};
 use crate::grains::{Grains, Load};
-use crate::math::Vec3;
 use crate::neighbours::CellGrid;
 use crate::parallel::{BLOCK, block_of};
-use crate::surface::{SurfacePoint, Wrench};
+use crate::surface::Wrench;
 
-/// Contacts evaluated together.
-const BATCH: usize = 128;
-
-/// Marks a contact whose second grain lies in the same block.
-const INSIDE: u32 = u32::MAX;
+use block::{Bench, Block, Delivery, INSIDE, Tally};
 
 /// The contacts of a bed, by block of grains.
 pub(crate) struct Contacts {
     stages: Vec<Box<dyn ContactStage>>,
     blocks: Vec<Block>,
-}
-
-/// The contacts of the grains of one block.
-struct Block {
-    first: usize,
-    pairs: ContactTable,
-    /// Per pair: where in the outbox the force on the second grain goes, or [`INSIDE`].
-    outbox_slot: Vec<u32>,
-    outbox: Vec<Load>,
-    inbox: Vec<Delivery>,
-    /// Per part of walls and intruder.
-    surfaces: Vec<ContactTable>,
-    tally: Tally,
-    bench: Bench,
-}
-
-/// A force from another block's outbox.
-struct Delivery {
-    block: u32,
-    slot: u32,
-    /// Index of the grain within its block.
-    grain: u32,
-}
-
-/// What one block adds to the sums of the bed.
-#[derive(Default)]
-struct Tally {
-    /// Per stage and channel: energies [J] of contacts between grains and with the intruder.
-    energy: Vec<f64>,
-    /// The same for contacts with walls.
-    wall_energy: Vec<f64>,
-    /// Per part.
-    wrenches: Vec<Wrench>,
-    /// Largest overlap in units of the radius, and the grain that has it.
-    overlap: (f64, u32),
-}
-
-/// Contacts waiting to be evaluated, in buffers that are kept.
-#[derive(Default)]
-struct Bench {
-    contacts: Vec<Contact>,
-    arms: Vec<[Vec3; 2]>,
-    rows: Vec<u32>,
-    responses: Vec<Response>,
-    points: Vec<Vec3>,
-    points_half: Vec<Vec3>,
-    nearest: Vec<SurfacePoint>,
-    nearest_half: Vec<SurfacePoint>,
-    near_rows: Vec<u32>,
-    keys: Vec<[u32; 2]>,
-}
-
-impl Bench {
-    fn clear(&mut self) {
-        self.contacts.clear();
-        self.arms.clear();
-        self.rows.clear();
-    }
-
-    fn push(&mut self, located: Located, row: usize) {
-        self.contacts.push(located.contact);
-        self.arms.push([located.arm_i, located.arm_j]);
-        self.rows.push(row as u32);
-    }
-
-    fn is_full(&self) -> bool {
-        self.contacts.len() == BATCH
-    }
-
-    /// Lets every law act on the waiting contacts; those that have opened lose their history.
-    fn evaluate(
-        &mut self,
-        stages: &[Box<dyn ContactStage>],
-        dt: f64,
-        touching: &mut [bool],
-        history: &mut [Vec<f64>],
-        energy: &mut [f64],
-    ) {
-        self.responses.clear();
-        self.responses.resize(self.contacts.len(), Response::default());
-        let mut energy = energy;
-        for (stage, history) in stages.iter().zip(history.iter_mut()) {
-            let (own, rest) = energy.split_at_mut(stage.channels().len());
-            energy = rest;
-            let batch = Batch {
-                contacts: &self.contacts,
-                rows: &self.rows,
-                responses: &mut self.responses,
-            };
-            stage.sweep(batch, dt, history, own);
-        }
-        for (contact, &row) in self.contacts.iter().zip(&self.rows) {
-            let row = row as usize;
-            touching[row] = contact.overlap > 0.0;
-            if !touching[row] {
-                for (stage, rows) in stages.iter().zip(history.iter_mut()) {
-                    let len = stage.history_len();
-                    rows[row * len..(row + 1) * len].fill(0.0);
-                }
-            }
-        }
-    }
-
-    fn located(&self, k: usize) -> Located {
-        Located { contact: self.contacts[k], arm_i: self.arms[k][0], arm_j: self.arms[k][1] }
-    }
 }
 
 /// The sums of a step over all contacts.
@@ -151,11 +40,7 @@ pub(crate) struct ContactSums {
 }
 
 impl Contacts {
-    pub(crate) fn new(
-        stages: Vec<Box<dyn ContactStage>>,
-        n_grains: usize,
-        n_parts: usize,
-    ) -> Self {
+    pub(crate) fn new(stages: Vec<Box<dyn ContactStage>>, n_grains: usize, n_parts: usize) -> Self {
         let history_len: Vec<usize> = stages.iter().map(|stage| stage.history_len()).collect();
         let n_channels = stages.iter().map(|stage| stage.channels().len()).sum();
         let blocks = (0..n_grains.div_ceil(BLOCK))
@@ -204,9 +89,9 @@ impl Contacts {
             let end = (block.first + BLOCK).min(grains.len());
             let here = block.first..end;
             bench.points.clear();
-            bench.points.extend(
-                grains.position[here.clone()].iter().map(|&x| part.placement.to_body(x)),
-            );
+            bench
+                .points
+                .extend(grains.position[here.clone()].iter().map(|&x| part.placement.to_body(x)));
             part.surface.closest_many(&bench.points, &mut bench.nearest);
             let mut keys = std::mem::take(&mut bench.keys);
             keys.clear();
@@ -335,12 +220,10 @@ impl Contacts {
         let fits = saved.len() == self.blocks.len()
             && saved.iter().zip(&self.blocks).all(|(saved, block)| {
                 saved.surfaces.len() == block.surfaces.len()
-                    && std::iter::once(&saved.pairs)
-                        .chain(&saved.surfaces)
-                        .all(|table| {
-                            let own = block.first..(block.first + BLOCK).min(n_grains);
-                            table.is_consistent(own, n_grains, &history_len)
-                        })
+                    && std::iter::once(&saved.pairs).chain(&saved.surfaces).all(|table| {
+                        let own = block.first..(block.first + BLOCK).min(n_grains);
+                        table.is_consistent(own, n_grains, &history_len)
+                    })
             });
         if fits {
             for (block, saved) in self.blocks.iter_mut().zip(saved) {
@@ -356,8 +239,8 @@ impl Contacts {
     pub(crate) fn memories(&self) -> Vec<Memory> {
         let mut memories = Vec::new();
         for block in &self.blocks {
-            let tables = std::iter::once((None, &block.pairs))
-                .chain((0..).map(Some).zip(&block.surfaces));
+            let tables =
+                std::iter::once((None, &block.pairs)).chain((0..).map(Some).zip(&block.surfaces));
             for (part, table) in tables {
                 for (row, &key) in table.keys().iter().enumerate() {
                     if table.is_touching(row) {
@@ -413,119 +296,4 @@ pub(crate) struct Memory {
     key: [u32; 2],
     /// Per stage.
     history: Vec<Vec<f64>>,
-}
-
-impl Tally {
-    fn clear(&mut self) {
-        self.energy.fill(0.0);
-        self.wall_energy.fill(0.0);
-        self.wrenches.fill(Wrench::default());
-        self.overlap = (0.0, 0);
-    }
-
-    fn note_overlap(&mut self, contact: &Contact, grain: usize) {
-        let relative = 0.5 * contact.overlap / contact.radius_eff;
-        if relative > self.overlap.0 {
-            self.overlap = (relative, grain as u32);
-        }
-    }
-}
-
-impl Block {
-    fn sweep_pairs(
-        &mut self,
-        grains: &Grains,
-        stages: &[Box<dyn ContactStage>],
-        load: &mut [Load],
-        dt: f64,
-    ) {
-        let (keys, touching, history) = self.pairs.rows_mut();
-        let mut row = 0;
-        while row < keys.len() {
-            self.bench.clear();
-            while row < keys.len() && !self.bench.is_full() {
-                let [i, j] = keys[row].map(|k| k as usize);
-                let apart = grains.position[i] - grains.position[j];
-                let reach = grains.radius[i] + grains.radius[j];
-                if apart.norm_squared() < reach * reach || touching[row] {
-                    self.bench.push(between_grains(grains, i, j, apart, dt), row);
-                }
-                row += 1;
-            }
-            self.bench.evaluate(stages, dt, touching, history, &mut self.tally.energy);
-            for (k, response) in self.bench.responses.iter().enumerate() {
-                let located = self.bench.located(k);
-                let row = self.bench.rows[k] as usize;
-                let [i, j] = keys[row].map(|k| k as usize);
-                load[i - self.first].add(&located.load_on_i(response));
-                let opposite = located.load_on_j(response);
-                match self.outbox_slot[row] {
-                    INSIDE => load[j - self.first].add(&opposite),
-                    slot => self.outbox[slot as usize] = opposite,
-                }
-                self.tally.note_overlap(&located.contact, i);
-            }
-        }
-    }
-
-    fn sweep_surface(
-        &mut self,
-        grains: &Grains,
-        stages: &[Box<dyn ContactStage>],
-        load: &mut [Load],
-        part: (usize, &Part),
-        dt: f64,
-    ) {
-        let (index, part) = part;
-        let (keys, touching, history) = self.surfaces[index].rows_mut();
-        if keys.is_empty() {
-            return;
-        }
-        let placement = &part.placement;
-        let bench = &mut self.bench;
-        bench.points.clear();
-        bench.points.extend(
-            keys.iter().map(|&[i, _]| placement.to_body(grains.position[i as usize])),
-        );
-        part.surface.closest_many(&bench.points, &mut bench.nearest);
-        bench.near_rows.clear();
-        bench.points.clear();
-        bench.points_half.clear();
-        for (row, (&[i, _], nearest)) in keys.iter().zip(&bench.nearest).enumerate() {
-            let i = i as usize;
-            if nearest.gap < grains.radius[i] || touching[row] {
-                bench.near_rows.push(row as u32);
-                let half = grains.position[i] - grains.velocity[i] * (0.5 * dt);
-                bench.points_half.push(placement.to_body_half(half));
-            }
-        }
-        part.surface.closest_many(&bench.points_half, &mut bench.nearest_half);
-
-        let is_wall = part.partner == crate::contact::Partner::Wall;
-        let mut next = 0;
-        while next < bench.near_rows.len() {
-            bench.clear();
-            while next < bench.near_rows.len() && !bench.is_full() {
-                let row = bench.near_rows[next] as usize;
-                let i = keys[row][0] as usize;
-                let (now, half) = (bench.nearest[row], bench.nearest_half[next]);
-                let located =
-                    with_surface(grains, i, (placement, part.partner), &now, &half, dt);
-                bench.push(located, row);
-                next += 1;
-            }
-            let energy =
-                if is_wall { &mut self.tally.wall_energy } else { &mut self.tally.energy };
-            bench.evaluate(stages, dt, touching, history, energy);
-            for (k, response) in bench.responses.iter().enumerate() {
-                let located = bench.located(k);
-                let i = keys[bench.rows[k] as usize][0] as usize;
-                load[i - self.first].add(&located.load_on_i(response));
-                if located.contact.overlap > 0.0 {
-                    self.tally.wrenches[index].add(&located.wrench_on_part(response));
-                }
-                self.tally.note_overlap(&located.contact, i);
-            }
-        }
-    }
 }

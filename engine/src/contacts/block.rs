@@ -1,0 +1,234 @@
+//! The contacts of one block of grains: what the threads work on.
+
+use crate::body::Part;
+use crate::contact::geometry::{
+    between_grains, loads_on_grain_and_part, loads_on_grains, with_surface,
+};
+use crate::contact::stage::Batch;
+use crate::contact::table::ContactTable;
+use crate::contact::{Contact, ContactStage, Partner, Response};
+use crate::grains::{Grains, Load};
+use crate::math::Vec3;
+use crate::surface::{SurfacePoint, Wrench};
+
+/// Contacts evaluated together.
+pub(super) const BATCH: usize = 128;
+
+/// Marks a contact whose second grain lies in the same block.
+pub(super) const INSIDE: u32 = u32::MAX;
+
+/// The contacts of the grains of one block.
+pub(super) struct Block {
+    pub(super) first: usize,
+    pub(super) pairs: ContactTable,
+    /// Per pair: where in the outbox the force on the second grain goes, or [`INSIDE`].
+    pub(super) outbox_slot: Vec<u32>,
+    pub(super) outbox: Vec<Load>,
+    pub(super) inbox: Vec<Delivery>,
+    /// Per part of walls and intruder.
+    pub(super) surfaces: Vec<ContactTable>,
+    pub(super) tally: Tally,
+    pub(super) bench: Bench,
+}
+
+/// A force from another block's outbox.
+pub(super) struct Delivery {
+    pub(super) block: u32,
+    pub(super) slot: u32,
+    /// Index of the grain within its block.
+    pub(super) grain: u32,
+}
+
+/// What one block adds to the sums of the bed.
+#[derive(Default)]
+pub(super) struct Tally {
+    /// Per stage and channel: energies [J] of contacts between grains and with the intruder.
+    pub(super) energy: Vec<f64>,
+    /// The same for contacts with walls.
+    pub(super) wall_energy: Vec<f64>,
+    /// Per part.
+    pub(super) wrenches: Vec<Wrench>,
+    /// Largest overlap in units of the radius, and the grain that has it.
+    pub(super) overlap: (f64, u32),
+}
+
+/// Contacts waiting to be evaluated, in buffers that are kept.
+#[derive(Default)]
+pub(super) struct Bench {
+    contacts: Vec<Contact>,
+    rows: Vec<u32>,
+    responses: Vec<Response>,
+    pub(super) points: Vec<Vec3>,
+    points_half: Vec<Vec3>,
+    pub(super) nearest: Vec<SurfacePoint>,
+    nearest_half: Vec<SurfacePoint>,
+    near_rows: Vec<u32>,
+    pub(super) keys: Vec<[u32; 2]>,
+}
+
+impl Bench {
+    pub(super) fn clear(&mut self) {
+        self.contacts.clear();
+        self.rows.clear();
+    }
+
+    #[inline(always)]
+    fn push(&mut self, contact: Contact, row: usize) {
+        self.contacts.push(contact);
+        self.rows.push(row as u32);
+    }
+
+    fn is_full(&self) -> bool {
+        self.contacts.len() == BATCH
+    }
+
+    /// Lets every law act on the waiting contacts; those that have opened lose their history.
+    fn evaluate(
+        &mut self,
+        stages: &[Box<dyn ContactStage>],
+        dt: f64,
+        touching: &mut [bool],
+        history: &mut [Vec<f64>],
+        energy: &mut [f64],
+    ) {
+        self.responses.clear();
+        self.responses.resize(self.contacts.len(), Response::default());
+        let mut energy = energy;
+        for (stage, history) in stages.iter().zip(history.iter_mut()) {
+            let (own, rest) = energy.split_at_mut(stage.channels().len());
+            energy = rest;
+            let batch = Batch {
+                contacts: &self.contacts,
+                rows: &self.rows,
+                responses: &mut self.responses,
+            };
+            stage.sweep(batch, dt, history, own);
+        }
+        for (contact, &row) in self.contacts.iter().zip(&self.rows) {
+            let row = row as usize;
+            touching[row] = contact.overlap > 0.0;
+            if !touching[row] {
+                for (stage, rows) in stages.iter().zip(history.iter_mut()) {
+                    let len = stage.history_len();
+                    rows[row * len..(row + 1) * len].fill(0.0);
+                }
+            }
+        }
+    }
+}
+
+impl Tally {
+    pub(super) fn clear(&mut self) {
+        self.energy.fill(0.0);
+        self.wall_energy.fill(0.0);
+        self.wrenches.fill(Wrench::default());
+        self.overlap = (0.0, 0);
+    }
+
+    fn note_overlap(&mut self, contact: &Contact, grain: usize) {
+        let relative = 0.5 * contact.overlap * contact.inverse_radius_eff;
+        if relative > self.overlap.0 {
+            self.overlap = (relative, grain as u32);
+        }
+    }
+}
+
+impl Block {
+    pub(super) fn sweep_pairs(
+        &mut self,
+        grains: &Grains,
+        stages: &[Box<dyn ContactStage>],
+        load: &mut [Load],
+        dt: f64,
+    ) {
+        let (keys, touching, history) = self.pairs.rows_mut();
+        let mut row = 0;
+        while row < keys.len() {
+            self.bench.clear();
+            while row < keys.len() && !self.bench.is_full() {
+                let [i, j] = keys[row].map(|k| k as usize);
+                let apart = grains.position[i] - grains.position[j];
+                let reach = grains.radius[i] + grains.radius[j];
+                if apart.norm_squared() < reach * reach || touching[row] {
+                    self.bench.push(between_grains(grains, i, j, apart, dt), row);
+                }
+                row += 1;
+            }
+            self.bench.evaluate(stages, dt, touching, history, &mut self.tally.energy);
+            let evaluated = self.bench.contacts.iter().zip(&self.bench.responses);
+            for ((contact, response), &row) in evaluated.zip(&self.bench.rows) {
+                let [i, j] = keys[row as usize].map(|k| k as usize);
+                let (r_i, r_j) = (grains.radius[i], grains.radius[j]);
+                let (on_i, on_j) = loads_on_grains(contact, response, r_i, r_j);
+                load[i - self.first].add(&on_i);
+                match self.outbox_slot[row as usize] {
+                    INSIDE => load[j - self.first].add(&on_j),
+                    slot => self.outbox[slot as usize] = on_j,
+                }
+                self.tally.note_overlap(contact, i);
+            }
+        }
+    }
+
+    pub(super) fn sweep_surface(
+        &mut self,
+        grains: &Grains,
+        stages: &[Box<dyn ContactStage>],
+        load: &mut [Load],
+        part: (usize, &Part),
+        dt: f64,
+    ) {
+        let (index, part) = part;
+        let (keys, touching, history) = self.surfaces[index].rows_mut();
+        if keys.is_empty() {
+            return;
+        }
+        let placement = &part.placement;
+        let bench = &mut self.bench;
+        bench.points.clear();
+        bench
+            .points
+            .extend(keys.iter().map(|&[i, _]| placement.to_body(grains.position[i as usize])));
+        part.surface.closest_many(&bench.points, &mut bench.nearest);
+        bench.near_rows.clear();
+        bench.points.clear();
+        bench.points_half.clear();
+        for (row, (&[i, _], nearest)) in keys.iter().zip(&bench.nearest).enumerate() {
+            let i = i as usize;
+            if nearest.gap < grains.radius[i] || touching[row] {
+                bench.near_rows.push(row as u32);
+                let half = grains.position[i] - grains.velocity[i] * (0.5 * dt);
+                bench.points_half.push(placement.to_body_half(half));
+            }
+        }
+        part.surface.closest_many(&bench.points_half, &mut bench.nearest_half);
+
+        let is_wall = part.partner == Partner::Wall;
+        let mut next = 0;
+        while next < bench.near_rows.len() {
+            bench.clear();
+            while next < bench.near_rows.len() && !bench.is_full() {
+                let row = bench.near_rows[next] as usize;
+                let i = keys[row][0] as usize;
+                let (now, half) = (bench.nearest[row], bench.nearest_half[next]);
+                let side = (placement, part.partner);
+                bench.push(with_surface(grains, i, side, &now, &half, dt), row);
+                next += 1;
+            }
+            let energy = if is_wall { &mut self.tally.wall_energy } else { &mut self.tally.energy };
+            bench.evaluate(stages, dt, touching, history, energy);
+            let evaluated = bench.contacts.iter().zip(&bench.responses);
+            for ((contact, response), &row) in evaluated.zip(&bench.rows) {
+                let i = keys[row as usize][0] as usize;
+                let apart = grains.position[i] - placement.position;
+                let (on_grain, on_part) =
+                    loads_on_grain_and_part(contact, response, grains.radius[i], apart);
+                load[i - self.first].add(&on_grain);
+                if contact.overlap > 0.0 {
+                    self.tally.wrenches[index].add(&on_part);
+                }
+                self.tally.note_overlap(contact, i);
+            }
+        }
+    }
+}
