@@ -1,4 +1,10 @@
 //! Quantities with units: `"4.46 cm"` in a file, SI `f64` everywhere else.
+//!
+//! [`parse`] reads one, [`format_si`] writes it so that it reads back to the same bits.
+
+use std::fmt;
+
+use thiserror::Error;
 
 /// The physical dimension of a quantity: powers of kilogram, metre and second, doubled so that
 /// `N/m^1.5` has whole numbers, and a flag for plane angles.
@@ -48,4 +54,569 @@ impl Dimension {
     pub const DENSITY: Self = Self::of(1, -3, 0, 0);
     /// Density of a planar medium [kg/m²].
     pub const AREA_DENSITY: Self = Self::of(1, -2, 0, 0);
+    /// Force [N].
+    pub const FORCE: Self = Self::of(1, 1, -2, 0);
+    /// Pressure or elastic modulus [Pa].
+    pub const PRESSURE: Self = Self::of(1, -1, -2, 0);
+    /// Energy [J].
+    pub const ENERGY: Self = Self::of(1, 2, -2, 0);
+
+    /// What it is called, with its article, such as `a length`.
+    #[must_use]
+    pub fn name(self) -> String {
+        KINDS
+            .iter()
+            .find(|kind| kind.dimension == self)
+            .map_or_else(
+                || format!("a quantity in {}", self.si_unit()),
+                |kind| kind.name.to_owned(),
+            )
+    }
+
+    /// The unit that [`format_si`] writes, such as `kg/m^3`; empty for a pure number.
+    #[must_use]
+    pub fn si_unit(self) -> String {
+        if let Some(kind) = KINDS.iter().find(|kind| kind.dimension == self) {
+            return kind.si_unit().to_owned();
+        }
+        let powers = [
+            ("kg", self.kilogram_2),
+            ("m", self.metre_2),
+            ("s", self.second_2),
+            ("rad", self.radian_2),
+        ];
+        let atoms: Vec<String> = powers
+            .iter()
+            .filter(|(_, twice)| *twice != 0)
+            .map(|(atom, twice)| match twice {
+                2 => (*atom).to_owned(),
+                _ => format!("{atom}^{}", f64::from(*twice) / 2.0),
+            })
+            .collect();
+        atoms.join("*")
+    }
+
+    /// How `number` may be written with this dimension: `"3 mm"`, `"3 cm"` or `"3 m"`.
+    #[must_use]
+    pub fn examples(self, number: &str) -> String {
+        let own = [self.si_unit()];
+        let units: Vec<&str> = match KINDS.iter().find(|kind| kind.dimension == self) {
+            Some(kind) => kind.units.to_vec(),
+            None => own.iter().map(String::as_str).collect(),
+        };
+        let quoted: Vec<String> = units
+            .iter()
+            .map(|unit| match unit.is_empty() {
+                true => number.to_owned(),
+                false => format!("\"{number} {unit}\""),
+            })
+            .collect();
+        match quoted.split_last() {
+            Some((last, [])) => last.clone(),
+            Some((last, others)) => format!("{} or {last}", others.join(", ")),
+            None => number.to_owned(),
+        }
+    }
+}
+
+/// A dimension that has a name, and the units that messages show for it.
+struct Kind {
+    dimension: Dimension,
+    name: &'static str,
+    /// In the order shown; the last is the SI unit.
+    units: &'static [&'static str],
+}
+
+impl Kind {
+    fn si_unit(&self) -> &'static str {
+        self.units.last().copied().unwrap_or_default()
+    }
+}
+
+const KINDS: &[Kind] = &[
+    Kind {
+        dimension: Dimension::NONE,
+        name: "a pure number",
+        units: &[""],
+    },
+    Kind {
+        dimension: Dimension::LENGTH,
+        name: "a length",
+        units: &["mm", "cm", "m"],
+    },
+    Kind {
+        dimension: Dimension::MASS,
+        name: "a mass",
+        units: &["g", "kg"],
+    },
+    Kind {
+        dimension: Dimension::TIME,
+        name: "a time",
+        units: &["us", "ms", "s"],
+    },
+    Kind {
+        dimension: Dimension::RATE,
+        name: "a rate",
+        units: &["1/s"],
+    },
+    Kind {
+        dimension: Dimension::SPEED,
+        name: "a speed",
+        units: &["cm/s", "m/s"],
+    },
+    Kind {
+        dimension: Dimension::ACCELERATION,
+        name: "an acceleration",
+        units: &["m/s^2"],
+    },
+    Kind {
+        dimension: Dimension::ANGLE,
+        name: "an angle",
+        units: &["deg", "rad"],
+    },
+    Kind {
+        dimension: Dimension::SPIN,
+        name: "an angular velocity",
+        units: &["rpm", "deg/s", "rad/s"],
+    },
+    Kind {
+        dimension: Dimension::STIFFNESS,
+        name: "a stiffness",
+        units: &["N/mm", "N/m"],
+    },
+    Kind {
+        dimension: Dimension::DENSITY,
+        name: "a density",
+        units: &["g/cm^3", "kg/m^3"],
+    },
+    Kind {
+        dimension: Dimension::AREA_DENSITY,
+        name: "a density per area",
+        units: &["kg/m^2"],
+    },
+    Kind {
+        dimension: Dimension::FORCE,
+        name: "a force",
+        units: &["mN", "N"],
+    },
+    Kind {
+        dimension: Dimension::PRESSURE,
+        name: "a pressure",
+        units: &["kPa", "MPa", "Pa"],
+    },
+    Kind {
+        dimension: Dimension::ENERGY,
+        name: "an energy",
+        units: &["mJ", "J"],
+    },
+];
+
+/// A unit that has a symbol of its own: `coefficient · 10^exponent` in SI.
+struct Atom {
+    symbol: &'static str,
+    dimension: Dimension,
+    coefficient: f64,
+    exponent: i32,
+    prefixes: &'static str,
+}
+
+const fn atom(
+    symbol: &'static str,
+    dimension: Dimension,
+    coefficient: f64,
+    exponent: i32,
+    prefixes: &'static str,
+) -> Atom {
+    Atom {
+        symbol,
+        dimension,
+        coefficient,
+        exponent,
+        prefixes,
+    }
+}
+
+const TURN_PER_MINUTE: f64 = std::f64::consts::TAU / 60.0;
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// Whole symbols come before prefixed ones, so `min` is the minute.
+const ATOMS: &[Atom] = &[
+    atom("m", Dimension::LENGTH, 1.0, 0, "numck"),
+    atom("g", Dimension::MASS, 1.0, -3, "umk"),
+    atom("t", Dimension::MASS, 1.0, 3, ""),
+    atom("s", Dimension::TIME, 1.0, 0, "num"),
+    atom("min", Dimension::TIME, 60.0, 0, ""),
+    atom("h", Dimension::TIME, 3600.0, 0, ""),
+    atom("Hz", Dimension::RATE, 1.0, 0, "kM"),
+    atom("rad", Dimension::ANGLE, 1.0, 0, "m"),
+    atom("deg", Dimension::ANGLE, DEGREE, 0, ""),
+    atom("°", Dimension::ANGLE, DEGREE, 0, ""),
+    atom("rpm", Dimension::SPIN, TURN_PER_MINUTE, 0, ""),
+    atom("N", Dimension::FORCE, 1.0, 0, "numkM"),
+    atom("Pa", Dimension::PRESSURE, 1.0, 0, "kMG"),
+    atom("J", Dimension::ENERGY, 1.0, 0, "numk"),
+];
+
+const PREFIXES: &[(char, char, i32)] = &[
+    ('n', 'n', -9),
+    ('u', 'u', -6),
+    ('µ', 'u', -6),
+    ('μ', 'u', -6),
+    ('m', 'm', -3),
+    ('c', 'c', -2),
+    ('k', 'k', 3),
+    ('M', 'M', 6),
+    ('G', 'G', 9),
+];
+
+/// Why a text is not the quantity that is wanted.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{}; {}", self.reason(), self.advice())]
+pub struct UnitError {
+    /// The text, shortened when it is long.
+    pub found: String,
+    /// What is wrong with it.
+    pub fault: UnitFault,
+    /// The dimension that is wanted.
+    pub wanted: Dimension,
+    number: String,
+}
+
+/// What is wrong with a text that should be a quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub enum UnitFault {
+    /// It does not begin with a number.
+    NoNumber,
+    /// There is no unit after the number.
+    NoUnit,
+    /// This part of the unit is not known.
+    UnknownUnit(String),
+    /// It has another dimension.
+    Dimension(Dimension),
+    /// The number is too large or too small to be represented.
+    OutOfRange,
+}
+
+impl UnitError {
+    /// What is wrong, as a clause.
+    #[must_use]
+    pub fn reason(&self) -> String {
+        let found = &self.found;
+        match &self.fault {
+            UnitFault::NoNumber => format!("\"{found}\" does not begin with a number"),
+            UnitFault::NoUnit => format!("\"{found}\" has no unit"),
+            UnitFault::UnknownUnit(unit) => {
+                format!("the unit `{unit}` in \"{found}\" is not known")
+            }
+            UnitFault::Dimension(other) => format!("\"{found}\" is {}", other.name()),
+            UnitFault::OutOfRange => format!("\"{found}\" is out of range"),
+        }
+    }
+
+    /// What to write instead, as a clause.
+    #[must_use]
+    pub fn advice(&self) -> String {
+        if self.fault == UnitFault::OutOfRange {
+            return format!(
+                "{} within 1e-307 to 1e308 in SI units is wanted",
+                self.wanted.name()
+            );
+        }
+        format!(
+            "{} is wanted: {}",
+            self.wanted.name(),
+            self.wanted.examples(&self.number)
+        )
+    }
+}
+
+/// The SI value of `text`, a number and a unit of dimension `wanted`.
+///
+/// Decimal units shift the exponent of the number and are read in one rounding: `"4.46 cm"` is the
+/// double nearest to 0.0446.
+///
+/// # Errors
+/// When `text` is no finite quantity of that dimension.
+pub fn parse(text: &str, wanted: Dimension) -> Result<f64, UnitError> {
+    let trimmed = text.trim();
+    let (digits, exponent, unit_text) = split_number(trimmed);
+    let number = &trimmed[..trimmed.len() - unit_text.len()];
+    let error = |fault| UnitError {
+        found: shorten(trimmed),
+        fault,
+        wanted,
+        number: match digits.is_empty() || number.len() > 24 {
+            true => "3".to_owned(),
+            false => number.to_owned(),
+        },
+    };
+    if digits.is_empty() {
+        return Err(error(UnitFault::NoNumber));
+    }
+    let unit_text = unit_text.trim();
+    if unit_text.is_empty() && wanted != Dimension::NONE {
+        return Err(error(UnitFault::NoUnit));
+    }
+    let unit =
+        Unit::parse(unit_text).map_err(|part| error(UnitFault::UnknownUnit(shorten(&part))))?;
+    let dimension = unit
+        .dimension()
+        .ok_or_else(|| error(UnitFault::UnknownUnit(shorten(unit_text))))?;
+    if dimension != wanted {
+        return Err(error(UnitFault::Dimension(dimension)));
+    }
+    let shift = i64::from(unit.exponent_2.div_euclid(2));
+    let scaled: f64 = format!("{digits}e{}", exponent.saturating_add(shift))
+        .parse()
+        .map_err(|_| error(UnitFault::NoNumber))?;
+    let half = if unit.exponent_2.rem_euclid(2) == 1 {
+        10f64.sqrt()
+    } else {
+        1.0
+    };
+    let value = scaled * (unit.coefficient * half);
+    let vanished = value == 0.0 && digits.bytes().any(|digit| (b'1'..=b'9').contains(&digit));
+    if !value.is_finite() || vanished {
+        return Err(error(UnitFault::OutOfRange));
+    }
+    Ok(value)
+}
+
+/// `value` with its SI unit, such as `0.0446 m`; [`parse`] gives the same bits back.
+#[must_use]
+pub fn format_si(value: f64, dimension: Dimension) -> String {
+    let digits = format!("{value:?}");
+    let digits = digits.strip_suffix(".0").unwrap_or(&digits);
+    match dimension.si_unit() {
+        unit if unit.is_empty() => digits.to_owned(),
+        unit => format!("{digits} {unit}"),
+    }
+}
+
+/// Splits off the leading decimal number: its digits without exponent, the exponent, the rest.
+fn split_number(text: &str) -> (&str, i64, &str) {
+    let bytes = text.as_bytes();
+    let run = |from: usize| {
+        bytes[from..]
+            .iter()
+            .take_while(|byte| byte.is_ascii_digit())
+            .count()
+    };
+    let sign = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
+    let whole = run(sign);
+    let mut end = sign + whole;
+    let mut fraction = 0;
+    if bytes.get(end) == Some(&b'.') {
+        fraction = run(end + 1);
+        end += 1 + fraction;
+    }
+    if whole + fraction == 0 {
+        return ("", 0, text);
+    }
+    let digits = &text[..end];
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        let length = run(end + 1 + sign);
+        if length > 0 {
+            let stop = end + 1 + sign + length;
+            let limit = if bytes[end + 1] == b'-' {
+                -1_000_000
+            } else {
+                1_000_000
+            };
+            let exponent = text[end + 1..stop].parse().unwrap_or(limit);
+            return (digits, exponent.clamp(-1_000_000, 1_000_000), &text[stop..]);
+        }
+    }
+    (digits, 0, &text[end..])
+}
+
+/// A product of powers of atoms; powers are doubled as in [`Dimension`].
+struct Unit {
+    powers_2: [i32; 4],
+    coefficient: f64,
+    exponent_2: i32,
+}
+
+impl Unit {
+    /// Reads `kg/m^3`, `N/m^1.5`, `N s/m`, `m/s²`, …; the error is the part that is not known.
+    fn parse(text: &str) -> Result<Self, String> {
+        let mut unit = Self {
+            powers_2: [0; 4],
+            coefficient: 1.0,
+            exponent_2: 0,
+        };
+        let mut sign = 1;
+        let mut rest = text;
+        for _ in 0..16 {
+            if rest.is_empty() {
+                return Ok(unit);
+            }
+            let end = rest.find(['/', '*', '·', ' ']).unwrap_or(rest.len());
+            unit.multiply(&rest[..end], sign)
+                .ok_or_else(|| rest[..end].to_owned())?;
+            rest = rest[end..].trim_start();
+            sign = if rest.starts_with('/') { -1 } else { 1 };
+            if let Some(after) = rest.strip_prefix(['/', '*', '·']) {
+                rest = after.trim_start();
+                if rest.is_empty() {
+                    return Err(text.to_owned());
+                }
+            }
+        }
+        Err(text.to_owned())
+    }
+
+    fn multiply(&mut self, factor: &str, sign: i32) -> Option<()> {
+        let (symbol, power_2) = match factor.split_once('^') {
+            Some((symbol, power)) => {
+                let twice = power.parse::<f64>().ok()? * 2.0;
+                let whole = twice.fract().abs() < f64::EPSILON && twice.abs() <= 16.0;
+                (symbol, whole.then_some(twice as i32)?)
+            }
+            None => match (factor.strip_suffix('²'), factor.strip_suffix('³')) {
+                (Some(symbol), _) => (symbol, 4),
+                (_, Some(symbol)) => (symbol, 6),
+                _ => (factor, 2),
+            },
+        };
+        if symbol == "1" {
+            return Some(());
+        }
+        let (atom, prefix) = find_atom(symbol)?;
+        let power_2 = sign * power_2;
+        let of = atom.dimension;
+        let base = [of.kilogram_2, of.metre_2, of.second_2, of.radian_2];
+        for (power, base) in self.powers_2.iter_mut().zip(base) {
+            *power += i32::from(base) * power_2 / 2;
+        }
+        self.exponent_2 += (atom.exponent + prefix) * power_2;
+        if atom.coefficient != 1.0 {
+            self.coefficient *= atom.coefficient.powf(f64::from(power_2) / 2.0);
+        }
+        Some(())
+    }
+
+    fn dimension(&self) -> Option<Dimension> {
+        let [kilogram, metre, second, radian] = self.powers_2;
+        Some(Dimension {
+            kilogram_2: kilogram.try_into().ok()?,
+            metre_2: metre.try_into().ok()?,
+            second_2: second.try_into().ok()?,
+            radian_2: radian.try_into().ok()?,
+        })
+    }
+}
+
+fn find_atom(symbol: &str) -> Option<(&'static Atom, i32)> {
+    if let Some(whole) = ATOMS.iter().find(|atom| atom.symbol == symbol) {
+        return Some((whole, 0));
+    }
+    let first = symbol.chars().next()?;
+    let (_, ascii, exponent) = PREFIXES.iter().find(|(spelling, ..)| *spelling == first)?;
+    let stem = &symbol[first.len_utf8()..];
+    let atom = ATOMS
+        .iter()
+        .find(|atom| atom.symbol == stem && atom.prefixes.contains(*ascii))?;
+    Some((atom, *exponent))
+}
+
+fn shorten(text: &str) -> String {
+    match text.char_indices().nth(40) {
+        Some((cut, _)) => format!("{}…", &text[..cut]),
+        None => text.to_owned(),
+    }
+}
+
+impl fmt::Display for Dimension {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.si_unit())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bits(text: &str, dimension: Dimension) -> u64 {
+        parse(text, dimension)
+            .unwrap_or_else(|error| panic!("{error}"))
+            .to_bits()
+    }
+
+    #[test]
+    fn decimal_units_are_exact() {
+        assert_eq!(bits("4.46 cm", Dimension::LENGTH), 0.0446f64.to_bits());
+        assert_eq!(bits("0.049 g", Dimension::MASS), 0.049e-3f64.to_bits());
+        assert_eq!(bits("10 us", Dimension::TIME), 1e-5f64.to_bits());
+        assert_eq!(bits("10µs", Dimension::TIME), 1e-5f64.to_bits());
+        assert_eq!(bits("1e4 1/s", Dimension::RATE), 1e4f64.to_bits());
+        assert_eq!(bits("2.7 g/cm^3", Dimension::DENSITY), 2700f64.to_bits());
+        assert_eq!(
+            bits("9.81 m/s²", Dimension::ACCELERATION),
+            9.81f64.to_bits()
+        );
+        assert_eq!(bits("3.2 N/mm", Dimension::STIFFNESS), 3200f64.to_bits());
+    }
+
+    #[test]
+    fn ninety_degrees_is_half_pi() {
+        assert_eq!(
+            bits("90 deg", Dimension::ANGLE),
+            std::f64::consts::FRAC_PI_2.to_bits()
+        );
+        assert_eq!(
+            bits("180 °", Dimension::ANGLE),
+            std::f64::consts::PI.to_bits()
+        );
+    }
+
+    #[test]
+    fn half_powers_are_dimensions() {
+        let wanted = Dimension {
+            kilogram_2: 2,
+            metre_2: -1,
+            second_2: -4,
+            radian_2: 0,
+        };
+        assert_eq!(bits("5 N/m^1.5", wanted), 5f64.to_bits());
+        assert_eq!(bits(&format_si(5.0, wanted), wanted), 5f64.to_bits());
+    }
+
+    #[test]
+    fn si_text_reads_back_to_the_same_bits() {
+        let mut state = 1u64;
+        for _ in 0..2000 {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            let value = f64::from_bits(state);
+            if value.is_finite() {
+                for kind in KINDS {
+                    let text = format_si(value, kind.dimension);
+                    assert_eq!(bits(&text, kind.dimension), value.to_bits(), "{text}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_message_says_what_to_write() {
+        let message = |text| {
+            parse(text, Dimension::LENGTH)
+                .expect_err("not a length")
+                .to_string()
+        };
+        assert_eq!(
+            message("3 kg"),
+            "\"3 kg\" is a mass; a length is wanted: \"3 mm\", \"3 cm\" or \"3 m\""
+        );
+        assert!(message("3").starts_with("\"3\" has no unit"));
+        assert!(message("3 mmm").starts_with("the unit `mmm` in"));
+        assert!(message("nan m").contains("does not begin with a number"));
+        assert!(message("1e999 m").contains("out of range"));
+        assert!(message("1e-999 m").contains("out of range"));
+        assert!(message("3 m/").contains("not known"));
+        assert!(message("é").contains("does not begin"));
+    }
 }
