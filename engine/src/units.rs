@@ -491,8 +491,9 @@ impl Unit {
             *power += i32::from(base) * power_2 / 2;
         }
         self.exponent_2 += (atom.exponent + prefix) * power_2;
-        if atom.coefficient != 1.0 {
-            self.coefficient *= atom.coefficient.powf(f64::from(power_2) / 2.0);
+        self.coefficient *= atom.coefficient.powi(power_2.div_euclid(2));
+        if power_2.rem_euclid(2) == 1 {
+            self.coefficient *= atom.coefficient.sqrt();
         }
         Some(())
     }
