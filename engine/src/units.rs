@@ -271,7 +271,7 @@ const PREFIXES: &[(char, char, i32)] = &[
 
 /// Why a text is not the quantity that is wanted.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("{}; {}", self.reason(), self.advice())]
+#[error("{}, {} is wanted; {}", self.reason(), self.wanted.name(), self.advice())]
 pub struct UnitError {
     /// The text, shortened when it is long.
     pub found: String,
@@ -316,17 +316,10 @@ impl UnitError {
     /// What to write instead, as a clause.
     #[must_use]
     pub fn advice(&self) -> String {
-        if self.fault == UnitFault::OutOfRange {
-            return format!(
-                "{} within 1e-307 to 1e308 in SI units is wanted",
-                self.wanted.name()
-            );
+        match self.fault {
+            UnitFault::OutOfRange => "in SI units, 1e-307 to 1e308 is possible".to_owned(),
+            _ => format!("write {}", self.wanted.examples(&self.number)),
         }
-        format!(
-            "{} is wanted: {}",
-            self.wanted.name(),
-            self.wanted.examples(&self.number)
-        )
     }
 }
 
@@ -610,7 +603,7 @@ mod tests {
         };
         assert_eq!(
             message("3 kg"),
-            "\"3 kg\" is a mass; a length is wanted: \"3 mm\", \"3 cm\" or \"3 m\""
+            "\"3 kg\" is a mass, a length is wanted; write \"3 mm\", \"3 cm\" or \"3 m\""
         );
         assert!(message("3").starts_with("\"3\" has no unit"));
         assert!(message("3 mmm").starts_with("the unit `mmm` in"));

@@ -34,17 +34,24 @@ struct Checks<'a> {
     reader: &'a Reader<'a>,
 }
 
+/// A length to six digits.
 fn metres(value: f64) -> String {
-    format_si(value, Dimension::LENGTH)
+    format_si(rounded(value, 5), Dimension::LENGTH)
 }
 
-/// Two significant digits are enough to act on.
+/// A time to three digits, which is enough to act on.
 fn seconds(value: f64) -> String {
-    match value {
-        v if v < 1e-3 => format!("{:.3} us", v * 1e6),
-        v if v < 1.0 => format!("{:.3} ms", v * 1e3),
-        v => format!("{v:.3} s"),
-    }
+    let (factor, unit) = match value {
+        v if v < 1e-3 => (1e6, "us"),
+        v if v < 1.0 => (1e3, "ms"),
+        _ => (1.0, "s"),
+    };
+    format!("{} {unit}", rounded(value * factor, 2))
+}
+
+/// `value` with so many digits after the first.
+fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.digits$e}").parse().unwrap_or(value)
 }
 
 impl Checks<'_> {

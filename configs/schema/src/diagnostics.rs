@@ -276,10 +276,7 @@ pub(crate) fn shorten(text: &str) -> String {
 
 /// The spelling in `known` nearest to `found`, if one is near.
 #[must_use]
-pub(crate) fn nearest<'a>(
-    found: &str,
-    known: impl IntoIterator<Item = &'a str>,
-) -> Option<&'a str> {
+pub fn nearest<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if found.len() > 80 {
         return None;
     }

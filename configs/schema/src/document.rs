@@ -64,18 +64,15 @@ pub(crate) fn parse(sources: &Sources, id: SourceId) -> Result<Table, Box<Diagno
     let text = sources.text(id);
     let document = Document::parse(text).map_err(|error| {
         let span = error.span().unwrap_or(0..0);
-        let span = Span {
-            source: id,
-            start: span.start,
-            end: span.end,
-        };
-        let message = error.message().trim_end().replace('\n', "; ");
-        let (message, help) = explain(&message);
-        let diagnostic = Diagnostic::error(message).at(span, "");
-        Box::new(match help {
-            Some(help) => diagnostic.help(help),
-            None => diagnostic,
-        })
+        Box::new(explain(
+            error.message(),
+            text,
+            Span {
+                source: id,
+                start: span.start,
+                end: span.end,
+            },
+        ))
     })?;
     let start = Span {
         source: id,
@@ -86,19 +83,58 @@ pub(crate) fn parse(sources: &Sources, id: SourceId) -> Result<Table, Box<Diagno
 }
 
 /// The parser's message in the words of this program, and what to do about it.
-fn explain(message: &str) -> (String, Option<&'static str>) {
-    match message {
-        "duplicate key" => (
-            "this key stands twice in the same table".to_owned(),
-            Some("keep one of the two lines"),
-        ),
-        _ => (
-            format!("this is not TOML: {}", shorten(message)),
-            message
-                .contains("string values must be quoted")
-                .then_some("write names and quantities in quotes: \"wall\", \"4.46 cm\""),
-        ),
+fn explain(message: &str, text: &str, span: Span) -> Diagnostic {
+    let message = message.trim_end().replace('\n', "; ");
+    if message == "duplicate key" {
+        let (first, is_table) = first_spelling(text, span);
+        let diagnostic = match is_table {
+            true => Diagnostic::error("this table stands twice").help("join the two into one"),
+            false => Diagnostic::error("this key stands twice").help("keep one of the two lines"),
+        };
+        return diagnostic.at(span, "again here").with(first, "first here");
     }
+    let diagnostic =
+        Diagnostic::error(format!("this is not TOML: {}", shorten(&message))).at(span, "");
+    if message.contains("string values must be quoted") {
+        diagnostic.help("write names and quantities in quotes: \"wall\", \"4.46 cm\"")
+    } else if message.contains("overflow") {
+        diagnostic.help(format!("whole numbers go up to {}", i64::MAX))
+    } else {
+        diagnostic
+    }
+}
+
+/// Where the key or table of a duplicate stands first, and whether it is a table.
+fn first_spelling(text: &str, again: Span) -> (Option<Span>, bool) {
+    let name = text.get(again.start..again.end).unwrap_or_default();
+    let before = text.get(..again.start).unwrap_or_default();
+    let is_table = before.ends_with('[');
+    let mut first = None;
+    let mut at = 0;
+    for line in before.split_inclusive('\n') {
+        let indent = line.len() - line.trim_start().len();
+        let content = line.trim();
+        let found = match is_table {
+            true => content
+                .strip_prefix('[')
+                .is_some_and(|rest| rest.starts_with(&format!("{name}]"))),
+            false => content
+                .strip_prefix(name)
+                .is_some_and(|rest| rest.trim_start().starts_with('=')),
+        };
+        if !is_table && content.starts_with('[') {
+            first = None;
+        } else if found && first.is_none() {
+            let start = at + indent + usize::from(is_table);
+            first = Some(Span {
+                start,
+                end: start + name.len(),
+                ..again
+            });
+        }
+        at += line.len();
+    }
+    (first, is_table)
 }
 
 struct Converter {

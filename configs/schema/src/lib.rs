@@ -23,11 +23,13 @@ mod shipped;
 mod specs;
 pub mod stability;
 
-pub use diagnostics::{Color, Diagnostic, Severity, SourceId, Sources, Span, printable};
+pub use diagnostics::{Color, Diagnostic, Severity, SourceId, Sources, Span, nearest, printable};
 pub use load::{ConfigError, LoadOptions, Loaded, ModelSource};
 pub use model::{
     Bed, BedSource, Condition, ConditionLists, Container, CsvBed, EnergySettings, GrainKind,
     Impact, Intruder, LawChoice, LogSettings, Medium, Model, RunSettings, Settle, StartX, TimeStep,
 };
 pub use paths::PathError;
+pub use reader::interval as describe_range;
 pub use shipped::{SHIPPED, Shipped, find as find_shipped};
+pub use {contact_laws, engine, intruders};

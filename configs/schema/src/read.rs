@@ -228,7 +228,7 @@ fn container(table: TableReader<'_>, places: &mut Places) -> Option<Container> {
     if shape.is_some() {
         table.finish();
     }
-    (shape?, sides?, bottom?);
+    shape.and(sides).and(bottom)?;
     Some(Container {
         width: width?.value,
     })

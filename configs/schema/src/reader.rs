@@ -364,7 +364,11 @@ impl<'a> TableReader<'a> {
             return Some(None);
         };
         let Value::Array(nodes) = &entry.node.value else {
-            self.wrong_kind(entry, "a list", &format!("[{}]", example(spec)));
+            let item = match &entry.node.value {
+                Value::Text(text) => quoted(&shorten(text)),
+                _ => example(spec),
+            };
+            self.wrong_kind(entry, "a list", &format!("[{item}]"));
             return None;
         };
         if nodes.is_empty() || nodes.len() > limits::CONDITIONS {
@@ -513,7 +517,11 @@ impl<'a> TableReader<'a> {
             },
             Some(entry) => {
                 let Value::Integer(value) = entry.node.value else {
-                    self.wrong_kind(entry, "a whole number", "1000");
+                    self.reader.report(
+                        Diagnostic::error(format!("`{key}` is not a whole number"))
+                            .at(entry.node.span, "a whole number is wanted")
+                            .help(format!("`{key}` is {meaning}")),
+                    );
                     return None;
                 };
                 match u64::try_from(value)
@@ -748,7 +756,7 @@ fn example(spec: &ParamSpec) -> String {
     let Range { min, max, .. } = spec.plausible;
     let middle = match min > 0.0 && max.is_finite() {
         true => (min * max).sqrt(),
-        false if max < f64::MAX => max / 2.0,
+        false if max < f64::MAX => max / 5.0,
         false => 1.0,
     };
     let middle = match spec.default {
@@ -762,8 +770,9 @@ fn example(spec: &ParamSpec) -> String {
     }
 }
 
-/// An interval of SI values in words.
-pub(crate) fn interval(range: Range, dimension: Dimension) -> String {
+/// An interval of SI values in words: `above 0 m`, `0 to 1.5`; angles in degrees.
+#[must_use]
+pub fn interval(range: Range, dimension: Dimension) -> String {
     let show = |value: f64| match dimension {
         Dimension::ANGLE => format!("{} deg", (value.to_degrees() * 1e6).round() / 1e6),
         _ => units::format_si(value, dimension),
