@@ -69,7 +69,7 @@ fn as_text(model: &Model, estimate: &Estimate) -> String {
                 "time step",
                 format!("{step:e} s{}", collision.unwrap_or_default()),
             );
-            line("steps", format!("{steps:.0} at most, per impact"));
+            line("steps", format!("{steps} at most, per impact"));
         }
         _ => line("time step", "known when the laws are built".to_owned()),
     }

@@ -26,36 +26,20 @@ pub struct Range {
 
 impl Range {
     /// Any finite number above zero.
-    pub const POSITIVE: Self = Self {
-        min: 0.0,
-        max: f64::MAX,
-        includes_min: false,
-    };
+    pub const POSITIVE: Self = Self { min: 0.0, max: f64::MAX, includes_min: false };
     /// Any finite number from zero on.
-    pub const NOT_NEGATIVE: Self = Self {
-        min: 0.0,
-        max: f64::MAX,
-        includes_min: true,
-    };
+    pub const NOT_NEGATIVE: Self = Self { min: 0.0, max: f64::MAX, includes_min: true };
 
     /// From `min` to `max`, both included.
     #[must_use]
     pub const fn closed(min: f64, max: f64) -> Self {
-        Self {
-            min,
-            max,
-            includes_min: true,
-        }
+        Self { min, max, includes_min: true }
     }
 
     /// Whether `value` lies inside; NaN never does.
     #[must_use]
     pub fn contains(&self, value: f64) -> bool {
-        let above = if self.includes_min {
-            value >= self.min
-        } else {
-            value > self.min
-        };
+        let above = if self.includes_min { value >= self.min } else { value > self.min };
         above && value <= self.max
     }
 }

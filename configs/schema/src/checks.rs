@@ -6,7 +6,7 @@ use engine::units::{Dimension, format_si};
 
 use crate::diagnostics::{Diagnostic, Span};
 use crate::limits;
-use crate::model::{BedSource, Model, StartX, TimeStep};
+use crate::model::{BedSource, Model, StartX};
 use crate::read::{BodyPlaces, Places};
 use crate::reader::Reader;
 use crate::stability;
@@ -269,9 +269,7 @@ impl Checks<'_> {
     }
 
     fn steps(&self) {
-        let run = matches!(self.model.run.time_step, TimeStep::Fixed(_))
-            .then(|| stability::time_step(self.model))
-            .flatten();
+        let run = stability::time_step(self.model);
         let collision = stability::shortest_collision_time(self.model);
         self.step_against(run, collision, self.places.time_step, true);
         let grains = stability::grain_collision_time(self.model);

@@ -18,7 +18,7 @@ pub struct Estimate {
     /// Impacts.
     pub n_conditions: usize,
     /// Steps of one impact at most; `None` when the law alone knows the step.
-    pub steps: Option<f64>,
+    pub steps: Option<u64>,
     /// Memory while running [byte].
     pub memory_bytes: u64,
     /// Time for one impact at most, the bed's preparation not counted [s].
@@ -30,7 +30,9 @@ impl Estimate {
     #[must_use]
     pub fn of(model: &Model) -> Self {
         let n_grains = model.n_grains();
-        let steps = stability::time_step(model).map(|step| (model.run.duration / step).ceil());
+        // At most `limits::STEPS`, so the cast is exact.
+        let steps =
+            stability::time_step(model).map(|step| (model.run.duration / step).ceil() as u64);
         Self {
             n_grains,
             n_conditions: model.conditions().len(),
@@ -38,7 +40,7 @@ impl Estimate {
             memory_bytes: n_grains
                 .saturating_mul(BYTES_PER_GRAIN)
                 .saturating_add(BYTES_FIXED),
-            run_time_s: steps.map(|steps| steps * n_grains as f64 / GRAIN_STEPS_PER_S),
+            run_time_s: steps.map(|steps| steps as f64 * n_grains as f64 / GRAIN_STEPS_PER_S),
         }
     }
 }

@@ -8,10 +8,10 @@ use thiserror::Error;
 use crate::diagnostics::{Color, Diagnostic, Severity, Sources, nearest, printable, shorten};
 use crate::document;
 use crate::model::Model;
-use crate::read_bed_file::DataFolder;
+use crate::read::DataFolder;
 use crate::reader::Reader;
 use crate::shipped::{self, SHIPPED, Shipped};
-use crate::{checks, limits, paths, read};
+use crate::{checks, limits, paths, read, set};
 
 /// Where a model comes from.
 #[derive(Clone, Debug)]
@@ -150,11 +150,15 @@ impl Model {
         };
         let mut diagnostics = Vec::new();
         for set in &options.sets {
-            diagnostics.extend(document::apply_set(&mut root, &mut sources, "--set", set).err());
+            diagnostics.extend(set::apply_set(&mut root, &mut sources, "--set", set).err());
         }
-        if let Some(seed) = options.seed {
+        if let Some(seed) = options.seed.filter(|seed| i64::try_from(*seed).is_err()) {
+            let largest = i64::MAX;
+            let message = format!("--seed {seed} is too large; at most {largest} is accepted");
+            diagnostics.push(Diagnostic::error(message).into());
+        } else if let Some(seed) = options.seed {
             let set = format!("run.seed={seed}");
-            diagnostics.extend(document::apply_set(&mut root, &mut sources, "--seed", &set).err());
+            diagnostics.extend(set::apply_set(&mut root, &mut sources, "--seed", &set).err());
         }
         let reader = Reader::new(&sources);
         diagnostics
