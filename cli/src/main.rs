@@ -1,3 +1,47 @@
-//! The `plunge` command.
+//! The `plunge` command: reads the arguments, calls the libraries, turns errors into messages and
+//! exit codes.
 
-fn main() {}
+mod check;
+mod common;
+mod effects;
+mod new;
+mod output;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Impacts on granular beds: simulate them, compare them with measurements, find what is missing.
+#[derive(Debug, Parser)]
+#[command(name = "plunge", version, about, propagate_version = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Validate a model and show what it means in SI, without running it.
+    Check(check::Args),
+    /// Describe the laws and effects that a model can use.
+    Effects(effects::Args),
+    /// Write a commented starter model.
+    New(new::Args),
+}
+
+fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(usage) => {
+            // A closed pipe is no reason to fail: there is nobody left to tell.
+            let _ = usage.print();
+            return ExitCode::from(u8::try_from(usage.exit_code()).unwrap_or(2));
+        }
+    };
+    let result = match cli.command {
+        Command::Check(args) => check::run(&args),
+        Command::Effects(args) => effects::run(&args),
+        Command::New(args) => new::run(&args),
+    };
+    output::conclude(result)
+}

@@ -1,1 +1,35 @@
-//! plunge.
+//! Model files: TOML with units in, SI numbers out, and errors that point at the text.
+//!
+//! [`Model::load`] reads a file (or a shipped model), applies `--set`, checks it and gives the
+//! [`Model`], which also prints itself as a complete, re-runnable file ([`Model::resolved_toml`]).
+//!
+//! `document` is the TOML with its places, `reader` reads tables key by key, `read` knows the
+//! tables of a model, `checks` compares values with each other, `diagnostics` shows what is wrong.
+
+mod checks;
+mod diagnostics;
+mod document;
+pub mod estimate;
+pub mod grains_csv;
+pub mod limits;
+mod load;
+mod model;
+mod paths;
+mod read;
+mod reader;
+mod resolved;
+mod set;
+mod shipped;
+mod specs;
+pub mod stability;
+
+pub use diagnostics::{Color, Diagnostic, Severity, SourceId, Sources, Span, nearest, printable};
+pub use load::{ConfigError, LoadOptions, Loaded, ModelSource};
+pub use model::{
+    Bed, BedSource, Condition, ConditionLists, Container, CsvBed, EnergySettings, GrainKind,
+    Impact, Intruder, LawChoice, LogSettings, Medium, Model, RunSettings, Settle, StartX, TimeStep,
+};
+pub use paths::PathError;
+pub use reader::interval as describe_range;
+pub use shipped::{SHIPPED, Shipped, find as find_shipped};
+pub use {contact_laws, engine, intruders};

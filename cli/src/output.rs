@@ -1,0 +1,92 @@
+//! The only place that writes to stdout and stderr, and that knows the exit codes.
+
+use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::process::ExitCode;
+
+use configs::{Color, ConfigError, Loaded, printable};
+
+/// Why a command did not do what was asked.
+#[derive(Debug)]
+pub(crate) enum CommandError {
+    /// The input is wrong (exit code 2): the message as shown, ending in a line break.
+    BadInput(String),
+    /// Something failed on the way (exit code 1).
+    Failed(anyhow::Error),
+}
+
+impl CommandError {
+    /// Bad input that is no part of a file.
+    pub(crate) fn bad_input(message: impl std::fmt::Display) -> Self {
+        Self::BadInput(format!("error: {}\n", printable(&message.to_string())))
+    }
+}
+
+impl From<ConfigError> for CommandError {
+    fn from(error: ConfigError) -> Self {
+        Self::BadInput(error.render(stderr_color()))
+    }
+}
+
+impl From<anyhow::Error> for CommandError {
+    fn from(error: anyhow::Error) -> Self {
+        Self::Failed(error)
+    }
+}
+
+/// What a command comes to.
+pub(crate) type CommandResult = Result<(), CommandError>;
+
+/// Shows an error, if there is one, and gives the exit code.
+pub(crate) fn conclude(result: CommandResult) -> ExitCode {
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(CommandError::BadInput(message)) => {
+            to_stderr(&message);
+            ExitCode::from(2)
+        }
+        Err(CommandError::Failed(error)) => {
+            to_stderr(&format!("error: {}\n", printable(&format!("{error:#}"))));
+            ExitCode::from(1)
+        }
+    }
+}
+
+/// Writes the result of a command; a reader that has left is no error.
+pub(crate) fn to_stdout(text: &str) -> CommandResult {
+    let mut stdout = io::stdout().lock();
+    match stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush())
+    {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            let error = anyhow::Error::new(error).context("cannot write the result to stdout");
+            Err(CommandError::Failed(error))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes the one JSON object of a command.
+pub(crate) fn json_to_stdout(object: &serde_json::Value) -> CommandResult {
+    to_stdout(&format!("{object:#}\n"))
+}
+
+/// Writes progress or a diagnostic; when even that fails there is nothing left to do.
+pub(crate) fn to_stderr(text: &str) {
+    let _ = io::stderr().write_all(text.as_bytes());
+}
+
+/// Shows the warnings that came with a model.
+pub(crate) fn show_warnings(loaded: &Loaded) {
+    to_stderr(&loaded.render_warnings(stderr_color()));
+}
+
+/// Colours on a terminal, unless `NO_COLOR` is set.
+pub(crate) fn stderr_color() -> Color {
+    let unwanted = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
+        || std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+    match io::stderr().is_terminal() && !unwanted {
+        true => Color::On,
+        false => Color::Off,
+    }
+}

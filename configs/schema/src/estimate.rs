@@ -1,0 +1,75 @@
+//! What a model will cost, before anything is run.
+
+use crate::model::Model;
+use crate::stability;
+
+/// Memory per grain [byte].
+const BYTES_PER_GRAIN: u64 = 1000;
+/// Memory that does not depend on the grains [byte].
+const BYTES_FIXED: u64 = 20_000_000;
+/// Speed of the engine on two cores [1/s].
+const GRAIN_STEPS_PER_S: f64 = 2e7;
+
+/// What one impact of a model will cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Grains in the bed.
+    pub n_grains: u64,
+    /// Impacts.
+    pub n_conditions: usize,
+    /// Steps of one impact at most; `None` when the law alone knows the step.
+    pub steps: Option<u64>,
+    /// Memory while running [byte].
+    pub memory_bytes: u64,
+    /// Time for one impact at most, the bed's preparation not counted [s].
+    pub run_time_s: Option<f64>,
+}
+
+impl Estimate {
+    /// The estimate for `model`.
+    #[must_use]
+    pub fn of(model: &Model) -> Self {
+        let n_grains = model.n_grains();
+        // At most `limits::STEPS`, so the cast is exact.
+        let steps =
+            stability::time_step(model).map(|step| (model.run.duration / step).ceil() as u64);
+        Self {
+            n_grains,
+            n_conditions: model.conditions().len(),
+            steps,
+            memory_bytes: n_grains
+                .saturating_mul(BYTES_PER_GRAIN)
+                .saturating_add(BYTES_FIXED),
+            run_time_s: steps.map(|steps| steps as f64 * n_grains as f64 / GRAIN_STEPS_PER_S),
+        }
+    }
+}
+
+/// Memory that this process may still take [byte], where the system says so: what is free, or what
+/// the control group leaves if that is less.
+#[must_use]
+pub fn available_memory_bytes() -> Option<u64> {
+    let read = |path: &str| std::fs::read_to_string(path).ok();
+    let free = read("/proc/meminfo").and_then(|text| {
+        let line = text
+            .lines()
+            .find_map(|line| line.strip_prefix("MemAvailable:"))?;
+        let kilobytes: u64 = line.split_whitespace().next()?.parse().ok()?;
+        Some(kilobytes.saturating_mul(1024))
+    });
+    let group = |limit: &str, used: &str| {
+        let limit: u64 = read(limit)?.trim().parse().ok()?;
+        let used: u64 = read(used)?.trim().parse().ok()?;
+        Some(limit.saturating_sub(used))
+    };
+    let group = group("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current").or_else(|| {
+        group(
+            "/sys/fs/cgroup/memory/memory.limit_in_bytes",
+            "/sys/fs/cgroup/memory/memory.usage_in_bytes",
+        )
+    });
+    free.into_iter().chain(group).min()
+}
+
+/// Share of the available memory beyond which a model is refused.
+pub const MEMORY_SHARE: f64 = 0.8;

@@ -1,0 +1,20 @@
+//! How much a model file may ask for; each limit is refused by name.
+
+/// Largest model file [byte].
+pub const FILE_BYTES: u64 = 10_000_000;
+/// Largest data file that a model may name [byte].
+pub const DATA_FILE_BYTES: u64 = 512_000_000;
+/// Longest string in a model file [byte].
+pub const STRING_BYTES: usize = 4096;
+/// Most `[[effect]]` tables.
+pub const EFFECTS: usize = 1000;
+/// Most `[[bed.grains]]` tables.
+pub const GRAIN_KINDS: usize = 1000;
+/// Most grains of one kind that a file may write down; memory refuses far fewer.
+pub const GRAINS_OF_A_KIND: u64 = 1_000_000_000_000_000;
+/// Most impact conditions of one model.
+pub const CONDITIONS: usize = 10_000;
+/// Most steps of one run.
+pub const STEPS: f64 = 1e15;
+/// Most messages about one file.
+pub const DIAGNOSTICS: usize = 50;

@@ -1,0 +1,107 @@
+//! `[contact_law]`, `[[effect]]` and `[[bed.effect]]`, driven by the registry.
+
+use contact_laws::{ActsOn, LawEntry};
+
+use super::Places;
+use crate::diagnostics::{Diagnostic, Span, nearest, shorten};
+use crate::model::LawChoice;
+use crate::reader::TableReader;
+
+pub(super) fn contact_law(table: TableReader<'_>, places: &mut Places) -> Option<LawChoice> {
+    let law = law(&table, ActsOn::ContactBase);
+    places.normal_stiffness = table.span_of("normal_stiffness");
+    finish_law(table, ActsOn::ContactBase);
+    law
+}
+
+/// Refuses unknown keys, unless the law itself is unknown: then they cannot be judged.
+fn finish_law(table: TableReader<'_>, slot: ActsOn) {
+    let name = table.peek_text("name").and_then(contact_laws::find);
+    if name.is_some_and(|law| law.acts_on == slot) {
+        table.finish();
+    }
+}
+
+pub(super) fn effects(tables: Vec<TableReader<'_>>) -> Option<Vec<LawChoice>> {
+    let wanted = tables.len();
+    let mut effects: Vec<LawChoice> = Vec::new();
+    for table in tables {
+        let Some(effect) = law(&table, ActsOn::ContactEffect) else {
+            finish_law(table, ActsOn::ContactEffect);
+            continue;
+        };
+        if let Some(first) = effects
+            .iter()
+            .find(|other| other.entry.name == effect.entry.name)
+        {
+            table.reader.report(
+                Diagnostic::error(format!("the effect `{}` is given twice", effect.entry.name))
+                    .at(effect.span, "again here")
+                    .with(first.span, "first here")
+                    .help("keep one of the two tables"),
+            );
+        }
+        effects.push(effect);
+        table.finish();
+    }
+    (effects.len() == wanted).then_some(effects)
+}
+
+/// The law that `name` says, with its parameters.
+fn law(table: &TableReader<'_>, slot: ActsOn) -> Option<LawChoice> {
+    let known: Vec<&'static LawEntry> = contact_laws::LAWS
+        .iter()
+        .filter(|law| law.acts_on == slot)
+        .copied()
+        .collect();
+    let example = known.first().map_or("", |law| law.name);
+    let meaning = match slot {
+        ActsOn::ContactBase => "the contact law",
+        ActsOn::ContactEffect => "the effect",
+    };
+    let name = table.text("name", None, example, meaning)?;
+    let span = name.span?;
+    let Some(entry) = known.iter().find(|law| law.name == name.value).copied() else {
+        table
+            .reader
+            .report(explain_law(&name.value, span, slot, &known));
+        return None;
+    };
+    let params = table.params(entry.params)?;
+    Some(LawChoice {
+        entry,
+        params,
+        span,
+    })
+}
+
+fn explain_law(name: &str, span: Span, slot: ActsOn, known: &[&LawEntry]) -> Diagnostic {
+    let shown = shorten(name);
+    let list: Vec<&str> = known.iter().map(|law| law.name).collect();
+    let list = list.join(", ");
+    match (contact_laws::find(name), slot) {
+        (Some(_), ActsOn::ContactBase) => {
+            Diagnostic::error(format!("`{shown}` is an effect, not a contact law"))
+                .at(span, "effects are added to a contact law")
+                .help(format!("write it below [[effect]]; contact laws: {list}"))
+        }
+        (Some(_), ActsOn::ContactEffect) => {
+            Diagnostic::error(format!("`{shown}` is a contact law, not an effect"))
+                .at(span, "a model has one contact law, in [contact_law]")
+                .help(format!("effects: {list}"))
+        }
+        (None, _) => {
+            let kind = match slot {
+                ActsOn::ContactBase => "contact law",
+                ActsOn::ContactEffect => "effect",
+            };
+            let label = match nearest(name, known.iter().map(|law| law.name)) {
+                Some(near) => format!("did you mean \"{near}\"?"),
+                None => "not known".to_owned(),
+            };
+            Diagnostic::error(format!("there is no {kind} `{shown}`"))
+                .at(span, label)
+                .help(format!("{kind}s: {list}; `plunge effects` describes them"))
+        }
+    }
+}

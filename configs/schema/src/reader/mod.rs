@@ -1,0 +1,288 @@
+//! Reads tables key by key: collects every error, and writes what it read into the resolved model.
+
+mod numbers;
+mod unknown;
+mod words;
+
+use std::cell::RefCell;
+
+use crate::diagnostics::{Diagnostic, Severity, Sources, Span};
+use crate::document::{Entry, Node, Table, Value};
+use crate::limits;
+use crate::resolved::Resolved;
+
+pub use numbers::interval;
+use unknown::Unknown;
+
+/// A value that was read, and where; a default stands nowhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Found<T> {
+    pub(crate) value: T,
+    pub(crate) span: Option<Span>,
+}
+
+/// What all tables of one file share.
+pub(crate) struct Reader<'a> {
+    pub(crate) sources: &'a Sources,
+    diagnostics: RefCell<Vec<Diagnostic>>,
+    resolved: RefCell<Resolved>,
+    homes: RefCell<Vec<(String, Vec<&'static str>)>>,
+    unknown: RefCell<Vec<Unknown>>,
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(sources: &'a Sources) -> Self {
+        Self {
+            sources,
+            diagnostics: RefCell::default(),
+            resolved: RefCell::default(),
+            homes: RefCell::default(),
+            unknown: RefCell::default(),
+        }
+    }
+
+    /// Takes note of an error or a warning.
+    pub(crate) fn report(&self, diagnostic: Diagnostic) {
+        let mut all = self.diagnostics.borrow_mut();
+        if all.len() < limits::DIAGNOSTICS {
+            all.push(diagnostic);
+        }
+    }
+
+    pub(crate) fn failed(&self) -> bool {
+        self.diagnostics
+            .borrow()
+            .iter()
+            .any(|one| one.severity == Severity::Error)
+            || !self.unknown.borrow().is_empty()
+    }
+
+    /// The root: only tables may stand there.
+    pub(crate) fn root(&'a self, table: &'a Table) -> TableReader<'a> {
+        TableReader::new(self, "the file", String::new(), Some(table))
+    }
+
+    /// Everything that was reported, with the unknown keys explained, in the order of the text.
+    pub(crate) fn finish(self) -> (Vec<Diagnostic>, Resolved) {
+        let homes = self.homes.into_inner();
+        let mut diagnostics = self.diagnostics.into_inner();
+        for unknown in self
+            .unknown
+            .into_inner()
+            .into_iter()
+            .take(limits::DIAGNOSTICS)
+        {
+            diagnostics.push(unknown.explain(&homes));
+        }
+        diagnostics.sort_by_key(|one| {
+            one.primary
+                .as_ref()
+                .map(|(span, _)| (span.source, span.start))
+        });
+        diagnostics.truncate(limits::DIAGNOSTICS);
+        (diagnostics, self.resolved.into_inner())
+    }
+}
+
+/// Reads one table.
+pub(crate) struct TableReader<'a> {
+    pub(crate) reader: &'a Reader<'a>,
+    name: String,
+    table: Option<&'a Table>,
+    section: usize,
+    asked: RefCell<Vec<&'static str>>,
+    numbers: RefCell<Vec<(&'static str, Option<f64>)>>,
+}
+
+impl<'a> TableReader<'a> {
+    fn new(reader: &'a Reader<'a>, name: &str, header: String, table: Option<&'a Table>) -> Self {
+        let section = reader.resolved.borrow_mut().open(header);
+        Self {
+            reader,
+            name: name.to_owned(),
+            table,
+            section,
+            asked: RefCell::default(),
+            numbers: RefCell::default(),
+        }
+    }
+
+    /// The header of the table, when the file has it.
+    pub(crate) fn header(&self) -> Option<Span> {
+        self.table.map(|table| table.header)
+    }
+
+    /// Whether `key` is given; it counts as known from now on.
+    pub(crate) fn has(&self, key: &'static str) -> bool {
+        self.entry(key).is_some()
+    }
+
+    fn entry(&self, key: &'static str) -> Option<&'a Entry> {
+        let mut asked = self.asked.borrow_mut();
+        if !asked.contains(&key) {
+            asked.push(key);
+        }
+        self.table.and_then(|table| table.get(key))
+    }
+
+    fn write(&self, key: &str, value: String) {
+        self.reader
+            .resolved
+            .borrow_mut()
+            .line(self.section, key, value);
+    }
+
+    /// Reports that a required key is missing, with an example of what to write.
+    fn missing(&self, key: &str, example: &str, meaning: &str) {
+        let Some(header) = self.header() else { return };
+        let diagnostic = Diagnostic::error(format!("[{}] lacks `{key}`: {meaning}", self.name));
+        self.reader.report(
+            diagnostic
+                .at(header, format!("`{key}` is required here"))
+                .help(format!("write {key} = {example}")),
+        );
+    }
+
+    /// Reports a value of the wrong kind.
+    fn wrong_kind(&self, entry: &Entry, wanted: &str, example: &str) {
+        let found = entry.node.value.kind();
+        self.reader.report(
+            Diagnostic::error(format!("`{}` is {found}; {wanted} is wanted", entry.key))
+                .at(entry.node.span, format!("{wanted} is wanted"))
+                .help(format!("write {} = {example}", entry.key)),
+        );
+    }
+
+    /// A table below this one. When it is required and missing, that is reported once, with
+    /// `example` as what to write.
+    pub(crate) fn table(&self, key: &'static str, example: Option<&str>) -> TableReader<'a> {
+        let name = self.child(key);
+        let table = match self.entry(key) {
+            Some(Entry {
+                node:
+                    Node {
+                        value: Value::Table(table),
+                        ..
+                    },
+                ..
+            }) => Some(table),
+            Some(entry) => {
+                let wanted = match &entry.node.value {
+                    Value::Array(_) => format!("write [{name}], in single brackets"),
+                    _ => format!("write [{name}] and its keys below it"),
+                };
+                self.reader.report(
+                    Diagnostic::error(format!("`{key}` is a table"))
+                        .at(
+                            entry.key_span,
+                            format!("this is {}", entry.node.value.kind()),
+                        )
+                        .help(wanted),
+                );
+                None
+            }
+            None => {
+                if let Some(example) = example {
+                    self.reader.report(
+                        Diagnostic::error(format!("the table [{name}] is missing"))
+                            .help(format!("a model needs it:\n[{name}]\n{example}")),
+                    );
+                }
+                None
+            }
+        };
+        TableReader::new(self.reader, &name, format!("[{name}]"), table)
+    }
+
+    /// The elements of an array of tables below this one.
+    pub(crate) fn tables(&self, key: &'static str, at_most: usize) -> Vec<TableReader<'a>> {
+        let name = self.child(key);
+        let Some(entry) = self.entry(key) else {
+            return Vec::new();
+        };
+        let Value::Array(nodes) = &entry.node.value else {
+            self.reader.report(
+                Diagnostic::error(format!("`{name}` is a list of tables"))
+                    .at(
+                        entry.node.span,
+                        format!("this is {}", entry.node.value.kind()),
+                    )
+                    .help(format!("write [[{name}]], in double brackets")),
+            );
+            return Vec::new();
+        };
+        if nodes.len() > at_most {
+            self.reader.report(
+                Diagnostic::error(format!("{} times [[{name}]] is too many", nodes.len())).at(
+                    nodes[at_most].span,
+                    format!("at most {at_most} are accepted"),
+                ),
+            );
+            return Vec::new();
+        }
+        let mut readers = Vec::new();
+        for node in nodes {
+            match &node.value {
+                Value::Table(table) => readers.push(TableReader::new(
+                    self.reader,
+                    &name,
+                    format!("[[{name}]]"),
+                    Some(table),
+                )),
+                other => self.reader.report(
+                    Diagnostic::error(format!("`{name}` is a list of tables"))
+                        .at(node.span, format!("this is {}", other.kind()))
+                        .help(format!("write [[{name}]] and its keys below it")),
+                ),
+            }
+        }
+        readers
+    }
+
+    fn child(&self, key: &str) -> String {
+        match self.name.as_str() {
+            "the file" => key.to_owned(),
+            name => format!("{name}.{key}"),
+        }
+    }
+
+    /// Where the value of `key` stands, if the file gives it.
+    pub(crate) fn span_of(&self, key: &str) -> Option<Span> {
+        self.table
+            .and_then(|table| table.get(key))
+            .map(|entry| entry.node.span)
+    }
+
+    /// The value of `key` as it stands in the file.
+    pub(crate) fn node(&self, key: &'static str) -> Option<&'a Node> {
+        self.entry(key).map(|entry| &entry.node)
+    }
+
+    /// The string at `key`, if it is one.
+    pub(crate) fn peek_text(&self, key: &'static str) -> Option<&'a str> {
+        match &self.node(key)?.value {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// Refuses the keys that nobody asked for.
+    pub(crate) fn finish(self) {
+        let asked = self.asked.into_inner();
+        let mut unknown = self.reader.unknown.borrow_mut();
+        for entry in self.table.into_iter().flat_map(|table| &table.entries) {
+            if !asked.contains(&entry.key.as_str()) && unknown.len() < limits::DIAGNOSTICS {
+                unknown.push(Unknown {
+                    key: entry.key.clone(),
+                    span: entry.key_span,
+                    table: self.name.clone(),
+                    allowed: asked.clone(),
+                });
+            }
+        }
+        let mut homes = self.reader.homes.borrow_mut();
+        if !homes.iter().any(|(table, _)| *table == self.name) {
+            homes.push((self.name, asked));
+        }
+    }
+}

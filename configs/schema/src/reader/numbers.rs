@@ -1,0 +1,269 @@
+//! Numbers, quantities and lists of them.
+
+use engine::params::{Default as ParamDefault, ParamSpec, ParamTable, Range};
+use engine::units::{self, Dimension};
+
+use super::{Found, TableReader};
+use crate::diagnostics::{Diagnostic, Span, shorten};
+use crate::document::{Node, Value};
+use crate::limits;
+use crate::resolved::quoted;
+
+impl TableReader<'_> {
+    /// A number or quantity as its specification says.
+    pub(crate) fn number(&self, spec: &ParamSpec) -> Option<Found<f64>> {
+        let found = match self.entry(spec.key) {
+            Some(entry) => self.number_at(&entry.node, spec),
+            None => match spec.default {
+                ParamDefault::Required => {
+                    self.missing(spec.key, &example(spec), spec.meaning);
+                    None
+                }
+                ParamDefault::Value(value) => Some(Found { value, span: None }),
+                ParamDefault::SameAs(other) => {
+                    let numbers = self.numbers.borrow();
+                    let value = numbers.iter().find(|(key, _)| *key == other);
+                    value
+                        .and_then(|(_, value)| *value)
+                        .map(|value| Found { value, span: None })
+                }
+            },
+        };
+        self.numbers
+            .borrow_mut()
+            .push((spec.key, found.map(|found| found.value)));
+        if let Some(found) = found {
+            self.write_number(spec.key, found.value, spec.dimension);
+        }
+        found
+    }
+
+    /// A number that may be left out; the outer `None` is an error that was reported.
+    pub(crate) fn optional_number(&self, spec: &ParamSpec) -> Option<Option<Found<f64>>> {
+        match self.has(spec.key) {
+            true => self.number(spec).map(Some),
+            false => Some(None),
+        }
+    }
+
+    /// All parameters of a registry entry.
+    pub(crate) fn params(&self, specs: &'static [ParamSpec]) -> Option<ParamTable> {
+        let mut table = ParamTable::new();
+        let mut complete = true;
+        for spec in specs {
+            match self.number(spec) {
+                Some(found) => table.set(spec.key, found.value),
+                None => complete = false,
+            }
+        }
+        complete.then_some(table)
+    }
+
+    /// A list of quantities, each as its specification says.
+    pub(crate) fn numbers(&self, spec: &ParamSpec) -> Option<Option<Vec<Found<f64>>>> {
+        let Some(entry) = self.entry(spec.key) else {
+            return Some(None);
+        };
+        let Value::Array(nodes) = &entry.node.value else {
+            let item = match &entry.node.value {
+                Value::Text(text) => quoted(&shorten(text)),
+                _ => example(spec),
+            };
+            self.wrong_kind(entry, "a list", &format!("[{item}]"));
+            return None;
+        };
+        if nodes.is_empty() || nodes.len() > limits::CONDITIONS {
+            self.reader.report(
+                Diagnostic::error(format!("`{}` has {} values", spec.key, nodes.len())).at(
+                    entry.node.span,
+                    format!("from 1 to {} are wanted", limits::CONDITIONS),
+                ),
+            );
+            return None;
+        }
+        let read: Vec<_> = nodes
+            .iter()
+            .map(|node| self.number_at(node, spec))
+            .collect();
+        let values: Option<Vec<Found<f64>>> = read.into_iter().collect();
+        let values = values?;
+        let items: Vec<String> = values
+            .iter()
+            .map(|found| number_toml(found.value, spec.dimension))
+            .collect();
+        self.write(spec.key, format!("[{}]", items.join(", ")));
+        Some(Some(values))
+    }
+
+    pub(crate) fn number_at(&self, node: &Node, spec: &ParamSpec) -> Option<Found<f64>> {
+        let value = match (spec.dimension == Dimension::NONE, &node.value) {
+            (true, Value::Float(value)) => *value,
+            (true, Value::Integer(value)) => *value as f64,
+            (false, Value::Text(text)) => match units::parse(text, spec.dimension) {
+                Ok(value) => value,
+                Err(error) => {
+                    self.reader.report(
+                        Diagnostic::error(format!("`{}`: {}", spec.key, error.reason()))
+                            .at(node.span, format!("{} is wanted", spec.dimension.name()))
+                            .help(self.unit_help(spec, &error)),
+                    );
+                    return None;
+                }
+            },
+            (true, Value::Text(text)) => {
+                let bare = text.trim().parse::<f64>().is_ok_and(f64::is_finite);
+                let example = if bare {
+                    text.trim().to_owned()
+                } else {
+                    example(spec)
+                };
+                self.reader.report(
+                    Diagnostic::error(format!("`{}` is a string; it is a pure number", spec.key))
+                        .at(
+                            node.span,
+                            "a bare number is wanted, without unit and quotes",
+                        )
+                        .help(format!("write {} = {example}", spec.key)),
+                );
+                return None;
+            }
+            (false, Value::Float(_) | Value::Integer(_)) => {
+                let number = self.reader.sources.quote(node.span);
+                let finite = !number.is_empty() && !number.contains(['n', 'N']);
+                let shown = if finite { number.as_str() } else { "3" };
+                self.reader.report(
+                    Diagnostic::error(format!("`{}` has no unit", spec.key))
+                        .at(node.span, format!("{} is wanted", spec.dimension.name()))
+                        .help(format!(
+                            "write it in quotes, with its unit: {}",
+                            spec.dimension.examples(shown)
+                        )),
+                );
+                return None;
+            }
+            (_, other) => {
+                let wanted = spec.dimension.name();
+                self.reader.report(
+                    Diagnostic::error(format!(
+                        "`{}` is {}; {wanted} is wanted",
+                        spec.key,
+                        other.kind()
+                    ))
+                    .at(node.span, format!("{wanted} is wanted"))
+                    .help(format!("write {} = {}", spec.key, example(spec))),
+                );
+                return None;
+            }
+        };
+        self.in_range(value, node.span, spec)
+    }
+
+    fn unit_help(&self, spec: &ParamSpec, error: &units::UnitError) -> String {
+        let planar = spec.dimension == Dimension::AREA_DENSITY
+            && error.fault == units::UnitFault::Dimension(Dimension::DENSITY);
+        match planar {
+            true => "a planar medium has a density per area, such as \"20 kg/m^2\": \
+                     density × thickness"
+                .to_owned(),
+            false => error.advice(),
+        }
+    }
+
+    fn in_range(&self, value: f64, span: Span, spec: &ParamSpec) -> Option<Found<f64>> {
+        if !value.is_finite() || !spec.allowed.contains(value) {
+            let what = match value.is_finite() {
+                true => format!("`{}` is out of its range", spec.key),
+                false => format!("`{}` is not a finite number", spec.key),
+            };
+            self.reader.report(
+                Diagnostic::error(what)
+                    .at(
+                        span,
+                        format!("allowed: {}", interval(spec.allowed, spec.dimension)),
+                    )
+                    .help(format!("`{}` is {}", spec.key, spec.meaning)),
+            );
+            return None;
+        }
+        if !spec.plausible.contains(value) {
+            let usual = interval(spec.plausible, spec.dimension);
+            self.reader.report(
+                Diagnostic::warning(format!("`{}` has an unusual value", spec.key))
+                    .at(span, format!("usual: {usual}"))
+                    .help(format!("`{}` is {}", spec.key, spec.meaning)),
+            );
+        }
+        Some(Found {
+            value,
+            span: Some(span),
+        })
+    }
+
+    /// A number that is not written to the resolved model; something derived from it is.
+    pub(crate) fn quiet_number(&self, spec: &ParamSpec) -> Option<Found<f64>> {
+        self.entry(spec.key)
+            .and_then(|entry| self.number_at(&entry.node, spec))
+    }
+
+    /// Writes a pair of numbers.
+    pub(crate) fn note_pair(&self, spec: &ParamSpec, (from, to): (f64, f64)) {
+        let [from, to] = [from, to].map(|value| number_toml(value, spec.dimension));
+        self.write(spec.key, format!("[{from}, {to}]"));
+    }
+
+    /// Writes a line that was derived from what was read.
+    pub(crate) fn note(&self, spec: &ParamSpec, value: f64) {
+        self.write_number(spec.key, value, spec.dimension);
+    }
+
+    fn write_number(&self, key: &str, value: f64, dimension: Dimension) {
+        self.write(key, number_toml(value, dimension));
+    }
+}
+
+/// A number or quantity as TOML.
+fn number_toml(value: f64, dimension: Dimension) -> String {
+    match dimension == Dimension::NONE {
+        true => format!("{value:?}"),
+        false => quoted(&units::format_si(value, dimension)),
+    }
+}
+
+/// Something plausible to write for a parameter.
+fn example(spec: &ParamSpec) -> String {
+    let Range { min, max, .. } = spec.plausible;
+    let middle = match min > 0.0 && max.is_finite() {
+        true => (min * max).sqrt(),
+        false if max < f64::MAX => max / 5.0,
+        false => 1.0,
+    };
+    let middle = match spec.default {
+        ParamDefault::Value(value) => value,
+        _ => format!("{middle:.0e}").parse().unwrap_or(middle),
+    };
+    match spec.dimension {
+        Dimension::NONE => format!("{middle:?}"),
+        Dimension::ANGLE => "\"45 deg\"".to_owned(),
+        dimension => quoted(&units::format_si(middle, dimension)),
+    }
+}
+
+/// An interval of SI values in words: `above 0 m`, `0 to 1.5`; angles in degrees.
+#[must_use]
+pub fn interval(range: Range, dimension: Dimension) -> String {
+    let show = |value: f64| match dimension {
+        Dimension::ANGLE => format!("{} deg", (value.to_degrees() * 1e6).round() / 1e6),
+        _ => units::format_si(value, dimension),
+    };
+    let Range {
+        min,
+        max,
+        includes_min,
+    } = range;
+    match (includes_min, max < f64::MAX) {
+        (true, true) => format!("{} to {}", show(min), show(max)),
+        (false, true) => format!("above {}, up to {}", show(min), show(max)),
+        (true, false) => format!("{} or more", show(min)),
+        (false, false) => format!("above {}", show(min)),
+    }
+}

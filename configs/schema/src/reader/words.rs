@@ -1,0 +1,202 @@
+//! Strings, names, choices, whole numbers and truth values.
+
+use super::{Found, TableReader};
+use crate::diagnostics::{Diagnostic, nearest, shorten};
+use crate::document::Value;
+use crate::limits;
+use crate::resolved::quoted;
+
+impl TableReader<'_> {
+    /// A whole number; `default` stands in when the file does not give it.
+    pub(crate) fn integer(
+        &self,
+        key: &'static str,
+        default: Option<u64>,
+        allowed: std::ops::RangeInclusive<u64>,
+        meaning: &str,
+    ) -> Option<Found<u64>> {
+        let found = match self.entry(key) {
+            None => match default {
+                Some(value) => Found { value, span: None },
+                None => {
+                    self.missing(key, "1000", meaning);
+                    return None;
+                }
+            },
+            Some(entry) => {
+                let Value::Integer(value) = entry.node.value else {
+                    self.reader.report(
+                        Diagnostic::error(format!("`{key}` is not a whole number"))
+                            .at(entry.node.span, "a whole number is wanted")
+                            .help(format!("`{key}` is {meaning}")),
+                    );
+                    return None;
+                };
+                match u64::try_from(value)
+                    .ok()
+                    .filter(|value| allowed.contains(value))
+                {
+                    Some(value) => Found {
+                        value,
+                        span: Some(entry.node.span),
+                    },
+                    None => {
+                        let (from, to) = (allowed.start(), allowed.end());
+                        self.reader.report(
+                            Diagnostic::error(format!("`{key}` is out of its range"))
+                                .at(entry.node.span, format!("allowed: {from} to {to}"))
+                                .help(format!("`{key}` is {meaning}")),
+                        );
+                        return None;
+                    }
+                }
+            }
+        };
+        self.write(key, found.value.to_string());
+        Some(found)
+    }
+
+    /// `true` or `false`.
+    pub(crate) fn boolean(&self, key: &'static str, default: bool) -> Option<bool> {
+        let value = match self.entry(key) {
+            None => default,
+            Some(entry) => match entry.node.value {
+                Value::Boolean(value) => value,
+                _ => {
+                    self.wrong_kind(entry, "true or false", "true");
+                    return None;
+                }
+            },
+        };
+        self.write(key, value.to_string());
+        Some(value)
+    }
+
+    /// A string, without writing it to the resolved model.
+    pub(crate) fn raw_text(
+        &self,
+        key: &'static str,
+        default: Option<&str>,
+        example: &str,
+        meaning: &str,
+    ) -> Option<Found<String>> {
+        match self.entry(key) {
+            None => match default {
+                Some(text) => Some(Found {
+                    value: text.to_owned(),
+                    span: None,
+                }),
+                None => {
+                    self.missing(key, &quoted(example), meaning);
+                    None
+                }
+            },
+            Some(entry) => match &entry.node.value {
+                Value::Text(text) if text.len() <= limits::STRING_BYTES => Some(Found {
+                    value: text.clone(),
+                    span: Some(entry.node.span),
+                }),
+                Value::Text(text) => {
+                    self.reader.report(
+                        Diagnostic::error(format!("`{key}` is {} bytes long", text.len()))
+                            .at(entry.node.span, format!("at most {}", limits::STRING_BYTES)),
+                    );
+                    None
+                }
+                _ => {
+                    self.wrong_kind(entry, "a string", &quoted(example));
+                    None
+                }
+            },
+        }
+    }
+
+    /// A string.
+    pub(crate) fn text(
+        &self,
+        key: &'static str,
+        default: Option<&str>,
+        example: &str,
+        meaning: &str,
+    ) -> Option<Found<String>> {
+        let found = self.raw_text(key, default, example, meaning)?;
+        self.write(key, quoted(&found.value));
+        Some(found)
+    }
+
+    /// A name used for files: lower-case letters, digits, `-` and `_`.
+    pub(crate) fn slug(
+        &self,
+        key: &'static str,
+        default: Option<&str>,
+        meaning: &str,
+    ) -> Option<Found<String>> {
+        let found = self.text(key, default, "my-run", meaning)?;
+        let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
+        if (1..=64).contains(&found.value.len()) && found.value.chars().all(fits) {
+            return Some(found);
+        }
+        let mut proposal: String = found
+            .value
+            .to_lowercase()
+            .chars()
+            .map(|c| if fits(c) { c } else { '-' })
+            .take(64)
+            .collect();
+        proposal = proposal.trim_matches('-').to_owned();
+        if proposal.is_empty() {
+            proposal = "my-run".to_owned();
+        }
+        self.reader.report(
+            Diagnostic::error(format!("`{key}` is not usable as a name"))
+                .at(found.span, "1 to 64 of a-z, 0-9, - and _ are wanted")
+                .help(format!("write {key} = {}", quoted(&proposal))),
+        );
+        None
+    }
+
+    /// One of the names in `known`; those in `later` are named as coming.
+    pub(crate) fn choice(
+        &self,
+        key: &'static str,
+        known: &[&'static str],
+        later: &[&str],
+        meaning: &str,
+    ) -> Option<&'static str> {
+        let found = self.text(
+            key,
+            None,
+            known.first().copied().unwrap_or_default(),
+            meaning,
+        )?;
+        if let Some(name) = known.iter().find(|name| **name == found.value) {
+            return Some(name);
+        }
+        let shown = shorten(&found.value);
+        let list = known
+            .iter()
+            .map(|name| quoted(name))
+            .collect::<Vec<_>>()
+            .join(", ");
+        let diagnostic = match later.contains(&found.value.as_str()) {
+            true => Diagnostic::error(format!("{key} = \"{shown}\" comes with a later version"))
+                .at(found.span, "not available yet"),
+            false => {
+                let label = match nearest(&found.value, known.iter().chain(later).copied()) {
+                    Some(near) => format!("did you mean \"{near}\"?"),
+                    None => "not known".to_owned(),
+                };
+                Diagnostic::error(format!("\"{shown}\" is not a `{key}` of [{}]", self.name))
+                    .at(found.span, label)
+            }
+        };
+        self.reader
+            .report(diagnostic.help(format!("available now: {list}")));
+        None
+    }
+
+    /// Writes a string that was derived from what was read.
+    pub(crate) fn note_text(&self, key: &str, value: &str) {
+        self.write(key, quoted(value));
+    }
+}

@@ -1,0 +1,43 @@
+//! The models that come with the program.
+
+/// A model that comes with the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shipped {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// One line about it.
+    pub summary: &'static str,
+    /// The file itself.
+    pub text: &'static str,
+}
+
+/// All of them.
+pub static SHIPPED: &[Shipped] = &[
+    Shipped {
+        name: "vertical-2d",
+        summary: "A disc straight down into 15 000 discs, 2 m/s.",
+        text: include_str!("../../vertical-2d.toml"),
+    },
+    Shipped {
+        name: "oblique-2d",
+        summary: "The same at 45° from the horizontal.",
+        text: include_str!("../../oblique-2d.toml"),
+    },
+    Shipped {
+        name: "grazing-2d",
+        summary: "The same at 15° from the horizontal: long range, shallow.",
+        text: include_str!("../../grazing-2d.toml"),
+    },
+    Shipped {
+        name: "rolling-2d",
+        summary: "The vertical impact with rolling resistance between the grains.",
+        text: include_str!("../../rolling-2d.toml"),
+    },
+];
+
+/// The one called `name`, with or without `.toml`.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static Shipped> {
+    let name = name.strip_suffix(".toml").unwrap_or(name);
+    SHIPPED.iter().find(|shipped| shipped.name == name)
+}

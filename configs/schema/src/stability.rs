@@ -1,0 +1,74 @@
+//! How long the shortest collision lasts, and the time step that follows from it.
+
+use crate::model::{BedSource, Model, TimeStep};
+
+/// Steps per shortest collision when `time_step = "auto"`.
+pub const STEPS_PER_COLLISION: f64 = 40.0;
+/// Fewer steps per collision than this are refused.
+pub const FEWEST_STEPS_PER_COLLISION: f64 = 10.0;
+/// Fewer steps per collision than this are accepted with a warning.
+pub const FEW_STEPS_PER_COLLISION: f64 = 20.0;
+
+/// The mass of the lightest grain [kg].
+fn lightest_grain(model: &Model) -> f64 {
+    let lightest = |masses: &mut dyn Iterator<Item = f64>| masses.fold(f64::INFINITY, f64::min);
+    match &model.bed.source {
+        BedSource::Settle(settle) => {
+            let mut masses = settle
+                .grains
+                .iter()
+                .filter(|kind| kind.count > 0)
+                .map(|kind| kind.mass);
+            lightest(&mut masses)
+        }
+        BedSource::Csv(csv) => lightest(&mut csv.grains.iter().map(|grain| grain.mass)),
+    }
+}
+
+/// How long the shortest collision of two grains lasts without damping, π √(m*/k_n) [s]; `None`
+/// for a law without a constant normal stiffness.
+#[must_use]
+pub fn grain_collision_time(model: &Model) -> Option<f64> {
+    collision_time(model, 0.5 * lightest_grain(model))
+}
+
+/// How long the shortest collision of the run lasts, the intruder's included [s].
+#[must_use]
+pub fn shortest_collision_time(model: &Model) -> Option<f64> {
+    let (grain, intruder) = (lightest_grain(model), model.intruder.mass);
+    // Written so that a tiny mass cannot underflow in a product.
+    let with_intruder = grain / (1.0 + grain / intruder);
+    collision_time(model, with_intruder.min(0.5 * grain))
+}
+
+fn collision_time(model: &Model, mass_eff: f64) -> Option<f64> {
+    let (_, stiffness) = model
+        .contact_law
+        .params
+        .iter()
+        .find(|(key, _)| *key == "normal_stiffness")?;
+    Some(std::f64::consts::PI * (mass_eff / stiffness).sqrt())
+}
+
+/// The step of the run, its factor included [s]; `None` when it is automatic and the law has no
+/// constant normal stiffness.
+#[must_use]
+pub fn time_step(model: &Model) -> Option<f64> {
+    let step = match model.run.time_step {
+        TimeStep::Fixed(step) => step,
+        TimeStep::Auto => shortest_collision_time(model)? / STEPS_PER_COLLISION,
+    };
+    Some(step * model.run.time_step_factor)
+}
+
+/// The step while the bed settles [s]; `None` as for [`time_step`], and for a bed from a file.
+#[must_use]
+pub fn preparation_time_step(model: &Model) -> Option<f64> {
+    let BedSource::Settle(settle) = &model.bed.source else {
+        return None;
+    };
+    match settle.preparation_time_step {
+        TimeStep::Fixed(step) => Some(step),
+        TimeStep::Auto => Some(grain_collision_time(model)? / STEPS_PER_COLLISION),
+    }
+}
