@@ -18,6 +18,8 @@ mod resume;
 mod scene;
 mod schema;
 mod setup;
+#[cfg(test)]
+mod tests;
 
 use std::borrow::Cow;
 use std::fs::File;
