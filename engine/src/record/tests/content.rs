@@ -1,0 +1,289 @@
+//! What is in the files.
+
+#![expect(
+    clippy::float_cmp,
+    reason = "values are written and read back bit for bit"
+)]
+
+use std::collections::BTreeMap;
+
+use prost::Message as _;
+use prost::bytes::Buf;
+use prost::encoding::{decode_key, decode_varint};
+use prost_types::FileDescriptorSet;
+use prost_types::field_descriptor_proto::Type;
+
+use super::*;
+
+#[test]
+fn topics_schemas_and_fields_are_the_published_ones() {
+    let scratch = Scratch::new();
+    write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
+    let [run, grains] = scratch.files().map(|file| describe(&file));
+    assert_eq!(
+        run,
+        "\
+/energy/budget plunge.EnergyBudget step:uint64 time_s:double unaccounted_J:double closure:double \
+kinetic_intruder_J:double potential_gravity_J:double elastic_normal_elastic_J:double \
+dissipated_sliding_J:double input_drive_J:double
+/intruder/ball/state plunge.IntruderState step:uint64 time_s:double depth_m:double \
+speed_m_per_s:double position:xyz velocity:xyz spin:xyz
+/intruder/rear/state plunge.IntruderState step:uint64 time_s:double depth_m:double \
+speed_m_per_s:double position:xyz velocity:xyz spin:xyz
+/intruder/ball/load plunge.IntruderLoad step:uint64 time_s:double contacts:uint32 contact:xyz \
+contact_torque:xyz gravity:xyz gravity_torque:xyz
+/intruder/rear/load plunge.IntruderLoad step:uint64 time_s:double contacts:uint32 contact:xyz \
+contact_torque:xyz gravity:xyz gravity_torque:xyz
+/tf foxglove.FrameTransforms
+/scene foxglove.SceneUpdate
+/intruder/ball/pose foxglove.PoseInFrame
+/intruder/rear/pose foxglove.PoseInFrame
+/log foxglove.Log
+"
+    );
+    assert_eq!(
+        grains,
+        "\
+/grains foxglove.PointCloud
+/tf foxglove.FrameTransforms
+/scene foxglove.SceneUpdate
+/intruder/ball/pose foxglove.PoseInFrame
+/intruder/rear/pose foxglove.PoseInFrame
+"
+    );
+}
+
+#[test]
+fn own_messages_decode_by_the_descriptors_in_the_file() {
+    let scratch = Scratch::new();
+    write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
+    let [run, _] = scratch.files();
+    let messages: Vec<_> = mcap::MessageStream::new(&run)
+        .unwrap()
+        .map(|message| message.unwrap())
+        .collect();
+    let last = |topic: &str| {
+        let message = messages.iter().rfind(|m| m.channel.topic == topic).unwrap();
+        assert_eq!(
+            (message.sequence, message.log_time),
+            (10, 100_000),
+            "{topic}"
+        );
+        assert_eq!(message.publish_time, message.log_time);
+        decode(
+            &message.channel.schema.as_ref().unwrap().data,
+            &message.data,
+        )
+    };
+    let x = 1.0_f64.sin();
+    let budget = last("/energy/budget");
+    assert_eq!(budget["step"], 10.0);
+    assert_eq!(budget["kinetic_intruder_J"], x * x);
+    assert_eq!(budget["input_drive_J"], 0.25);
+    assert_eq!(budget["unaccounted_J"], 1e-9 * x);
+    let state = last("/intruder/ball/state");
+    assert_eq!(
+        state["position.z"],
+        (0.3 - 0.01 * x) - 0.3,
+        "the surface is at z = 0"
+    );
+    assert_eq!(state["speed_m_per_s"], 5.0);
+    let load = last("/intruder/rear/load");
+    assert_eq!(load["gravity.z"], -9.81);
+    assert_eq!(load["contact_torque.y"], 0.1 * x);
+    assert_eq!(load["contacts"], 0.0);
+}
+
+#[test]
+fn the_grain_log_opens_alone_and_its_points_lie_below_their_fields() {
+    let scratch = Scratch::new();
+    write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
+    let [_, grains] = scratch.files();
+    let cloud = mcap::MessageStream::new(&grains)
+        .unwrap()
+        .map(|message| message.unwrap())
+        .find(|message| message.channel.topic == "/grains")
+        .map(|message| PointCloud::decode(message.data.as_ref()).unwrap())
+        .unwrap();
+    assert_eq!(cloud.point_stride, 28);
+    let offsets: Vec<_> = cloud
+        .fields
+        .iter()
+        .map(|f| (f.name.as_str(), f.offset))
+        .collect();
+    let names = ["x", "y", "z", "radius", "speed", "force", "id"];
+    assert_eq!(
+        offsets,
+        names.into_iter().zip((0..).step_by(4)).collect::<Vec<_>>()
+    );
+    let point = &cloud.data[28..56];
+    let float = |at: usize| f32::from_le_bytes(point[at..at + 4].try_into().unwrap());
+    assert_eq!([0, 8, 12, 20].map(float), [1e-3, 0.0, 1e-3, 1.0]);
+    assert_eq!(point[24..], 1_u32.to_le_bytes());
+    assert_eq!(cloud.data.len(), 3 * 28);
+}
+
+#[test]
+fn metadata_and_attachments_are_kept_with_the_closure_identity() {
+    let scratch = Scratch::new();
+    write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 0, 0);
+    let [run, _] = scratch.files();
+    let summary = mcap::Summary::read(&run).unwrap().unwrap();
+    let record = mcap::read::metadata(&run, &summary.metadata_indexes[0]).unwrap();
+    assert_eq!(record.name, "run");
+    assert_eq!(record.metadata["seed"], "7");
+    assert_eq!(
+        record.metadata["closure_identity"],
+        "kinetic_intruder_J + potential_gravity_J + elastic_normal_elastic_J + \
+         dissipated_sliding_J - input_drive_J = (its value at the first step) + unaccounted_J"
+    );
+    let attachment = mcap::read::attachment(&run, &summary.attachment_indexes[0]).unwrap();
+    assert_eq!(*attachment.data, *b"name = \"made-up\"\n");
+}
+
+#[test]
+fn a_value_that_is_not_finite_is_refused_before_anything_of_it_is_written() {
+    let scratch = Scratch::new();
+    let mut log = RunLog::create(&scratch.0, &setup()).unwrap();
+    let before = log.position();
+    let error = log
+        .energy(stamp(3), &[0.0, 0.0, f64::NAN, 0.0, 0.0], 0.0, 0.0)
+        .unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "step 3: elastic_normal_elastic_J is not finite"
+    );
+    let body = BodyFrame {
+        position: Vec3::zeros(),
+        orientation: Quat::identity(),
+        force: Vec3::zeros(),
+    };
+    let grain = GrainSample {
+        position: Vec3::new(0.0, f64::INFINITY, 0.0),
+        radius: 1.0,
+        speed: 0.0,
+        force: 0.0,
+        id: 5,
+    };
+    let error = log
+        .frame(stamp(3), &[body; 2], &mut [grain].into_iter())
+        .unwrap_err();
+    assert_eq!(error.to_string(), "step 3: grain 5 is not finite");
+    assert_eq!(log.position(), before);
+}
+
+#[test]
+fn names_that_viewers_could_not_show_are_refused() {
+    let scratch = Scratch::new();
+    let refused = |change: &dyn Fn(&mut LogSetup)| {
+        let mut setup = setup();
+        change(&mut setup);
+        matches!(
+            RunLog::create(&scratch.0, &setup),
+            Err(RecordError::Setup(_))
+        )
+    };
+    assert!(refused(&|s| s.bodies[0].name = "a/b".to_owned()));
+    assert!(refused(&|s| s.bodies[0].name = "rear".to_owned()));
+    assert!(refused(&|s| s.energy_terms[0] = "closure".to_owned()));
+    assert!(refused(&|s| s.force_origins[0] = "lift (Magnus)".to_owned()));
+    assert!(refused(&|s| s.flush_every = 0));
+    assert!(!refused(&|_| {}));
+}
+
+#[test]
+fn steps_and_times_out_of_range_or_out_of_order_are_refused() {
+    let scratch = Scratch::new();
+    let mut log = RunLog::create(&scratch.0, &setup()).unwrap();
+    for at in [
+        Stamp {
+            step: 1 << 32,
+            time_s: 0.0,
+        },
+        Stamp {
+            step: 0,
+            time_s: -1.0,
+        },
+        Stamp {
+            step: 0,
+            time_s: f64::NAN,
+        },
+    ] {
+        let error = log.event(at, EventLevel::Info, "").unwrap_err();
+        assert!(matches!(error, RecordError::OutOfRange { .. }), "{error}");
+    }
+    log.event(stamp(9), EventLevel::Info, "").unwrap();
+    let error = log.event(stamp(8), EventLevel::Info, "").unwrap_err();
+    assert!(
+        matches!(
+            error,
+            RecordError::StepOrder {
+                step: 8,
+                last: 9,
+                ..
+            }
+        ),
+        "{error}"
+    );
+}
+
+/// One line per channel: topic, schema and, for our own messages, the fields.
+fn describe(file: &[u8]) -> String {
+    let summary = mcap::Summary::read(file).unwrap().unwrap();
+    let channels: BTreeMap<_, _> = summary.channels.into_iter().collect();
+    let mut lines = String::new();
+    for channel in channels.values() {
+        let schema = channel.schema.as_ref().unwrap();
+        assert_eq!(
+            (schema.encoding.as_str(), channel.message_encoding.as_str()),
+            ("protobuf", "protobuf")
+        );
+        lines += &format!("{} {}", channel.topic, schema.name);
+        if schema.name.starts_with("plunge.") {
+            for (name, kind) in fields(&schema.data).values() {
+                let kind = match kind {
+                    Type::Uint64 => "uint64",
+                    Type::Uint32 => "uint32",
+                    Type::Double => "double",
+                    _ => "xyz",
+                };
+                lines += &format!(" {name}:{kind}");
+            }
+        }
+        lines.push('\n');
+    }
+    lines
+}
+
+/// Number, name and type of the fields of the last message of a descriptor set.
+fn fields(descriptor: &[u8]) -> BTreeMap<u32, (String, Type)> {
+    let set = FileDescriptorSet::decode(descriptor).unwrap();
+    let message = &set.file.last().unwrap().message_type[0];
+    message
+        .field
+        .iter()
+        .map(|f| (f.number() as u32, (f.name().to_owned(), f.r#type())))
+        .collect()
+}
+
+/// Decodes a message into `name` and `name.x` by its descriptor alone.
+fn decode(descriptor: &[u8], mut message: &[u8]) -> BTreeMap<String, f64> {
+    let fields = fields(descriptor);
+    let mut values = BTreeMap::new();
+    while message.has_remaining() {
+        let (number, _) = decode_key(&mut message).unwrap();
+        let (name, kind) = &fields[&number];
+        match kind {
+            Type::Double => drop(values.insert(name.clone(), message.get_f64_le())),
+            Type::Message => {
+                assert_eq!(decode_varint(&mut message).unwrap(), 27);
+                for axis in ["x", "y", "z"] {
+                    decode_key(&mut message).unwrap();
+                    values.insert(format!("{name}.{axis}"), message.get_f64_le());
+                }
+            }
+            _ => drop(values.insert(name.clone(), decode_varint(&mut message).unwrap() as f64)),
+        }
+    }
+    values
+}
