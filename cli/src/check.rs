@@ -28,11 +28,8 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     match args.common.json {
         true => {
             let mut object = as_json(model, &estimate);
-            let warnings: Vec<String> = loaded
-                .warnings
-                .iter()
-                .map(|one| one.render(&loaded.sources, Color::Off))
-                .collect();
+            let warnings: Vec<String> =
+                loaded.warnings.iter().map(|one| one.render(&loaded.sources, Color::Off)).collect();
             object["warnings"] = json!(warnings);
             output::json_to_stdout(&object)
         }
@@ -65,10 +62,7 @@ fn as_text(model: &Model, estimate: &Estimate) -> String {
         (Some(step), Some(steps)) => {
             let collision = stability::shortest_collision_time(model)
                 .map(|time| format!(", {:.1} per shortest collision", time / step));
-            line(
-                "time step",
-                format!("{step:e} s{}", collision.unwrap_or_default()),
-            );
+            line("time step", format!("{step:e} s{}", collision.unwrap_or_default()));
             line("steps", format!("{steps} at most, per impact"));
         }
         _ => line("time step", "known when the laws are built".to_owned()),
@@ -78,10 +72,7 @@ fn as_text(model: &Model, estimate: &Estimate) -> String {
         let note = "at most, per impact, without preparing the bed";
         line("run time", format!("about {} {note}", duration(time)));
     }
-    format!(
-        "{text}\nIn SI, with every default:\n\n{}",
-        model.resolved_toml()
-    )
+    format!("{text}\nIn SI, with every default:\n\n{}", model.resolved_toml())
 }
 
 fn as_json(model: &Model, estimate: &Estimate) -> Value {

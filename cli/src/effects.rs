@@ -70,12 +70,7 @@ fn table_of(acts_on: ActsOn) -> &'static str {
 }
 
 fn as_text(law: &LawEntry) -> String {
-    let mut text = format!(
-        "{}  {}\n\n{}\n\n",
-        law.name,
-        table_of(law.acts_on),
-        law.summary
-    );
+    let mut text = format!("{}  {}\n\n{}\n\n", law.name, table_of(law.acts_on), law.summary);
     let mut line = |name: &str, value: &str| text.push_str(&format!("{name:<11}{value}\n"));
     line("law", law.formula);
     line("signature", law.signature);
@@ -87,13 +82,7 @@ fn as_text(law: &LawEntry) -> String {
         .collect();
     line("energy", &channels.join(", "));
     text.push_str("\nparameters\n");
-    let width = law
-        .params
-        .iter()
-        .map(|spec| spec.key.len())
-        .max()
-        .unwrap_or(0)
-        + 2;
+    let width = law.params.iter().map(|spec| spec.key.len()).max().unwrap_or(0) + 2;
     for spec in law.params {
         let indent = " ".repeat(width + 2);
         text.push_str(&format!("  {:<width$}{}\n", spec.key, spec.meaning));

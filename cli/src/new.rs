@@ -88,9 +88,7 @@ fn unknown(name: &str) -> CommandError {
 /// The shipped text under a new name, with what else could be written as comments.
 fn starter(shipped: &Shipped, name: &str) -> String {
     let old = format!("name = \"{}\"", shipped.name);
-    let text = shipped
-        .text
-        .replacen(&old, &format!("name = \"{name}\""), 1);
+    let text = shipped.text.replacen(&old, &format!("name = \"{name}\""), 1);
     format!(
         "{text}
 # Several impacts in one run: the product of these lists replaces the values above.

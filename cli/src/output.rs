@@ -54,10 +54,7 @@ pub(crate) fn conclude(result: CommandResult) -> ExitCode {
 /// Writes the result of a command; a reader that has left is no error.
 pub(crate) fn to_stdout(text: &str) -> CommandResult {
     let mut stdout = io::stdout().lock();
-    match stdout
-        .write_all(text.as_bytes())
-        .and_then(|()| stdout.flush())
-    {
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             let error = anyhow::Error::new(error).context("cannot write the result to stdout");
             Err(CommandError::Failed(error))

@@ -19,35 +19,19 @@ fn text(bytes: &[u8]) -> String {
 fn a_new_model_checks_and_is_never_overwritten() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    assert_eq!(
-        plunge(folder, &["new", "my-sand", "--from", "rolling-2d"])
-            .status
-            .code(),
-        Some(0)
-    );
+    assert_eq!(plunge(folder, &["new", "my-sand", "--from", "rolling-2d"]).status.code(), Some(0));
     let written = std::fs::read_to_string(folder.join("my-sand.toml")).expect("the model");
     assert!(written.contains("name = \"my-sand\""));
     let again = plunge(folder, &["new", "my-sand"]);
     assert_eq!(again.status.code(), Some(2));
     assert!(text(&again.stderr).contains("exists already"));
-    assert_eq!(
-        std::fs::read_to_string(folder.join("my-sand.toml")).expect("the model"),
-        written
-    );
-    assert_eq!(
-        std::fs::read_dir(folder).expect("the folder").count(),
-        1,
-        "no draft stays"
-    );
+    assert_eq!(std::fs::read_to_string(folder.join("my-sand.toml")).expect("the model"), written);
+    assert_eq!(std::fs::read_dir(folder).expect("the folder").count(), 1, "no draft stays");
     let check = plunge(folder, &["check", "my-sand.toml"]);
     assert_eq!(check.status.code(), Some(0));
     assert_eq!(text(&check.stderr), "");
     for name in ["../x", "", "Sand", "a/b", "."] {
-        assert_eq!(
-            plunge(folder, &["new", name]).status.code(),
-            Some(2),
-            "{name}"
-        );
+        assert_eq!(plunge(folder, &["new", name]).status.code(), Some(2), "{name}");
     }
 }
 
@@ -75,13 +59,7 @@ fn bad_input_is_status_2_with_a_message_on_stderr_and_nothing_on_stdout() {
 fn json_is_one_object() {
     let folder = tempfile::tempdir().expect("a folder");
     for arguments in [
-        &[
-            "check",
-            "vertical-2d",
-            "--json",
-            "--set",
-            "impact.speed=150 m/s",
-        ][..],
+        &["check", "vertical-2d", "--json", "--set", "impact.speed=150 m/s"][..],
         &["effects", "--json"],
         &["effects", "rolling-resistance", "--json"],
         &["new", "--list", "--json"],
@@ -99,18 +77,13 @@ fn json_is_one_object() {
 fn a_bed_that_no_machine_holds_is_refused_unless_forced() {
     let folder = tempfile::tempdir().expect("a folder");
     let set = "bed.grains.0.count=1000000000000";
-    let refused = plunge(
-        folder.path(),
-        &["check", "vertical-2d", "--quiet", "--set", set],
-    );
+    let refused = plunge(folder.path(), &["check", "vertical-2d", "--quiet", "--set", set]);
     if configs::estimate::available_memory_bytes().is_some() {
         assert_eq!(refused.status.code(), Some(2));
         assert!(text(&refused.stderr).contains("--force"));
     }
-    let forced = plunge(
-        folder.path(),
-        &["check", "vertical-2d", "--quiet", "--force", "--set", set],
-    );
+    let forced =
+        plunge(folder.path(), &["check", "vertical-2d", "--quiet", "--force", "--set", set]);
     assert_eq!(forced.status.code(), Some(0));
 }
 

@@ -66,13 +66,10 @@ impl Dimension {
     /// What it is called, with its article, such as `a length`.
     #[must_use]
     pub fn name(self) -> String {
-        KINDS
-            .iter()
-            .find(|kind| kind.dimension == self)
-            .map_or_else(
-                || format!("a quantity in {}", self.si_unit()),
-                |kind| kind.name.to_owned(),
-            )
+        KINDS.iter().find(|kind| kind.dimension == self).map_or_else(
+            || format!("a quantity in {}", self.si_unit()),
+            |kind| kind.name.to_owned(),
+        )
     }
 
     /// The unit that [`format_si`] writes, such as `kg/m^3`; empty for a pure number.
@@ -136,81 +133,25 @@ impl Kind {
 }
 
 const KINDS: &[Kind] = &[
-    Kind {
-        dimension: Dimension::NONE,
-        name: "a pure number",
-        units: &[""],
-    },
-    Kind {
-        dimension: Dimension::LENGTH,
-        name: "a length",
-        units: &["mm", "cm", "m"],
-    },
-    Kind {
-        dimension: Dimension::MASS,
-        name: "a mass",
-        units: &["g", "kg"],
-    },
-    Kind {
-        dimension: Dimension::TIME,
-        name: "a time",
-        units: &["us", "ms", "s"],
-    },
-    Kind {
-        dimension: Dimension::RATE,
-        name: "a rate",
-        units: &["1/s"],
-    },
-    Kind {
-        dimension: Dimension::SPEED,
-        name: "a speed",
-        units: &["cm/s", "m/s"],
-    },
-    Kind {
-        dimension: Dimension::ACCELERATION,
-        name: "an acceleration",
-        units: &["m/s^2"],
-    },
-    Kind {
-        dimension: Dimension::ANGLE,
-        name: "an angle",
-        units: &["deg", "rad"],
-    },
+    Kind { dimension: Dimension::NONE, name: "a pure number", units: &[""] },
+    Kind { dimension: Dimension::LENGTH, name: "a length", units: &["mm", "cm", "m"] },
+    Kind { dimension: Dimension::MASS, name: "a mass", units: &["g", "kg"] },
+    Kind { dimension: Dimension::TIME, name: "a time", units: &["us", "ms", "s"] },
+    Kind { dimension: Dimension::RATE, name: "a rate", units: &["1/s"] },
+    Kind { dimension: Dimension::SPEED, name: "a speed", units: &["cm/s", "m/s"] },
+    Kind { dimension: Dimension::ACCELERATION, name: "an acceleration", units: &["m/s^2"] },
+    Kind { dimension: Dimension::ANGLE, name: "an angle", units: &["deg", "rad"] },
     Kind {
         dimension: Dimension::SPIN,
         name: "an angular velocity",
         units: &["rpm", "deg/s", "rad/s"],
     },
-    Kind {
-        dimension: Dimension::STIFFNESS,
-        name: "a stiffness",
-        units: &["N/mm", "N/m"],
-    },
-    Kind {
-        dimension: Dimension::DENSITY,
-        name: "a density",
-        units: &["g/cm^3", "kg/m^3"],
-    },
-    Kind {
-        dimension: Dimension::AREA_DENSITY,
-        name: "a density per area",
-        units: &["kg/m^2"],
-    },
-    Kind {
-        dimension: Dimension::FORCE,
-        name: "a force",
-        units: &["mN", "N"],
-    },
-    Kind {
-        dimension: Dimension::PRESSURE,
-        name: "a pressure",
-        units: &["kPa", "MPa", "Pa"],
-    },
-    Kind {
-        dimension: Dimension::ENERGY,
-        name: "an energy",
-        units: &["mJ", "J"],
-    },
+    Kind { dimension: Dimension::STIFFNESS, name: "a stiffness", units: &["N/mm", "N/m"] },
+    Kind { dimension: Dimension::DENSITY, name: "a density", units: &["g/cm^3", "kg/m^3"] },
+    Kind { dimension: Dimension::AREA_DENSITY, name: "a density per area", units: &["kg/m^2"] },
+    Kind { dimension: Dimension::FORCE, name: "a force", units: &["mN", "N"] },
+    Kind { dimension: Dimension::PRESSURE, name: "a pressure", units: &["kPa", "MPa", "Pa"] },
+    Kind { dimension: Dimension::ENERGY, name: "an energy", units: &["mJ", "J"] },
 ];
 
 /// `value` with its SI unit, such as `0.0446 m`; [`parse`] gives the same bits back.
@@ -235,9 +176,7 @@ mod tests {
     use super::*;
 
     fn bits(text: &str, dimension: Dimension) -> u64 {
-        parse(text, dimension)
-            .unwrap_or_else(|error| panic!("{error}"))
-            .to_bits()
+        parse(text, dimension).unwrap_or_else(|error| panic!("{error}")).to_bits()
     }
 
     #[test]
@@ -248,33 +187,19 @@ mod tests {
         assert_eq!(bits("10µs", Dimension::TIME), 1e-5f64.to_bits());
         assert_eq!(bits("1e4 1/s", Dimension::RATE), 1e4f64.to_bits());
         assert_eq!(bits("2.7 g/cm^3", Dimension::DENSITY), 2700f64.to_bits());
-        assert_eq!(
-            bits("9.81 m/s²", Dimension::ACCELERATION),
-            9.81f64.to_bits()
-        );
+        assert_eq!(bits("9.81 m/s²", Dimension::ACCELERATION), 9.81f64.to_bits());
         assert_eq!(bits("3.2 N/mm", Dimension::STIFFNESS), 3200f64.to_bits());
     }
 
     #[test]
     fn ninety_degrees_is_half_pi() {
-        assert_eq!(
-            bits("90 deg", Dimension::ANGLE),
-            std::f64::consts::FRAC_PI_2.to_bits()
-        );
-        assert_eq!(
-            bits("180 °", Dimension::ANGLE),
-            std::f64::consts::PI.to_bits()
-        );
+        assert_eq!(bits("90 deg", Dimension::ANGLE), std::f64::consts::FRAC_PI_2.to_bits());
+        assert_eq!(bits("180 °", Dimension::ANGLE), std::f64::consts::PI.to_bits());
     }
 
     #[test]
     fn half_powers_are_dimensions() {
-        let wanted = Dimension {
-            kilogram_2: 2,
-            metre_2: -1,
-            second_2: -4,
-            radian_2: 0,
-        };
+        let wanted = Dimension { kilogram_2: 2, metre_2: -1, second_2: -4, radian_2: 0 };
         assert_eq!(bits("5 N/m^1.5", wanted), 5f64.to_bits());
         assert_eq!(bits(&format_si(5.0, wanted), wanted), 5f64.to_bits());
     }
@@ -283,9 +208,7 @@ mod tests {
     fn si_text_reads_back_to_the_same_bits() {
         let mut state = 1u64;
         for _ in 0..2000 {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             let value = f64::from_bits(state);
             if value.is_finite() {
                 for kind in KINDS {
@@ -298,11 +221,7 @@ mod tests {
 
     #[test]
     fn the_message_says_what_to_write() {
-        let message = |text| {
-            parse(text, Dimension::LENGTH)
-                .expect_err("not a length")
-                .to_string()
-        };
+        let message = |text| parse(text, Dimension::LENGTH).expect_err("not a length").to_string();
         assert_eq!(
             message("3 kg"),
             "\"3 kg\" is a mass, a length is wanted; write \"3 mm\", \"3 cm\" or \"3 m\""

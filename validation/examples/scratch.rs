@@ -27,11 +27,11 @@ fn main() {
     let threads: usize = a[2].parse().unwrap();
     engine::parallel::with_threads(threads, || {
  let key=[mu as u8;32]; let path = std::path::PathBuf::from(format!("/tmp/bed-{mu}"));
- let c = Container{width:1.0185,depth:0.0}; let g = Vec3::new(0.0,0.0,-9.81);
+ let c = Container{width:if std::env::var("SMALL").is_ok() {0.3} else {1.0185},depth:0.0}; let g = Vec3::new(0.0,0.0,-9.81);
  let resting = match engine::checkpoint::load::<engine::grain_bed::RestingBed>(&path,&key) { Ok(r) => r, Err(_) => {
- let grains = fill(&[GrainKind{count:12600,radius:2.28e-3,mass:4.9e-5},GrainKind{count:2400,radius:3.175e-3,mass:9.7e-5}], &c, 1);
- let mut s = Settling::new(&grains, c, g, vec![stage(mu)], 2e-5); let t=std::time::Instant::now();
- let lim: u64 = std::env::var("LIM").map_or(u64::MAX, |x| x.parse().unwrap()); while !s.is_at_rest() && s.clock().step < lim { s.advance().unwrap(); if s.clock().step % 5000 == 0 { println!("t {:.3} restless {:.2e} wall {:.1}", s.clock().time(), s.restlessness(), t.elapsed().as_secs_f64()); } }
+ let grains = fill(&[GrainKind{count:if std::env::var("SMALL").is_ok() {1260} else {12600},radius:2.28e-3,mass:4.9e-5},GrainKind{count:if std::env::var("SMALL").is_ok() {240} else {2400},radius:3.175e-3,mass:9.7e-5}], &c, 1);
+ let mut s = Settling::new(&grains, c, g, vec![stage(mu)], std::env::var("PDT").map_or(1e-5, |x| x.parse().unwrap())); let t=std::time::Instant::now();
+ let lim: u64 = std::env::var("LIM").map_or(u64::MAX, |x| x.parse().unwrap()); while !s.is_at_rest() && s.clock().step < lim { s.advance().unwrap(); if s.clock().step % 5000==0 { let g=&s.bed().grains; let e=|i:usize| 0.5*g.mass[i]*g.velocity[i].norm_squared()+0.5*g.inertia[i]*g.spin[i].norm_squared(); let mut o:Vec<usize>=(0..g.len()).collect(); o.sort_by(|a,b| e(*b).total_cmp(&e(*a))); for &i in &o[..3] { println!("  {i} {:.2e} x {:.4} {:.4} v {:?} w {:.3}", e(i), g.position[i].x, g.position[i].z, g.velocity[i], g.spin[i].y);} } if s.clock().step % 5000 == 0 { println!("t {:.3} restless {:.2e} wall {:.1}", s.clock().time(), s.restlessness(), t.elapsed().as_secs_f64()); } }
  if lim<u64::MAX {return;} println!("settle: {} steps {:.1} s, {:.1} M grain-steps/s", s.clock().step, t.elapsed().as_secs_f64(), 15e-3*s.clock().step as f64/t.elapsed().as_secs_f64());
  let r = s.bed().resting(); engine::checkpoint::save(&path,&key,&r).unwrap(); r } };
  let dt: f64 = a.get(3).map_or(1e-5, |x| x.parse().unwrap()); let v: f64 = a.get(4).map_or(2.0, |x| x.parse().unwrap());

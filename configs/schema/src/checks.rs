@@ -13,11 +13,7 @@ use crate::stability;
 
 /// Reports every contradiction in a model that reads well.
 pub(crate) fn check(model: &Model, places: &Places, reader: &Reader<'_>) {
-    let checks = Checks {
-        model,
-        places,
-        reader,
-    };
+    let checks = Checks { model, places, reader };
     checks.sizes();
     checks.derived_quantities();
     checks.number_of_conditions();
@@ -57,9 +53,7 @@ fn rounded(value: f64, digits: usize) -> f64 {
 impl Checks<'_> {
     fn intruder_diameter(&self) -> Option<f64> {
         let mut params = self.model.intruder.params.iter();
-        params
-            .find(|(key, _)| *key == "diameter")
-            .map(|(_, value)| value)
+        params.find(|(key, _)| *key == "diameter").map(|(_, value)| value)
     }
 
     fn sizes(&self) {
@@ -69,10 +63,7 @@ impl Checks<'_> {
                 self.reader.report(
                     Diagnostic::error(format!("the {what} does not fit into the box"))
                         .at(places.diameter, format!("{} wide", metres(diameter)))
-                        .with(
-                            self.places.width,
-                            format!("the box is {} wide", metres(width)),
-                        ),
+                        .with(self.places.width, format!("the box is {} wide", metres(width))),
                 );
             }
         };
@@ -91,11 +82,7 @@ impl Checks<'_> {
         if value.is_normal() {
             return;
         }
-        let size = if value.abs() < 1.0 {
-            "too small"
-        } else {
-            "too large"
-        };
+        let size = if value.abs() < 1.0 { "too small" } else { "too large" };
         let [(first, first_span), (second, second_span)] = inputs;
         self.reader.report(
             Diagnostic::error(format!("{what} is {size} to be represented: {value:e}"))
@@ -106,11 +93,7 @@ impl Checks<'_> {
 
     fn derived_quantities(&self) {
         let model = self.model;
-        let stiffness = model
-            .contact_law
-            .params
-            .iter()
-            .find(|(key, _)| *key == "normal_stiffness");
+        let stiffness = model.contact_law.params.iter().find(|(key, _)| *key == "normal_stiffness");
         let mut bodies: Vec<(&str, f64, f64, BodyPlaces)> = Vec::new();
         if let BedSource::Settle(settle) = &model.bed.source {
             for (kind, places) in settle.grains.iter().zip(&self.places.grains) {
@@ -123,21 +106,12 @@ impl Checks<'_> {
             }
         }
         if let Some(diameter) = self.intruder_diameter() {
-            bodies.push((
-                "intruder",
-                diameter,
-                model.intruder.mass,
-                self.places.intruder,
-            ));
+            bodies.push(("intruder", diameter, model.intruder.mass, self.places.intruder));
         }
         for (name, diameter, mass, places) in bodies {
             let inputs = [("diameter", places.diameter), ("mass", places.mass)];
             let inertia = 0.125 * mass * diameter * diameter;
-            self.derived(
-                &format!("the moment of inertia of the {name}"),
-                inertia,
-                inputs,
-            );
+            self.derived(&format!("the moment of inertia of the {name}"), inertia, inputs);
             self.derived(&format!("the mass of the {name}"), mass, inputs);
             if model.medium.gravity > 0.0 {
                 let inputs = [("mass", places.mass), ("gravity", self.places.gravity)];
@@ -157,11 +131,7 @@ impl Checks<'_> {
         self.impact_energy();
         if let Some(step) = stability::time_step(model) {
             let factor = ("factor", self.places.time_step_factor);
-            self.derived(
-                "the time step",
-                step,
-                [("time step", self.places.time_step), factor],
-            );
+            self.derived("the time step", step, [("time step", self.places.time_step), factor]);
             let steps = model.run.duration / step;
             if steps.is_nan() || steps > limits::STEPS {
                 self.reader.report(
@@ -206,36 +176,27 @@ impl Checks<'_> {
             Some(n) => usize::try_from(n).unwrap_or(usize::MAX),
             None => length(&lists.x),
         };
-        let total = length(&lists.speed)
-            .saturating_mul(length(&lists.angle_rad))
-            .saturating_mul(starts);
+        let total =
+            length(&lists.speed).saturating_mul(length(&lists.angle_rad)).saturating_mul(starts);
         if total > limits::CONDITIONS {
             self.reader.report(
                 Diagnostic::error(format!("[conditions] asks for {total} impacts"))
                     .at(self.places.conditions, "the product of its lists")
-                    .help(format!(
-                        "at most {} are accepted in one model",
-                        limits::CONDITIONS
-                    )),
+                    .help(format!("at most {} are accepted in one model", limits::CONDITIONS)),
             );
         }
     }
 
     fn start_positions(&self) {
         let width = self.model.container.width;
-        let radius = self
-            .intruder_diameter()
-            .map_or(0.0, |diameter| 0.5 * diameter);
+        let radius = self.intruder_diameter().map_or(0.0, |diameter| 0.5 * diameter);
         let inside = |x: f64| x >= radius && x <= width - radius;
         let outside = |x: f64, span: Option<Span>| {
             if !inside(x) {
                 self.reader.report(
                     Diagnostic::error("the intruder would start outside of the box")
                         .at(span, format!("its centre at {}", metres(x)))
-                        .with(
-                            self.places.width,
-                            format!("the box is {} wide", metres(width)),
-                        )
+                        .with(self.places.width, format!("the box is {} wide", metres(width)))
                         .help(format!(
                             "with its radius, the centre may be from {} to {}",
                             metres(radius),
@@ -253,11 +214,7 @@ impl Checks<'_> {
                 outside(*x, *span);
             }
         }
-        let draws = self
-            .model
-            .conditions()
-            .iter()
-            .any(|one| one.x == StartX::Drawn);
+        let draws = self.model.conditions().iter().any(|one| one.x == StartX::Drawn);
         if self.places.x_range.is_some() || draws {
             let (from, to) = self.model.impact.x_range;
             let span = self.places.x_range.or(self.places.positions);
@@ -300,25 +257,17 @@ impl Checks<'_> {
         };
         let advice = seconds(collision / stability::STEPS_PER_COLLISION);
         let diagnostic = diagnostic
-            .at(
-                span.or(self.places.time_step_factor),
-                format!("a step of {}", seconds(step)),
-            )
+            .at(span.or(self.places.time_step_factor), format!("a step of {}", seconds(step)))
             .with(
                 self.places.normal_stiffness,
-                format!(
-                    "with the lightest pair, a collision of {}",
-                    seconds(collision)
-                ),
+                format!("with the lightest pair, a collision of {}", seconds(collision)),
             );
-        let factor = self
-            .places
-            .time_step_factor
-            .filter(|_| is_run && span.is_some());
-        self.reader
-            .report(diagnostic.with(factor, "multiplies the step").help(format!(
-                "write \"{advice}\" or less, \"auto\", or a smaller stiffness"
-            )));
+        let factor = self.places.time_step_factor.filter(|_| is_run && span.is_some());
+        self.reader.report(
+            diagnostic
+                .with(factor, "multiplies the step")
+                .help(format!("write \"{advice}\" or less, \"auto\", or a smaller stiffness")),
+        );
     }
 
     fn targets(&self) {

@@ -43,11 +43,7 @@ impl Sources {
     /// What stands at `span`, shortened for use inside a message.
     #[must_use]
     pub fn quote(&self, span: Span) -> String {
-        shorten(
-            self.text(span.source)
-                .get(span.start..span.end)
-                .unwrap_or_default(),
-        )
+        shorten(self.text(span.source).get(span.start..span.end).unwrap_or_default())
     }
 }
 
@@ -100,10 +96,7 @@ impl Diagnostic {
     /// A warning without a place yet.
     #[must_use]
     pub fn warning(message: impl Into<String>) -> Self {
-        Self {
-            severity: Severity::Warning,
-            ..Self::error(message)
-        }
+        Self { severity: Severity::Warning, ..Self::error(message) }
     }
 
     /// Points at `span`; a value that came from a default has none.
@@ -157,10 +150,7 @@ impl Diagnostic {
     /// One snippet per text that is pointed into, the primary one first.
     fn snippets<'a>(&'a self, sources: &'a Sources) -> Vec<Element<'a>> {
         let Some((primary, _)) = &self.primary else {
-            let name = sources
-                .texts
-                .first()
-                .map(|(name, _)| Origin::path(printable(name)));
+            let name = sources.texts.first().map(|(name, _)| Origin::path(printable(name)));
             return name.map(Element::from).into_iter().collect();
         };
         let mut ids = vec![primary.source];
@@ -169,9 +159,7 @@ impl Diagnostic {
                 ids.push(span.source);
             }
         }
-        ids.into_iter()
-            .map(|id| self.snippet(sources, id).into())
-            .collect()
+        ids.into_iter().map(|id| self.snippet(sources, id).into()).collect()
     }
 
     fn snippet<'a>(
@@ -179,18 +167,10 @@ impl Diagnostic {
         sources: &'a Sources,
         id: SourceId,
     ) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
-        let primary = self
-            .primary
-            .iter()
-            .map(|label| (AnnotationKind::Primary, label));
-        let secondary = self
-            .secondary
-            .iter()
-            .map(|label| (AnnotationKind::Context, label));
-        let labels: Vec<_> = primary
-            .chain(secondary)
-            .filter(|(_, (span, _))| span.source == id)
-            .collect();
+        let primary = self.primary.iter().map(|label| (AnnotationKind::Primary, label));
+        let secondary = self.secondary.iter().map(|label| (AnnotationKind::Context, label));
+        let labels: Vec<_> =
+            primary.chain(secondary).filter(|(_, (span, _))| span.source == id).collect();
         let (name, text) = &sources.texts[id.0];
         let window = Window::around(text, labels.iter().map(|(_, (span, _))| *span));
         let annotations = labels.into_iter().map(|(kind, (span, label))| {
@@ -232,11 +212,7 @@ impl Window {
         let first_line = 1 + text[..start].bytes().filter(|byte| *byte == b'\n').count();
         // Two bytes in, two bytes out: the spans stay where they are.
         let shown = text[start..end].replace(|c| ('\u{80}'..='\u{9f}').contains(&c), "·");
-        Self {
-            text: shown,
-            start,
-            first_line,
-        }
+        Self { text: shown, start, first_line }
     }
 
     fn locate(&self, span: Span) -> Range<usize> {

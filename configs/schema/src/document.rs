@@ -67,18 +67,10 @@ pub(crate) fn parse(sources: &Sources, id: SourceId) -> Result<Table, Box<Diagno
         Box::new(explain(
             error.message(),
             text,
-            Span {
-                source: id,
-                start: span.start,
-                end: span.end,
-            },
+            Span { source: id, start: span.start, end: span.end },
         ))
     })?;
-    let start = Span {
-        source: id,
-        start: 0,
-        end: 0,
-    };
+    let start = Span { source: id, start: 0, end: 0 };
     Ok(Converter { source: id }.table(document.as_table(), start))
 }
 
@@ -115,22 +107,18 @@ fn first_spelling(text: &str, again: Span) -> (Option<Span>, bool) {
         let indent = line.len() - line.trim_start().len();
         let content = line.trim();
         let found = match is_table {
-            true => content
-                .strip_prefix('[')
-                .is_some_and(|rest| rest.starts_with(&format!("{name}]"))),
-            false => content
-                .strip_prefix(name)
-                .is_some_and(|rest| rest.trim_start().starts_with('=')),
+            true => {
+                content.strip_prefix('[').is_some_and(|rest| rest.starts_with(&format!("{name}]")))
+            }
+            false => {
+                content.strip_prefix(name).is_some_and(|rest| rest.trim_start().starts_with('='))
+            }
         };
         if !is_table && content.starts_with('[') {
             first = None;
         } else if found && first.is_none() {
             let start = at + indent + usize::from(is_table);
-            first = Some(Span {
-                start,
-                end: start + name.len(),
-                ..again
-            });
+            first = Some(Span { start, end: start + name.len(), ..again });
         }
         at += line.len();
     }
@@ -157,11 +145,7 @@ impl Converter {
             let range = table.key(key).and_then(toml_edit::Key::span);
             let key_span = self.span(range, header);
             if let Some(node) = self.item(item, key_span) {
-                entries.push(Entry {
-                    key: key.to_owned(),
-                    key_span,
-                    node,
-                });
+                entries.push(Entry { key: key.to_owned(), key_span, node });
             }
         }
         Table { header, entries }
@@ -173,26 +157,17 @@ impl Converter {
             Item::Value(value) => Some(self.value(value, key)),
             Item::Table(table) => {
                 let span = self.span(table.span().filter(|range| !range.is_empty()), key);
-                Some(Node {
-                    span,
-                    value: Value::Table(self.table(table, span)),
-                })
+                Some(Node { span, value: Value::Table(self.table(table, span)) })
             }
             Item::ArrayOfTables(tables) => {
                 let nodes = tables
                     .iter()
                     .map(|table| {
                         let span = self.span(table.span(), key);
-                        Node {
-                            span,
-                            value: Value::Table(self.table(table, span)),
-                        }
+                        Node { span, value: Value::Table(self.table(table, span)) }
                     })
                     .collect();
-                Some(Node {
-                    span: key,
-                    value: Value::Array(nodes),
-                })
+                Some(Node { span: key, value: Value::Array(nodes) })
             }
         }
     }

@@ -37,9 +37,7 @@ impl Estimate {
             n_grains,
             n_conditions: model.conditions().len(),
             steps,
-            memory_bytes: n_grains
-                .saturating_mul(BYTES_PER_GRAIN)
-                .saturating_add(BYTES_FIXED),
+            memory_bytes: n_grains.saturating_mul(BYTES_PER_GRAIN).saturating_add(BYTES_FIXED),
             run_time_s: steps.map(|steps| steps as f64 * n_grains as f64 / GRAIN_STEPS_PER_S),
         }
     }
@@ -51,9 +49,7 @@ impl Estimate {
 pub fn available_memory_bytes() -> Option<u64> {
     let read = |path: &str| std::fs::read_to_string(path).ok();
     let free = read("/proc/meminfo").and_then(|text| {
-        let line = text
-            .lines()
-            .find_map(|line| line.strip_prefix("MemAvailable:"))?;
+        let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
         let kilobytes: u64 = line.split_whitespace().next()?.parse().ok()?;
         Some(kilobytes.saturating_mul(1024))
     });

@@ -51,15 +51,8 @@ impl fmt::Display for CsvFault {
 
 /// Most faults that are listed.
 const FAULTS: usize = 10;
-const KNOWN: [&str; 7] = [
-    "x_m",
-    "y_m",
-    "z_m",
-    "radius_m",
-    "mass_kg",
-    "density_kg_per_m2",
-    "density_kg_per_m3",
-];
+const KNOWN: [&str; 7] =
+    ["x_m", "y_m", "z_m", "radius_m", "mass_kg", "density_kg_per_m2", "density_kg_per_m3"];
 
 /// How deep a grain may reach into a wall, over its radius; deeper counts as outside.
 const DEEPEST_IN_WALL: f64 = 0.5;
@@ -69,13 +62,8 @@ const DEEPEST_IN_WALL: f64 = 0.5;
 /// # Errors
 /// Everything wrong with it, up to ten faults.
 pub fn read_planar(bytes: &[u8], width: f64) -> Result<GrainTable, Vec<CsvFault>> {
-    let whole = |message: &str| {
-        vec![CsvFault {
-            line: 0,
-            column: None,
-            message: message.to_owned(),
-        }]
-    };
+    let whole =
+        |message: &str| vec![CsvFault { line: 0, column: None, message: message.to_owned() }];
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return Err(whole("the file is UTF-16; save it as UTF-8"));
     }
@@ -83,18 +71,14 @@ pub fn read_planar(bytes: &[u8], width: f64) -> Result<GrainTable, Vec<CsvFault>
         return Err(whole("the file is not UTF-8; save it as UTF-8"));
     }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .from_reader(bytes);
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
     let header = match reader.headers() {
         Ok(header) => header.clone(),
         Err(error) => return Err(whole(&format!("the header cannot be read: {error}"))),
     };
     let names: Vec<&str> = header.iter().collect();
     if names.len() == 1 && names[0].contains([';', '\t']) {
-        return Err(whole(
-            "the columns are separated by ; or tab; separate them by commas",
-        ));
+        return Err(whole("the columns are separated by ; or tab; separate them by commas"));
     }
     let columns = Columns::find(&names)?;
     let mut faults = Vec::new();
@@ -109,9 +93,7 @@ pub fn read_planar(bytes: &[u8], width: f64) -> Result<GrainTable, Vec<CsvFault>
                 line: error.position().map_or(0, csv::Position::line),
                 column: None,
                 message: match error.kind() {
-                    csv::ErrorKind::UnequalLengths {
-                        expected_len, len, ..
-                    } => {
+                    csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
                         format!("{len} values found; the header has {expected_len}")
                     }
                     _ => error.to_string(),
@@ -126,10 +108,7 @@ pub fn read_planar(bytes: &[u8], width: f64) -> Result<GrainTable, Vec<CsvFault>
         faults.extend(whole("there is no grain below the header"));
     }
     match faults.is_empty() {
-        true => Ok(GrainTable {
-            grains,
-            warnings: columns.warnings,
-        }),
+        true => Ok(GrainTable { grains, warnings: columns.warnings }),
         false => Err(faults),
     }
 }
@@ -148,18 +127,9 @@ impl Columns {
     fn find(names: &[&str]) -> Result<Self, Vec<CsvFault>> {
         let mut faults = Vec::new();
         let mut fault = |message: String| {
-            faults.push(CsvFault {
-                line: 1,
-                column: None,
-                message,
-            });
+            faults.push(CsvFault { line: 1, column: None, message });
         };
-        let found = names
-            .iter()
-            .take(20)
-            .map(|name| shorten(name))
-            .collect::<Vec<_>>()
-            .join(", ");
+        let found = names.iter().take(20).map(|name| shorten(name)).collect::<Vec<_>>().join(", ");
         let mut warnings = Vec::new();
         for (at, name) in names.iter().enumerate() {
             if names[..at].contains(name) {
@@ -173,10 +143,8 @@ impl Columns {
         let at = |wanted: &str| names.iter().position(|name| *name == wanted);
         let mut need = |wanted: &str| {
             at(wanted).unwrap_or_else(|| {
-                let near = nearest(
-                    wanted,
-                    names.iter().copied().filter(|name| !KNOWN.contains(name)),
-                );
+                let near =
+                    nearest(wanted, names.iter().copied().filter(|name| !KNOWN.contains(name)));
                 let hint = near.map(|name| format!("; is it `{}`?", shorten(name)));
                 fault(format!(
                     "the column `{wanted}` is missing; found: {found}{}",
@@ -204,14 +172,7 @@ impl Columns {
             }
         };
         match faults.is_empty() {
-            true => Ok(Self {
-                x,
-                y,
-                radius,
-                mass,
-                is_density,
-                warnings,
-            }),
+            true => Ok(Self { x, y, radius, mass, is_density, warnings }),
             false => Err(faults),
         }
     }
@@ -225,19 +186,12 @@ impl Columns {
         };
         let number = |at: usize, column: &str, positive: bool| {
             let text = record.get(at).unwrap_or_default();
-            let wanted = if positive {
-                "a positive number"
-            } else {
-                "a number"
-            };
+            let wanted = if positive { "a positive number" } else { "a number" };
             text.parse::<f64>()
                 .ok()
                 .filter(|value| value.is_finite() && (!positive || *value > 0.0))
                 .ok_or_else(|| {
-                    fault(
-                        column,
-                        format!("found \"{}\"; {wanted} is wanted", shorten(text)),
-                    )
+                    fault(column, format!("found \"{}\"; {wanted} is wanted", shorten(text)))
                 })
         };
         let x = number(self.x, "x_m", false)?;
@@ -251,10 +205,7 @@ impl Columns {
             }
         };
         if !mass.is_normal() || !(0.5 * mass * radius * radius).is_normal() {
-            return Err(fault(
-                "radius_m",
-                "mass or moment of inertia out of range".to_owned(),
-            ));
+            return Err(fault("radius_m", "mass or moment of inertia out of range".to_owned()));
         }
         let inner = radius * (1.0 - DEEPEST_IN_WALL);
         if x < inner || x > width - inner {
@@ -264,10 +215,7 @@ impl Columns {
             ));
         }
         if y < inner {
-            return Err(fault(
-                "y_m",
-                format!("the grain at {y} m is below the bottom, 0 m"),
-            ));
+            return Err(fault("y_m", format!("the grain at {y} m is below the bottom, 0 m")));
         }
         Ok(CsvGrain { x, y, radius, mass })
     }
@@ -286,15 +234,7 @@ mod tests {
     fn byte_order_mark_and_crlf_are_accepted() {
         let text = "\u{feff}x_m,y_m,radius_m,mass_kg,colour\r\n0.5,0.1,0.01,1e-3,red\r\n";
         let table = read_planar(text.as_bytes(), 1.0).expect("a good table");
-        assert_eq!(
-            table.grains,
-            [CsvGrain {
-                x: 0.5,
-                y: 0.1,
-                radius: 0.01,
-                mass: 1e-3
-            }]
-        );
+        assert_eq!(table.grains, [CsvGrain { x: 0.5, y: 0.1, radius: 0.01, mass: 1e-3 }]);
         assert_eq!(table.warnings, ["the column `colour` is ignored"]);
     }
 
@@ -302,9 +242,7 @@ mod tests {
     fn faults_name_line_and_column() {
         let header = "x_m,y_m,radius_m,mass_kg\n";
         assert_eq!(
-            faults(&format!(
-                "{header}0.5,0.1,0.01,1e-3\n0.5,0.1,-0.01,1e-3\n0.5,nan,0.01,1\n"
-            )),
+            faults(&format!("{header}0.5,0.1,0.01,1e-3\n0.5,0.1,-0.01,1e-3\n0.5,nan,0.01,1\n")),
             "line 3: column radius_m: found \"-0.01\"; a positive number is wanted\n\
              line 4: column y_m: found \"nan\"; a number is wanted\n"
         );

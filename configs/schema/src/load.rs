@@ -106,10 +106,7 @@ impl ConfigError {
     pub fn render(&self, color: Color) -> String {
         match self {
             Self::Unreadable { .. } => format!("{self}\n"),
-            Self::Invalid {
-                diagnostics,
-                sources,
-            } => render_all(diagnostics, sources, color),
+            Self::Invalid { diagnostics, sources } => render_all(diagnostics, sources, color),
         }
     }
 }
@@ -120,10 +117,7 @@ fn render_all(diagnostics: &[Diagnostic], sources: &Sources, color: Color) -> St
         text.push_str(&diagnostic.render(sources, color));
         text.push('\n');
     }
-    let errors = diagnostics
-        .iter()
-        .filter(|one| one.severity == Severity::Error)
-        .count();
+    let errors = diagnostics.iter().filter(|one| one.severity == Severity::Error).count();
     if errors >= limits::DIAGNOSTICS {
         text.push_str("error: there may be more; only the first are shown\n");
     }
@@ -142,10 +136,7 @@ impl Model {
         let mut root = match document::parse(&sources, id) {
             Ok(root) => root,
             Err(diagnostic) => {
-                return Err(ConfigError::Invalid {
-                    diagnostics: vec![*diagnostic],
-                    sources,
-                });
+                return Err(ConfigError::Invalid { diagnostics: vec![*diagnostic], sources });
             }
         };
         let mut diagnostics = Vec::new();
@@ -161,40 +152,21 @@ impl Model {
             diagnostics.extend(set::apply_set(&mut root, &mut sources, "--seed", &set).err());
         }
         let reader = Reader::new(&sources);
-        diagnostics
-            .into_iter()
-            .for_each(|one: Box<Diagnostic>| reader.report(*one));
-        let data = DataFolder {
-            folder: &folder,
-            allow_paths: &options.allow_paths,
-        };
+        diagnostics.into_iter().for_each(|one: Box<Diagnostic>| reader.report(*one));
+        let data = DataFolder { folder: &folder, allow_paths: &options.allow_paths };
         let read = read::model(reader.root(&root), &data);
         if let Some((model, places)) = &read {
             checks::check(model, places, &reader);
         }
         let (diagnostics, resolved) = reader.finish();
-        let failed = diagnostics
-            .iter()
-            .any(|one| one.severity == Severity::Error);
+        let failed = diagnostics.iter().any(|one| one.severity == Severity::Error);
         match read {
             Some((model, _)) if !failed => {
                 let (resolved, bed_key) = (resolved.text(), resolved.bed_key_text());
-                let model = Self {
-                    resolved,
-                    bed_key,
-                    ..model
-                };
-                Ok(Loaded {
-                    model,
-                    warnings: diagnostics,
-                    sources,
-                    original: text,
-                })
+                let model = Self { resolved, bed_key, ..model };
+                Ok(Loaded { model, warnings: diagnostics, sources, original: text })
             }
-            _ => Err(ConfigError::Invalid {
-                diagnostics,
-                sources,
-            }),
+            _ => Err(ConfigError::Invalid { diagnostics, sources }),
         }
     }
 }
@@ -215,18 +187,13 @@ fn open(source: ModelSource) -> Result<(String, String, PathBuf), ConfigError> {
         }
         ModelSource::Path(path) => {
             let name = path.display().to_string();
-            let unreadable = |reason: String| ConfigError::Unreadable {
-                name: name.clone(),
-                reason,
-            };
+            let unreadable =
+                |reason: String| ConfigError::Unreadable { name: name.clone(), reason };
             let bytes = paths::read_bounded(&path, &name, limits::FILE_BYTES)
                 .map_err(|error| unreadable(Reason::from(error, &path).to_string()))?;
             let text = String::from_utf8(bytes).map_err(|error| {
                 let at = error.utf8_error().valid_up_to();
-                let line = 1 + error.as_bytes()[..at]
-                    .iter()
-                    .filter(|b| **b == b'\n')
-                    .count();
+                let line = 1 + error.as_bytes()[..at].iter().filter(|b| **b == b'\n').count();
                 unreadable(format!("line {line} is not UTF-8; save the file as UTF-8"))
             })?;
             let folder = match path.parent() {
@@ -252,10 +219,7 @@ impl Reason {
             paths::PathError::Io { source, .. }
                 if source.kind() == std::io::ErrorKind::NotFound =>
             {
-                let stem = path
-                    .file_stem()
-                    .and_then(|stem| stem.to_str())
-                    .unwrap_or_default();
+                let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
                 Self::NotFound(nearest(stem, SHIPPED.iter().map(|shipped| shipped.name)))
             }
             paths::PathError::Io { source, .. } => Self::Other(paths::in_words(&source)),
@@ -278,11 +242,7 @@ impl fmt::Display for Reason {
             }
             Self::NotRegular => f.write_str("this is not a regular file"),
             Self::TooLarge(size) => {
-                write!(
-                    f,
-                    "it has {size} bytes; at most {} are read",
-                    limits::FILE_BYTES
-                )
+                write!(f, "it has {size} bytes; at most {} are read", limits::FILE_BYTES)
             }
             Self::Other(reason) => f.write_str(reason),
         }

@@ -175,10 +175,7 @@ impl PartialEq for LawChoice {
 
 impl std::fmt::Debug for LawChoice {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_tuple("LawChoice")
-            .field(&self.entry.name)
-            .field(&self.params)
-            .finish()
+        f.debug_tuple("LawChoice").field(&self.entry.name).field(&self.params).finish()
     }
 }
 
@@ -278,32 +275,22 @@ impl Model {
             Some(values) => values.clone(),
             None => vec![single],
         };
-        let speeds = or_single(
-            lists.and_then(|lists| lists.speed.as_ref()),
-            self.impact.speed,
-        );
-        let angles = or_single(
-            lists.and_then(|lists| lists.angle_rad.as_ref()),
-            self.impact.angle_rad,
-        );
+        let speeds = or_single(lists.and_then(|lists| lists.speed.as_ref()), self.impact.speed);
+        let angles =
+            or_single(lists.and_then(|lists| lists.angle_rad.as_ref()), self.impact.angle_rad);
         let middle = self.impact.x.unwrap_or(self.container.width / 2.0);
         let starts: Vec<StartX> = match lists {
             Some(ConditionLists { x: Some(x), .. }) => x.iter().copied().map(StartX::At).collect(),
-            Some(ConditionLists {
-                positions: Some(n), ..
-            }) if *n > 1 => (0..*n).map(|_| StartX::Drawn).collect(),
+            Some(ConditionLists { positions: Some(n), .. }) if *n > 1 => {
+                (0..*n).map(|_| StartX::Drawn).collect()
+            }
             _ => vec![StartX::At(middle)],
         };
         let mut conditions = Vec::new();
         for &speed in &speeds {
             for &angle_rad in &angles {
                 for (position_index, &x) in starts.iter().enumerate() {
-                    conditions.push(Condition {
-                        speed,
-                        angle_rad,
-                        position_index,
-                        x,
-                    });
+                    conditions.push(Condition { speed, angle_rad, position_index, x });
                 }
             }
         }

@@ -62,10 +62,7 @@ pub(crate) fn resolve(
     if named.starts_with('~') {
         return Err(PathError::Home(named.to_owned()));
     }
-    let io = |source| PathError::Io {
-        path: named.to_owned(),
-        source,
-    };
+    let io = |source| PathError::Io { path: named.to_owned(), source };
     let folder = fs::canonicalize(folder).map_err(io)?;
     let path = fs::canonicalize(folder.join(named)).map_err(io)?;
     let root = project_root(&folder);
@@ -85,20 +82,13 @@ pub(crate) fn resolve(
 /// # Errors
 /// When it is anything else.
 pub(crate) fn read_bounded(path: &Path, named: &str, limit: u64) -> Result<Vec<u8>, PathError> {
-    let io = |source| PathError::Io {
-        path: named.to_owned(),
-        source,
-    };
+    let io = |source| PathError::Io { path: named.to_owned(), source };
     // Asked before opening: opening a pipe would wait for its writer.
     let metadata = fs::metadata(path).map_err(io)?;
     if !metadata.is_file() {
         return Err(PathError::NotRegular(named.to_owned()));
     }
-    let too_large = |size| PathError::TooLarge {
-        path: named.to_owned(),
-        size,
-        limit,
-    };
+    let too_large = |size| PathError::TooLarge { path: named.to_owned(), size, limit };
     if metadata.len() > limit {
         return Err(too_large(metadata.len()));
     }

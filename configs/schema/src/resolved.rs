@@ -30,10 +30,7 @@ impl Section {
 impl Resolved {
     /// Starts a section under `header`, such as `[run]` or `[[effect]]`, and gives its number.
     pub(crate) fn open(&mut self, header: String) -> usize {
-        self.sections.push(Section {
-            header,
-            lines: Vec::new(),
-        });
+        self.sections.push(Section { header, lines: Vec::new() });
         self.sections.len() - 1
     }
 
@@ -45,11 +42,7 @@ impl Resolved {
     /// The whole model; sections without a line are left out.
     pub(crate) fn text(&self) -> String {
         let mut out = String::new();
-        for section in self
-            .sections
-            .iter()
-            .filter(|section| !section.lines.is_empty())
-        {
+        for section in self.sections.iter().filter(|section| !section.lines.is_empty()) {
             section.write(|_| true, &mut out);
         }
         out

@@ -13,11 +13,7 @@ pub(crate) fn apply_set(
     assignment: &str,
 ) -> Result<(), Box<Diagnostic>> {
     let id = sources.add(option, assignment);
-    let whole = Span {
-        source: id,
-        start: 0,
-        end: assignment.len(),
-    };
+    let whole = Span { source: id, start: 0, end: assignment.len() };
     let malformed = |message: String| {
         Box::new(
             Diagnostic::error(message)
@@ -28,21 +24,13 @@ pub(crate) fn apply_set(
     let Some((path, text)) = assignment.split_once('=') else {
         return Err(malformed("this assignment has no `=`".to_owned()));
     };
-    let value_span = Span {
-        source: id,
-        start: path.len() + 1,
-        end: assignment.len(),
-    };
+    let value_span = Span { source: id, start: path.len() + 1, end: assignment.len() };
     let value = set_value(text, id, value_span);
     let keys: Vec<(&str, Span)> = path
         .split('.')
         .scan(0, |at, key| {
             let start = *at + key.len() - key.trim_start().len();
-            let span = Span {
-                source: id,
-                start,
-                end: start + key.trim().len(),
-            };
+            let span = Span { source: id, start, end: start + key.trim().len() };
             *at += key.len() + 1;
             Some((key.trim(), span))
         })
@@ -50,14 +38,7 @@ pub(crate) fn apply_set(
     if keys.len() > 8 || keys.iter().any(|(key, _)| key.is_empty()) {
         return Err(malformed("this assignment names no key".to_owned()));
     }
-    put(
-        root,
-        &keys,
-        Node {
-            span: value_span,
-            value,
-        },
-    )
+    put(root, &keys, Node { span: value_span, value })
 }
 
 /// The value of an assignment: TOML if it is TOML, else the text itself.
@@ -105,48 +86,30 @@ fn put(table: &mut Table, keys: &[(&str, Span)], node: Node) -> Result<(), Box<D
     let at = match table.entries.iter().position(|entry| entry.key == *key) {
         Some(at) => at,
         None => {
-            let indexed = deeper
-                .first()
-                .is_some_and(|(next, _)| next.parse::<usize>().is_ok());
+            let indexed = deeper.first().is_some_and(|(next, _)| next.parse::<usize>().is_ok());
             let value = match indexed {
                 true => Value::Array(Vec::new()),
-                false => Value::Table(Table {
-                    header: *key_span,
-                    entries: Vec::new(),
-                }),
+                false => Value::Table(Table { header: *key_span, entries: Vec::new() }),
             };
-            let empty = Node {
-                span: *key_span,
-                value,
-            };
-            table.entries.push(Entry {
-                key: (*key).to_owned(),
-                key_span: *key_span,
-                node: empty,
-            });
+            let empty = Node { span: *key_span, value };
+            table.entries.push(Entry { key: (*key).to_owned(), key_span: *key_span, node: empty });
             table.entries.len() - 1
         }
     };
     let entry = &mut table.entries[at];
     if deeper.is_empty() {
-        *entry = Entry {
-            key: (*key).to_owned(),
-            key_span: *key_span,
-            node,
-        };
+        *entry = Entry { key: (*key).to_owned(), key_span: *key_span, node };
         return Ok(());
     }
     match &mut entry.node.value {
         Value::Table(inner) => put(inner, deeper, node),
         Value::Array(nodes) => put_indexed(nodes, (key, *key_span), deeper, node),
-        other => Err(Diagnostic::error(format!(
-            "`{}` is {}, not a table",
-            shorten(key),
-            other.kind()
-        ))
-        .at(deeper[0].1, "there is nothing below it")
-        .with(entry.node.span, "its value")
-        .into()),
+        other => {
+            Err(Diagnostic::error(format!("`{}` is {}, not a table", shorten(key), other.kind()))
+                .at(deeper[0].1, "there is nothing below it")
+                .with(entry.node.span, "its value")
+                .into())
+        }
     }
 }
 
@@ -160,11 +123,7 @@ fn put_indexed(
     let (index_text, index_span) = keys[0];
     let key = shorten(key);
     let count = nodes.len();
-    let Some(index) = index_text
-        .parse::<usize>()
-        .ok()
-        .filter(|index| *index <= count)
-    else {
+    let Some(index) = index_text.parse::<usize>().ok().filter(|index| *index <= count) else {
         let names: Vec<&str> = nodes.iter().filter_map(element_name).collect();
         let help = match (nearest(index_text, names.iter().copied()), count) {
             (Some(name), _) => {
@@ -172,27 +131,18 @@ fn put_indexed(
                 format!("`{name}` is number {at}: write {key}.{at}")
             }
             (None, 0) => format!("write {key}.0 to add the first"),
-            (None, _) => format!(
-                "write {key}.0 to {key}.{}, or {key}.{count} to add one",
-                count - 1
-            ),
+            (None, _) => {
+                format!("write {key}.0 to {key}.{}, or {key}.{count} to add one", count - 1)
+            }
         };
-        return Err(
-            Diagnostic::error(format!("`{key}` is a list of {count}, counted from 0"))
-                .at(index_span, "no such element")
-                .help(help)
-                .into(),
-        );
+        return Err(Diagnostic::error(format!("`{key}` is a list of {count}, counted from 0"))
+            .at(index_span, "no such element")
+            .help(help)
+            .into());
     };
     if index == count {
-        let table = Table {
-            header: key_span,
-            entries: Vec::new(),
-        };
-        nodes.push(Node {
-            span: key_span,
-            value: Value::Table(table),
-        });
+        let table = Table { header: key_span, entries: Vec::new() };
+        nodes.push(Node { span: key_span, value: Value::Table(table) });
     }
     match (&mut nodes[index].value, &keys[1..]) {
         (_, []) => {
@@ -200,12 +150,11 @@ fn put_indexed(
             Ok(())
         }
         (Value::Table(table), deeper) => put(table, deeper, node),
-        (other, deeper) => Err(Diagnostic::error(format!(
-            "`{key}.{index}` is {}, not a table",
-            other.kind()
-        ))
-        .at(deeper[0].1, "there is nothing below it")
-        .into()),
+        (other, deeper) => {
+            Err(Diagnostic::error(format!("`{key}.{index}` is {}, not a table", other.kind()))
+                .at(deeper[0].1, "there is nothing below it")
+                .into())
+        }
     }
 }
 

@@ -12,14 +12,7 @@ const fn required(
     plausible: Range,
     meaning: &'static str,
 ) -> ParamSpec {
-    ParamSpec {
-        key,
-        dimension,
-        default: Default::Required,
-        allowed,
-        plausible,
-        meaning,
-    }
+    ParamSpec { key, dimension, default: Default::Required, allowed, plausible, meaning }
 }
 
 const POSITIVE: Range = Range::POSITIVE;
@@ -36,13 +29,8 @@ pub(crate) const DURATION: ParamSpec = required(
     "the longest simulated time",
 );
 
-pub(crate) const TIME_STEP: ParamSpec = required(
-    "time_step",
-    Dimension::TIME,
-    POSITIVE,
-    Range::closed(1e-9, 1e-3),
-    "the time step",
-);
+pub(crate) const TIME_STEP: ParamSpec =
+    required("time_step", Dimension::TIME, POSITIVE, Range::closed(1e-9, 1e-3), "the time step");
 
 pub(crate) const PREPARATION_TIME_STEP: ParamSpec = ParamSpec {
     key: "preparation_time_step",
@@ -91,13 +79,8 @@ pub(crate) const GRAVITY: ParamSpec = required(
     "the magnitude of gravity, downward",
 );
 
-pub(crate) const WIDTH: ParamSpec = required(
-    "width",
-    LENGTH,
-    POSITIVE,
-    Range::closed(1e-3, 100.0),
-    "the inner width of the box",
-);
+pub(crate) const WIDTH: ParamSpec =
+    required("width", LENGTH, POSITIVE, Range::closed(1e-3, 100.0), "the inner width of the box");
 
 pub(crate) const PREPARATION_FRICTION: ParamSpec = required(
     "preparation_friction",
@@ -110,11 +93,7 @@ pub(crate) const PREPARATION_FRICTION: ParamSpec = required(
 pub(crate) const TARGET_PACKING_FRACTION: ParamSpec = required(
     "target_packing_fraction",
     NUMBER,
-    Range {
-        min: 0.0,
-        max: 1.0,
-        includes_min: false,
-    },
+    Range { min: 0.0, max: 1.0, includes_min: false },
     Range::closed(0.5, 0.92),
     "the packing fraction that the bed should come near to",
 );
@@ -127,21 +106,11 @@ pub(crate) const TARGET_HEIGHT: ParamSpec = required(
     "the height that the bed should come near to",
 );
 
-pub(crate) const GRAIN_DIAMETER: ParamSpec = required(
-    "diameter",
-    LENGTH,
-    POSITIVE,
-    Range::closed(1e-5, 0.1),
-    "the diameter of one grain",
-);
+pub(crate) const GRAIN_DIAMETER: ParamSpec =
+    required("diameter", LENGTH, POSITIVE, Range::closed(1e-5, 0.1), "the diameter of one grain");
 
-pub(crate) const GRAIN_MASS: ParamSpec = required(
-    "mass",
-    Dimension::MASS,
-    POSITIVE,
-    Range::closed(1e-12, 1.0),
-    "the mass of one grain",
-);
+pub(crate) const GRAIN_MASS: ParamSpec =
+    required("mass", Dimension::MASS, POSITIVE, Range::closed(1e-12, 1.0), "the mass of one grain");
 
 pub(crate) const INTRUDER_MASS: ParamSpec = required(
     "mass",
@@ -170,11 +139,7 @@ pub(crate) const SPEED: ParamSpec = required(
 pub(crate) const ANGLE: ParamSpec = required(
     "angle",
     Dimension::ANGLE,
-    Range {
-        min: 0.0,
-        max: FRAC_PI_2,
-        includes_min: false,
-    },
+    Range { min: 0.0, max: FRAC_PI_2, includes_min: false },
     Range::closed(PI / 180.0, FRAC_PI_2),
     "the angle of the velocity below the horizontal; 90 deg is straight down",
 );
@@ -198,15 +163,8 @@ pub(crate) const X: ParamSpec = required(
     "where the intruder's centre starts, from the left side",
 );
 
-pub(crate) const X_RANGE: ParamSpec = ParamSpec {
-    key: "x_range",
-    meaning: "where drawn positions lie",
-    ..X
-};
+pub(crate) const X_RANGE: ParamSpec =
+    ParamSpec { key: "x_range", meaning: "where drawn positions lie", ..X };
 
-pub(crate) const POSITION: ParamSpec = ParamSpec {
-    key: "position",
-    allowed: ANY,
-    plausible: ANY,
-    ..X
-};
+pub(crate) const POSITION: ParamSpec =
+    ParamSpec { key: "position", allowed: ANY, plausible: ANY, ..X };

@@ -14,11 +14,8 @@ fn lightest_grain(model: &Model) -> f64 {
     let lightest = |masses: &mut dyn Iterator<Item = f64>| masses.fold(f64::INFINITY, f64::min);
     match &model.bed.source {
         BedSource::Settle(settle) => {
-            let mut masses = settle
-                .grains
-                .iter()
-                .filter(|kind| kind.count > 0)
-                .map(|kind| kind.mass);
+            let mut masses =
+                settle.grains.iter().filter(|kind| kind.count > 0).map(|kind| kind.mass);
             lightest(&mut masses)
         }
         BedSource::Csv(csv) => lightest(&mut csv.grains.iter().map(|grain| grain.mass)),
@@ -42,11 +39,8 @@ pub fn shortest_collision_time(model: &Model) -> Option<f64> {
 }
 
 fn collision_time(model: &Model, mass_eff: f64) -> Option<f64> {
-    let (_, stiffness) = model
-        .contact_law
-        .params
-        .iter()
-        .find(|(key, _)| *key == "normal_stiffness")?;
+    let (_, stiffness) =
+        model.contact_law.params.iter().find(|(key, _)| *key == "normal_stiffness")?;
     Some(std::f64::consts::PI * (mass_eff / stiffness).sqrt())
 }
 

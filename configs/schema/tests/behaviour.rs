@@ -16,23 +16,16 @@ fn shipped(name: &str) -> ModelSource {
 
 fn with_sets(sets: &[&str]) -> Result<Loaded, String> {
     let sets = sets.iter().map(|set| (*set).to_owned()).collect();
-    let options = LoadOptions {
-        sets,
-        ..LoadOptions::default()
-    };
+    let options = LoadOptions { sets, ..LoadOptions::default() };
     Model::load(shipped("vertical-2d"), &options).map_err(|error| error.render(Color::Off))
 }
 
 fn good(sets: &[&str]) -> Model {
-    with_sets(sets)
-        .unwrap_or_else(|error| panic!("{error}"))
-        .model
+    with_sets(sets).unwrap_or_else(|error| panic!("{error}")).model
 }
 
 fn refusal(sets: &[&str]) -> String {
-    with_sets(sets)
-        .map(|loaded| loaded.model.run.name)
-        .expect_err("a refused model")
+    with_sets(sets).map(|loaded| loaded.model.run.name).expect_err("a refused model")
 }
 
 fn text(text: &str, folder: &Path) -> ModelSource {
@@ -53,12 +46,7 @@ fn conditions_are_the_product_speed_slowest_then_angle_then_position() {
     let conditions = model.conditions();
     assert_eq!(conditions.len(), 12);
     let at = |n: usize| {
-        let Condition {
-            speed,
-            angle_rad,
-            position_index,
-            x,
-        } = conditions[n];
+        let Condition { speed, angle_rad, position_index, x } = conditions[n];
         (speed, angle_rad.to_degrees().round(), position_index, x)
     };
     assert_eq!(at(0), (1.0, 90.0, 0, StartX::At(0.4)));
@@ -114,17 +102,11 @@ fn the_bed_key_changes_with_the_bed_alone() {
 #[test]
 fn the_last_set_and_the_seed_option_win() {
     assert_eq!(good(&["run.seed=5", "run.seed=6"]).run.seed, 6);
-    let options = LoadOptions {
-        sets: vec!["run.seed=5".to_owned()],
-        seed: Some(7),
-        ..Default::default()
-    };
+    let options =
+        LoadOptions { sets: vec!["run.seed=5".to_owned()], seed: Some(7), ..Default::default() };
     let loaded = Model::load(shipped("vertical-2d"), &options).expect("a good model");
     assert_eq!(loaded.model.run.seed, 7);
-    let options = LoadOptions {
-        seed: Some(u64::MAX),
-        ..LoadOptions::default()
-    };
+    let options = LoadOptions { seed: Some(u64::MAX), ..LoadOptions::default() };
     let error = Model::load(shipped("vertical-2d"), &options).expect_err("too large a seed");
     assert!(error.to_string().contains("too large"), "{error}");
 }
@@ -141,36 +123,21 @@ fn preparation_friction_is_that_of_the_law_unless_given() {
         BedSource::Settle(settle) => settle.preparation_friction,
         BedSource::Csv(_) => None,
     };
-    assert_eq!(
-        friction(&good(&["bed.preparation_friction=0.1"])),
-        Some(0.1)
-    );
+    assert_eq!(friction(&good(&["bed.preparation_friction=0.1"])), Some(0.1));
     let text_without = SHIPPED[0].text.replace("preparation_friction = 0.28\n", "");
     let source = text(&text_without, Path::new("."));
-    let model = Model::load(source, &LoadOptions::default())
-        .expect("a good model")
-        .model;
+    let model = Model::load(source, &LoadOptions::default()).expect("a good model").model;
     assert_eq!(friction(&model), Some(0.28));
 }
 
 #[test]
 fn named_limits_refuse_what_is_too_large() {
-    let many = format!(
-        "{}{}",
-        SHIPPED[0].text,
-        "\n[[effect]]\nname = \"x\"\n".repeat(1001)
-    );
+    let many = format!("{}{}", SHIPPED[0].text, "\n[[effect]]\nname = \"x\"\n".repeat(1001));
     let load = |text_: &str| {
         let source = text(text_, Path::new("."));
-        Model::load(source, &LoadOptions::default())
-            .expect_err("a refused model")
-            .to_string()
+        Model::load(source, &LoadOptions::default()).expect_err("a refused model").to_string()
     };
-    assert!(
-        load(&many).contains("1001 times [[effect]] is too many"),
-        "{}",
-        load(&many)
-    );
+    assert!(load(&many).contains("1001 times [[effect]] is too many"), "{}", load(&many));
     let large = format!("{}#{}", SHIPPED[0].text, " ".repeat(10_000_000));
     assert!(load(&large).contains("at most 10000000 are read"));
     let unknown: String = (0..100_000).map(|n| format!("k{n} = 1\n")).collect();
@@ -198,11 +165,7 @@ fn csv_model() -> String {
     let text = SHIPPED[0].text;
     let from = text.find("[bed]").expect("a bed");
     let to = text.find("[contact_law]").expect("a law");
-    format!(
-        "{}[bed]\nsource = \"csv\"\nfile = \"grains.csv\"\n\n{}",
-        &text[..from],
-        &text[to..]
-    )
+    format!("{}[bed]\nsource = \"csv\"\nfile = \"grains.csv\"\n\n{}", &text[..from], &text[to..])
 }
 
 #[cfg(unix)]
@@ -213,21 +176,13 @@ fn data_files_are_regular_files_of_the_project() {
     let project = tempfile::tempdir().expect("a folder");
     let folder = project.path();
     let load = |allow_paths| {
-        let options = LoadOptions {
-            allow_paths,
-            ..LoadOptions::default()
-        };
+        let options = LoadOptions { allow_paths, ..LoadOptions::default() };
         Model::load(text(&csv_model(), folder), &options)
     };
     let link = folder.join("grains.csv");
     std::os::unix::fs::symlink(outside.path().join("grains.csv"), &link).expect("a link");
-    let error = load(Vec::new())
-        .expect_err("a link that leads out")
-        .to_string();
-    assert!(
-        error.contains("lies outside of the model's project"),
-        "{error}"
-    );
+    let error = load(Vec::new()).expect_err("a link that leads out").to_string();
+    assert!(error.contains("lies outside of the model's project"), "{error}");
     let loaded = load(vec![outside.path().to_owned()]).expect("an allowed folder");
     assert_eq!(loaded.model.n_grains(), 1);
     fs::remove_file(&link).expect("a link");
@@ -241,36 +196,22 @@ fn data_files_are_regular_files_of_the_project() {
     let key = model.bed_key_text().to_owned();
     fs::write(&link, CSV.replace("0.5,", "0.6,")).expect("a file");
     let changed = load(Vec::new()).expect("a file of the project").model;
-    assert_ne!(
-        changed.bed_key_text(),
-        key,
-        "the content is part of the key"
-    );
+    assert_ne!(changed.bed_key_text(), key, "the content is part of the key");
 }
 
 #[test]
 fn a_model_argument_is_a_file_or_a_shipped_name() {
     for argument in ["vertical-2d", "vertical-2d.toml"] {
-        assert!(matches!(
-            ModelSource::from_argument(argument),
-            ModelSource::Shipped(_)
-        ));
+        assert!(matches!(ModelSource::from_argument(argument), ModelSource::Shipped(_)));
     }
     let missing = ModelSource::from_argument("vertikal-2d");
     let error = Model::load(missing, &LoadOptions::default()).expect_err("no such model");
-    assert!(
-        error.to_string().contains("did you mean `vertical-2d`?"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("did you mean `vertical-2d`?"), "{error}");
 }
 
 #[test]
 fn every_shipped_length_reads_in_every_unit_of_length() {
-    for (text, expected) in [
-        ("33.95 cm", 0.3395),
-        ("339.5 mm", 0.3395),
-        ("339500 um", 0.3395),
-    ] {
+    for (text, expected) in [("33.95 cm", 0.3395), ("339.5 mm", 0.3395), ("339500 um", 0.3395)] {
         let value = configs::engine::units::parse(text, Dimension::LENGTH).expect("a length");
         assert_eq!(value.to_bits(), f64::to_bits(expected));
     }
@@ -278,11 +219,7 @@ fn every_shipped_length_reads_in_every_unit_of_length() {
 
 /// A shipped model with some of its bytes replaced, removed or doubled.
 fn mutated() -> impl Strategy<Value = String> {
-    let edit = (
-        any::<prop::sample::Index>(),
-        0usize..12,
-        "[ -~\u{e9}\n\u{1b}\"\\[\\]=.#]{0,6}",
-    );
+    let edit = (any::<prop::sample::Index>(), 0usize..12, "[ -~\u{e9}\n\u{1b}\"\\[\\]=.#]{0,6}");
     (0..SHIPPED.len(), prop::collection::vec(edit, 1..8)).prop_map(|(which, edits)| {
         let mut text: Vec<char> = SHIPPED[which].text.chars().collect();
         for (at, removed, inserted) in edits {

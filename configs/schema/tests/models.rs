@@ -14,10 +14,7 @@ fn models_in(name: &str) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = fs::read_dir(folder(name))
         .expect("the folder is part of the repository")
         .map(|entry| entry.expect("a readable folder").path())
-        .filter(|path| {
-            path.extension()
-                .is_some_and(|extension| extension == "toml")
-        })
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
         .collect();
     files.sort();
     files
@@ -26,24 +23,14 @@ fn models_in(name: &str) -> Vec<PathBuf> {
 /// A model file whose first lines may be `# --set key=value`.
 fn load_file(path: &Path) -> Result<Loaded, String> {
     let text = fs::read_to_string(path).expect("a readable model");
-    let sets = text
-        .lines()
-        .map_while(|line| line.strip_prefix("# --set "))
-        .map(str::to_owned)
-        .collect();
+    let sets =
+        text.lines().map_while(|line| line.strip_prefix("# --set ")).map(str::to_owned).collect();
     let source = ModelSource::Text {
-        name: path
-            .file_name()
-            .expect("a file")
-            .to_string_lossy()
-            .into_owned(),
+        name: path.file_name().expect("a file").to_string_lossy().into_owned(),
         text,
         folder: path.parent().expect("a folder").to_owned(),
     };
-    let options = LoadOptions {
-        sets,
-        ..LoadOptions::default()
-    };
+    let options = LoadOptions { sets, ..LoadOptions::default() };
     Model::load(source, &options).map_err(|error| error.render(Color::Off))
 }
 
@@ -73,12 +60,7 @@ fn good_models_load_and_their_resolved_text_loads_to_the_same_model() {
 fn shipped_models_are_the_files_in_configs_and_load_without_a_warning() {
     let files: Vec<String> = models_in("..")
         .iter()
-        .map(|path| {
-            path.file_stem()
-                .expect("a name")
-                .to_string_lossy()
-                .into_owned()
-        })
+        .map(|path| path.file_stem().expect("a name").to_string_lossy().into_owned())
         .collect();
     let mut shipped: Vec<&str> = SHIPPED.iter().map(|shipped| shipped.name).collect();
     shipped.sort_unstable();
@@ -109,10 +91,7 @@ fn bad_models_are_refused_with_the_message_beside_them() {
         }
         let expected = fs::read_to_string(&beside).unwrap_or_default();
         if message != expected {
-            wrong.push_str(&format!(
-                "{}:\n{message}\nexpected:\n{expected}\n",
-                path.display()
-            ));
+            wrong.push_str(&format!("{}:\n{message}\nexpected:\n{expected}\n", path.display()));
         }
     }
     assert!(wrong.is_empty(), "{wrong}");

@@ -96,21 +96,14 @@ pub enum RecordError {
 
 impl RecordError {
     pub(super) fn io(path: &Path, doing: &'static str, source: io::Error) -> Self {
-        Self::Io {
-            path: path.to_owned(),
-            doing,
-            source,
-        }
+        Self::Io { path: path.to_owned(), doing, source }
     }
 
     /// Unwraps the container's I/O errors, so that callers find a full disk in one place.
     pub(super) fn mcap(path: &Path, source: mcap::McapError) -> Self {
         match source {
             mcap::McapError::Io(source) => Self::io(path, "write", source),
-            source => Self::Mcap {
-                path: path.to_owned(),
-                source,
-            },
+            source => Self::Mcap { path: path.to_owned(), source },
         }
     }
 }

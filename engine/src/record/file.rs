@@ -86,9 +86,7 @@ impl LogFile {
     ) -> Result<Self, RecordError> {
         let [finished, partial, _] = Self::names(dir, name);
         let file = File::create(working).map_err(|e| RecordError::io(working, "create", e))?;
-        let sync = file
-            .try_clone()
-            .map_err(|e| RecordError::io(working, "open", e))?;
+        let sync = file.try_clone().map_err(|e| RecordError::io(working, "open", e))?;
         let writer = WriteOptions::new()
             .compression(Some(Compression::Zstd))
             // the pool of the compressor would compete with the solver's
@@ -128,9 +126,7 @@ impl LogFile {
         write: impl FnOnce(&mut Writer<BufWriter<File>>) -> mcap::McapResult<T>,
     ) -> Result<T, RecordError> {
         let Some(writer) = &mut self.writer else {
-            return Err(RecordError::Closed {
-                path: self.working.clone(),
-            });
+            return Err(RecordError::Closed { path: self.working.clone() });
         };
         write(writer).map_err(|error| {
             self.abandon();
@@ -148,27 +144,13 @@ impl LogFile {
         let step = u64::from(sequence);
         if let Some(last) = self.last_step {
             if step < last {
-                return Err(RecordError::StepOrder {
-                    path: self.working.clone(),
-                    step,
-                    last,
-                });
+                return Err(RecordError::StepOrder { path: self.working.clone(), step, last });
             }
-            if self
-                .cut
-                .every
-                .iter()
-                .any(|&every| passes_multiple(every, last, step))
-            {
+            if self.cut.every.iter().any(|&every| passes_multiple(every, last, step)) {
                 self.flush()?;
             }
         }
-        let header = MessageHeader {
-            channel_id,
-            sequence,
-            log_time,
-            publish_time: log_time,
-        };
+        let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
         self.with(|writer| writer.write_to_known_channel(&header, data))?;
         self.last_step = Some(step);
         self.messages += 1;
@@ -188,9 +170,7 @@ impl LogFile {
     pub(super) fn flush(&mut self) -> Result<(), RecordError> {
         if self.unflushed {
             self.with(|writer| writer.flush())?;
-            self.sync
-                .sync_data()
-                .map_err(|e| RecordError::io(&self.working, "sync", e))?;
+            self.sync.sync_data().map_err(|e| RecordError::io(&self.working, "sync", e))?;
             self.unflushed = false;
         }
         // only now does a resumed log hold durably what the old one does
@@ -205,9 +185,7 @@ impl LogFile {
     pub(super) fn close(&mut self) -> Result<(), RecordError> {
         self.with(|writer| writer.finish().map(drop))?;
         self.abandon();
-        self.sync
-            .sync_all()
-            .map_err(|e| RecordError::io(&self.working, "sync", e))
+        self.sync.sync_all().map_err(|e| RecordError::io(&self.working, "sync", e))
     }
 
     /// Gives a closed file its final name.
@@ -250,9 +228,6 @@ mod tests {
         assert!(passes_multiple(10, 10, 11));
         assert!(!passes_multiple(10, 10, 10));
         assert!(!passes_multiple(10, 11, 20));
-        assert!(
-            passes_multiple(10, 11, 45),
-            "thinned logs may jump over several multiples"
-        );
+        assert!(passes_multiple(10, 11, 45), "thinned logs may jump over several multiples");
     }
 }

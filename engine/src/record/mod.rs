@@ -122,11 +122,7 @@ impl RunLog {
         position: &LogPosition,
     ) -> Result<Self, RecordError> {
         let mut log = Self::open(dir, setup, |[_, _, new]| new)?;
-        let LogPosition {
-            step,
-            run_messages,
-            grain_messages,
-        } = *position;
+        let LogPosition { step, run_messages, grain_messages } = *position;
         let copy = |name, file: &mut LogFile, needed| {
             let names = LogFile::names(dir, name);
             resume::copy_messages(resume::source(&names), file, needed, step)
@@ -144,11 +140,7 @@ impl RunLog {
     pub fn position(&self) -> LogPosition {
         let grains = self.grains.as_ref();
         LogPosition {
-            step: self
-                .run
-                .last_step()
-                .max(grains.and_then(LogFile::last_step))
-                .unwrap_or(0),
+            step: self.run.last_step().max(grains.and_then(LogFile::last_step)).unwrap_or(0),
             run_messages: self.run.messages(),
             grain_messages: grains.map_or(0, LogFile::messages),
         }
@@ -171,11 +163,7 @@ impl RunLog {
         unaccounted_j: f64,
         closure: f64,
     ) -> Result<(), RecordError> {
-        assert_eq!(
-            values.len(),
-            self.energy_terms.len(),
-            "one value per energy term"
-        );
+        assert_eq!(values.len(), self.energy_terms.len(), "one value per energy term");
         finite(at, || "unaccounted_J".to_owned(), &[unaccounted_j])?;
         finite(at, || "closure".to_owned(), &[closure])?;
         for (value, term) in values.iter().zip(&self.energy_terms) {
@@ -200,12 +188,7 @@ impl RunLog {
         body: usize,
         sample: &BodySample,
     ) -> Result<(), RecordError> {
-        let BodySample {
-            position,
-            velocity,
-            spin,
-            depth_m,
-        } = sample;
+        let BodySample { position, velocity, spin, depth_m } = sample;
         let name = &self.bodies[body];
         finite(at, || format!("depth_m of {name}"), &[*depth_m])?;
         finite(at, || format!("position of {name}"), position.as_slice())?;
@@ -217,8 +200,7 @@ impl RunLog {
         fields.vector(&self.scene.to_log(position));
         fields.vector(velocity);
         fields.vector(spin);
-        self.run
-            .write(self.ids.states[body], at.encode()?, &self.buffer)
+        self.run.write(self.ids.states[body], at.encode()?, &self.buffer)
     }
 
     /// Writes the load on a body in a step.
@@ -234,11 +216,7 @@ impl RunLog {
         body: usize,
         load: &BodyLoad<'_>,
     ) -> Result<(), RecordError> {
-        let BodyLoad {
-            forces,
-            torques,
-            contacts,
-        } = *load;
+        let BodyLoad { forces, torques, contacts } = *load;
         assert!(
             forces.len() == self.n_origins && torques.len() == self.n_origins,
             "one force and one torque per origin"
@@ -252,8 +230,7 @@ impl RunLog {
             fields.vector(force);
             fields.vector(torque);
         }
-        self.run
-            .write(self.ids.loads[body], at.encode()?, &self.buffer)
+        self.run.write(self.ids.loads[body], at.encode()?, &self.buffer)
     }
 
     /// Writes a frame: every body, in the order of the setup, and the grains if they are logged.
@@ -270,21 +247,9 @@ impl RunLog {
         grains: &mut dyn Iterator<Item = GrainSample>,
     ) -> Result<(), RecordError> {
         assert_eq!(bodies.len(), self.bodies.len(), "one frame per body");
-        for (
-            BodyFrame {
-                position,
-                orientation,
-                force,
-            },
-            name,
-        ) in bodies.iter().zip(&self.bodies)
-        {
+        for (BodyFrame { position, orientation, force }, name) in bodies.iter().zip(&self.bodies) {
             finite(at, || format!("position of {name}"), position.as_slice())?;
-            finite(
-                at,
-                || format!("orientation of {name}"),
-                orientation.coords.as_slice(),
-            )?;
+            finite(at, || format!("orientation of {name}"), orientation.coords.as_slice())?;
             finite(at, || format!("force on {name}"), force.as_slice())?;
         }
         let stamp = at.encode()?;
@@ -292,31 +257,15 @@ impl RunLog {
         if let (Some(file), Some(frames)) = (&mut self.grains, &self.grain_ids.frames) {
             self.scene.clear_grains();
             for grain in grains {
-                let GrainSample {
-                    position: p,
-                    radius,
-                    speed,
-                    force,
-                    id,
-                } = grain;
-                finite(
-                    at,
-                    || format!("grain {id}"),
-                    &[p.x, p.y, p.z, radius, speed, force],
-                )?;
+                let GrainSample { position: p, radius, speed, force, id } = grain;
+                finite(at, || format!("grain {id}"), &[p.x, p.y, p.z, radius, speed, force])?;
                 self.scene.push_grain(&grain);
             }
             write_frame(file, frames, &self.scene, stamp, &mut self.buffer)?;
             self.scene.encode_grains(&mut self.buffer);
             file.write(self.grain_ids.grains, stamp, &self.buffer)?;
         }
-        write_frame(
-            &mut self.run,
-            &self.ids.frames,
-            &self.scene,
-            stamp,
-            &mut self.buffer,
-        )
+        write_frame(&mut self.run, &self.ids.frames, &self.scene, stamp, &mut self.buffer)
     }
 
     /// Writes an event.
@@ -379,28 +328,16 @@ impl RunLog {
         let load = Layout::intruder_load(&setup.force_origins);
         setup.check(&[&budget, &state, &load])?;
 
-        let LogSetup {
-            flush_every,
-            checkpoint_every,
-            ..
-        } = *setup;
+        let LogSetup { flush_every, checkpoint_every, .. } = *setup;
         let start = |name, cut| {
             let working = working(LogFile::names(dir, name));
             let mut file = LogFile::create(dir, name, &working, cut)?;
             file.with(|writer| writer.write_metadata(&metadata(setup)))?;
             Ok(file)
         };
-        let cut = Cut {
-            every: vec![flush_every, checkpoint_every],
-            chunk_bytes: 1 << 20,
-        };
+        let cut = Cut { every: vec![flush_every, checkpoint_every], chunk_bytes: 1 << 20 };
         let mut run = start(RUN_LOG, cut)?;
-        for LogAttachment {
-            name,
-            media_type,
-            data,
-        } in &setup.attachments
-        {
+        for LogAttachment { name, media_type, data } in &setup.attachments {
             let attachment = mcap::Attachment {
                 log_time: 0,
                 create_time: 0,
@@ -424,10 +361,7 @@ impl RunLog {
         let mut grain_ids = GrainChannels::default();
         let mut grains = None;
         if setup.grains {
-            let cut = Cut {
-                every: vec![checkpoint_every],
-                chunk_bytes: 4 << 20,
-            };
+            let cut = Cut { every: vec![checkpoint_every], chunk_bytes: 4 << 20 };
             let mut file = start(GRAIN_LOG, cut)?;
             grain_ids.grains = file.define(drawn::<PointCloud>("/grains"))?;
             grain_ids.frames = Some(define_frames(&mut file, setup)?);
@@ -453,14 +387,8 @@ fn metadata(setup: &LogSetup) -> Metadata {
     let mut metadata = setup.metadata.clone();
     let identity = schema::closure_identity(&setup.energy_terms);
     metadata.insert("closure_identity".to_owned(), identity);
-    metadata.insert(
-        "arrow_m_per_newton".to_owned(),
-        setup.arrow_m_per_newton.to_string(),
-    );
-    Metadata {
-        name: "run".to_owned(),
-        metadata,
-    }
+    metadata.insert("arrow_m_per_newton".to_owned(), setup.arrow_m_per_newton.to_string());
+    Metadata { name: "run".to_owned(), metadata }
 }
 
 fn own(topic: &str, layout: &Layout) -> Definition {
@@ -518,10 +446,7 @@ fn write_frame(
 fn finite(at: Stamp, what: impl Fn() -> String, values: &[f64]) -> Result<(), RecordError> {
     match values.iter().all(|value| value.is_finite()) {
         true => Ok(()),
-        false => Err(RecordError::NonFinite {
-            step: at.step,
-            what: what(),
-        }),
+        false => Err(RecordError::NonFinite { step: at.step, what: what() }),
     }
 }
 

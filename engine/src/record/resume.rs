@@ -30,11 +30,7 @@ pub(super) fn copy_messages(
         let Some(offset) = chunks.next()? else {
             return Err(missing(to));
         };
-        let damaged = |why: String| RecordError::Damaged {
-            path: source.to_owned(),
-            offset,
-            why,
-        };
+        let damaged = |why: String| RecordError::Damaged { path: source.to_owned(), offset, why };
         for (opcode, body) in Records::new(&chunks.records) {
             if to.messages() == needed {
                 break;
@@ -70,10 +66,7 @@ pub(super) fn copy_messages(
 }
 
 fn other_run(path: &Path, what: String) -> RecordError {
-    RecordError::OtherRun {
-        path: path.to_owned(),
-        what,
-    }
+    RecordError::OtherRun { path: path.to_owned(), what }
 }
 
 /// The whole chunks of a log, in order.
@@ -90,10 +83,7 @@ struct Chunks {
 impl Chunks {
     fn open(path: &Path) -> Result<Self, RecordError> {
         let file = File::open(path).map_err(|e| RecordError::io(path, "open", e))?;
-        let length = file
-            .metadata()
-            .map_err(|e| RecordError::io(path, "read", e))?
-            .len();
+        let length = file.metadata().map_err(|e| RecordError::io(path, "read", e))?.len();
         let mut chunks = Self {
             path: path.to_owned(),
             file: BufReader::new(file),
@@ -157,17 +147,11 @@ impl Chunks {
     }
 
     fn read(&mut self, bytes: &mut [u8]) -> Result<(), RecordError> {
-        self.file
-            .read_exact(bytes)
-            .map_err(|e| RecordError::io(&self.path, "read", e))
+        self.file.read_exact(bytes).map_err(|e| RecordError::io(&self.path, "read", e))
     }
 
     fn damaged(&self, why: String) -> RecordError {
-        RecordError::Damaged {
-            path: self.path.clone(),
-            offset: self.offset,
-            why,
-        }
+        RecordError::Damaged { path: self.path.clone(), offset: self.offset, why }
     }
 }
 
@@ -176,9 +160,5 @@ impl Chunks {
 /// Both exist, or only the finished one, when a run was killed between the renames of its files.
 pub(super) fn source(names: &[PathBuf; 3]) -> &Path {
     let [finished, partial, _] = names;
-    if !partial.exists() && finished.exists() {
-        finished
-    } else {
-        partial
-    }
+    if !partial.exists() && finished.exists() { finished } else { partial }
 }

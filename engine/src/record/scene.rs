@@ -36,10 +36,7 @@ impl Scene {
             child_frame_id: body.name.clone(),
             ..Default::default()
         });
-        let pose = PoseInFrame {
-            frame_id: WORLD.to_owned(),
-            ..Default::default()
-        };
+        let pose = PoseInFrame { frame_id: WORLD.to_owned(), ..Default::default() };
         let mut entities: Vec<_> = setup.bodies.iter().map(body_entity).collect();
         entities.extend(setup.container.map(|(low, high)| SceneEntity {
             frame_id: WORLD.to_owned(),
@@ -50,12 +47,7 @@ impl Scene {
                     orientation: Some(UPRIGHT),
                 }),
                 size: Some(vector(&(high - low))),
-                color: Some(Color {
-                    r: 0.5,
-                    g: 0.5,
-                    b: 0.5,
-                    a: 0.15,
-                }),
+                color: Some(Color { r: 0.5, g: 0.5, b: 0.5, a: 0.15 }),
             }],
             ..Default::default()
         }));
@@ -69,14 +61,9 @@ impl Scene {
         Self {
             surface_z: setup.surface_z_m,
             arrow_m_per_newton: setup.arrow_m_per_newton,
-            transforms: FrameTransforms {
-                transforms: transforms.collect(),
-            },
+            transforms: FrameTransforms { transforms: transforms.collect() },
             poses: vec![pose; setup.bodies.len()],
-            update: SceneUpdate {
-                deletions: Vec::new(),
-                entities,
-            },
+            update: SceneUpdate { deletions: Vec::new(), entities },
             cloud: cloud(),
             points: Vec::new(),
         }
@@ -93,16 +80,9 @@ impl Scene {
         for entity in &mut self.update.entities {
             entity.timestamp = Some(now);
         }
-        let arrows = self
-            .update
-            .entities
-            .last_mut()
-            .map(|force| &mut force.arrows);
+        let arrows = self.update.entities.last_mut().map(|force| &mut force.arrows);
         let arrows = arrows.into_iter().flatten();
-        let bodies = bodies
-            .iter()
-            .zip(&mut self.transforms.transforms)
-            .zip(&mut self.poses);
+        let bodies = bodies.iter().zip(&mut self.transforms.transforms).zip(&mut self.poses);
         for (((body, transform), pose), arrow) in bodies.zip(arrows) {
             let position = shifted(&body.position, self.surface_z);
             let orientation = quaternion(&body.orientation);
@@ -110,10 +90,7 @@ impl Scene {
             transform.translation = Some(position);
             transform.rotation = Some(orientation);
             pose.timestamp = Some(now);
-            pose.pose = Some(Pose {
-                position: Some(position),
-                orientation: Some(orientation),
-            });
+            pose.pose = Some(Pose { position: Some(position), orientation: Some(orientation) });
             arrow.pose = Some(Pose {
                 position: Some(position),
                 orientation: Some(from_x_axis_to(&body.force)),
@@ -125,13 +102,7 @@ impl Scene {
 
     /// Packs one grain; `clear_grains` starts a frame.
     pub(super) fn push_grain(&mut self, grain: &GrainSample) {
-        let GrainSample {
-            position,
-            radius,
-            speed,
-            force,
-            id,
-        } = grain;
+        let GrainSample { position, radius, speed, force, id } = grain;
         let z = position.z - self.surface_z;
         for value in [position.x, position.y, z, *radius, *speed, *force] {
             self.points.extend_from_slice(&(value as f32).to_le_bytes());
@@ -172,37 +143,19 @@ impl Scene {
 /// Encodes a Foxglove message into an emptied buffer.
 pub(super) fn encode<M: Encode>(message: &M, buffer: &mut Vec<u8>) {
     buffer.clear();
-    message
-        .encode(buffer)
-        .expect("a growing buffer has room for every message");
+    message.encode(buffer).expect("a growing buffer has room for every message");
 }
 
 /// A viewer's timestamp of a simulated time [ns].
 pub(super) fn timestamp(log_time: u64) -> Timestamp {
-    Timestamp::new(
-        (log_time / 1_000_000_000) as u32,
-        (log_time % 1_000_000_000) as u32,
-    )
+    Timestamp::new((log_time / 1_000_000_000) as u32, (log_time % 1_000_000_000) as u32)
 }
 
-const UPRIGHT: Quaternion = Quaternion {
-    x: 0.0,
-    y: 0.0,
-    z: 0.0,
-    w: 1.0,
-};
+const UPRIGHT: Quaternion = Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 1.0 };
 
 fn body_entity(body: &LoggedBody) -> SceneEntity {
-    let color = Some(Color {
-        r: 0.35,
-        g: 0.45,
-        b: 0.6,
-        a: 1.0,
-    });
-    let centred = Some(Pose {
-        position: Some(Vector3::default()),
-        orientation: Some(UPRIGHT),
-    });
+    let color = Some(Color { r: 0.35, g: 0.45, b: 0.6, a: 1.0 });
+    let centred = Some(Pose { position: Some(Vector3::default()), orientation: Some(UPRIGHT) });
     let mut entity = SceneEntity {
         frame_id: body.name.clone(),
         id: body.name.clone(),
@@ -226,29 +179,15 @@ fn body_entity(body: &LoggedBody) -> SceneEntity {
                     w: std::f64::consts::FRAC_1_SQRT_2,
                 }),
             }),
-            size: Some(Vector3 {
-                x: 2.0 * radius,
-                y: 2.0 * radius,
-                z: *thickness,
-            }),
+            size: Some(Vector3 { x: 2.0 * radius, y: 2.0 * radius, z: *thickness }),
             bottom_scale: 1.0,
             top_scale: 1.0,
             color,
         }),
-        LoggedShape::Mesh {
-            vertices,
-            triangles,
-        } => {
+        LoggedShape::Mesh { vertices, triangles } => {
             entity.triangles.push(TriangleListPrimitive {
                 pose: centred,
-                points: vertices
-                    .iter()
-                    .map(|v| Point3 {
-                        x: v.x,
-                        y: v.y,
-                        z: v.z,
-                    })
-                    .collect(),
+                points: vertices.iter().map(|v| Point3 { x: v.x, y: v.y, z: v.z }).collect(),
                 color,
                 colors: Vec::new(),
                 indices: triangles.iter().flatten().copied().collect(),
@@ -267,35 +206,19 @@ fn arrow(body: &LoggedBody) -> ArrowPrimitive {
         shaft_diameter: 0.15 * radius,
         head_length: 0.3 * radius,
         head_diameter: 0.3 * radius,
-        color: Some(Color {
-            r: 0.9,
-            g: 0.2,
-            b: 0.1,
-            a: 1.0,
-        }),
+        color: Some(Color { r: 0.9, g: 0.2, b: 0.1, a: 1.0 }),
     }
 }
 
 fn cloud() -> PointCloud {
     let names = ["x", "y", "z", "radius", "speed", "force", "id"];
     let fields = (0..).step_by(4).zip(names).map(|(offset, name)| {
-        let kind = if name == "id" {
-            NumericType::Uint32
-        } else {
-            NumericType::Float32
-        };
-        PackedElementField {
-            name: name.to_owned(),
-            offset,
-            r#type: kind as i32,
-        }
+        let kind = if name == "id" { NumericType::Uint32 } else { NumericType::Float32 };
+        PackedElementField { name: name.to_owned(), offset, r#type: kind as i32 }
     });
     PointCloud {
         frame_id: WORLD.to_owned(),
-        pose: Some(Pose {
-            position: Some(Vector3::default()),
-            orientation: Some(UPRIGHT),
-        }),
+        pose: Some(Pose { position: Some(Vector3::default()), orientation: Some(UPRIGHT) }),
         point_stride: STRIDE,
         fields: fields.collect(),
         ..Default::default()
@@ -303,29 +226,16 @@ fn cloud() -> PointCloud {
 }
 
 fn vector(v: &Vec3) -> Vector3 {
-    Vector3 {
-        x: v.x,
-        y: v.y,
-        z: v.z,
-    }
+    Vector3 { x: v.x, y: v.y, z: v.z }
 }
 
 /// A point of the engine in the frame of the log.
 fn shifted(point: &Vec3, surface_z: f64) -> Vector3 {
-    Vector3 {
-        x: point.x,
-        y: point.y,
-        z: point.z - surface_z,
-    }
+    Vector3 { x: point.x, y: point.y, z: point.z - surface_z }
 }
 
 fn quaternion(q: &Quat) -> Quaternion {
-    Quaternion {
-        x: q.i,
-        y: q.j,
-        z: q.k,
-        w: q.w,
-    }
+    Quaternion { x: q.i, y: q.j, z: q.k, w: q.w }
 }
 
 /// The rotation that turns the x axis, along which viewers draw arrows, to `direction`.
@@ -341,19 +251,9 @@ fn from_x_axis_to(direction: &Vec3) -> Quaternion {
     let norm = (w * w + y * y + z * z).sqrt();
     // straight back, the half-way is undefined: half a turn about z
     if norm < 1e-9 {
-        return Quaternion {
-            x: 0.0,
-            y: 0.0,
-            z: 1.0,
-            w: 0.0,
-        };
+        return Quaternion { x: 0.0, y: 0.0, z: 1.0, w: 0.0 };
     }
-    Quaternion {
-        x: 0.0,
-        y: y / norm,
-        z: z / norm,
-        w: w / norm,
-    }
+    Quaternion { x: 0.0, y: y / norm, z: z / norm, w: w / norm }
 }
 
 #[cfg(test)]
@@ -374,10 +274,7 @@ mod tests {
             let q = from_x_axis_to(&direction);
             let turned = Quat::from_quaternion([q.x, q.y, q.z, q.w].into()) * Vec3::x();
             // a handful of roundings on numbers of order one
-            assert!(
-                (turned - direction.normalize()).norm() < 1e-15 * 10.0,
-                "{direction}"
-            );
+            assert!((turned - direction.normalize()).norm() < 1e-15 * 10.0, "{direction}");
         }
     }
 }

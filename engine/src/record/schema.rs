@@ -73,10 +73,8 @@ pub(super) struct Layout {
 impl Layout {
     /// Starts with the two fields every message has, `step` and `time_s`.
     fn new(name: &'static str) -> Self {
-        let fields = vec![
-            ("step".to_owned(), FieldKind::Step),
-            ("time_s".to_owned(), FieldKind::Number),
-        ];
+        let fields =
+            vec![("step".to_owned(), FieldKind::Step), ("time_s".to_owned(), FieldKind::Number)];
         Self { name, fields }
     }
 
@@ -135,10 +133,7 @@ impl Layout {
         let short = self.name.rsplit('.').next().unwrap_or(self.name);
         let path = format!("plunge/{short}.proto");
         let message = file(&path, short, &self.fields, &["plunge/Vector3.proto"]);
-        FileDescriptorSet {
-            file: vec![vector, message],
-        }
-        .encode_to_vec()
+        FileDescriptorSet { file: vec![vector, message] }.encode_to_vec()
     }
 }
 
@@ -180,9 +175,7 @@ impl<'a> Fields<'a> {
 }
 
 fn xyz() -> Vec<(String, FieldKind)> {
-    ["x", "y", "z"]
-        .map(|axis| (axis.to_owned(), FieldKind::Number))
-        .to_vec()
+    ["x", "y", "z"].map(|axis| (axis.to_owned(), FieldKind::Number)).to_vec()
 }
 
 fn file(
@@ -192,11 +185,8 @@ fn file(
     imports: &[&str],
 ) -> FileDescriptorProto {
     let needed = fields.iter().any(|(_, kind)| *kind == FieldKind::Vector);
-    let dependency = if needed {
-        imports.iter().map(|&import| import.to_owned()).collect()
-    } else {
-        vec![]
-    };
+    let dependency =
+        if needed { imports.iter().map(|&import| import.to_owned()).collect() } else { vec![] };
     FileDescriptorProto {
         name: Some(path.to_owned()),
         package: Some("plunge".to_owned()),

@@ -172,9 +172,7 @@ impl LogSetup {
         }
         let mut seen = BTreeSet::new();
         for LoggedBody { name, .. } in &self.bodies {
-            let legal = name
-                .chars()
-                .all(|c| c.is_ascii_alphanumeric() || "-_".contains(c));
+            let legal = name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c));
             if name.is_empty() || !legal || name == "world" || !seen.insert(name) {
                 return Err(RecordError::Setup(format!(
                     "body `{name}`: names are letters, digits, - and _, each used once, \

@@ -20,13 +20,7 @@ const fn atom(
     exponent: i32,
     prefixes: &'static str,
 ) -> Atom {
-    Atom {
-        symbol,
-        dimension,
-        coefficient,
-        exponent,
-        prefixes,
-    }
+    Atom { symbol, dimension, coefficient, exponent, prefixes }
 }
 
 const TURN_PER_MINUTE: f64 = std::f64::consts::TAU / 60.0;
@@ -145,9 +139,8 @@ pub fn parse(text: &str, wanted: Dimension) -> Result<f64, UnitError> {
     }
     let unit =
         Unit::parse(unit_text).map_err(|part| error(UnitFault::UnknownUnit(shorten(&part))))?;
-    let dimension = unit
-        .dimension()
-        .ok_or_else(|| error(UnitFault::UnknownUnit(shorten(unit_text))))?;
+    let dimension =
+        unit.dimension().ok_or_else(|| error(UnitFault::UnknownUnit(shorten(unit_text))))?;
     if dimension != wanted {
         return Err(error(UnitFault::Dimension(dimension)));
     }
@@ -155,11 +148,7 @@ pub fn parse(text: &str, wanted: Dimension) -> Result<f64, UnitError> {
     let scaled: f64 = format!("{digits}e{}", exponent.saturating_add(shift))
         .parse()
         .map_err(|_| error(UnitFault::NoNumber))?;
-    let half = if unit.exponent_2.rem_euclid(2) == 1 {
-        10f64.sqrt()
-    } else {
-        1.0
-    };
+    let half = if unit.exponent_2.rem_euclid(2) == 1 { 10f64.sqrt() } else { 1.0 };
     let value = scaled * (unit.coefficient * half);
     let vanished = value == 0.0 && digits.bytes().any(|digit| (b'1'..=b'9').contains(&digit));
     if !value.is_finite() || vanished {
@@ -171,12 +160,7 @@ pub fn parse(text: &str, wanted: Dimension) -> Result<f64, UnitError> {
 /// Splits off the leading decimal number: its digits without exponent, the exponent, the rest.
 fn split_number(text: &str) -> (&str, i64, &str) {
     let bytes = text.as_bytes();
-    let run = |from: usize| {
-        bytes[from..]
-            .iter()
-            .take_while(|byte| byte.is_ascii_digit())
-            .count()
-    };
+    let run = |from: usize| bytes[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
     let sign = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
     let whole = run(sign);
     let mut end = sign + whole;
@@ -194,11 +178,7 @@ fn split_number(text: &str) -> (&str, i64, &str) {
         let length = run(end + 1 + sign);
         if length > 0 {
             let stop = end + 1 + sign + length;
-            let limit = if bytes[end + 1] == b'-' {
-                -1_000_000
-            } else {
-                1_000_000
-            };
+            let limit = if bytes[end + 1] == b'-' { -1_000_000 } else { 1_000_000 };
             let exponent = text[end + 1..stop].parse().unwrap_or(limit);
             return (digits, exponent.clamp(-1_000_000, 1_000_000), &text[stop..]);
         }
@@ -216,11 +196,7 @@ struct Unit {
 impl Unit {
     /// Reads `kg/m^3`, `N/m^1.5`, `N s/m`, `m/s²`, …; the error is the part that is not known.
     fn parse(text: &str) -> Result<Self, String> {
-        let mut unit = Self {
-            powers_2: [0; 4],
-            coefficient: 1.0,
-            exponent_2: 0,
-        };
+        let mut unit = Self { powers_2: [0; 4], coefficient: 1.0, exponent_2: 0 };
         let mut sign = 1;
         let mut rest = text;
         for _ in 0..16 {
@@ -228,8 +204,7 @@ impl Unit {
                 return Ok(unit);
             }
             let end = rest.find(['/', '*', '·', ' ']).unwrap_or(rest.len());
-            unit.multiply(&rest[..end], sign)
-                .ok_or_else(|| rest[..end].to_owned())?;
+            unit.multiply(&rest[..end], sign).ok_or_else(|| rest[..end].to_owned())?;
             rest = rest[end..].trim_start();
             sign = if rest.starts_with('/') { -1 } else { 1 };
             if let Some(after) = rest.strip_prefix(['/', '*', '·']) {
@@ -291,9 +266,7 @@ fn find_atom(symbol: &str) -> Option<(&'static Atom, i32)> {
     let first = symbol.chars().next()?;
     let (_, ascii, exponent) = PREFIXES.iter().find(|(spelling, ..)| *spelling == first)?;
     let stem = &symbol[first.len_utf8()..];
-    let atom = ATOMS
-        .iter()
-        .find(|atom| atom.symbol == stem && atom.prefixes.contains(*ascii))?;
+    let atom = ATOMS.iter().find(|atom| atom.symbol == stem && atom.prefixes.contains(*ascii))?;
     Some((atom, *exponent))
 }
 

@@ -18,12 +18,7 @@ pub(super) fn bed(
     folder: &DataFolder<'_>,
     places: &mut Places,
 ) -> Option<Bed> {
-    let source_name = table.choice(
-        "source",
-        &["settle", "csv"],
-        &[],
-        "where the grains come from",
-    );
+    let source_name = table.choice("source", &["settle", "csv"], &[], "where the grains come from");
     let fraction = table.optional_number(&specs::TARGET_PACKING_FRACTION);
     let height = table.optional_number(&specs::TARGET_HEIGHT);
     places.target_packing_fraction = table.span_of("target_packing_fraction");
@@ -56,10 +51,8 @@ fn settle(table: &TableReader<'_>, law: Option<&LawChoice>, places: &mut Places)
         );
     }
     let wanted = kinds.len().max(1);
-    let grains: Vec<GrainKind> = kinds
-        .into_iter()
-        .filter_map(|kind| grain_kind(kind, places))
-        .collect();
+    let grains: Vec<GrainKind> =
+        kinds.into_iter().filter_map(|kind| grain_kind(kind, places)).collect();
     let effects = effects(table.tables("effect", limits::EFFECTS));
     let grains = (grains.len() == wanted).then_some(grains)?;
     if grains.iter().all(|kind| kind.count == 0) {
@@ -83,26 +76,16 @@ fn preparation_friction(table: &TableReader<'_>, law: Option<&LawChoice>) -> Opt
     let Some(law) = law else {
         return table.optional_number(&spec).map(|_| None);
     };
-    let own = law
-        .params
-        .iter()
-        .find(|(key, _)| *key == "friction")
-        .map(|(_, value)| value);
+    let own = law.params.iter().find(|(key, _)| *key == "friction").map(|(_, value)| value);
     match own {
         Some(friction) => {
-            let spec = ParamSpec {
-                default: ParamDefault::Value(friction),
-                ..spec
-            };
+            let spec = ParamSpec { default: ParamDefault::Value(friction), ..spec };
             table.number(&spec).map(|found| Some(found.value))
         }
         None if table.has(spec.key) => {
             table.reader.report(
                 Diagnostic::error(format!("the law `{}` has no friction", law.entry.name))
-                    .at(
-                        table.span_of(spec.key),
-                        "so there is none to replace while settling",
-                    )
+                    .at(table.span_of(spec.key), "so there is none to replace while settling")
                     .with(law.span, "the law"),
             );
             None
@@ -126,9 +109,5 @@ fn grain_kind(table: TableReader<'_>, places: &mut Places) -> Option<GrainKind> 
         mass: table.span_of("mass").or_else(|| table.span_of("density")),
     });
     table.finish();
-    Some(GrainKind {
-        count: count?.value,
-        diameter: diameter?.value,
-        mass: mass?,
-    })
+    Some(GrainKind { count: count?.value, diameter: diameter?.value, mass: mass? })
 }

@@ -23,12 +23,7 @@ pub(crate) fn csv_bed(
     folder: &DataFolder<'_>,
 ) -> Option<CsvBed> {
     let mut settles = false;
-    for key in [
-        "preparation_friction",
-        "preparation_time_step",
-        "grains",
-        "effect",
-    ] {
+    for key in ["preparation_friction", "preparation_time_step", "grains", "effect"] {
         if table.has(key) {
             table.reader.report(
                 Diagnostic::error(format!("`{key}` is for a bed that settles"))
@@ -69,33 +64,21 @@ pub(crate) fn csv_bed(
             Diagnostic::error("the table of grains is not the one this model was made with")
                 .at(expected.span, "the content that is wanted")
                 .with(named.span, "has another content")
-                .help(format!(
-                    "to accept the file as it is now: file_blake3 = \"{blake3}\""
-                )),
+                .help(format!("to accept the file as it is now: file_blake3 = \"{blake3}\"")),
         );
         return None;
     }
     match grains_csv::read_planar(&bytes, container?.width) {
         Ok(read) => {
             for warning in read.warnings {
-                table
-                    .reader
-                    .report(Diagnostic::warning(warning).at(named.span, "in this file"));
+                table.reader.report(Diagnostic::warning(warning).at(named.span, "in this file"));
             }
             let grains = read.grains.into();
-            (!settles).then_some(CsvBed {
-                file,
-                named: named.value,
-                blake3,
-                grains,
-            })
+            (!settles).then_some(CsvBed { file, named: named.value, blake3, grains })
         }
         Err(faults) => {
             for one in faults {
-                fault(format!(
-                    "{}: {one}",
-                    crate::diagnostics::shorten(&named.value)
-                ));
+                fault(format!("{}: {one}", crate::diagnostics::shorten(&named.value)));
             }
             None
         }

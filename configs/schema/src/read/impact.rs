@@ -11,35 +11,22 @@ use crate::reader::{Found, TableReader};
 use crate::specs;
 
 pub(super) fn intruder(table: TableReader<'_>, places: &mut Places) -> Option<Intruder> {
-    let name = table.slug(
-        "name",
-        Some("intruder"),
-        "the intruder's name in logs and reports",
-    );
+    let name = table.slug("name", Some("intruder"), "the intruder's name in logs and reports");
     let names: Vec<&'static str> = intruders::SHAPES.iter().map(|shape| shape.name).collect();
     let later = ["cylinder", "hemisphere", "cone", "link", "two-link-chain"];
-    let later: Vec<&str> = later
-        .into_iter()
-        .filter(|name| !names.contains(name))
-        .collect();
+    let later: Vec<&str> = later.into_iter().filter(|name| !names.contains(name)).collect();
     let shape = table.choice("shape", &names, &later, "the shape of the intruder")?;
     let shape = intruders::find(shape)?;
     if !shape.planar {
         table.reader.report(
-            Diagnostic::error(format!(
-                "the shape `{}` cannot act in a planar bed",
-                shape.name
-            ))
-            .at(table.span_of("shape"), "a shape of three dimensions"),
+            Diagnostic::error(format!("the shape `{}` cannot act in a planar bed", shape.name))
+                .at(table.span_of("shape"), "a shape of three dimensions"),
         );
         return None;
     }
     let params = table.params(shape.params);
     let diameter = params.as_ref().and_then(|params| {
-        params
-            .iter()
-            .find(|(key, _)| *key == "diameter")
-            .map(|(_, value)| value)
+        params.iter().find(|(key, _)| *key == "diameter").map(|(_, value)| value)
     });
     let mass = mass(&table, &specs::INTRUDER_MASS, diameter.map(disc_area));
     places.intruder = BodyPlaces {
@@ -47,12 +34,7 @@ pub(super) fn intruder(table: TableReader<'_>, places: &mut Places) -> Option<In
         mass: table.span_of("mass").or_else(|| table.span_of("density")),
     };
     table.finish();
-    Some(Intruder {
-        name: name?.value,
-        shape,
-        params: params?,
-        mass: mass?,
-    })
+    Some(Intruder { name: name?.value, shape, params: params?, mass: mass? })
 }
 
 pub(super) fn impact(
@@ -92,9 +74,7 @@ fn start_x(table: &TableReader<'_>) -> Option<Option<f64>> {
         return None;
     }
     if !has_position {
-        return table
-            .optional_number(&specs::X)
-            .map(|found| found.map(|found| found.value));
+        return table.optional_number(&specs::X).map(|found| found.map(|found| found.value));
     }
     let (x, y) = pair(table, &specs::POSITION)?;
     if y.value != 0.0 {
@@ -184,19 +164,12 @@ pub(super) fn conditions(
     table.finish();
     let (speed, angle, x, positions) = (speed?, angle?, x?, positions?);
     let spans = |list: &Option<Vec<Found<f64>>>| {
-        list.iter()
-            .flatten()
-            .map(|found| found.span)
-            .collect::<Vec<_>>()
+        list.iter().flatten().map(|found| found.span).collect::<Vec<_>>()
     };
     places.condition_x = spans(&x);
     places.condition_speed = spans(&speed);
     let values = |list: Option<Vec<Found<f64>>>| {
-        list.map(|list| {
-            list.into_iter()
-                .map(|found| found.value)
-                .collect::<Vec<f64>>()
-        })
+        list.map(|list| list.into_iter().map(|found| found.value).collect::<Vec<f64>>())
     };
     Some(given.then(|| ConditionLists {
         speed: values(speed),

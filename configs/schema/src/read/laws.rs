@@ -30,10 +30,7 @@ pub(super) fn effects(tables: Vec<TableReader<'_>>) -> Option<Vec<LawChoice>> {
             finish_law(table, ActsOn::ContactEffect);
             continue;
         };
-        if let Some(first) = effects
-            .iter()
-            .find(|other| other.entry.name == effect.entry.name)
-        {
+        if let Some(first) = effects.iter().find(|other| other.entry.name == effect.entry.name) {
             table.reader.report(
                 Diagnostic::error(format!("the effect `{}` is given twice", effect.entry.name))
                     .at(effect.span, "again here")
@@ -49,11 +46,8 @@ pub(super) fn effects(tables: Vec<TableReader<'_>>) -> Option<Vec<LawChoice>> {
 
 /// The law that `name` says, with its parameters.
 fn law(table: &TableReader<'_>, slot: ActsOn) -> Option<LawChoice> {
-    let known: Vec<&'static LawEntry> = contact_laws::LAWS
-        .iter()
-        .filter(|law| law.acts_on == slot)
-        .copied()
-        .collect();
+    let known: Vec<&'static LawEntry> =
+        contact_laws::LAWS.iter().filter(|law| law.acts_on == slot).copied().collect();
     let example = known.first().map_or("", |law| law.name);
     let meaning = match slot {
         ActsOn::ContactBase => "the contact law",
@@ -62,17 +56,11 @@ fn law(table: &TableReader<'_>, slot: ActsOn) -> Option<LawChoice> {
     let name = table.text("name", None, example, meaning)?;
     let span = name.span?;
     let Some(entry) = known.iter().find(|law| law.name == name.value).copied() else {
-        table
-            .reader
-            .report(explain_law(&name.value, span, slot, &known));
+        table.reader.report(explain_law(&name.value, span, slot, &known));
         return None;
     };
     let params = table.params(entry.params)?;
-    Some(LawChoice {
-        entry,
-        params,
-        span,
-    })
+    Some(LawChoice { entry, params, span })
 }
 
 fn explain_law(name: &str, span: Span, slot: ActsOn, known: &[&LawEntry]) -> Diagnostic {

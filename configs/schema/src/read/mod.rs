@@ -54,19 +54,11 @@ pub(crate) fn model(root: TableReader<'_>, folder: &DataFolder<'_>) -> Option<(M
     let energy = energy(root.table("energy", None));
     let medium_table = root.table("medium", Some(MEDIUM_EXAMPLE));
     if is_resistive(&medium_table) {
-        medium_table.choice(
-            "kind",
-            &["grains"],
-            &["resistive-force"],
-            "the kind of medium",
-        );
+        medium_table.choice("kind", &["grains"], &["resistive-force"], "the kind of medium");
         return None;
     }
     let medium = medium(medium_table, &mut places);
-    let container = container(
-        root.table("container", Some(CONTAINER_EXAMPLE)),
-        &mut places,
-    );
+    let container = container(root.table("container", Some(CONTAINER_EXAMPLE)), &mut places);
     let contact_law = laws::contact_law(root.table("contact_law", Some(LAW_EXAMPLE)), &mut places);
     let bed = bed::bed(
         root.table("bed", Some(BED_EXAMPLE)),
@@ -77,11 +69,8 @@ pub(crate) fn model(root: TableReader<'_>, folder: &DataFolder<'_>) -> Option<(M
     );
     let effects = laws::effects(root.tables("effect", limits::EFFECTS));
     let intruder = impact::intruder(root.table("intruder", Some(INTRUDER_EXAMPLE)), &mut places);
-    let impact = impact::impact(
-        root.table("impact", Some(IMPACT_EXAMPLE)),
-        container.as_ref(),
-        &mut places,
-    );
+    let impact =
+        impact::impact(root.table("impact", Some(IMPACT_EXAMPLE)), container.as_ref(), &mut places);
     let conditions = impact::conditions(root.table("conditions", None), &mut places);
     root.finish();
     let model = Model {
@@ -166,18 +155,11 @@ fn log(table: TableReader<'_>) -> Option<LogSettings> {
 fn energy(table: TableReader<'_>) -> Option<EnergySettings> {
     let abort_above = table.number(&specs::ABORT_ABOVE);
     table.finish();
-    Some(EnergySettings {
-        abort_above: abort_above?.value,
-    })
+    Some(EnergySettings { abort_above: abort_above?.value })
 }
 
 fn medium(table: TableReader<'_>, places: &mut Places) -> Option<Medium> {
-    let kind = table.choice(
-        "kind",
-        &["grains"],
-        &["resistive-force"],
-        "the kind of medium",
-    );
+    let kind = table.choice("kind", &["grains"], &["resistive-force"], "the kind of medium");
     let dimension = table.integer("dimension", None, 2..=3, "the number of space dimensions");
     if let Some(Found { value: 3, span }) = dimension {
         table.reader.report(
@@ -197,19 +179,9 @@ fn medium(table: TableReader<'_>, places: &mut Places) -> Option<Medium> {
 }
 
 fn container(table: TableReader<'_>, places: &mut Places) -> Option<Container> {
-    let shape = table.choice(
-        "shape",
-        &["box"],
-        &["cylinder"],
-        "the shape of the container",
-    );
+    let shape = table.choice("shape", &["box"], &["cylinder"], "the shape of the container");
     let width = table.number(&specs::WIDTH);
-    let sides = table.choice(
-        "sides",
-        &["wall"],
-        &["periodic", "absorbing"],
-        "what the sides are",
-    );
+    let sides = table.choice("sides", &["wall"], &["periodic", "absorbing"], "what the sides are");
     let bottom = table.choice("bottom", &["wall"], &["absorbing"], "what the bottom is");
     places.width = table.span_of("width");
     // The keys of a shape that is yet to come are not worth a second message.
@@ -217,9 +189,7 @@ fn container(table: TableReader<'_>, places: &mut Places) -> Option<Container> {
         table.finish();
     }
     shape.and(sides).and(bottom)?;
-    Some(Container {
-        width: width?.value,
-    })
+    Some(Container { width: width?.value })
 }
 
 /// A fixed step or `"auto"`.

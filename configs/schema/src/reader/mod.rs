@@ -50,10 +50,7 @@ impl<'a> Reader<'a> {
     }
 
     pub(crate) fn failed(&self) -> bool {
-        self.diagnostics
-            .borrow()
-            .iter()
-            .any(|one| one.severity == Severity::Error)
+        self.diagnostics.borrow().iter().any(|one| one.severity == Severity::Error)
             || !self.unknown.borrow().is_empty()
     }
 
@@ -66,19 +63,11 @@ impl<'a> Reader<'a> {
     pub(crate) fn finish(self) -> (Vec<Diagnostic>, Resolved) {
         let homes = self.homes.into_inner();
         let mut diagnostics = self.diagnostics.into_inner();
-        for unknown in self
-            .unknown
-            .into_inner()
-            .into_iter()
-            .take(limits::DIAGNOSTICS)
-        {
+        for unknown in self.unknown.into_inner().into_iter().take(limits::DIAGNOSTICS) {
             diagnostics.push(unknown.explain(&homes));
         }
-        diagnostics.sort_by_key(|one| {
-            one.primary
-                .as_ref()
-                .map(|(span, _)| (span.source, span.start))
-        });
+        diagnostics
+            .sort_by_key(|one| one.primary.as_ref().map(|(span, _)| (span.source, span.start)));
         diagnostics.truncate(limits::DIAGNOSTICS);
         (diagnostics, self.resolved.into_inner())
     }
@@ -126,10 +115,7 @@ impl<'a> TableReader<'a> {
     }
 
     fn write(&self, key: &str, value: String) {
-        self.reader
-            .resolved
-            .borrow_mut()
-            .line(self.section, key, value);
+        self.reader.resolved.borrow_mut().line(self.section, key, value);
     }
 
     /// Reports that a required key is missing, with an example of what to write.
@@ -158,14 +144,7 @@ impl<'a> TableReader<'a> {
     pub(crate) fn table(&self, key: &'static str, example: Option<&str>) -> TableReader<'a> {
         let name = self.child(key);
         let table = match self.entry(key) {
-            Some(Entry {
-                node:
-                    Node {
-                        value: Value::Table(table),
-                        ..
-                    },
-                ..
-            }) => Some(table),
+            Some(Entry { node: Node { value: Value::Table(table), .. }, .. }) => Some(table),
             Some(entry) => {
                 let wanted = match &entry.node.value {
                     Value::Array(_) => format!("write [{name}], in single brackets"),
@@ -173,10 +152,7 @@ impl<'a> TableReader<'a> {
                 };
                 self.reader.report(
                     Diagnostic::error(format!("`{key}` is a table"))
-                        .at(
-                            entry.key_span,
-                            format!("this is {}", entry.node.value.kind()),
-                        )
+                        .at(entry.key_span, format!("this is {}", entry.node.value.kind()))
                         .help(wanted),
                 );
                 None
@@ -203,20 +179,15 @@ impl<'a> TableReader<'a> {
         let Value::Array(nodes) = &entry.node.value else {
             self.reader.report(
                 Diagnostic::error(format!("`{name}` is a list of tables"))
-                    .at(
-                        entry.node.span,
-                        format!("this is {}", entry.node.value.kind()),
-                    )
+                    .at(entry.node.span, format!("this is {}", entry.node.value.kind()))
                     .help(format!("write [[{name}]], in double brackets")),
             );
             return Vec::new();
         };
         if nodes.len() > at_most {
             self.reader.report(
-                Diagnostic::error(format!("{} times [[{name}]] is too many", nodes.len())).at(
-                    nodes[at_most].span,
-                    format!("at most {at_most} are accepted"),
-                ),
+                Diagnostic::error(format!("{} times [[{name}]] is too many", nodes.len()))
+                    .at(nodes[at_most].span, format!("at most {at_most} are accepted")),
             );
             return Vec::new();
         }
@@ -248,9 +219,7 @@ impl<'a> TableReader<'a> {
 
     /// Where the value of `key` stands, if the file gives it.
     pub(crate) fn span_of(&self, key: &str) -> Option<Span> {
-        self.table
-            .and_then(|table| table.get(key))
-            .map(|entry| entry.node.span)
+        self.table.and_then(|table| table.get(key)).map(|entry| entry.node.span)
     }
 
     /// The value of `key` as it stands in the file.

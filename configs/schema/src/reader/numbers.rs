@@ -23,15 +23,11 @@ impl TableReader<'_> {
                 ParamDefault::SameAs(other) => {
                     let numbers = self.numbers.borrow();
                     let value = numbers.iter().find(|(key, _)| *key == other);
-                    value
-                        .and_then(|(_, value)| *value)
-                        .map(|value| Found { value, span: None })
+                    value.and_then(|(_, value)| *value).map(|value| Found { value, span: None })
                 }
             },
         };
-        self.numbers
-            .borrow_mut()
-            .push((spec.key, found.map(|found| found.value)));
+        self.numbers.borrow_mut().push((spec.key, found.map(|found| found.value)));
         if let Some(found) = found {
             self.write_number(spec.key, found.value, spec.dimension);
         }
@@ -74,23 +70,16 @@ impl TableReader<'_> {
         };
         if nodes.is_empty() || nodes.len() > limits::CONDITIONS {
             self.reader.report(
-                Diagnostic::error(format!("`{}` has {} values", spec.key, nodes.len())).at(
-                    entry.node.span,
-                    format!("from 1 to {} are wanted", limits::CONDITIONS),
-                ),
+                Diagnostic::error(format!("`{}` has {} values", spec.key, nodes.len()))
+                    .at(entry.node.span, format!("from 1 to {} are wanted", limits::CONDITIONS)),
             );
             return None;
         }
-        let read: Vec<_> = nodes
-            .iter()
-            .map(|node| self.number_at(node, spec))
-            .collect();
+        let read: Vec<_> = nodes.iter().map(|node| self.number_at(node, spec)).collect();
         let values: Option<Vec<Found<f64>>> = read.into_iter().collect();
         let values = values?;
-        let items: Vec<String> = values
-            .iter()
-            .map(|found| number_toml(found.value, spec.dimension))
-            .collect();
+        let items: Vec<String> =
+            values.iter().map(|found| number_toml(found.value, spec.dimension)).collect();
         self.write(spec.key, format!("[{}]", items.join(", ")));
         Some(Some(values))
     }
@@ -112,17 +101,10 @@ impl TableReader<'_> {
             },
             (true, Value::Text(text)) => {
                 let bare = text.trim().parse::<f64>().is_ok_and(f64::is_finite);
-                let example = if bare {
-                    text.trim().to_owned()
-                } else {
-                    example(spec)
-                };
+                let example = if bare { text.trim().to_owned() } else { example(spec) };
                 self.reader.report(
                     Diagnostic::error(format!("`{}` is a string; it is a pure number", spec.key))
-                        .at(
-                            node.span,
-                            "a bare number is wanted, without unit and quotes",
-                        )
+                        .at(node.span, "a bare number is wanted, without unit and quotes")
                         .help(format!("write {} = {example}", spec.key)),
                 );
                 return None;
@@ -177,10 +159,7 @@ impl TableReader<'_> {
             };
             self.reader.report(
                 Diagnostic::error(what)
-                    .at(
-                        span,
-                        format!("allowed: {}", interval(spec.allowed, spec.dimension)),
-                    )
+                    .at(span, format!("allowed: {}", interval(spec.allowed, spec.dimension)))
                     .help(format!("`{}` is {}", spec.key, spec.meaning)),
             );
             return None;
@@ -193,16 +172,12 @@ impl TableReader<'_> {
                     .help(format!("`{}` is {}", spec.key, spec.meaning)),
             );
         }
-        Some(Found {
-            value,
-            span: Some(span),
-        })
+        Some(Found { value, span: Some(span) })
     }
 
     /// A number that is not written to the resolved model; something derived from it is.
     pub(crate) fn quiet_number(&self, spec: &ParamSpec) -> Option<Found<f64>> {
-        self.entry(spec.key)
-            .and_then(|entry| self.number_at(&entry.node, spec))
+        self.entry(spec.key).and_then(|entry| self.number_at(&entry.node, spec))
     }
 
     /// Writes a pair of numbers.
@@ -255,11 +230,7 @@ pub fn interval(range: Range, dimension: Dimension) -> String {
         Dimension::ANGLE => format!("{} deg", (value.to_degrees() * 1e6).round() / 1e6),
         _ => units::format_si(value, dimension),
     };
-    let Range {
-        min,
-        max,
-        includes_min,
-    } = range;
+    let Range { min, max, includes_min } = range;
     match (includes_min, max < f64::MAX) {
         (true, true) => format!("{} to {}", show(min), show(max)),
         (false, true) => format!("above {}, up to {}", show(min), show(max)),

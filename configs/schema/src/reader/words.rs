@@ -32,14 +32,8 @@ impl TableReader<'_> {
                     );
                     return None;
                 };
-                match u64::try_from(value)
-                    .ok()
-                    .filter(|value| allowed.contains(value))
-                {
-                    Some(value) => Found {
-                        value,
-                        span: Some(entry.node.span),
-                    },
+                match u64::try_from(value).ok().filter(|value| allowed.contains(value)) {
+                    Some(value) => Found { value, span: Some(entry.node.span) },
                     None => {
                         let (from, to) = (allowed.start(), allowed.end());
                         self.reader.report(
@@ -82,20 +76,16 @@ impl TableReader<'_> {
     ) -> Option<Found<String>> {
         match self.entry(key) {
             None => match default {
-                Some(text) => Some(Found {
-                    value: text.to_owned(),
-                    span: None,
-                }),
+                Some(text) => Some(Found { value: text.to_owned(), span: None }),
                 None => {
                     self.missing(key, &quoted(example), meaning);
                     None
                 }
             },
             Some(entry) => match &entry.node.value {
-                Value::Text(text) if text.len() <= limits::STRING_BYTES => Some(Found {
-                    value: text.clone(),
-                    span: Some(entry.node.span),
-                }),
+                Value::Text(text) if text.len() <= limits::STRING_BYTES => {
+                    Some(Found { value: text.clone(), span: Some(entry.node.span) })
+                }
                 Value::Text(text) => {
                     self.reader.report(
                         Diagnostic::error(format!("`{key}` is {} bytes long", text.len()))
@@ -163,21 +153,12 @@ impl TableReader<'_> {
         later: &[&str],
         meaning: &str,
     ) -> Option<&'static str> {
-        let found = self.text(
-            key,
-            None,
-            known.first().copied().unwrap_or_default(),
-            meaning,
-        )?;
+        let found = self.text(key, None, known.first().copied().unwrap_or_default(), meaning)?;
         if let Some(name) = known.iter().find(|name| **name == found.value) {
             return Some(name);
         }
         let shown = shorten(&found.value);
-        let list = known
-            .iter()
-            .map(|name| quoted(name))
-            .collect::<Vec<_>>()
-            .join(", ");
+        let list = known.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
         let diagnostic = match later.contains(&found.value.as_str()) {
             true => Diagnostic::error(format!("{key} = \"{shown}\" comes with a later version"))
                 .at(found.span, "not available yet"),
@@ -190,8 +171,7 @@ impl TableReader<'_> {
                     .at(found.span, label)
             }
         };
-        self.reader
-            .report(diagnostic.help(format!("available now: {list}")));
+        self.reader.report(diagnostic.help(format!("available now: {list}")));
         None
     }
 

@@ -1,9 +1,6 @@
 //! What is in the files.
 
-#![expect(
-    clippy::float_cmp,
-    reason = "values are written and read back bit for bit"
-)]
+#![expect(clippy::float_cmp, reason = "values are written and read back bit for bit")]
 
 use std::collections::BTreeMap;
 
@@ -58,22 +55,13 @@ fn own_messages_decode_by_the_descriptors_in_the_file() {
     let scratch = Scratch::new();
     write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
     let [run, _] = scratch.files();
-    let messages: Vec<_> = mcap::MessageStream::new(&run)
-        .unwrap()
-        .map(|message| message.unwrap())
-        .collect();
+    let messages: Vec<_> =
+        mcap::MessageStream::new(&run).unwrap().map(|message| message.unwrap()).collect();
     let last = |topic: &str| {
         let message = messages.iter().rfind(|m| m.channel.topic == topic).unwrap();
-        assert_eq!(
-            (message.sequence, message.log_time),
-            (10, 100_000),
-            "{topic}"
-        );
+        assert_eq!((message.sequence, message.log_time), (10, 100_000), "{topic}");
         assert_eq!(message.publish_time, message.log_time);
-        decode(
-            &message.channel.schema.as_ref().unwrap().data,
-            &message.data,
-        )
+        decode(&message.channel.schema.as_ref().unwrap().data, &message.data)
     };
     let x = 1.0_f64.sin();
     let budget = last("/energy/budget");
@@ -82,11 +70,7 @@ fn own_messages_decode_by_the_descriptors_in_the_file() {
     assert_eq!(budget["input_drive_J"], 0.25);
     assert_eq!(budget["unaccounted_J"], 1e-9 * x);
     let state = last("/intruder/ball/state");
-    assert_eq!(
-        state["position.z"],
-        (0.3 - 0.01 * x) - 0.3,
-        "the surface is at z = 0"
-    );
+    assert_eq!(state["position.z"], (0.3 - 0.01 * x) - 0.3, "the surface is at z = 0");
     assert_eq!(state["speed_m_per_s"], 5.0);
     let load = last("/intruder/rear/load");
     assert_eq!(load["gravity.z"], -9.81);
@@ -106,16 +90,9 @@ fn the_grain_log_opens_alone_and_its_points_lie_below_their_fields() {
         .map(|message| PointCloud::decode(message.data.as_ref()).unwrap())
         .unwrap();
     assert_eq!(cloud.point_stride, 28);
-    let offsets: Vec<_> = cloud
-        .fields
-        .iter()
-        .map(|f| (f.name.as_str(), f.offset))
-        .collect();
+    let offsets: Vec<_> = cloud.fields.iter().map(|f| (f.name.as_str(), f.offset)).collect();
     let names = ["x", "y", "z", "radius", "speed", "force", "id"];
-    assert_eq!(
-        offsets,
-        names.into_iter().zip((0..).step_by(4)).collect::<Vec<_>>()
-    );
+    assert_eq!(offsets, names.into_iter().zip((0..).step_by(4)).collect::<Vec<_>>());
     let point = &cloud.data[28..56];
     let float = |at: usize| f32::from_le_bytes(point[at..at + 4].try_into().unwrap());
     assert_eq!([0, 8, 12, 20].map(float), [1e-3, 0.0, 1e-3, 1.0]);
@@ -146,18 +123,10 @@ fn a_value_that_is_not_finite_is_refused_before_anything_of_it_is_written() {
     let scratch = Scratch::new();
     let mut log = RunLog::create(&scratch.0, &setup()).unwrap();
     let before = log.position();
-    let error = log
-        .energy(stamp(3), &[0.0, 0.0, f64::NAN, 0.0, 0.0], 0.0, 0.0)
-        .unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "step 3: elastic_normal_elastic_J is not finite"
-    );
-    let body = BodyFrame {
-        position: Vec3::zeros(),
-        orientation: Quat::identity(),
-        force: Vec3::zeros(),
-    };
+    let error = log.energy(stamp(3), &[0.0, 0.0, f64::NAN, 0.0, 0.0], 0.0, 0.0).unwrap_err();
+    assert_eq!(error.to_string(), "step 3: elastic_normal_elastic_J is not finite");
+    let body =
+        BodyFrame { position: Vec3::zeros(), orientation: Quat::identity(), force: Vec3::zeros() };
     let grain = GrainSample {
         position: Vec3::new(0.0, f64::INFINITY, 0.0),
         radius: 1.0,
@@ -165,9 +134,7 @@ fn a_value_that_is_not_finite_is_refused_before_anything_of_it_is_written() {
         force: 0.0,
         id: 5,
     };
-    let error = log
-        .frame(stamp(3), &[body; 2], &mut [grain].into_iter())
-        .unwrap_err();
+    let error = log.frame(stamp(3), &[body; 2], &mut [grain].into_iter()).unwrap_err();
     assert_eq!(error.to_string(), "step 3: grain 5 is not finite");
     assert_eq!(log.position(), before);
 }
@@ -178,10 +145,7 @@ fn names_that_viewers_could_not_show_are_refused() {
     let refused = |change: &dyn Fn(&mut LogSetup)| {
         let mut setup = setup();
         change(&mut setup);
-        matches!(
-            RunLog::create(&scratch.0, &setup),
-            Err(RecordError::Setup(_))
-        )
+        matches!(RunLog::create(&scratch.0, &setup), Err(RecordError::Setup(_)))
     };
     assert!(refused(&|s| s.bodies[0].name = "a/b".to_owned()));
     assert!(refused(&|s| s.bodies[0].name = "rear".to_owned()));
@@ -196,35 +160,16 @@ fn steps_and_times_out_of_range_or_out_of_order_are_refused() {
     let scratch = Scratch::new();
     let mut log = RunLog::create(&scratch.0, &setup()).unwrap();
     for at in [
-        Stamp {
-            step: 1 << 32,
-            time_s: 0.0,
-        },
-        Stamp {
-            step: 0,
-            time_s: -1.0,
-        },
-        Stamp {
-            step: 0,
-            time_s: f64::NAN,
-        },
+        Stamp { step: 1 << 32, time_s: 0.0 },
+        Stamp { step: 0, time_s: -1.0 },
+        Stamp { step: 0, time_s: f64::NAN },
     ] {
         let error = log.event(at, EventLevel::Info, "").unwrap_err();
         assert!(matches!(error, RecordError::OutOfRange { .. }), "{error}");
     }
     log.event(stamp(9), EventLevel::Info, "").unwrap();
     let error = log.event(stamp(8), EventLevel::Info, "").unwrap_err();
-    assert!(
-        matches!(
-            error,
-            RecordError::StepOrder {
-                step: 8,
-                last: 9,
-                ..
-            }
-        ),
-        "{error}"
-    );
+    assert!(matches!(error, RecordError::StepOrder { step: 8, last: 9, .. }), "{error}");
 }
 
 /// One line per channel: topic, schema and, for our own messages, the fields.
@@ -259,11 +204,7 @@ fn describe(file: &[u8]) -> String {
 fn fields(descriptor: &[u8]) -> BTreeMap<u32, (String, Type)> {
     let set = FileDescriptorSet::decode(descriptor).unwrap();
     let message = &set.file.last().unwrap().message_type[0];
-    message
-        .field
-        .iter()
-        .map(|f| (f.number() as u32, (f.name().to_owned(), f.r#type())))
-        .collect()
+    message.field.iter().map(|f| (f.number() as u32, (f.name().to_owned(), f.r#type()))).collect()
 }
 
 /// Decodes a message into `name` and `name.x` by its descriptor alone.

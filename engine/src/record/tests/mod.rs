@@ -58,10 +58,7 @@ fn setup() -> LogSetup {
         grains: true,
         surface_z_m: 0.3,
         bodies: vec![
-            LoggedBody {
-                name: "ball".to_owned(),
-                shape: LoggedShape::Sphere { radius: 0.02 },
-            },
+            LoggedBody { name: "ball".to_owned(), shape: LoggedShape::Sphere { radius: 0.02 } },
             LoggedBody {
                 name: "rear".to_owned(),
                 shape: LoggedShape::Mesh {
@@ -84,10 +81,7 @@ fn setup() -> LogSetup {
 }
 
 fn stamp(step: u64) -> Stamp {
-    Stamp {
-        step,
-        time_s: step as f64 * 1e-5,
-    }
+    Stamp { step, time_s: step as f64 * 1e-5 }
 }
 
 /// Writes every message of one step of the made-up run.

@@ -16,12 +16,7 @@ struct Killed {
 
 fn uninterrupted(setup: &LogSetup, n_grains: u32) -> [Vec<u8>; 2] {
     let scratch = Scratch::new();
-    write_rest(
-        RunLog::create(&scratch.0, setup).unwrap(),
-        0,
-        LAST,
-        n_grains,
-    );
+    write_rest(RunLog::create(&scratch.0, setup).unwrap(), 0, LAST, n_grains);
     scratch.files()
 }
 
@@ -43,10 +38,7 @@ fn killed(setup: &LogSetup, checkpoint: u64, last: u64, n_grains: u32) -> Killed
     }
     // read before the writer is dropped: what it still holds in memory dies with the process
     let [run, grains] = partials(&scratch.0);
-    Killed {
-        files: [(run, flushed[0]), (grains, flushed[1])],
-        position,
-    }
+    Killed { files: [(run, flushed[0]), (grains, flushed[1])], position }
 }
 
 fn put(dir: &Path, files: [&[u8]; 2]) {
@@ -66,14 +58,7 @@ fn a_resumed_log_equals_an_uninterrupted_one_wherever_the_kill_cut_it() {
     let whole = uninterrupted(&setup, 50);
     let mut rng = Pcg64::seed_from_u64(1);
     // multiples of checkpoint_every, and steps at which a signal made the run leave
-    for (checkpoint, last) in [
-        (60, 61),
-        (120, 157),
-        (240, LAST),
-        (133, 134),
-        (0, 19),
-        (1, 130),
-    ] {
+    for (checkpoint, last) in [(60, 61), (120, 157), (240, LAST), (133, 134), (0, 19), (1, 130)] {
         let killed = killed(&setup, checkpoint, last, 50);
         for _ in 0..8 {
             let scratch = Scratch::new();
@@ -85,15 +70,8 @@ fn a_resumed_log_equals_an_uninterrupted_one_wherever_the_kill_cut_it() {
             let log = RunLog::resume(&scratch.0, &setup, &killed.position).unwrap();
             assert_eq!(log.position(), killed.position);
             write_rest(log, checkpoint + 1, LAST, 50);
-            assert!(
-                scratch.files() == whole,
-                "checkpoint {checkpoint}, killed at {last}"
-            );
-            assert_eq!(
-                fs::read_dir(&scratch.0).unwrap().count(),
-                2,
-                "no partial file is left"
-            );
+            assert!(scratch.files() == whole, "checkpoint {checkpoint}, killed at {last}");
+            assert_eq!(fs::read_dir(&scratch.0).unwrap().count(), 2, "no partial file is left");
         }
     }
 }
@@ -156,10 +134,7 @@ fn a_log_cut_before_the_checkpoint_names_what_is_missing() {
         let Err(error) = RunLog::resume(&scratch.0, &setup, &killed.position) else {
             panic!("resumed from a log that lacks messages");
         };
-        assert!(
-            matches!(error, RecordError::Missing { step: 60, .. }),
-            "{error}"
-        );
+        assert!(matches!(error, RecordError::Missing { step: 60, .. }), "{error}");
     }
 }
 
@@ -172,10 +147,7 @@ fn a_damaged_chunk_before_the_checkpoint_is_an_error_with_its_place() {
     let scratch = Scratch::new();
     put(&scratch.0, [&killed.files[0].0, &killed.files[1].0]);
     let result = RunLog::resume(&scratch.0, &setup, &killed.position).map(drop);
-    assert!(
-        matches!(result, Err(RecordError::Damaged { .. })),
-        "{result:?}"
-    );
+    assert!(matches!(result, Err(RecordError::Damaged { .. })), "{result:?}");
 }
 
 #[test]
@@ -186,10 +158,7 @@ fn the_log_of_another_model_is_not_taken_up() {
     let mut other = setup();
     other.energy_terms.push("dissipated_cohesion_J".to_owned());
     let result = RunLog::resume(&scratch.0, &other, &killed.position).map(drop);
-    assert!(
-        matches!(result, Err(RecordError::OtherRun { .. })),
-        "{result:?}"
-    );
+    assert!(matches!(result, Err(RecordError::OtherRun { .. })), "{result:?}");
 }
 
 #[cfg(target_os = "linux")]
