@@ -100,7 +100,7 @@ impl Checks<'_> {
                 bodies.push(("grain", kind.diameter, kind.mass, *places));
                 let total = kind.count as f64 * kind.mass;
                 if kind.count > 0 {
-                    let inputs = [("mass", places.mass), ("count of grains", places.diameter)];
+                    let inputs = [("mass", places.mass), ("count of grains", places.count)];
                     self.derived("the mass of all grains", total, inputs);
                 }
             }

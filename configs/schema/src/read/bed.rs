@@ -105,6 +105,7 @@ fn grain_kind(table: TableReader<'_>, places: &mut Places) -> Option<GrainKind> 
     let area = diameter.map(|found| disc_area(found.value));
     let mass = mass(&table, &specs::GRAIN_MASS, area);
     places.grains.push(BodyPlaces {
+        count: table.span_of("count"),
         diameter: table.span_of("diameter"),
         mass: table.span_of("mass").or_else(|| table.span_of("density")),
     });

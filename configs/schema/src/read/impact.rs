@@ -30,6 +30,7 @@ pub(super) fn intruder(table: TableReader<'_>, places: &mut Places) -> Option<In
     });
     let mass = mass(&table, &specs::INTRUDER_MASS, diameter.map(disc_area));
     places.intruder = BodyPlaces {
+        count: None,
         diameter: table.span_of("diameter"),
         mass: table.span_of("mass").or_else(|| table.span_of("density")),
     };

@@ -39,11 +39,12 @@ pub(crate) struct Places {
     pub(crate) positions: Option<Span>,
 }
 
-/// Where the size and the mass (or density) of a body stand.
+/// Where the size, the mass (or density) and the count of a body stand.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct BodyPlaces {
     pub(crate) diameter: Option<Span>,
     pub(crate) mass: Option<Span>,
+    pub(crate) count: Option<Span>,
 }
 
 /// Reads everything. `None` when something required could not be read; that is reported then.
