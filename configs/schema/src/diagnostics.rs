@@ -210,21 +210,11 @@ impl Window {
         let end = text[to..].find('\n').map_or(text.len(), |at| to + at);
         let end = floor(text, end.min(from.saturating_add(LONGEST_WINDOW)));
         let first_line = 1 + text[..start].bytes().filter(|byte| *byte == b'\n').count();
-<<<<<<< HEAD
-        // Two bytes in, two bytes out: the spans stay where they are.
-        let shown = text[start..end].replace(|c| ('\u{80}'..='\u{9f}').contains(&c), "·");
-        Self { text: shown, start, first_line }
-=======
         // As many bytes out as in: the spans stay where they are.
         let shown = text[start..end]
             .replace(|c| ('\u{80}'..='\u{9f}').contains(&c), "·")
             .replace('\r', " ");
-        Self {
-            text: shown,
-            start,
-            first_line,
-        }
->>>>>>> configs
+        Self { text: shown, start, first_line }
     }
 
     fn locate(&self, span: Span) -> Range<usize> {
