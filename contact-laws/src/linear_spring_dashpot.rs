@@ -132,6 +132,12 @@ impl ContactLaw for LinearSpringDashpot {
     fn collision_time(pair: &Pair, mass_eff: f64) -> Option<f64> {
         Some(std::f64::consts::PI * (mass_eff / pair.normal_stiffness).sqrt())
     }
+
+    fn damping_time(pair: &Pair) -> Option<f64> {
+        // Spin makes a contact lighter along its plane: 1 + m R²/I, 3.5 for spheres, 3 for discs.
+        let rate = pair.normal_damping_rate.max(3.5 * pair.tangential_damping_rate);
+        (rate > 0.0).then(|| 1.0 / rate)
+    }
 }
 
 impl FromParams for LinearSpringDashpot {

@@ -109,6 +109,10 @@ impl ContactLaw for RollingResistance {
     fn collision_time(_: &Pair, _: f64) -> Option<f64> {
         None
     }
+
+    fn damping_time(_: &Pair) -> Option<f64> {
+        None
+    }
 }
 
 impl FromParams for RollingResistance {

@@ -14,6 +14,7 @@ mod contacts;
 pub mod error;
 pub mod grain_bed;
 pub mod grains;
+pub mod launch;
 pub mod ledger;
 pub mod math;
 mod neighbours;

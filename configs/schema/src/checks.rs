@@ -233,7 +233,33 @@ impl Checks<'_> {
         if self.places.preparation_time_step.is_some() {
             let step = stability::preparation_time_step(self.model);
             self.step_against(step, grains, self.places.preparation_time_step, false);
+            self.step_against_damping(step, self.places.preparation_time_step);
         }
+        self.step_against_damping(run, self.places.time_step);
+    }
+
+    fn step_against_damping(&self, step: Option<f64>, span: Option<Span>) {
+        let (Some(step), Some(relaxation)) = (step, stability::damping_time(self.model)) else {
+            return;
+        };
+        let steps = relaxation / step;
+        let message = format!("the damping of a contact acts within {steps:.1} steps");
+        let diagnostic = if steps < stability::FEWEST_STEPS_PER_DAMPING_TIME {
+            Diagnostic::error(message)
+        } else if steps < stability::FEW_STEPS_PER_DAMPING_TIME {
+            Diagnostic::warning(message)
+        } else {
+            return;
+        };
+        let advice = seconds(relaxation / stability::STEPS_PER_DAMPING_TIME);
+        self.reader.report(
+            diagnostic
+                .at(span.or(self.places.time_step_factor), format!("a step of {}", seconds(step)))
+                .help(format!(
+                    "damping overshoots and the bed never comes to rest; write \"{advice}\" or \
+                     less, or \"auto\""
+                )),
+        );
     }
 
     fn step_against(

@@ -6,6 +6,7 @@
 //! `document` is the TOML with its places, `reader` reads tables key by key, `read` knows the
 //! tables of a model, `checks` compares values with each other, `diagnostics` shows what is wrong.
 
+mod build;
 mod checks;
 mod diagnostics;
 mod document;
@@ -23,6 +24,7 @@ mod shipped;
 mod specs;
 pub mod stability;
 
+pub use build::BuildError;
 pub use diagnostics::{Color, Diagnostic, Severity, SourceId, Sources, Span, nearest, printable};
 pub use load::{ConfigError, LoadOptions, Loaded, ModelSource};
 pub use model::{

@@ -1,9 +1,18 @@
-//! How long the shortest collision lasts, and the time step that follows from it.
+//! How fast contacts can change, and the time step that follows from it.
+
+use engine::contact::Partner;
 
 use crate::model::{BedSource, Model, TimeStep};
 
 /// Steps per shortest collision when `time_step = "auto"`.
-pub const STEPS_PER_COLLISION: f64 = 40.0;
+pub const STEPS_PER_COLLISION: f64 = 30.0;
+/// Steps per shortest relaxation by damping when `time_step = "auto"`. Half as many and a bed of
+/// many contacts per grain never comes to rest: each contact's damping overshoots.
+pub const STEPS_PER_DAMPING_TIME: f64 = 4.0;
+/// Fewer steps per relaxation than this are refused.
+pub const FEWEST_STEPS_PER_DAMPING_TIME: f64 = 1.0;
+/// Fewer steps per relaxation than this are accepted with a warning.
+pub const FEW_STEPS_PER_DAMPING_TIME: f64 = 3.0;
 /// Fewer steps per collision than this are refused.
 pub const FEWEST_STEPS_PER_COLLISION: f64 = 10.0;
 /// Fewer steps per collision than this are accepted with a warning.
@@ -39,9 +48,21 @@ pub fn shortest_collision_time(model: &Model) -> Option<f64> {
 }
 
 fn collision_time(model: &Model, mass_eff: f64) -> Option<f64> {
-    let (_, stiffness) =
-        model.contact_law.params.iter().find(|(key, _)| *key == "normal_stiffness")?;
-    Some(std::f64::consts::PI * (mass_eff / stiffness).sqrt())
+    let law = &model.contact_law;
+    (law.entry.build)(&law.params).collision_time(Partner::Grain, mass_eff)
+}
+
+/// In how short a time damping stops the relative motion of two grains (s), if the law has any.
+#[must_use]
+pub fn damping_time(model: &Model) -> Option<f64> {
+    let law = &model.contact_law;
+    (law.entry.build)(&law.params).damping_time(Partner::Grain)
+}
+
+/// The automatic step (s), when the shortest collision lasts `collision` (s).
+fn automatic(model: &Model, collision: f64) -> f64 {
+    let relaxation = damping_time(model).unwrap_or(f64::INFINITY);
+    (collision / STEPS_PER_COLLISION).min(relaxation / STEPS_PER_DAMPING_TIME)
 }
 
 /// The step of the run, its factor included [s]; `None` when it is automatic and the law has no
@@ -50,7 +71,7 @@ fn collision_time(model: &Model, mass_eff: f64) -> Option<f64> {
 pub fn time_step(model: &Model) -> Option<f64> {
     let step = match model.run.time_step {
         TimeStep::Fixed(step) => step,
-        TimeStep::Auto => shortest_collision_time(model)? / STEPS_PER_COLLISION,
+        TimeStep::Auto => automatic(model, shortest_collision_time(model)?),
     };
     Some(step * model.run.time_step_factor)
 }
@@ -63,6 +84,6 @@ pub fn preparation_time_step(model: &Model) -> Option<f64> {
     };
     match settle.preparation_time_step {
         TimeStep::Fixed(step) => Some(step),
-        TimeStep::Auto => Some(grain_collision_time(model)? / STEPS_PER_COLLISION),
+        TimeStep::Auto => Some(automatic(model, grain_collision_time(model)?)),
     }
 }

@@ -159,4 +159,8 @@ pub trait ContactLaw: Send + Sync + 'static {
     /// How long a head-on collision of two bodies of reduced mass `mass_eff` [kg] lasts [s];
     /// `None` if this law does not decide it. Sets `time_step = "auto"`.
     fn collision_time(pair: &Self::Pair, mass_eff: f64) -> Option<f64>;
+
+    /// In how short a time (s) its damping brings the relative motion of two bodies to rest; `None`
+    /// if it has none. Damping is explicit, so a longer step than about half of this shakes a bed.
+    fn damping_time(pair: &Self::Pair) -> Option<f64>;
 }

@@ -28,6 +28,8 @@ pub trait ContactStage: Send + Sync {
     fn sweep(&self, batch: Batch<'_>, dt: f64, history: &mut [f64], energy: &mut [f64]);
     /// Duration [s] of a head-on collision, see [`ContactLaw::collision_time`].
     fn collision_time(&self, partner: Partner, mass_eff: f64) -> Option<f64>;
+    /// Shortest relaxation (s), see [`ContactLaw::damping_time`].
+    fn damping_time(&self, partner: Partner) -> Option<f64>;
 }
 
 /// A law with its parameters per kind of partner.
@@ -81,5 +83,9 @@ impl<L: ContactLaw> ContactStage for Stage<L> {
 
     fn collision_time(&self, partner: Partner, mass_eff: f64) -> Option<f64> {
         L::collision_time(&self.pairs[partner.index()], mass_eff)
+    }
+
+    fn damping_time(&self, partner: Partner) -> Option<f64> {
+        L::damping_time(&self.pairs[partner.index()])
     }
 }

@@ -1,0 +1,200 @@
+//! From a model to a bed and a simulation.
+
+use std::f64::consts::FRAC_PI_2;
+
+use engine::bed::{GrainKind, Settling, fill, random};
+use engine::body::{Mechanism, RigidBody};
+use engine::boundary::Container;
+use engine::contact::ContactStage;
+use engine::grain_bed::{GrainBed, RestingBed};
+use engine::grains::{Grain, Space};
+use engine::launch::height_in_touch;
+use engine::math::Vec3;
+use engine::simulation::{Settings, Simulation};
+use thiserror::Error;
+
+use crate::model::{BedSource, Condition, LawChoice, Model, Settle, StartX};
+use crate::stability;
+
+/// Why a model that reads well cannot be built.
+#[derive(Debug, Error)]
+pub enum BuildError {
+    /// `time_step = "auto"` with a law that has no collision time.
+    #[error("the law `{law}` has no collision time of its own: give the time step in seconds")]
+    NoTimeStep {
+        /// Name of the law.
+        law: &'static str,
+    },
+    /// More grains than an index holds.
+    #[error("{count} grains are more than the {} this version can number", u32::MAX)]
+    TooManyGrains {
+        /// How many.
+        count: u64,
+    },
+    /// The drawn start lies too near to a side.
+    #[error("an intruder that starts at x = {x} m touches a side of the container, {width} m wide")]
+    StartTouchesSide {
+        /// (m).
+        x: f64,
+        /// (m).
+        width: f64,
+    },
+}
+
+impl Model {
+    /// The container.
+    #[must_use]
+    pub fn box_container(&self) -> Container {
+        Container { width: self.container.width, depth: 0.0 }
+    }
+
+    fn gravity(&self) -> Vec3 {
+        Vec3::new(0.0, 0.0, -self.medium.gravity)
+    }
+
+    /// The step of a run (s).
+    ///
+    /// # Errors
+    /// If it is automatic and the law does not decide it.
+    pub fn time_step(&self) -> Result<f64, BuildError> {
+        stability::time_step(self)
+            .ok_or(BuildError::NoTimeStep { law: self.contact_law.entry.name })
+    }
+
+    /// The contact law and the effects.
+    #[must_use]
+    pub fn stages(&self) -> Vec<Box<dyn ContactStage>> {
+        std::iter::once(&self.contact_law).chain(&self.effects).map(LawChoice::build).collect()
+    }
+
+    /// The recipe of a bed that has to settle, at its start; none for a bed that is read.
+    ///
+    /// # Errors
+    /// If there are too many grains, or no time step.
+    pub fn settling(&self) -> Result<Option<Settling>, BuildError> {
+        let BedSource::Settle(settle) = &self.bed.source else { return Ok(None) };
+        if self.n_grains() > u64::from(u32::MAX) {
+            return Err(BuildError::TooManyGrains { count: self.n_grains() });
+        }
+        let dt = stability::preparation_time_step(self)
+            .ok_or(BuildError::NoTimeStep { law: self.contact_law.entry.name })?;
+        let kinds: Vec<GrainKind> = settle
+            .grains
+            .iter()
+            .map(|kind| GrainKind {
+                count: kind.count as usize,
+                radius: 0.5 * kind.diameter,
+                mass: kind.mass,
+            })
+            .collect();
+        let container = self.box_container();
+        let grains = fill(&kinds, &container, self.run.seed);
+        let stages = self.preparation_stages(settle);
+        Ok(Some(Settling::new(&grains, container, self.gravity(), stages, dt)))
+    }
+
+    /// The laws while the bed settles: the contact law with the friction of the preparation between
+    /// grains and at walls, and the effects of the bed, not those of the run.
+    fn preparation_stages(&self, settle: &Settle) -> Vec<Box<dyn ContactStage>> {
+        let mut law = self.contact_law.clone();
+        if let Some(friction) = settle.preparation_friction {
+            for key in ["friction", "wall_friction"] {
+                if law.entry.params.iter().any(|spec| spec.key == key) {
+                    law.params.set(key, friction);
+                }
+            }
+        }
+        std::iter::once(&law).chain(&settle.effects).map(LawChoice::build).collect()
+    }
+
+    /// The bed that a table of grains describes; none for one that has to settle.
+    #[must_use]
+    pub fn read_bed(&self) -> Option<RestingBed> {
+        let BedSource::Csv(csv) = &self.bed.source else { return None };
+        let grains: Vec<Grain> = (0..)
+            .zip(csv.grains.iter())
+            .map(|(id, grain)| Grain {
+                position: Vec3::new(grain.x, 0.0, grain.y),
+                velocity: Vec3::zeros(),
+                spin: Vec3::zeros(),
+                radius: grain.radius,
+                mass: grain.mass,
+                id,
+            })
+            .collect();
+        Some(RestingBed::without_history(Space::Planar, &grains))
+    }
+
+    /// `resting` in the container under the laws of the run, ready for the intruder.
+    #[must_use]
+    pub fn bed(&self, resting: &RestingBed) -> GrainBed {
+        GrainBed::new(resting, self.box_container(), self.gravity(), self.stages(), 1)
+    }
+
+    /// The impact `condition` on the bed `resting`.
+    ///
+    /// # Errors
+    /// If there is no time step, or the intruder would start inside a wall.
+    pub fn simulation(
+        &self,
+        resting: &RestingBed,
+        condition: &Condition,
+    ) -> Result<Simulation, BuildError> {
+        let bed = self.bed(resting);
+        let intruder = self.launched_intruder(&bed, condition)?;
+        let settings = Settings {
+            dt: self.time_step()?,
+            duration: self.run.duration,
+            abort_above: self.energy.abort_above,
+        };
+        Ok(Simulation::new(bed, intruder, settings))
+    }
+
+    fn launched_intruder(
+        &self,
+        bed: &GrainBed,
+        condition: &Condition,
+    ) -> Result<Box<dyn Mechanism>, BuildError> {
+        let intruder = &self.intruder;
+        let shape = (intruder.shape.build)(&intruder.params, Space::Planar);
+        let inertia = shape.inertia_per_mass * intruder.mass;
+        let mut body = RigidBody::new(&intruder.name, shape.surface, intruder.mass, inertia);
+        let x = self.start_x(condition);
+        let (width, reach) = (self.container.width, body.surface().bounding_radius());
+        if x < reach || x > width - reach {
+            return Err(BuildError::StartTouchesSide { x, width });
+        }
+        let z = height_in_touch(&bed.grains, body.surface(), body.orientation, (x, 0.0));
+        // Straight down is exactly down: a cosine of round-off size is no horizontal speed.
+        let (sine, cosine) = if condition.angle_rad >= FRAC_PI_2 {
+            (1.0, 0.0)
+        } else {
+            (libm::sin(condition.angle_rad), libm::cos(condition.angle_rad))
+        };
+        let velocity = Vec3::new(cosine, 0.0, -sine) * condition.speed;
+        // Counter-clockwise in the x–z plane is a rotation about −y.
+        let spin = Vec3::new(0.0, -self.impact.spin, 0.0);
+        body.launch(Vec3::new(x, 0.0, z), velocity, spin);
+        Ok(Box::new(body))
+    }
+
+    /// Where the centre of the intruder starts (m).
+    #[must_use]
+    pub fn start_x(&self, condition: &Condition) -> f64 {
+        match condition.x {
+            StartX::At(x) => x,
+            StartX::Drawn => {
+                use rand::RngExt;
+                let (from, to) = self.impact.x_range;
+                let purpose = format!("position {}", condition.position_index);
+                from + (to - from) * random(self.run.seed, &purpose).random::<f64>()
+            }
+        }
+    }
+}
+
+impl LawChoice {
+    fn build(&self) -> Box<dyn ContactStage> {
+        (self.entry.build)(&self.params)
+    }
+}

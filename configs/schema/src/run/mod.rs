@@ -1,0 +1,247 @@
+//! Runs a model: bed, impacts, logs, checkpoints, summaries.
+
+mod bed_cache;
+mod folder;
+mod impact;
+mod summary;
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use engine::bed::BedReport;
+use engine::checkpoint::CheckpointError;
+use engine::error::StepError;
+use engine::record::RecordError;
+use thiserror::Error;
+
+use crate::build::BuildError;
+use crate::load::ConfigError;
+use crate::model::Model;
+
+pub use bed_cache::{PreparedBed, bed_key, prepare};
+pub use folder::Existing;
+pub use summary::{
+    BedSummary, CostSummary, EnergySummary, FinalEnergy, Group, ImpactSummary, ListSummary,
+    Scatter, StopSummary, Summary,
+};
+
+use folder::{Found, OutputFolder};
+
+/// What a run asks of whoever started it.
+pub trait Control {
+    /// Called now and then.
+    fn progress(&mut self, progress: &Progress);
+    /// Something that the user should know.
+    fn warn(&mut self, message: &str);
+    /// Whether to write a checkpoint and stop.
+    fn wants_to_stop(&self) -> bool;
+}
+
+/// How far a run has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Progress {
+    /// The bed is settling.
+    Settling {
+        /// Steps done.
+        step: u64,
+        /// Simulated time (s).
+        time: f64,
+        /// Mean kinetic energy of a grain over the one that counts as rest.
+        restlessness: f64,
+    },
+    /// An impact is running.
+    Impact {
+        /// Which condition, from 0.
+        index: usize,
+        /// Of how many.
+        of: usize,
+        /// Steps done.
+        step: u64,
+        /// Steps at the most.
+        last_step: u64,
+        /// Simulated time (s).
+        time: f64,
+        /// Depth so far (m).
+        depth: f64,
+        /// Speed over impact speed.
+        relative_speed: f64,
+    },
+}
+
+/// What came of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    /// A model of one condition.
+    One(Box<Summary>),
+    /// A model with a list of conditions.
+    List(Box<ListSummary>),
+    /// It was stopped, and can be resumed.
+    Interrupted,
+}
+
+/// Why a run failed.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// The system refused.
+    #[error("cannot {action} {}: {source}", path.display())]
+    Io {
+        /// What was being done.
+        action: &'static str,
+        /// To which file.
+        path: PathBuf,
+        /// Why not.
+        source: io::Error,
+    },
+    /// Another run is writing there.
+    #[error("another run is writing to {}", folder.display())]
+    Busy {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// Results of other inputs are there.
+    #[error(
+        "{} holds results of other inputs; choose another --out, or --force to replace them",
+        folder.display()
+    )]
+    OtherInputs {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// An unfinished run of the same inputs is there.
+    #[error(
+        "{} holds an unfinished run of these inputs; --resume goes on with it, --force starts again",
+        folder.display()
+    )]
+    Unfinished {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// Something that is not ours is there.
+    #[error(
+        "{} is not empty (it holds `{file}`); choose another --out, or --force to write beside it",
+        folder.display()
+    )]
+    NotEmpty {
+        /// The folder.
+        folder: PathBuf,
+        /// One of the files.
+        file: String,
+    },
+    /// The model cannot be built.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// The text of one condition does not load; a mistake of ours.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// A step of the preparation cannot be trusted.
+    #[error("while the bed settled, {source}")]
+    Settling {
+        /// Why.
+        source: StepError,
+    },
+    /// A step of the impact cannot be trusted.
+    #[error(transparent)]
+    Step(#[from] StepError),
+    /// The log cannot be written or continued.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// A checkpoint or a prepared bed cannot be written or read.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// A checkpoint does not fit the run it belongs to.
+    #[error("{} does not fit this run", path.display())]
+    Misfit {
+        /// The checkpoint.
+        path: PathBuf,
+    },
+}
+
+impl RunError {
+    pub(super) fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
+        Self::Io { action, path: path.to_owned(), source }
+    }
+
+    /// Whether the input is to blame, and not what happened on the way.
+    #[must_use]
+    pub fn is_bad_input(&self) -> bool {
+        matches!(
+            self,
+            Self::Busy { .. }
+                | Self::OtherInputs { .. }
+                | Self::Unfinished { .. }
+                | Self::NotEmpty { .. }
+                | Self::Build(_)
+                | Self::Config(_)
+        )
+    }
+}
+
+/// Where a run writes and what it does about what is there.
+#[derive(Clone, Debug)]
+pub struct Places {
+    /// The output folder.
+    pub out: PathBuf,
+    /// The folder of prepared beds.
+    pub cache: PathBuf,
+    /// What is done about results that are there already.
+    pub existing: Existing,
+}
+
+/// Runs `model`, whose file reads `original`, on the threads of the current pool.
+///
+/// # Errors
+/// If the folder is taken, the model cannot be built, or a step or a file fails.
+pub fn run(
+    model: &Model,
+    original: &str,
+    places: &Places,
+    control: &mut dyn Control,
+) -> Result<Outcome, RunError> {
+    let folder = OutputFolder::lock(&places.out)?;
+    let conditions = model.conditions();
+    let is_list = model.conditions.is_some();
+    let found = folder.claim(&impact::model_text(model), places.existing)?;
+    if let Found::Finished = found {
+        return Ok(if is_list {
+            Outcome::List(Box::new(folder.read_json("summary.json")?))
+        } else {
+            Outcome::One(Box::new(folder.read_json("summary.json")?))
+        });
+    }
+    let Some(bed) = prepare(model, &places.cache, control)? else {
+        return Ok(Outcome::Interrupted);
+    };
+    let report = BedReport::of(&model.bed(&bed.resting));
+    let bed_summary = BedSummary::new(&report, bed.cache, model);
+    for warning in &bed_summary.warnings {
+        control.warn(warning);
+    }
+    impact::write_model(&folder, model)?;
+    if !is_list {
+        let setting =
+            impact::Setting { model, original, bed: &bed, bed_summary: &bed_summary, of: (0, 1) };
+        let summary = setting.run(&folder, &conditions[0], control)?;
+        return Ok(summary.map_or(Outcome::Interrupted, |one| Outcome::One(Box::new(one))));
+    }
+    let mut summaries = Vec::new();
+    for (index, condition) in conditions.iter().enumerate() {
+        let single = model.single(condition, &places.out)?;
+        let sub = OutputFolder::lock(&places.out.join(format!("{:03}", index + 1)))?;
+        // The list is ours, so an unfinished member is only ever met when the list is resumed.
+        if let Found::Finished = sub.claim(&impact::model_text(&single), Existing::Resume)? {
+            summaries.push(sub.read_json("summary.json")?);
+            continue;
+        }
+        impact::write_model(&sub, &single)?;
+        let of = (index, conditions.len());
+        let setting =
+            impact::Setting { model: &single, original, bed: &bed, bed_summary: &bed_summary, of };
+        match setting.run(&sub, condition, control)? {
+            Some(summary) => summaries.push(summary),
+            None => return Ok(Outcome::Interrupted),
+        }
+    }
+    let summary = ListSummary::new(model, summaries);
+    folder.write_json("summary.json", &summary)?;
+    Ok(Outcome::List(Box::new(summary)))
+}
