@@ -20,7 +20,7 @@ const SOMETHING_LOST: u8 = 3;
 ///
 /// # Errors
 /// The new log or the result could not be written.
-pub fn run(input: &Path, output: &Path, json: bool) -> anyhow::Result<u8> {
+pub(crate) fn run(input: &Path, output: &Path, json: bool) -> anyhow::Result<u8> {
     let recovered = match recover(input, output) {
         Ok(recovered) => recovered,
         Err(
