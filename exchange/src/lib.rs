@@ -1,1 +1,3 @@
-//! plunge.
+//! Files in and out of plunge: what reads, repairs and converts logs.
+
+pub mod recover;
