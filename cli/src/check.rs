@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use configs::estimate::{Estimate, MEMORY_SHARE, available_memory_bytes};
+use configs::estimate::Estimate;
 use configs::{Color, Model, stability};
 use serde_json::{Value, json};
 
 use crate::common::Common;
-use crate::output::{self, CommandError, CommandResult};
+use crate::output::{self, CommandResult};
 
 /// Arguments of `plunge check`.
 #[derive(clap::Args, Debug)]
@@ -22,9 +22,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let loaded = args.common.load(&args.model)?;
     let model = &loaded.model;
     let estimate = Estimate::of(model);
-    if !args.common.force {
-        refuse_too_large(&estimate)?;
-    }
+    args.common.refuse_too_large(model)?;
     match args.common.json {
         true => {
             let mut object = as_json(model, &estimate);
@@ -35,21 +33,6 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         }
         false => output::to_stdout(&as_text(model, &estimate)),
     }
-}
-
-fn refuse_too_large(estimate: &Estimate) -> CommandResult {
-    let Some(available) = available_memory_bytes() else {
-        return Ok(());
-    };
-    if estimate.memory_bytes as f64 <= MEMORY_SHARE * available as f64 {
-        return Ok(());
-    }
-    Err(CommandError::bad_input(format!(
-        "{} grains need about {}, and {} are free; --force goes on all the same",
-        estimate.n_grains,
-        bytes(estimate.memory_bytes),
-        bytes(available)
-    )))
 }
 
 fn as_text(model: &Model, estimate: &Estimate) -> String {
@@ -67,7 +50,7 @@ fn as_text(model: &Model, estimate: &Estimate) -> String {
         }
         _ => line("time step", "known when the laws are built".to_owned()),
     }
-    line("memory", format!("about {}", bytes(estimate.memory_bytes)));
+    line("memory", format!("about {}", output::bytes(estimate.memory_bytes)));
     if let Some(time) = estimate.run_time_s {
         let note = "at most, per impact, without preparing the bed";
         line("run time", format!("about {} {note}", duration(time)));
@@ -100,17 +83,6 @@ fn as_json(model: &Model, estimate: &Estimate) -> Value {
             "run_time_s": estimate.run_time_s,
         },
     })
-}
-
-/// A number of bytes with two or three digits.
-fn bytes(count: u64) -> String {
-    let count = count as f64;
-    match count {
-        n if n < 1e6 => format!("{:.0} kB", n / 1e3),
-        n if n < 1e9 => format!("{:.0} MB", n / 1e6),
-        n if n < 1e12 => format!("{:.1} GB", n / 1e9),
-        n => format!("{:.1} TB", n / 1e12),
-    }
 }
 
 /// A duration in the unit that one would say.

@@ -4,6 +4,8 @@ use std::num::NonZeroU16;
 use std::path::PathBuf;
 
 use clap::Args;
+use configs::engine::parallel::with_threads;
+use configs::estimate::{Estimate, MEMORY_SHARE, available_memory_bytes};
 use configs::{LoadOptions, Loaded, Model, ModelSource};
 
 use crate::output::{self, CommandError};
@@ -59,5 +61,44 @@ impl Common {
             output::show_warnings(&loaded);
         }
         Ok(loaded)
+    }
+
+    /// Refuses a model that does not fit into memory, unless `--force`.
+    ///
+    /// # Errors
+    /// If it needs more than the share that a run may take.
+    pub(crate) fn refuse_too_large(&self, model: &Model) -> Result<(), CommandError> {
+        let Some(available) = available_memory_bytes() else { return Ok(()) };
+        let estimate = Estimate::of(model);
+        if self.force || estimate.memory_bytes as f64 <= MEMORY_SHARE * available as f64 {
+            return Ok(());
+        }
+        Err(CommandError::bad_input(format!(
+            "{} grains need about {}, and {} are free; --force goes on all the same",
+            estimate.n_grains,
+            output::bytes(estimate.memory_bytes),
+            output::bytes(available)
+        )))
+    }
+
+    /// The folder of prepared beds: `--cache`, else `$PLUNGE_CACHE`, else `runs/.cache`.
+    pub(crate) fn cache_folder(&self) -> PathBuf {
+        let from_environment = || std::env::var_os("PLUNGE_CACHE").filter(|dir| !dir.is_empty());
+        self.cache
+            .clone()
+            .or_else(|| from_environment().map(PathBuf::from))
+            .unwrap_or_else(|| PathBuf::from("runs/.cache"))
+    }
+
+    /// Runs `work` on the threads that `--threads` asks for, else on one per core.
+    ///
+    /// # Errors
+    /// If the system does not give them.
+    pub(crate) fn on_threads<R: Send>(
+        &self,
+        work: impl FnOnce() -> R + Send,
+    ) -> Result<R, CommandError> {
+        let threads = self.threads.map_or(0, |n| usize::from(n.get()));
+        with_threads(threads, work).map_err(|error| CommandError::Failed(error.into()))
     }
 }

@@ -1,11 +1,15 @@
 //! The `plunge` command: reads the arguments, calls the libraries, turns errors into messages and
 //! exit codes.
 
+mod bed;
 mod check;
 mod common;
+mod control;
 mod effects;
 mod new;
 mod output;
+mod recover;
+mod run;
 
 use std::process::ExitCode;
 
@@ -21,12 +25,18 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Run the impacts of a model.
+    Run(run::Args),
+    /// Prepare the bed of a model into the cache.
+    Bed(bed::Args),
     /// Validate a model and show what it means in SI, without running it.
     Check(check::Args),
     /// Describe the laws and effects that a model can use.
     Effects(effects::Args),
     /// Write a commented starter model.
     New(new::Args),
+    /// Save everything readable of a damaged or unfinished log.
+    Recover(recover::Args),
 }
 
 fn main() -> ExitCode {
@@ -39,9 +49,12 @@ fn main() -> ExitCode {
         }
     };
     let result = match cli.command {
+        Command::Run(args) => run::run(&args),
+        Command::Bed(args) => bed::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Effects(args) => effects::run(&args),
         Command::New(args) => new::run(&args),
+        Command::Recover(args) => recover::run(&args),
     };
     output::conclude(result)
 }

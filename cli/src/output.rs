@@ -3,6 +3,7 @@
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
 
+use configs::run::RunError;
 use configs::{Color, ConfigError, Loaded, printable};
 
 /// Why a command did not do what was asked.
@@ -12,6 +13,13 @@ pub(crate) enum CommandError {
     BadInput(String),
     /// Something failed on the way (exit code 1).
     Failed(anyhow::Error),
+    /// It ended early, or not whole: the exit code, and the message as shown.
+    Partly {
+        /// The exit code.
+        code: u8,
+        /// The message, ending in a line break.
+        message: String,
+    },
 }
 
 impl CommandError {
@@ -24,6 +32,16 @@ impl CommandError {
 impl From<ConfigError> for CommandError {
     fn from(error: ConfigError) -> Self {
         Self::BadInput(error.render(stderr_color()))
+    }
+}
+
+impl From<RunError> for CommandError {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Config(error) => error.into(),
+            error if error.is_bad_input() => Self::bad_input(error),
+            error => Self::Failed(error.into()),
+        }
     }
 }
 
@@ -44,11 +62,19 @@ pub(crate) fn conclude(result: CommandResult) -> ExitCode {
             to_stderr(&message);
             ExitCode::from(2)
         }
+        Err(CommandError::Partly { code, message }) => {
+            to_stderr(&printable_lines(&message));
+            ExitCode::from(code)
+        }
         Err(CommandError::Failed(error)) => {
             to_stderr(&format!("error: {}\n", printable(&format!("{error:#}"))));
             ExitCode::from(1)
         }
     }
+}
+
+fn printable_lines(text: &str) -> String {
+    text.lines().map(|line| format!("{}\n", printable(line))).collect()
 }
 
 /// Writes the result of a command; a reader that has left is no error.
@@ -85,5 +111,16 @@ pub(crate) fn stderr_color() -> Color {
     match io::stderr().is_terminal() && !unwanted {
         true => Color::On,
         false => Color::Off,
+    }
+}
+
+/// A number of bytes with two or three digits.
+pub(crate) fn bytes(count: u64) -> String {
+    let count = count as f64;
+    match count {
+        n if n < 1e6 => format!("{:.0} kB", n / 1e3),
+        n if n < 1e9 => format!("{:.0} MB", n / 1e6),
+        n if n < 1e12 => format!("{:.1} GB", n / 1e9),
+        n => format!("{:.1} TB", n / 1e12),
     }
 }

@@ -1,74 +1,60 @@
 //! `plunge recover`: saves what is readable of a damaged or unfinished log.
 
-use std::io::Write as _;
-use std::path::Path;
+use std::path::PathBuf;
 
 use anyhow::Context as _;
 use exchange::recover::{Lost, RecoverError, Recovered, recover};
 use serde_json::json;
 
-/// Exit status: everything was saved.
-const DONE: u8 = 0;
-/// Exit status: the input or the output cannot be used.
-const BAD_INPUT: u8 = 2;
-/// Exit status: a log was saved, but not all of it.
+use crate::output::{self, CommandError, CommandResult};
+
+/// Exit code when a log was saved, but not all of it.
 const SOMETHING_LOST: u8 = 3;
 
-/// Recovers `input` into the new file `output` and returns the exit status.
-///
-/// The result goes to stdout (with `json` as one object), what was lost to stderr.
-///
-/// # Errors
-/// The new log or the result could not be written.
-pub(crate) fn run(input: &Path, output: &Path, json: bool) -> anyhow::Result<u8> {
-    let recovered = match recover(input, output) {
+/// Arguments of `plunge recover`.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// The damaged or unfinished log.
+    input: PathBuf,
+    /// The log to write; it must not exist yet.
+    output: PathBuf,
+    /// Print one JSON object to stdout.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &Args) -> CommandResult {
+    let Recovered { messages, chunks, lost, complete } = match recover(&args.input, &args.output) {
         Ok(recovered) => recovered,
         Err(
             error @ (RecoverError::NotMcap { .. }
             | RecoverError::OutputExists { .. }
-            | RecoverError::Io {
-                doing: "open" | "read",
-                ..
-            }),
-        ) => {
-            writeln!(std::io::stderr(), "error: {error}")?;
-            return Ok(BAD_INPUT);
+            | RecoverError::Io { doing: "open" | "read", .. }),
+        ) => return Err(CommandError::bad_input(error)),
+        Err(error) => {
+            return Err(Err::<(), _>(error).context("nothing was recovered").unwrap_err().into());
         }
-        Err(error) => return Err(error).context("nothing was recovered"),
     };
-    let Recovered {
-        messages,
-        chunks,
-        lost,
-        complete,
-    } = &recovered;
-    let mut stdout = std::io::stdout();
-    if json {
+    if args.json {
         let lost: Vec<_> = lost
             .iter()
             .map(|Lost { offset, bytes, why }| json!({ "offset": offset, "bytes": bytes, "why": why }))
             .collect();
-        let result =
-            json!({ "messages": messages, "chunks": chunks, "complete": complete, "lost": lost });
-        writeln!(stdout, "{result}")?;
-    } else {
-        let state = if *complete {
-            "a finished log"
-        } else {
-            "an unfinished log"
-        };
-        let to = output.display();
-        writeln!(
-            stdout,
-            "{messages} messages from {chunks} chunks of {state} -> {to}"
+        output::json_to_stdout(
+            &json!({ "messages": messages, "chunks": chunks, "complete": complete, "lost": lost }),
         )?;
-    }
-    for Lost { offset, bytes, why } in lost {
-        writeln!(std::io::stderr(), "lost: {bytes} bytes at {offset}: {why}")?;
-    }
-    Ok(if lost.is_empty() {
-        DONE
     } else {
-        SOMETHING_LOST
-    })
+        let state = if complete { "a finished log" } else { "an unfinished log" };
+        let to = args.output.display();
+        output::to_stdout(&format!(
+            "{messages} messages from {chunks} chunks of {state} -> {to}\n"
+        ))?;
+    }
+    if lost.is_empty() {
+        return Ok(());
+    }
+    let lines = lost
+        .iter()
+        .map(|Lost { offset, bytes, why }| format!("lost: {bytes} bytes at {offset}: {why}\n"));
+    Err(CommandError::Partly { code: SOMETHING_LOST, message: lines.collect() })
 }

@@ -27,24 +27,15 @@ fn a_log_of_scalars_every_step_and_frames_is_written_for_other_readers() {
     let start = std::time::Instant::now();
     let (mut speed, mut depth, mut lost) = (2.0, 0.0, 0.0);
     let total = |speed: f64, depth: f64, lost: f64| {
-        [
-            0.5 * MASS * speed * speed,
-            -MASS * GRAVITY * depth,
-            lost,
-            0.0,
-        ]
+        [0.5 * MASS * speed * speed, -MASS * GRAVITY * depth, lost, 0.0]
     };
     let sum = |terms: [f64; 4]| terms[0] + terms[1] + terms[2] - terms[3];
     let initial = sum(total(speed, depth, lost));
     for step in 0..=LAST {
-        let at = Stamp {
-            step,
-            time_s: step as f64 * DT,
-        };
+        let at = Stamp { step, time_s: step as f64 * DT };
         let terms = total(speed, depth, lost);
         let unaccounted = sum(terms) - initial;
-        log.energy(at, &terms, unaccounted, (unaccounted / initial).abs())
-            .unwrap();
+        log.energy(at, &terms, unaccounted, (unaccounted / initial).abs()).unwrap();
         let sample = BodySample {
             position: Vec3::new(0.0, 0.0, 0.1 - depth),
             velocity: Vec3::new(0.0, 0.0, -speed),
@@ -53,10 +44,7 @@ fn a_log_of_scalars_every_step_and_frames_is_written_for_other_readers() {
         };
         log.body_state(at, 0, &sample).unwrap();
         let load = BodyLoad {
-            forces: &[
-                Vec3::new(0.0, 0.0, DRAG * speed),
-                Vec3::new(0.0, 0.0, -MASS * GRAVITY),
-            ],
+            forces: &[Vec3::new(0.0, 0.0, DRAG * speed), Vec3::new(0.0, 0.0, -MASS * GRAVITY)],
             torques: &[Vec3::zeros(), Vec3::zeros()],
             contacts: 0,
         };
@@ -74,15 +62,7 @@ fn a_log_of_scalars_every_step_and_frames_is_written_for_other_readers() {
         depth += middle * DT;
         speed += DT * (GRAVITY - DRAG / MASS * middle);
     }
-    log.event(
-        Stamp {
-            step: LAST,
-            time_s: LAST as f64 * DT,
-        },
-        EventLevel::Info,
-        "end",
-    )
-    .unwrap();
+    log.event(Stamp { step: LAST, time_s: LAST as f64 * DT }, EventLevel::Info, "end").unwrap();
     let rate = 3.0 * LAST as f64 / start.elapsed().as_secs_f64();
     eprintln!("{rate:.0} messages/s");
     log.finish().unwrap();
@@ -91,11 +71,7 @@ fn a_log_of_scalars_every_step_and_frames_is_written_for_other_readers() {
 
 fn grains() -> impl Iterator<Item = GrainSample> {
     (0..1000_u32).map(|id| GrainSample {
-        position: Vec3::new(
-            f64::from(id % 50) * 0.002 - 0.05,
-            0.0,
-            f64::from(id / 50) * 0.002,
-        ),
+        position: Vec3::new(f64::from(id % 50) * 0.002 - 0.05, 0.0, f64::from(id / 50) * 0.002),
         radius: 0.001,
         speed: 0.0,
         force: 0.0,
@@ -111,10 +87,7 @@ fn setup() -> LogSetup {
         surface_z_m: 0.1,
         bodies: vec![LoggedBody {
             name: "ball".to_owned(),
-            shape: LoggedShape::Disc {
-                radius: 0.02,
-                thickness: 0.002,
-            },
+            shape: LoggedShape::Disc { radius: 0.02, thickness: 0.002 },
         }],
         container: Some((Vec3::new(-0.05, -0.001, 0.0), Vec3::new(0.05, 0.001, 0.2))),
         energy_terms: [

@@ -82,11 +82,7 @@ pub enum RecoverError {
 
 impl RecoverError {
     fn io(path: &Path, doing: &'static str, source: io::Error) -> Self {
-        Self::Io {
-            path: path.to_owned(),
-            doing,
-            source,
-        }
+        Self::Io { path: path.to_owned(), doing, source }
     }
 }
 
@@ -100,17 +96,14 @@ impl RecoverError {
 /// an error: it is in [`Recovered::lost`].
 pub fn recover(input: &Path, output: &Path) -> Result<Recovered, RecoverError> {
     if output.symlink_metadata().is_ok() {
-        return Err(RecoverError::OutputExists {
-            path: output.to_owned(),
-        });
+        return Err(RecoverError::OutputExists { path: output.to_owned() });
     }
     let mut name = output.as_os_str().to_owned();
     name.push(".recovering");
     let working = PathBuf::from(name);
     let result = copy(input, &working).and_then(|recovered| {
         let file = OpenOptions::new().write(true).open(&working);
-        file.and_then(|file| file.sync_all())
-            .map_err(|e| RecoverError::io(&working, "sync", e))?;
+        file.and_then(|file| file.sync_all()).map_err(|e| RecoverError::io(&working, "sync", e))?;
         fs::rename(&working, output).map_err(|e| RecoverError::io(output, "rename to", e))?;
         Ok(recovered)
     });
@@ -146,9 +139,7 @@ impl<'a> Recovery<'a> {
         let start = if marked { mcap::MAGIC.len() as u64 } else { 0 };
         // before anything is created for a file that is something else
         if !marked && input.next_record(start)?.is_none() {
-            return Err(RecoverError::NotMcap {
-                path: input.path().to_owned(),
-            });
+            return Err(RecoverError::NotMcap { path: input.path().to_owned() });
         }
         let header = match input.record(mcap::MAGIC.len() as u64)? {
             Some((opcode, body)) => match scan::parse(opcode, &body) {
@@ -157,10 +148,8 @@ impl<'a> Recovery<'a> {
             },
             None => None,
         };
-        let header = header.unwrap_or_else(|| Header {
-            profile: String::new(),
-            library: "plunge".to_owned(),
-        });
+        let header = header
+            .unwrap_or_else(|| Header { profile: String::new(), library: "plunge".to_owned() });
         let spare = Definitions::of_summary(input)?;
         let complete = input.ends_as_finished()?;
         let output = Output::create(working, header, spare)?;
@@ -176,11 +165,7 @@ impl<'a> Recovery<'a> {
     }
 
     fn run(&mut self) -> Result<(), RecoverError> {
-        let mut at = if self.marked {
-            mcap::MAGIC.len() as u64
-        } else {
-            0
-        };
+        let mut at = if self.marked { mcap::MAGIC.len() as u64 } else { 0 };
         if !self.marked {
             let next = self.input.next_record(0)?.unwrap_or(0);
             self.lose(0, next, "no mark of an MCAP file".to_owned());
@@ -191,11 +176,7 @@ impl<'a> Recovery<'a> {
                 Some((op::DATA_END, 4)) => return Ok(()),
                 Some((_, length)) => {
                     let end = at + RECORD_PREFIX as u64 + length;
-                    if self.take(at, length)? {
-                        Some(end)
-                    } else {
-                        None
-                    }
+                    if self.take(at, length)? { Some(end) } else { None }
                 }
                 None => None,
             };
@@ -209,9 +190,7 @@ impl<'a> Recovery<'a> {
 
     /// Takes over a record that fits into the file; `false` if it is damaged.
     fn take(&mut self, at: u64, length: u64) -> Result<bool, RecoverError> {
-        let start = self
-            .input
-            .bytes(at, RECORD_PREFIX as u64 + ChunkHead::MAX as u64)?;
+        let start = self.input.bytes(at, RECORD_PREFIX as u64 + ChunkHead::MAX as u64)?;
         let opcode = start[0];
         if let Some(head) = ChunkHead::parse(&start[RECORD_PREFIX..])
             && head.compressed_size.checked_add(head.data_start as u64) == Some(length)
@@ -255,13 +234,9 @@ impl<'a> Recovery<'a> {
     fn skip_damage(&mut self, at: u64) -> Result<u64, RecoverError> {
         let next = self.input.next_record(at + 1)?;
         let end = next.unwrap_or(self.input.length());
-        let start = self
-            .input
-            .bytes(at, (RECORD_PREFIX + ChunkHead::MAX) as u64)?;
-        let head = start
-            .get(RECORD_PREFIX..)
-            .filter(|_| start[0] == op::CHUNK)
-            .and_then(ChunkHead::parse);
+        let start = self.input.bytes(at, (RECORD_PREFIX + ChunkHead::MAX) as u64)?;
+        let head =
+            start.get(RECORD_PREFIX..).filter(|_| start[0] == op::CHUNK).and_then(ChunkHead::parse);
         let Some(head) = head else {
             self.lose(at, end - at, "damaged record".to_owned());
             return Ok(end);
@@ -271,10 +246,7 @@ impl<'a> Recovery<'a> {
         // a damaged length of the record, or of its content, beside a chunk that is whole
         for compressed_size in [head.compressed_size, room] {
             if compressed_size <= room && head.crc != 0 {
-                let head = ChunkHead {
-                    compressed_size,
-                    ..head.clone()
-                };
+                let head = ChunkHead { compressed_size, ..head.clone() };
                 if self.chunk(at, &head)? {
                     let after = from + compressed_size;
                     if after < end {
@@ -288,22 +260,14 @@ impl<'a> Recovery<'a> {
             self.lose(at, end - at, "damaged chunk".to_owned());
         } else {
             let packed = self.input.bytes(from, room.min(CHUNK_LIMIT))?;
-            let open = ChunkHead {
-                crc: 0,
-                uncompressed_size: CHUNK_LIMIT,
-                ..head
-            };
+            let open = ChunkHead { crc: 0, uncompressed_size: CHUNK_LIMIT, ..head };
             self.records.clear();
             // the error only says where the readable part ends
             drop(chunk::unpack(&open, &packed, &mut self.records));
             let before = self.output.messages();
             self.emit(at, end - at)?;
             let saved = self.output.messages() - before;
-            self.lose(
-                at,
-                end - at,
-                format!("chunk cut short, {saved} of its messages saved"),
-            );
+            self.lose(at, end - at, format!("chunk cut short, {saved} of its messages saved"));
         }
         Ok(end)
     }
@@ -339,11 +303,6 @@ impl<'a> Recovery<'a> {
     fn finish(self) -> Result<Recovered, RecoverError> {
         let messages = self.output.messages();
         self.output.finish()?;
-        Ok(Recovered {
-            messages,
-            chunks: self.chunks,
-            lost: self.lost,
-            complete: self.complete,
-        })
+        Ok(Recovered { messages, chunks: self.chunks, lost: self.lost, complete: self.complete })
     }
 }

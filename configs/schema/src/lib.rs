@@ -19,6 +19,7 @@ mod paths;
 mod read;
 mod reader;
 mod resolved;
+pub mod run;
 mod set;
 mod shipped;
 mod specs;

@@ -136,8 +136,7 @@ impl Output {
             }),
             Record::Metadata(metadata) => self.writer.write_metadata(metadata),
             Record::Unknown { opcode, .. } => {
-                self.writer
-                    .write_private_record(*opcode, body, Default::default())
+                self.writer.write_private_record(*opcode, body, Default::default())
             }
             // indexes and statistics are made anew
             _ => Ok(()),
@@ -153,8 +152,7 @@ impl Output {
     pub(super) fn finish(mut self) -> Result<(), RecoverError> {
         self.writer.finish().map_err(|e| failed(&self.path, e))?;
         let file = self.writer.into_inner().into_inner();
-        file.map(drop)
-            .map_err(|e| RecoverError::io(&self.path, "write", e.into_error()))
+        file.map(drop).map_err(|e| RecoverError::io(&self.path, "write", e.into_error()))
     }
 
     fn schema(
@@ -170,20 +168,13 @@ impl Output {
     }
 
     fn channel(&mut self, channel: &Channel) -> Result<(), McapError> {
-        let Channel {
-            id,
-            schema_id,
-            topic,
-            message_encoding,
-            metadata,
-        } = channel;
+        let Channel { id, schema_id, topic, message_encoding, metadata } = channel;
         if !self.schemas.contains(schema_id)
             && let Some((name, encoding, data)) = self.spare.schemas.remove(schema_id)
         {
             self.schema(*schema_id, &name, &encoding, &data)?;
         }
-        self.writer
-            .add_channel_with_id(*id, *schema_id, topic, message_encoding, metadata)?;
+        self.writer.add_channel_with_id(*id, *schema_id, topic, message_encoding, metadata)?;
         self.channels.insert(*id);
         Ok(())
     }
@@ -217,9 +208,6 @@ impl Output {
 fn failed(path: &Path, error: McapError) -> RecoverError {
     match error {
         McapError::Io(source) => RecoverError::io(path, "write", source),
-        source => RecoverError::Write {
-            path: path.to_owned(),
-            source,
-        },
+        source => RecoverError::Write { path: path.to_owned(), source },
     }
 }

@@ -22,15 +22,8 @@ pub(super) struct Input {
 impl Input {
     pub(super) fn open(path: &Path) -> Result<Self, RecoverError> {
         let file = File::open(path).map_err(|e| RecoverError::io(path, "open", e))?;
-        let length = file
-            .metadata()
-            .map_err(|e| RecoverError::io(path, "read", e))?
-            .len();
-        Ok(Self {
-            path: path.to_owned(),
-            file,
-            length,
-        })
+        let length = file.metadata().map_err(|e| RecoverError::io(path, "read", e))?.len();
+        Ok(Self { path: path.to_owned(), file, length })
     }
 
     pub(super) fn path(&self) -> &Path {
@@ -61,10 +54,9 @@ impl Input {
     /// Opcode and body of the record at `at`, if it fits into the file and into memory.
     pub(super) fn record(&mut self, at: u64) -> Result<Option<(u8, Vec<u8>)>, RecoverError> {
         match self.head(at)? {
-            Some((opcode, length)) if length <= CHUNK_LIMIT => Ok(Some((
-                opcode,
-                self.bytes(at + RECORD_PREFIX as u64, length)?,
-            ))),
+            Some((opcode, length)) if length <= CHUNK_LIMIT => {
+                Ok(Some((opcode, self.bytes(at + RECORD_PREFIX as u64, length)?)))
+            }
             _ => Ok(None),
         }
     }
@@ -175,10 +167,7 @@ pub(super) fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
 }
 
 fn map(entries: &std::collections::BTreeMap<String, String>) -> usize {
-    entries
-        .iter()
-        .map(|(key, value)| 8 + key.len() + value.len())
-        .sum()
+    entries.iter().map(|(key, value)| 8 + key.len() + value.len()).sum()
 }
 
 /// The length of an attachment by its inner lengths [bytes].

@@ -38,11 +38,7 @@ impl Scratch {
         fs::write(&input, damaged).unwrap();
         drop(fs::remove_file(&output));
         let recovered = recover(&input, &output)?;
-        assert_eq!(
-            fs::read_dir(&self.0).unwrap().count(),
-            2,
-            "no temporary file is left"
-        );
+        assert_eq!(fs::read_dir(&self.0).unwrap().count(), 2, "no temporary file is left");
         Ok((recovered, fs::read(output).unwrap()))
     }
 }
@@ -58,31 +54,15 @@ fn sample(last: u64) -> Sample {
     let scratch = Scratch::new();
     let mut log = RunLog::create(&scratch.0, &setup()).unwrap();
     for step in 0..=last {
-        let at = Stamp {
-            step,
-            time_s: step as f64 * 1e-5,
-        };
+        let at = Stamp { step, time_s: step as f64 * 1e-5 };
         let x = (step as f64).sin();
         log.energy(at, &[x, x * x], 0.0, 0.0).unwrap();
         let (position, velocity, spin) = (Vec3::repeat(x), Vec3::repeat(x.cos()), Vec3::zeros());
-        let state = BodySample {
-            position,
-            velocity,
-            spin,
-            depth_m: x.tan(),
-        };
+        let state = BodySample { position, velocity, spin, depth_m: x.tan() };
         log.body_state(at, 0, &state).unwrap();
         let (forces, torques) = ([Vec3::repeat(x * 0.7)], [Vec3::zeros()]);
-        log.body_load(
-            at,
-            0,
-            &BodyLoad {
-                forces: &forces,
-                torques: &torques,
-                contacts: 1,
-            },
-        )
-        .unwrap();
+        log.body_load(at, 0, &BodyLoad { forces: &forces, torques: &torques, contacts: 1 })
+            .unwrap();
     }
     log.finish().unwrap();
     let bytes = fs::read(scratch.0.join("run.mcap")).unwrap();
@@ -123,26 +103,17 @@ fn setup() -> LogSetup {
 }
 
 fn message(message: mcap::Message<'_>) -> Message {
-    (
-        message.channel.topic.clone(),
-        message.sequence,
-        message.data.into_owned(),
-    )
+    (message.channel.topic.clone(), message.sequence, message.data.into_owned())
 }
 
 /// All messages of a finished log, read from start to end.
 fn in_order(log: &[u8]) -> Vec<Message> {
-    mcap::MessageStream::new(log)
-        .unwrap()
-        .map(|m| message(m.unwrap()))
-        .collect()
+    mcap::MessageStream::new(log).unwrap().map(|m| message(m.unwrap())).collect()
 }
 
 /// All messages of a log, read by its index.
 fn messages(log: &[u8]) -> BTreeSet<Message> {
-    let summary = mcap::Summary::read(log)
-        .unwrap()
-        .expect("a recovered log has an index");
+    let summary = mcap::Summary::read(log).unwrap().expect("a recovered log has an index");
     let indexes = summary.chunk_indexes.iter();
     indexes
         .flat_map(|index| summary.stream_chunk(log, index).unwrap())
@@ -169,10 +140,7 @@ impl Sample {
             let found = in_order(&fs::read(&output).unwrap());
             let whole = self.chunks.iter().filter(|(place, _)| place.end <= cut);
             let whole: usize = whole.map(|(_, messages)| messages.len()).sum();
-            assert!(
-                found.len() >= whole && all.starts_with(&found),
-                "cut at {cut}"
-            );
+            assert!(found.len() >= whole && all.starts_with(&found), "cut at {cut}");
             assert_eq!(recovered.messages, found.len() as u64, "cut at {cut}");
             assert!(!recovered.complete, "cut at {cut}");
         }
@@ -216,8 +184,7 @@ fn a_cut_chunk_counts_as_far_as_it_unpacks() {
     for step in 0..=9000 {
         // incompressible enough for several blocks per chunk
         let x = (step as f64 * 0.37).sin().exp();
-        log.energy(Stamp { step, time_s: x }, &[x, 1.0 / x], 0.0, 0.0)
-            .unwrap();
+        log.energy(Stamp { step, time_s: x }, &[x, 1.0 / x], 0.0, 0.0).unwrap();
     }
     // killed with the chunk open: its lengths are all ones
     let killed = fs::read(scratch.0.join("run.mcap.partial")).unwrap();
@@ -225,10 +192,7 @@ fn a_cut_chunk_counts_as_far_as_it_unpacks() {
     let (recovered, log) = Scratch::new().recover(&killed).unwrap();
     assert!(recovered.messages > 1000, "{recovered:?}");
     assert_eq!(messages(&log).len() as u64, recovered.messages);
-    assert!(
-        recovered.lost[0].why.contains("of its messages saved"),
-        "{recovered:?}"
-    );
+    assert!(recovered.lost[0].why.contains("of its messages saved"), "{recovered:?}");
 }
 
 #[test]
@@ -252,10 +216,7 @@ fn flipped_bits_cost_no_more_than_the_chunks_they_are_in() {
                 let intact = sample.expected(|chunk| !hit(chunk));
                 assert!(found.is_superset(&intact), "flips at {places:?}");
             }
-            assert!(
-                found.is_subset(&sample.expected(|_| true)),
-                "flips at {places:?}"
-            );
+            assert!(found.is_subset(&sample.expected(|_| true)), "flips at {places:?}");
         }
     }
 }
@@ -289,9 +250,7 @@ fn a_chunk_that_claims_to_be_huge_is_refused_without_memory_for_it() {
 #[test]
 fn attachments_and_metadata_survive_the_loss_of_the_index() {
     let sample = sample(50);
-    let (_, log) = Scratch::new()
-        .recover(&sample.bytes[..sample.chunks[1].0.end])
-        .unwrap();
+    let (_, log) = Scratch::new().recover(&sample.bytes[..sample.chunks[1].0.end]).unwrap();
     let summary = mcap::Summary::read(&log).unwrap().unwrap();
     let attachment = mcap::read::attachment(&log, &summary.attachment_indexes[0]).unwrap();
     assert_eq!(*attachment.data, *b"name = \"sample\"\n");
@@ -304,17 +263,11 @@ fn other_files_and_existing_outputs_are_refused() {
     let scratch = Scratch::new();
     for other in [&b""[..], b"depth,force\n0,1\n", &[0; 5000]] {
         let result = scratch.recover(other);
-        assert!(
-            matches!(result, Err(RecoverError::NotMcap { .. })),
-            "{result:?}"
-        );
+        assert!(matches!(result, Err(RecoverError::NotMcap { .. })), "{result:?}");
     }
     let input = scratch.0.join("in.mcap");
     let result = recover(&input, &input);
-    assert!(
-        matches!(result, Err(RecoverError::OutputExists { .. })),
-        "{result:?}"
-    );
+    assert!(matches!(result, Err(RecoverError::OutputExists { .. })), "{result:?}");
     assert_eq!(fs::read_dir(&scratch.0).unwrap().count(), 1);
 }
 
@@ -323,9 +276,8 @@ fn random(seed: u64) -> impl FnMut(usize) -> usize {
     let mut state = seed;
     move |below| {
         // Knuth's MMIX generator; the high bits are the good ones
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as usize % below
     }
 }

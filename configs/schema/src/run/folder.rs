@@ -58,7 +58,8 @@ pub(super) struct OutputFolder {
 impl OutputFolder {
     /// Takes hold of `path`, made if it is not there.
     pub(super) fn lock(path: &Path) -> Result<Self, RunError> {
-        fs::create_dir_all(path).map_err(|source| RunError::io("create the folder", path, source))?;
+        fs::create_dir_all(path)
+            .map_err(|source| RunError::io("create the folder", path, source))?;
         let name = path.join(".lock");
         let lock = File::create(&name).map_err(|source| RunError::io("create", &name, source))?;
         match lock.try_lock() {

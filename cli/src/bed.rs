@@ -1,0 +1,65 @@
+//! `plunge bed`: prepares the bed of a model into the cache.
+
+use std::path::PathBuf;
+
+use configs::engine::bed::BedReport;
+use configs::run::{BedSummary, Control as _, prepare};
+use serde_json::json;
+
+use crate::common::Common;
+use crate::control::Terminal;
+use crate::output::{self, CommandError, CommandResult};
+
+/// Arguments of `plunge bed`.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// A model file, or the name of a shipped model.
+    model: PathBuf,
+    #[command(flatten)]
+    common: Common,
+}
+
+pub(crate) fn run(args: &Args) -> CommandResult {
+    let common = &args.common;
+    let model = common.load(&args.model)?.model;
+    common.refuse_too_large(&model)?;
+    let mut terminal = Terminal::new(common.quiet)?;
+    let cache = common.cache_folder();
+    let prepared = common.on_threads(|| prepare(&model, &cache, &mut terminal))?;
+    terminal.clear();
+    let Some(bed) = prepared.map_err(CommandError::from)? else {
+        return Err(terminal.interrupted("the bed was not prepared"));
+    };
+    let report = BedReport::of(&model.bed(&bed.resting));
+    let summary = BedSummary::new(&report, bed.cache, &model);
+    for warning in &summary.warnings {
+        terminal.warn(warning);
+    }
+    if common.json {
+        let mut object = json!(summary);
+        object["path"] = json!(bed.path);
+        object["mean_diameter_m"] = json!(report.mean_diameter);
+        return output::json_to_stdout(&object);
+    }
+    let inside = report
+        .packing_fraction_inside
+        .map_or(String::new(), |inside| format!(", {inside:.4} away from walls and surface"));
+    let place = match (bed.cache, &bed.path) {
+        ("hit", Some(path)) => format!("cached in {}", path.display()),
+        (_, Some(path)) => format!("prepared into {}", path.display()),
+        (_, None) => "read from its table".to_owned(),
+    };
+    output::to_stdout(&format!(
+        "{name}: {place}\n\n  \
+         grains            {grains}\n  \
+         packing fraction  {fraction:.4} over width and mean height{inside}\n  \
+         height            {height:.4} m, {diameters:.1} mean grain diameters\n  \
+         coordination      {coordination:.3} contacts per grain\n",
+        name = model.run.name,
+        grains = report.grains,
+        fraction = report.packing_fraction,
+        height = report.height,
+        diameters = report.height / report.mean_diameter,
+        coordination = report.coordination,
+    ))
+}

@@ -1,0 +1,146 @@
+//! `plunge run`: the impacts of a model, with their logs and summaries.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use configs::run::{Existing, ListSummary, Outcome, Places, Scatter, Summary};
+
+use crate::common::Common;
+use crate::control::Terminal;
+use crate::output::{self, CommandError, CommandResult};
+
+/// Arguments of `plunge run`.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// A model file, or the name of a shipped model.
+    model: PathBuf,
+    #[command(flatten)]
+    common: Common,
+}
+
+pub(crate) fn run(args: &Args) -> CommandResult {
+    let common = &args.common;
+    let loaded = common.load(&args.model)?;
+    let model = &loaded.model;
+    common.refuse_too_large(model)?;
+    let places = Places {
+        out: common.out.clone().unwrap_or_else(|| Path::new("runs").join(&model.run.name)),
+        cache: common.cache_folder(),
+        existing: match (common.force, common.resume) {
+            (true, _) => Existing::Replace,
+            (false, true) => Existing::Resume,
+            (false, false) => Existing::Keep,
+        },
+    };
+    let mut terminal = Terminal::new(common.quiet)?;
+    let outcome =
+        common.on_threads(|| configs::run::run(model, &loaded.original, &places, &mut terminal))?;
+    terminal.clear();
+    match outcome.map_err(CommandError::from)? {
+        Outcome::One(summary) => {
+            report(common.json, &*summary, || one_as_text(&summary, &places.out))
+        }
+        Outcome::List(summary) => {
+            report(common.json, &*summary, || list_as_text(&summary, &places.out))
+        }
+        Outcome::Interrupted => Err(terminal.interrupted("--resume goes on from here")),
+    }
+}
+
+fn report<T: serde::Serialize>(
+    json: bool,
+    summary: &T,
+    text: impl FnOnce() -> String,
+) -> CommandResult {
+    if json {
+        output::json_to_stdout(&serde_json::json!(summary))
+    } else {
+        output::to_stdout(&text())
+    }
+}
+
+fn one_as_text(summary: &Summary, out: &Path) -> String {
+    let Summary { impact, stop, energy, bed, cost, .. } = summary;
+    let mut text = format!(
+        "{}: {} m/s at {:.4} deg onto {} grains\n\n",
+        summary.name, impact.speed_m_per_s, impact.angle_deg, bed.grains
+    );
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<22}{value}");
+    };
+    let time = |time: Option<f64>| {
+        time.map_or_else(|| "not reached".to_owned(), |time| format!("{time:.4} s"))
+    };
+    line(
+        "stopping time",
+        format!(
+            "{} (vertical {}, horizontal {})",
+            time(stop.stopping_time_s),
+            time(stop.stopping_time_z_s),
+            time(stop.stopping_time_x_s)
+        ),
+    );
+    line("at rest after", time(stop.rest_time_s));
+    line("depth", format!("{:.2} mm", 1e3 * stop.depth_m));
+    line("range", format!("{:.2} mm", 1e3 * stop.range_m));
+    line(
+        "bed",
+        format!(
+            "packing fraction {:.4}, {:.4} m high, coordination {:.2} ({})",
+            bed.packing_fraction, bed.height_m, bed.coordination, bed.cache
+        ),
+    );
+    line("energy", format!("{:.4e} J of the impact, of which", energy.initial));
+    let share = |value: f64| format!("{:8.2} %", 100.0 * value / energy.initial);
+    for (name, value) in &energy.dissipated {
+        line(&format!("  {}", name.replace('_', "-")), share(*value));
+    }
+    line("  held in springs", share(energy.at_end.elastic));
+    line("  given to grains", share(energy.at_end.grains));
+    line("  left to intruder", share(energy.at_end.intruder));
+    line("  unaccounted for", share(energy.unaccounted));
+    line("closure", format!("{:.1e} of the impact energy at worst", energy.closure));
+    line(
+        "cost",
+        format!(
+            "{} steps of {} s in {:.1} s on {} threads, {:.1} million grain-steps/s",
+            cost.steps,
+            cost.dt_s,
+            cost.wall_s,
+            cost.threads,
+            1e-6 * cost.grain_steps_per_s
+        ),
+    );
+    format!("{text}\n-> {}\n", out.display())
+}
+
+fn list_as_text(summary: &ListSummary, out: &Path) -> String {
+    let mut text = format!("{}: {} impacts\n\n", summary.name, summary.runs.len());
+    let _ = writeln!(
+        text,
+        "  {:>9} {:>9} {:>3}  {:>17} {:>17} {:>19} {:>19}",
+        "speed m/s", "angle deg", "n", "depth mm", "range mm", "stopping time s", "rest time s"
+    );
+    for group in &summary.groups {
+        let _ = writeln!(
+            text,
+            "  {:>9} {:>9.2} {:>3}  {:>17} {:>17} {:>19} {:>19}",
+            group.speed_m_per_s,
+            group.angle_deg,
+            group.n,
+            scatter(group.depth_m, 1e3, 2),
+            scatter(group.range_m, 1e3, 2),
+            scatter(group.stopping_time_s, 1.0, 4),
+            scatter(group.rest_time_s, 1.0, 4),
+        );
+    }
+    format!("{text}\n-> {}\n", out.display())
+}
+
+fn scatter(value: Scatter, scale: f64, digits: usize) -> String {
+    match (value.mean, value.sd) {
+        (Some(mean), Some(sd)) => format!("{:.digits$} ± {:.digits$}", scale * mean, scale * sd),
+        (Some(mean), None) => format!("{:.digits$}", scale * mean),
+        (None, _) => "not reached".to_owned(),
+    }
+}
