@@ -37,7 +37,6 @@ use schema::{Fields, Layout};
 
 pub use error::RecordError;
 pub use file::Stamp;
-pub use schema::energy_term_name;
 pub use setup::{
     BodyFrame, BodyLoad, BodySample, EventLevel, GrainSample, LogAttachment, LogSetup, LoggedBody,
     LoggedShape,

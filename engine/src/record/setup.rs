@@ -27,7 +27,7 @@ pub struct LogSetup {
     pub bodies: Vec<LoggedBody>,
     /// Lowest and highest corner of the container [m], if it is to be drawn.
     pub container: Option<(Vec3, Vec3)>,
-    /// Names of the energy terms, each from [`energy_term_name`](super::energy_term_name).
+    /// Names of the energy terms, each a [`Term::key`](crate::ledger::Term::key).
     pub energy_terms: Vec<String>,
     /// Names of the origins of force on a body: `contact`, `gravity`, each added effect.
     pub force_origins: Vec<String>,

@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::*;
-use crate::ledger::ChannelKind;
 use crate::math::{Quat, Vec3};
 
 /// Steps between frames of the made-up run.
@@ -42,15 +41,14 @@ impl Drop for Scratch {
 }
 
 fn setup() -> LogSetup {
-    use ChannelKind::{Dissipated, Input, Stored};
     let energy_terms = [
-        (Stored, "kinetic-intruder"),
-        (Stored, "gravity"),
-        (Stored, "normal-elastic"),
-        (Dissipated, "sliding"),
-        (Input, "drive"),
+        "kinetic_intruder_J",
+        "potential_gravity_J",
+        "elastic_normal_elastic_J",
+        "dissipated_sliding_J",
+        "input_drive_J",
     ]
-    .map(|(kind, name)| energy_term_name(kind, name))
+    .map(str::to_owned)
     .to_vec();
     LogSetup {
         flush_every: 20,
