@@ -4,9 +4,9 @@ use crate::model::Model;
 use crate::stability;
 
 /// Memory per grain [byte].
-const BYTES_PER_GRAIN: u64 = 1000;
+const BYTES_PER_GRAIN: u64 = 2400;
 /// Memory that does not depend on the grains [byte].
-const BYTES_FIXED: u64 = 20_000_000;
+const BYTES_FIXED: u64 = 9_000_000;
 /// Speed of the engine on two cores [1/s].
 const GRAIN_STEPS_PER_S: f64 = 2e7;
 
