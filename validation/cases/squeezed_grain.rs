@@ -63,7 +63,7 @@ fn ways(ratio: f64, dt: f64) -> [f64; 2] {
     let bed = bed((Space::Planar, ROOM), gravity, &grains, vec![S1.stage()], 1);
     let intruder = large.disc(disc, Vec3::zeros(), Vec3::zeros());
     let mut world = World::new(bed, Box::new(intruder), dt);
-    let steps = (1.2 * (reach / GRAVITY).sqrt() / DT).round() * (DT / dt).round();
+    let steps = (2.5 * (reach / GRAVITY).sqrt() / DT).round() * (DT / dt).round();
     run(&mut world, steps as usize);
     [world.bed().grains.position[0].x - grain.x, world.intruder().bodies()[0].position.x - disc.x]
 }
