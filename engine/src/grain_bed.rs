@@ -156,6 +156,13 @@ impl GrainBed {
         (2 * pairs + walls) as f64 / self.grains.len() as f64
     }
 
+    /// Indices of the grains of every contact between grains that overlap, the smaller first,
+    /// ascending.
+    #[must_use]
+    pub fn touching_pairs(&self) -> Vec<[usize; 2]> {
+        self.contacts.touching_pairs()
+    }
+
     /// Half a kick and the drift of the grains; `dt` [s].
     pub(crate) fn kick_drift(&mut self, dt: f64) {
         self.fastest = self.grains.kick_drift(dt);

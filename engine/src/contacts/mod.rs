@@ -203,6 +203,19 @@ impl Contacts {
         (pairs, surfaces)
     }
 
+    /// Indices of the grains of every contact between grains that touch, ascending.
+    pub(crate) fn touching_pairs(&self) -> Vec<[usize; 2]> {
+        let mut touching = Vec::new();
+        for Block { pairs, .. } in &self.blocks {
+            for (row, &[i, j]) in pairs.keys().iter().enumerate() {
+                if pairs.is_touching(row) {
+                    touching.push([i as usize, j as usize]);
+                }
+            }
+        }
+        touching
+    }
+
     /// All tables, for a checkpoint.
     pub(crate) fn save(&self) -> Vec<SavedBlock> {
         self.blocks
