@@ -91,7 +91,10 @@ fn one_as_text(summary: &Summary, out: &Path) -> String {
         ),
     );
     line("energy", format!("{:.4e} J of the impact, of which", energy.initial));
-    let share = |value: f64| format!("{:8.2} %", 100.0 * value / energy.initial);
+    let share = |value: f64| match energy.initial {
+        initial if initial > 0.0 => format!("{:8.2} %", 100.0 * value / initial),
+        _ => format!("{value:12.4e} J"),
+    };
     for (name, value) in &energy.dissipated {
         line(&format!("  {}", name.replace('_', "-")), share(*value));
     }

@@ -53,7 +53,7 @@ pub enum StepError {
         step: u64,
         /// Energy unaccounted for [J].
         unaccounted: f64,
-        /// Initial energy of the intruder [J].
+        /// What it is compared with: the initial energy of the intruder [J].
         scale: f64,
         /// Their ratio.
         closure: f64,

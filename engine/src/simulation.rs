@@ -28,6 +28,7 @@ pub struct Simulation {
     stopping: Stopping,
     surface: f64,
     impact_energy: f64,
+    energy_scale: f64,
 }
 
 /// The state of a run between two steps, bit by bit.
@@ -63,7 +64,10 @@ impl Simulation {
         let stopping = Stopping::new(body.position, body.velocity);
         let surface = body.lowest();
         let impact_energy = bodies.iter().flat_map(|body| body.kinetic_energy()).sum::<f64>();
-        Self { world, settings, stopping, surface, impact_energy }
+        // An intruder let go from rest has no energy of impact to compare with.
+        let fall = body.mass * world.bed.gravity.norm() * 2.0 * body.surface().bounding_radius();
+        let energy_scale = if impact_energy > 0.0 { impact_energy } else { fall };
+        Self { world, settings, stopping, surface, impact_energy, energy_scale }
     }
 
     /// Moves on by one step.
@@ -98,7 +102,7 @@ impl Simulation {
         Err(StepError::OpenBudget {
             step: self.world.clock.step,
             unaccounted: self.world.books.ledger.balance().unaccounted,
-            scale: self.impact_energy,
+            scale: self.energy_scale,
             closure,
             limit: self.settings.abort_above,
             suggested_dt: 0.5 * self.settings.dt,
@@ -125,10 +129,11 @@ impl Simulation {
         &self.world.books.ledger
     }
 
-    /// Largest |energy unaccounted for| so far over the initial energy of the intruder.
+    /// Largest |energy unaccounted for| so far over the initial energy of the intruder; over what it
+    /// gains in falling its own size, if it is let go from rest.
     #[must_use]
     pub fn closure(&self) -> f64 {
-        self.world.books.ledger.closure(self.impact_energy)
+        self.world.books.ledger.closure(self.energy_scale)
     }
 
     /// Kinetic energy of the intruder at the start [J].
