@@ -72,6 +72,12 @@ impl Call {
         self
     }
 
+    /// In the folder `here`.
+    pub(crate) fn inside(mut self, here: &Path) -> Self {
+        self.0.current_dir(here);
+        self
+    }
+
     /// Adds `--set` for each of `settings`.
     pub(crate) fn set(mut self, settings: &[&str]) -> Self {
         for setting in settings {

@@ -11,8 +11,8 @@ use tempfile::TempDir;
 
 use crate::common::{Call, Ended, assert_same_run, folder, names, small_model, wait_for};
 
-/// A run until rest that flushes and checkpoints all the time.
-const BUSY: [&str; 3] = ["run.duration=0.15 s", "run.checkpoint_every=200", "log.flush_every=100"];
+/// A run that flushes and checkpoints all the time.
+const BUSY: [&str; 3] = ["run.duration=40 ms", "run.checkpoint_every=200", "log.flush_every=100"];
 
 const RANDOM_KILLS: u32 = 10;
 

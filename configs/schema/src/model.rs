@@ -253,6 +253,15 @@ pub struct Condition {
     pub x: StartX,
 }
 
+impl Condition {
+    /// Angle below the horizontal (deg), to 1e-9: what a file says as 30 deg is 30 here, and not the
+    /// 29.999999999999996 that comes back from radians.
+    #[must_use]
+    pub fn angle_deg(&self) -> f64 {
+        (self.angle_rad.to_degrees() * 1e9).round() / 1e9
+    }
+}
+
 /// Where an intruder starts along x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StartX {
