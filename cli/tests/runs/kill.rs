@@ -38,12 +38,12 @@ fn signal(child: &Child, name: &str) {
     assert!(Command::new("sh").args(["-c", &kill]).status().expect("a shell").success());
 }
 
-/// A busy run ended by SIGTERM after its first checkpoints.
-fn interrupted(out: &Path) -> Ended {
+/// Leaves in `out` a busy run ended by SIGTERM after its first checkpoints.
+fn interrupted(out: &Path) {
     let child = busy(out).start();
     wait_for(&out.join("checkpoint.prev"));
     signal(&child, "TERM");
-    Ended::of(child)
+    assert_eq!(Ended::of(child).code, Some(143));
 }
 
 /// Resumes and compares with the undisturbed run; gives what was said on the way.
@@ -134,6 +134,8 @@ const FLIPPED: Damage = |bytes| {
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
 };
+/// So densely that something is hit that matters: half of a log is indices, which nobody needs.
+const SPOTTED: Damage = |bytes| bytes.iter_mut().step_by(500).skip(1).for_each(|byte| *byte ^= 1);
 const CUT: Damage = |bytes| bytes.truncate(bytes.len() / 3);
 const EMPTIED: Damage = Vec::clear;
 
@@ -166,7 +168,7 @@ fn without_a_sound_checkpoint_a_run_starts_again_with_a_warning() {
 
 #[test]
 fn a_damaged_or_missing_log_starts_again_with_a_warning() {
-    for how in [FLIPPED, CUT, EMPTIED] {
+    for how in [SPOTTED, CUT, EMPTIED] {
         let out = folder();
         interrupted(out.path());
         damage(&out.path().join("run.mcap.partial"), how);

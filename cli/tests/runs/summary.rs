@@ -143,7 +143,12 @@ fn the_text_names_everything_and_aligns_it() {
     for name in ["stopping time", "depth", "range", "bed", "energy", "normal-damping", "closure"] {
         assert!(text.lines().any(|line| line.trim_start().starts_with(name)), "{name}: {text}");
     }
-    let shares: Vec<usize> =
-        text.lines().filter_map(|line| line.trim_end().strip_suffix(" %").map(str::len)).collect();
-    assert!(shares.len() >= 6 && shares.iter().all(|end| *end == shares[0]), "{text}");
+    let shares = || text.lines().filter_map(|line| line.split_once(" %"));
+    let ends: Vec<usize> = shares().map(|(before, _)| before.len()).collect();
+    assert!(ends.len() >= 6 && ends.iter().all(|end| *end == ends[0]), "{text}");
+    let percent =
+        |before: &str| before.split_whitespace().last().and_then(|word| word.parse().ok());
+    let sum: f64 = shares().map(|(before, _)| percent(before).unwrap_or(f64::NAN)).sum();
+    // Each is rounded to a hundredth.
+    assert!((sum - 100.0).abs() <= 0.005 * ends.len() as f64, "{sum} % in all: {text}");
 }

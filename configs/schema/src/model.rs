@@ -37,6 +37,7 @@ pub struct Model {
     pub conditions: Option<ConditionLists>,
     pub(crate) resolved: String,
     pub(crate) bed_key: String,
+    pub(crate) hash: String,
 }
 
 /// How long, how finely and from which seed.
@@ -313,10 +314,11 @@ impl Model {
         &self.resolved
     }
 
-    /// blake3 of [`Model::resolved_toml`], in hexadecimal.
+    /// blake3 of [`Model::resolved_toml`], in hexadecimal; of a table of grains the content counts, and
+    /// not where the file lies.
     #[must_use]
     pub fn hash(&self) -> String {
-        blake3::hash(self.resolved.as_bytes()).to_hex().to_string()
+        self.hash.clone()
     }
 
     /// Canonical text of everything that the prepared bed depends on, and of nothing else.

@@ -252,10 +252,11 @@ pub struct Group {
     pub closure: Scatter,
 }
 
-/// Mean and standard deviation of a sample; null where too few of them were reached.
+/// Mean and standard deviation over the `n` runs that reached the quantity; null where too few did.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the keys say what they are")]
 pub struct Scatter {
+    pub n: usize,
     pub mean: Option<f64>,
     pub sd: Option<f64>,
 }
@@ -266,6 +267,7 @@ impl Scatter {
         let mean = values.iter().sum::<f64>() / n;
         let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
         Self {
+            n: values.len(),
             mean: (!values.is_empty()).then_some(mean),
             sd: (values.len() > 1).then(|| (squares / (n - 1.0)).sqrt()),
         }
@@ -325,7 +327,7 @@ mod tests {
         let scatter = Scatter::of(&[1.0, 2.0, 3.0, 6.0]);
         assert_eq!(scatter.mean, Some(3.0));
         assert!((scatter.sd.unwrap() - (14.0_f64 / 3.0).sqrt()).abs() < 1e-15);
-        assert_eq!(Scatter::of(&[]), Scatter { mean: None, sd: None });
-        assert_eq!(Scatter::of(&[4.0]), Scatter { mean: Some(4.0), sd: None });
+        assert_eq!(Scatter::of(&[]), Scatter { n: 0, mean: None, sd: None });
+        assert_eq!(Scatter::of(&[4.0]), Scatter { n: 1, mean: Some(4.0), sd: None });
     }
 }
