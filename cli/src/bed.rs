@@ -37,7 +37,8 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     }
     if common.json {
         let mut object = json!(summary);
-        object["path"] = json!(bed.path);
+        // Not the path itself: one that is not UTF-8 cannot be encoded.
+        object["path"] = json!(bed.path.as_ref().map(|path| path.to_string_lossy()));
         object["mean_diameter_m"] = json!(report.mean_diameter);
         return output::json_to_stdout(&object);
     }

@@ -68,7 +68,7 @@ fn as_json(model: &Model, estimate: &Estimate) -> Value {
         "bed": { "grains": estimate.n_grains },
         "impacts": model.conditions().iter().map(|condition| json!({
             "speed_m_per_s": condition.speed,
-            "angle_deg": condition.angle_rad.to_degrees(),
+            "angle_deg": condition.angle_deg(),
             "position_index": condition.position_index,
         })).collect::<Vec<_>>(),
         "time": {

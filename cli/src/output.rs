@@ -121,6 +121,7 @@ pub(crate) fn bytes(count: u64) -> String {
         n if n < 1e6 => format!("{:.0} kB", n / 1e3),
         n if n < 1e9 => format!("{:.0} MB", n / 1e6),
         n if n < 1e12 => format!("{:.1} GB", n / 1e9),
-        n => format!("{:.1} TB", n / 1e12),
+        n if n < 1e15 => format!("{:.1} TB", n / 1e12),
+        n => format!("{:.1} PB", n / 1e15),
     }
 }

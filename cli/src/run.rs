@@ -62,7 +62,7 @@ fn report<T: serde::Serialize>(
 fn one_as_text(summary: &Summary, out: &Path) -> String {
     let Summary { impact, stop, energy, bed, cost, .. } = summary;
     let mut text = format!(
-        "{}: {} m/s at {:.4} deg onto {} grains\n\n",
+        "{}: {} m/s at {} deg onto {} grains\n\n",
         summary.name, impact.speed_m_per_s, impact.angle_deg, bed.grains
     );
     let mut line = |name: &str, value: String| {
@@ -83,30 +83,42 @@ fn one_as_text(summary: &Summary, out: &Path) -> String {
     line("at rest after", time(stop.rest_time_s));
     line("depth", format!("{:.2} mm", 1e3 * stop.depth_m));
     line("range", format!("{:.2} mm", 1e3 * stop.range_m));
+    let origin = match bed.cache.as_str() {
+        "hit" => "from the cache",
+        "miss" => "prepared now",
+        _ => "from its table",
+    };
     line(
         "bed",
         format!(
             "packing fraction {:.4}, {:.4} m high, coordination {:.2} ({})",
-            bed.packing_fraction, bed.height_m, bed.coordination, bed.cache
+            bed.packing_fraction, bed.height_m, bed.coordination, origin
         ),
     );
-    line("energy", format!("{:.4e} J of the impact, of which", energy.initial));
-    let share = |value: f64| match energy.initial {
-        initial if initial > 0.0 => format!("{:8.2} %", 100.0 * value / initial),
-        _ => format!("{value:12.4e} J"),
+    line("energy at impact", format!("{:.4e} J, of which in the end", energy.initial));
+    let mut share = |name: &str, value: f64, note: &str| {
+        // An intruder let go from rest has no energy of impact to take shares of.
+        let amount = match energy.initial {
+            initial if initial > 0.0 => format!("{:8.2} %", 100.0 * value / initial),
+            _ => format!("{value:12.4e} J"),
+        };
+        line(&format!("  {name}"), format!("{amount}  {note}").trim_end().to_owned());
     };
     for (name, value) in &energy.dissipated {
-        line(&format!("  {}", name.replace('_', "-")), share(*value));
+        share(&name.replace('_', "-"), *value, "lost");
     }
-    line("  held in springs", share(energy.at_end.elastic));
-    line("  given to grains", share(energy.at_end.grains));
-    line("  left to intruder", share(energy.at_end.intruder));
-    line("  unaccounted for", share(energy.unaccounted));
-    line("closure", format!("{:.1e} of the impact energy at worst", energy.closure));
+    share("springs", energy.at_end.elastic, "more than before");
+    share("grains", energy.at_end.grains, "more than before, in motion and height");
+    share("intruder", energy.at_end.intruder, "in motion, less the height it has lost");
+    for (name, value) in &energy.input {
+        share(&name.replace('_', "-"), -value, "put in");
+    }
+    share("unaccounted for", -energy.unaccounted, "");
+    line("closure", format!("{:.1e} of the energy at impact, at worst", energy.closure));
     line(
         "cost",
         format!(
-            "{} steps of {} s in {:.1} s on {} threads, {:.1} million grain-steps/s",
+            "{} steps of {:e} s in {:.1} s on {} threads, {:.1} million grain-steps/s",
             cost.steps,
             cost.dt_s,
             cost.wall_s,
@@ -121,29 +133,31 @@ fn list_as_text(summary: &ListSummary, out: &Path) -> String {
     let mut text = format!("{}: {} impacts\n\n", summary.name, summary.runs.len());
     let _ = writeln!(
         text,
-        "  {:>9} {:>9} {:>3}  {:>17} {:>17} {:>19} {:>19}",
+        "  {:>9} {:>9} {:>3}  {:>17} {:>17} {:>24} {:>24}",
         "speed m/s", "angle deg", "n", "depth mm", "range mm", "stopping time s", "rest time s"
     );
     for group in &summary.groups {
         let _ = writeln!(
             text,
-            "  {:>9} {:>9.2} {:>3}  {:>17} {:>17} {:>19} {:>19}",
+            "  {:>9} {:>9} {:>3}  {:>17} {:>17} {:>24} {:>24}",
             group.speed_m_per_s,
             group.angle_deg,
             group.n,
-            scatter(group.depth_m, 1e3, 2),
-            scatter(group.range_m, 1e3, 2),
-            scatter(group.stopping_time_s, 1.0, 4),
-            scatter(group.rest_time_s, 1.0, 4),
+            scatter(group.depth_m, group.n, 1e3, 2),
+            scatter(group.range_m, group.n, 1e3, 2),
+            scatter(group.stopping_time_s, group.n, 1.0, 4),
+            scatter(group.rest_time_s, group.n, 1.0, 4),
         );
     }
     format!("{text}\n-> {}\n", out.display())
 }
 
-fn scatter(value: Scatter, scale: f64, digits: usize) -> String {
-    match (value.mean, value.sd) {
+/// `value` of a group of `n` impacts; says so if not all of them reached it.
+fn scatter(value: Scatter, n: usize, scale: f64, digits: usize) -> String {
+    let text = match (value.mean, value.sd) {
         (Some(mean), Some(sd)) => format!("{:.digits$} ± {:.digits$}", scale * mean, scale * sd),
         (Some(mean), None) => format!("{:.digits$}", scale * mean),
-        (None, _) => "not reached".to_owned(),
-    }
+        (None, _) => return "not reached".to_owned(),
+    };
+    if value.n < n { format!("{text} ({} of {n})", value.n) } else { text }
 }

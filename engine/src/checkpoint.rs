@@ -120,7 +120,7 @@ pub fn load<T: DeserializeOwned>(path: &Path, key: &[u8; 32]) -> Result<T, Check
 /// why the first choice was not taken.
 ///
 /// # Errors
-/// If neither can be used: the error of the first.
+/// If neither can be used: the error of the first, or of the one before where the first is missing.
 pub fn load_latest<T: DeserializeOwned>(
     path: &Path,
     key: &[u8; 32],
@@ -129,8 +129,16 @@ pub fn load_latest<T: DeserializeOwned>(
         Ok(state) => Ok((state, None)),
         Err(first) => match load(&with_suffix(path, ".prev"), key) {
             Ok(state) => Ok((state, Some(first))),
-            Err(_) => Err(first),
+            Err(second) => Err(if first.is_missing() { second } else { first }),
         },
+    }
+}
+
+impl CheckpointError {
+    /// Whether there is no such file.
+    #[must_use]
+    pub fn is_missing(&self) -> bool {
+        matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::NotFound)
     }
 }
 
@@ -175,6 +183,16 @@ mod tests {
             fs::write(&path, &flipped).unwrap();
             assert!(load::<Vec<f64>>(&path, &[1; 32]).is_err(), "bit {bit}");
         }
+    }
+
+    #[test]
+    fn a_damaged_file_before_a_missing_one_is_not_taken_for_a_missing_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("state");
+        assert!(load_latest::<u32>(&path, &[1; 32]).unwrap_err().is_missing());
+        fs::write(with_suffix(&path, ".prev"), b"not ours").unwrap();
+        let error = load_latest::<u32>(&path, &[1; 32]).unwrap_err();
+        assert!(matches!(error, CheckpointError::Damaged { .. }));
     }
 
     #[test]

@@ -27,7 +27,7 @@ pub enum StepError {
     },
     /// A grain passed through another or through a wall.
     #[error(
-        "step {step}: grain {grain} overlaps its neighbour by {overlap:e} m, more than its radius of \
+        "step {step}: grain {grain} overlaps its neighbour by {overlap:.2e} m, more than its radius of \
          {radius:e} m; take a smaller time step than {dt:e} s or a stiffer contact"
     )]
     OverlapTooLarge {
@@ -44,9 +44,9 @@ pub enum StepError {
     },
     /// The energy budget no longer closes.
     #[error(
-        "step {step}: {unaccounted:e} J of {scale:e} J are unaccounted for, a closure of \
-         {closure:.3} where {limit} is allowed; try a time step of {suggested_dt:e} s \
-         (the largest overlap is {overlap:e} m at grain {grain})"
+        "step {step}: {unaccounted:.2e} J of {scale:.2e} J are unaccounted for, a closure of \
+         {closure:.1e} where {limit} is allowed; try a time step of {suggested_dt:e} s \
+         (the largest overlap is {overlap:.2e} m at grain {grain})"
     )]
     OpenBudget {
         /// The step.

@@ -162,8 +162,12 @@ impl Model {
         let failed = diagnostics.iter().any(|one| one.severity == Severity::Error);
         match read {
             Some((model, _)) if !failed => {
-                let (resolved, bed_key) = (resolved.text(), resolved.bed_key_text());
-                let model = Self { resolved, bed_key, ..model };
+                let model = Self {
+                    resolved: resolved.text(),
+                    bed_key: resolved.bed_key_text(),
+                    hash: blake3::hash(resolved.hashed_text().as_bytes()).to_hex().to_string(),
+                    ..model
+                };
                 Ok(Loaded { model, warnings: diagnostics, sources, original: text })
             }
             _ => Err(ConfigError::Invalid { diagnostics, sources }),

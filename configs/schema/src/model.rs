@@ -37,6 +37,7 @@ pub struct Model {
     pub conditions: Option<ConditionLists>,
     pub(crate) resolved: String,
     pub(crate) bed_key: String,
+    pub(crate) hash: String,
 }
 
 /// How long, how finely and from which seed.
@@ -253,6 +254,15 @@ pub struct Condition {
     pub x: StartX,
 }
 
+impl Condition {
+    /// Angle below the horizontal (deg), to 1e-9: what a file says as 30 deg is 30 here, and not the
+    /// 29.999999999999996 that comes back from radians.
+    #[must_use]
+    pub fn angle_deg(&self) -> f64 {
+        (self.angle_rad.to_degrees() * 1e9).round() / 1e9
+    }
+}
+
 /// Where an intruder starts along x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StartX {
@@ -304,10 +314,11 @@ impl Model {
         &self.resolved
     }
 
-    /// blake3 of [`Model::resolved_toml`], in hexadecimal.
+    /// blake3 of [`Model::resolved_toml`], in hexadecimal; of a table of grains the content counts, and
+    /// not where the file lies.
     #[must_use]
     pub fn hash(&self) -> String {
-        blake3::hash(self.resolved.as_bytes()).to_hex().to_string()
+        self.hash.clone()
     }
 
     /// Canonical text of everything that the prepared bed depends on, and of nothing else.

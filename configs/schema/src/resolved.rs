@@ -48,6 +48,16 @@ impl Resolved {
         out
     }
 
+    /// The whole model but for the place of its table of grains.
+    pub(crate) fn hashed_text(&self) -> String {
+        let mut out = String::new();
+        for section in self.sections.iter().filter(|section| !section.lines.is_empty()) {
+            let is_bed = section.header == "[bed]";
+            section.write(|key| !(is_bed && key == "file"), &mut out);
+        }
+        out
+    }
+
     /// Everything that the prepared bed depends on and nothing else: the seed, the gravity, the
     /// container, the recipe, and the contact law as far as it acts without an intruder.
     pub(crate) fn bed_key_text(&self) -> String {

@@ -88,6 +88,7 @@ pub(crate) fn model(root: TableReader<'_>, folder: &DataFolder<'_>) -> Option<(M
         conditions: conditions?,
         resolved: String::new(),
         bed_key: String::new(),
+        hash: String::new(),
     };
     Some((model, places))
 }

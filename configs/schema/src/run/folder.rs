@@ -31,22 +31,25 @@ pub(super) enum Found {
     Finished,
 }
 
-/// The files a run of one condition leaves or may have left.
-const OURS: [&str; 13] = [
-    "run.mcap",
+/// The files a finished run of one condition leaves.
+const RESULTS: [&str; 5] = ["run.mcap", "grains.mcap", "summary.json", "model.toml", "grains.csv"];
+
+/// The files an unfinished run may have left.
+const UNFINISHED: [&str; 10] = [
     "run.mcap.partial",
     "run.mcap.partial.new",
-    "grains.mcap",
     "grains.mcap.partial",
     "grains.mcap.partial.new",
-    "summary.json",
     "summary.json.partial",
-    "model.toml",
     "model.toml.partial",
-    "grains.csv",
+    "grains.csv.partial",
     "checkpoint",
+    "checkpoint.partial",
     "checkpoint.prev",
 ];
+
+/// The file whose lock says that a run writes here.
+const LOCK: &str = ".lock";
 
 /// A folder that this run alone writes to, as long as it lives.
 #[derive(Debug)]
@@ -58,10 +61,10 @@ pub(super) struct OutputFolder {
 impl OutputFolder {
     /// Takes hold of `path`, made if it is not there.
     pub(super) fn lock(path: &Path) -> Result<Self, RunError> {
-        fs::create_dir_all(path)
-            .map_err(|source| RunError::io("create the folder", path, source))?;
-        let name = path.join(".lock");
-        let lock = File::create(&name).map_err(|source| RunError::io("create", &name, source))?;
+        let refused = |source| RunError::Folder { folder: path.to_owned(), source };
+        fs::create_dir_all(path).map_err(refused)?;
+        let name = path.join(LOCK);
+        let lock = File::create(&name).map_err(refused)?;
         match lock.try_lock() {
             Ok(()) => Ok(Self { path: path.to_owned(), _lock: lock }),
             Err(TryLockError::WouldBlock) => Err(RunError::Busy { folder: path.to_owned() }),
@@ -93,6 +96,8 @@ impl OutputFolder {
             Err(source) => return Err(RunError::io("read", &self.file("model.toml"), source)),
         }
         if self.file("summary.json").exists() {
+            // A run killed after its last result left them.
+            self.tidy()?;
             Ok(Found::Finished)
         } else if existing == Existing::Resume {
             Ok(Found::Unfinished)
@@ -107,14 +112,14 @@ impl OutputFolder {
 
     /// Removes the results of earlier runs, and nothing else.
     fn clear(&self) -> Result<(), RunError> {
-        for name in OURS {
+        for name in RESULTS.iter().chain(&UNFINISHED) {
             remove(&self.file(name))?;
         }
         for entry in self.entries()? {
             let is_condition = entry.len() >= 3 && entry.bytes().all(|byte| byte.is_ascii_digit());
             let sub = self.file(&entry);
             if is_condition && sub.join("model.toml").exists() {
-                for name in OURS.iter().chain(&[".lock"]) {
+                for name in RESULTS.iter().chain(&UNFINISHED).chain(&[LOCK]) {
                     remove(&sub.join(name))?;
                 }
                 // Whatever else somebody put there stays, and keeps the folder.
@@ -125,14 +130,14 @@ impl OutputFolder {
     }
 
     /// Removes what only an unfinished run needs.
-    pub(super) fn drop_checkpoints(&self) -> Result<(), RunError> {
-        remove(&self.file("checkpoint"))?;
-        remove(&self.file("checkpoint.prev"))
+    pub(super) fn tidy(&self) -> Result<(), RunError> {
+        UNFINISHED.iter().try_for_each(|name| remove(&self.file(name)))
     }
 
-    /// A file or folder that no run of ours left unfinished.
+    /// A file or folder that is not from a run that was killed before it had its `model.toml`.
     fn stranger(&self) -> Result<Option<String>, RunError> {
-        Ok(self.entries()?.into_iter().find(|name| name != ".lock"))
+        let ours = [LOCK, "model.toml.partial"];
+        Ok(self.entries()?.into_iter().find(|name| !ours.contains(&name.as_str())))
     }
 
     fn entries(&self) -> Result<Vec<String>, RunError> {

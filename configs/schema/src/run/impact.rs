@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
-use engine::checkpoint::{self, CheckpointError};
+use engine::checkpoint;
 use engine::error::StepError;
 use engine::math::Vec3;
 use engine::parallel::n_threads;
@@ -18,8 +18,10 @@ use serde::{Deserialize, Serialize};
 use toml_edit::{DocumentMut, value};
 
 use super::folder::OutputFolder;
-use super::summary::StartEnergy;
-use super::{BedSummary, Control, CostSummary, PreparedBed, Progress, RunError, Summary, bed_key};
+use super::{
+    BedSummary, Control, CostSummary, FinalEnergy, PreparedBed, Progress, RunError, Summary,
+    bed_key,
+};
 use crate::load::{LoadOptions, ModelSource};
 use crate::model::{BedSource, Condition, Model};
 
@@ -41,13 +43,27 @@ pub(super) fn model_text(model: &Model) -> String {
     })
 }
 
-/// Writes `model.toml`, and the table of grains that it reads.
-pub(super) fn write_model(folder: &OutputFolder, model: &Model) -> Result<(), RunError> {
-    if let BedSource::Csv(csv) = &model.bed.source {
-        let table = folder.file(GRAINS);
-        fs::copy(&csv.file, &table).map_err(|source| RunError::io("write", &table, source))?;
+/// The table of grains of `model` as it was when the model was read; none if the bed settles.
+///
+/// It may lie in the output folder, so it is read before anything is written there.
+pub(super) fn table_of(model: &Model) -> Result<Option<Vec<u8>>, RunError> {
+    let BedSource::Csv(csv) = &model.bed.source else { return Ok(None) };
+    let table = fs::read(&csv.file).map_err(|source| RunError::io("read", &csv.file, source))?;
+    match blake3::hash(&table).to_hex().as_str() == csv.blake3 {
+        true => Ok(Some(table)),
+        false => Err(RunError::TableChanged { path: csv.file.clone() }),
     }
-    folder.write("model.toml", model_text(model).as_bytes())
+}
+
+/// Writes `model.toml`, and the table of grains that it reads.
+pub(super) fn write_model(
+    folder: &OutputFolder,
+    model: &Model,
+    table: Option<&[u8]>,
+) -> Result<(), RunError> {
+    // The model first: a folder with a table but no model would not be known as ours.
+    folder.write("model.toml", model_text(model).as_bytes())?;
+    table.map_or(Ok(()), |table| folder.write(GRAINS, table))
 }
 
 fn edited(model: &Model, edit: impl FnOnce(&mut DocumentMut)) -> String {
@@ -118,7 +134,7 @@ impl Setting<'_> {
     ) -> Result<Option<Summary>, RunError> {
         let mut run = self.open(folder, condition, control)?;
         // The ledger of a resumed run stands elsewhere, but its start is that of a new one.
-        let start = StartEnergy::of(&self.model.simulation(&self.bed.resting, condition)?);
+        let start = FinalEnergy::held_by(&self.model.simulation(&self.bed.resting, condition)?);
         let (clock, first_step) = (Instant::now(), run.simulation.clock().step);
         while !run.simulation.is_over() {
             run.advance()?;
@@ -144,7 +160,7 @@ impl Setting<'_> {
             Summary::new(self.model, condition, &run.simulation, &start, self.bed_summary, cost);
         run.log.finish()?;
         folder.write_json("summary.json", &summary)?;
-        folder.drop_checkpoints()?;
+        folder.tidy()?;
         Ok(Some(summary))
     }
 
@@ -181,11 +197,7 @@ impl Setting<'_> {
                 control.warn(&format!("{why}; going on from the checkpoint before"));
                 Some(saved)
             }
-            Err(CheckpointError::Io { ref source, .. })
-                if source.kind() == std::io::ErrorKind::NotFound =>
-            {
-                None
-            }
+            Err(why) if why.is_missing() => None,
             Err(why) => {
                 control.warn(&format!("{why}; starting again"));
                 None
@@ -211,11 +223,11 @@ impl Setting<'_> {
         }
         let log = RunLog::create(folder.path(), &setup)?;
         let mut run = Run { simulation, log, folder, key, steps_per_frame, checkpoint_every };
-        let (speed, angle) = (condition.speed, condition.angle_rad.to_degrees());
+        let (speed, angle) = (condition.speed, condition.angle_deg());
         run.log.event(
             run.stamp(),
             EventLevel::Info,
-            &format!("impact at {speed} m/s, {angle:.6} deg from the horizontal"),
+            &format!("impact at {speed} m/s, {angle} deg from the horizontal"),
         )?;
         run.record()?;
         Ok(run)
@@ -235,7 +247,7 @@ impl Setting<'_> {
                 ("bed_key", blake3::Hash::from_bytes(bed_key(model)).to_hex().to_string()),
                 ("seed", model.run.seed.to_string()),
                 ("speed_m_per_s", condition.speed.to_string()),
-                ("angle_deg", condition.angle_rad.to_degrees().to_string()),
+                ("angle_deg", condition.angle_deg().to_string()),
                 ("dt_s", simulation.clock().dt.to_string()),
                 ("grains", self.bed_summary.grains.to_string()),
             ]

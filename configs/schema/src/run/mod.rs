@@ -92,6 +92,20 @@ pub enum RunError {
         /// Why not.
         source: io::Error,
     },
+    /// A folder that cannot be written to.
+    #[error("cannot write to the folder {}: {source}", folder.display())]
+    Folder {
+        /// The folder.
+        folder: PathBuf,
+        /// Why not.
+        source: io::Error,
+    },
+    /// A table of grains is no longer what it was when the model was read.
+    #[error("{} changed while it was read", path.display())]
+    TableChanged {
+        /// The table.
+        path: PathBuf,
+    },
     /// Another run is writing there.
     #[error("another run is writing to {}", folder.display())]
     Busy {
@@ -167,6 +181,8 @@ impl RunError {
         matches!(
             self,
             Self::Busy { .. }
+                | Self::Folder { .. }
+                | Self::TableChanged { .. }
                 | Self::OtherInputs { .. }
                 | Self::Unfinished { .. }
                 | Self::NotEmpty { .. }
@@ -197,6 +213,7 @@ pub fn run(
     places: &Places,
     control: &mut dyn Control,
 ) -> Result<Outcome, RunError> {
+    let table = impact::table_of(model)?;
     let folder = OutputFolder::lock(&places.out)?;
     let conditions = model.conditions();
     let is_list = model.conditions.is_some();
@@ -216,7 +233,7 @@ pub fn run(
     for warning in &bed_summary.warnings {
         control.warn(warning);
     }
-    impact::write_model(&folder, model)?;
+    impact::write_model(&folder, model, table.as_deref())?;
     if !is_list {
         let setting =
             impact::Setting { model, original, bed: &bed, bed_summary: &bed_summary, of: (0, 1) };
@@ -232,7 +249,7 @@ pub fn run(
             summaries.push(sub.read_json("summary.json")?);
             continue;
         }
-        impact::write_model(&sub, &single)?;
+        impact::write_model(&sub, &single, table.as_deref())?;
         let of = (index, conditions.len());
         let setting =
             impact::Setting { model: &single, original, bed: &bed, bed_summary: &bed_summary, of };

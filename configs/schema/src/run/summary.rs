@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use engine::bed::BedReport;
-use engine::ledger::{ChannelKind, Term, TermKind};
+use engine::ledger::{ChannelKind, TermKind};
 use engine::simulation::Simulation;
 use serde::{Deserialize, Serialize};
 
@@ -47,7 +47,8 @@ pub struct StopSummary {
     pub range_m: f64,
 }
 
-/// Where the energy went.
+/// Where the energy went: `initial` is `final` plus what was dissipated, less what was put in and what
+/// is unaccounted for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
 pub struct EnergySummary {
@@ -58,12 +59,16 @@ pub struct EnergySummary {
     /// By channel, `snake_case`.
     #[serde(rename = "dissipated_J")]
     pub dissipated: BTreeMap<String, f64>,
+    /// By channel, `snake_case`; left out if no law puts energy in.
+    #[serde(rename = "input_J", skip_serializing_if = "BTreeMap::is_empty", default)]
+    pub input: BTreeMap<String, f64>,
     #[serde(rename = "unaccounted_J")]
     pub unaccounted: f64,
     pub closure: f64,
 }
 
-/// What is still there at the end; potential energy counts from the start of the impact.
+/// What is still there at the end. Potential energy and everything of the bed count from the start of
+/// the impact: the springs of a bed at rest hold energy that is not the intruder's.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
 pub struct FinalEnergy {
@@ -100,19 +105,20 @@ pub struct CostSummary {
     pub grain_steps_per_s: f64,
 }
 
-/// The state of the ledger at the start, which the end is compared with.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct StartEnergy {
-    intruder_potential: f64,
-    grains_potential: f64,
-}
-
-impl StartEnergy {
-    pub(super) fn of(simulation: &Simulation) -> Self {
-        let value = |key| simulation.ledger().value(key).unwrap_or(0.0);
+impl FinalEnergy {
+    /// What the ledger of `simulation` holds now, the intruder's kinetic and potential energy, and the
+    /// bed's.
+    pub(super) fn held_by(simulation: &Simulation) -> Self {
+        let ledger = simulation.ledger();
+        let value = |key| ledger.value(key).unwrap_or(0.0);
         Self {
-            intruder_potential: value("potential_intruder_J"),
-            grains_potential: value("potential_grains_J"),
+            intruder: value("kinetic_intruder_translation_J")
+                + value("kinetic_intruder_rotation_J")
+                + value("potential_intruder_J"),
+            grains: value("kinetic_grains_translation_J")
+                + value("kinetic_grains_rotation_J")
+                + value("potential_grains_J"),
+            elastic: ledger.sum(|term| term.kind == TermKind::Channel(ChannelKind::Stored)),
         }
     }
 }
@@ -166,21 +172,21 @@ impl Summary {
         model: &Model,
         condition: &Condition,
         simulation: &Simulation,
-        start: &StartEnergy,
+        start: &FinalEnergy,
         bed: &BedSummary,
         cost: CostSummary,
     ) -> Self {
         let stop = simulation.stopping();
         let ledger = simulation.ledger();
-        let value = |key| ledger.value(key).unwrap_or(0.0);
-        let is = |kind| move |term: &Term| term.kind == TermKind::Channel(kind);
-        let dissipated = ledger
-            .terms()
-            .iter()
-            .zip(&ledger.balance().values)
-            .filter(|(term, _)| term.kind == TermKind::Channel(ChannelKind::Dissipated))
-            .map(|(term, value)| (term.name.replace('-', "_"), *value))
-            .collect();
+        let by_channel = |kind| {
+            let terms = ledger.terms().iter().zip(&ledger.balance().values);
+            terms
+                .filter(|(term, _)| term.kind == TermKind::Channel(kind))
+                .map(|(term, value)| (term.name.replace('-', "_"), *value))
+                .collect()
+        };
+        let end = FinalEnergy::held_by(simulation);
+        let initial = simulation.impact_energy();
         Self {
             name: model.run.name.clone(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -188,7 +194,7 @@ impl Summary {
             medium: "grains".to_owned(),
             impact: ImpactSummary {
                 speed_m_per_s: condition.speed,
-                angle_deg: condition.angle_rad.to_degrees(),
+                angle_deg: condition.angle_deg(),
                 x_m: model.start_x(condition),
                 position_index: condition.position_index,
             },
@@ -202,19 +208,15 @@ impl Summary {
                 range_m: stop.range(),
             },
             energy: EnergySummary {
-                initial: simulation.impact_energy(),
+                initial,
                 at_end: FinalEnergy {
-                    intruder: value("kinetic_intruder_translation_J")
-                        + value("kinetic_intruder_rotation_J")
-                        + value("potential_intruder_J")
-                        - start.intruder_potential,
-                    grains: value("kinetic_grains_translation_J")
-                        + value("kinetic_grains_rotation_J")
-                        + value("potential_grains_J")
-                        - start.grains_potential,
-                    elastic: ledger.sum(is(ChannelKind::Stored)),
+                    // Its kinetic energy at the start is the energy of the impact.
+                    intruder: end.intruder - (start.intruder - initial),
+                    grains: end.grains - start.grains,
+                    elastic: end.elastic - start.elastic,
                 },
-                dissipated,
+                dissipated: by_channel(ChannelKind::Dissipated),
+                input: by_channel(ChannelKind::Input),
                 unaccounted: ledger.balance().unaccounted,
                 closure: simulation.closure(),
             },
@@ -250,10 +252,11 @@ pub struct Group {
     pub closure: Scatter,
 }
 
-/// Mean and standard deviation of a sample; null where too few of them were reached.
+/// Mean and standard deviation over the `n` runs that reached the quantity; null where too few did.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the keys say what they are")]
 pub struct Scatter {
+    pub n: usize,
     pub mean: Option<f64>,
     pub sd: Option<f64>,
 }
@@ -264,6 +267,7 @@ impl Scatter {
         let mean = values.iter().sum::<f64>() / n;
         let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
         Self {
+            n: values.len(),
             mean: (!values.is_empty()).then_some(mean),
             sd: (values.len() > 1).then(|| (squares / (n - 1.0)).sqrt()),
         }
@@ -323,7 +327,7 @@ mod tests {
         let scatter = Scatter::of(&[1.0, 2.0, 3.0, 6.0]);
         assert_eq!(scatter.mean, Some(3.0));
         assert!((scatter.sd.unwrap() - (14.0_f64 / 3.0).sqrt()).abs() < 1e-15);
-        assert_eq!(Scatter::of(&[]), Scatter { mean: None, sd: None });
-        assert_eq!(Scatter::of(&[4.0]), Scatter { mean: Some(4.0), sd: None });
+        assert_eq!(Scatter::of(&[]), Scatter { n: 0, mean: None, sd: None });
+        assert_eq!(Scatter::of(&[4.0]), Scatter { n: 1, mean: Some(4.0), sd: None });
     }
 }
