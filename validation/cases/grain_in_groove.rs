@@ -40,8 +40,8 @@ const LAW: Linear = Linear {
 };
 const DT: f64 = 1e-6;
 
-/// From 5° to 30° off the top: there friction still holds the roll at every ratio.
-const FROM: f64 = 5.0 * PI / 180.0;
+/// From 1° to 30° off the top: there friction still holds the roll at every ratio.
+const FROM: f64 = 1.0 * PI / 180.0;
 const TO: f64 = 30.0 * PI / 180.0;
 
 fn ratios() -> Vec<Outcome> {
@@ -72,7 +72,7 @@ fn ratio(ratio: f64) -> [Outcome; 2] {
                and a grain that sticks never arrives";
     [
         Outcome::near(
-            format!("ratio {ratio}: time from 5° to 30° off the top (s)"),
+            format!("ratio {ratio}: time from 1° to 30° off the top (s)"),
             world.clock().time(),
             (time, 0.01 * time),
             why,
