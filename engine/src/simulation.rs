@@ -183,7 +183,7 @@ impl Simulation {
         self.stopping = saved.stopping;
         self.surface = saved.surface;
         self.impact_energy = saved.impact_energy;
-        saved.clock.dt == self.settings.dt
+        saved.clock.dt.to_bits() == self.settings.dt.to_bits()
             && self.world.books.ledger.restore(saved.balance)
             && self.world.intruder.restore(&saved.intruder)
             && self.world.bed.restore(saved.bed)

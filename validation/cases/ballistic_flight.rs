@@ -18,7 +18,7 @@ const STEPS: usize = 10_000;
 
 fn flights() -> Vec<Outcome> {
     let gravity = Vec3::new(0.5, 0.0, -9.81);
-    let (from, thrown) = (MIDDLE, Vec3::new(-1.0, 0.0, 1.5));
+    let (from, thrown) = (MIDDLE, Vec3::new(1.0, 0.0, 1.5));
     let (other, dropped) = (MIDDLE + Vec3::x() * 0.2, Vec3::new(0.3, 0.0, 0.0));
     let bed =
         bed((Space::Planar, ROOM), gravity, &[SMALL.grain(from, thrown)], vec![S1.stage()], 1);

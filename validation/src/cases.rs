@@ -6,6 +6,8 @@ use crate::case::Case;
 mod ballistic_flight;
 #[path = "../cases/friction_on_incline.rs"]
 mod friction_on_incline;
+#[path = "../cases/grain_in_groove.rs"]
+mod grain_in_groove;
 #[path = "../cases/head_on_collision.rs"]
 mod head_on_collision;
 #[path = "../cases/oblique_collision_energy.rs"]
@@ -26,4 +28,5 @@ pub static CASES: &[&Case] = &[
     &sliding_to_rolling::CASE,
     &rolling_to_rest::CASE,
     &squeezed_grain::CASE,
+    &grain_in_groove::CASE,
 ];

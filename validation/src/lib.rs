@@ -6,6 +6,7 @@
 pub mod case;
 mod cases;
 pub mod encounter;
+pub mod fixed;
 pub mod rig;
 
 pub use case::{Case, Expected, Outcome};

@@ -12,8 +12,8 @@ use engine::math::Vec3;
 use engine::params::ParamTable;
 use engine::world::World;
 
-/// Where free experiments happen (m): near the origin, so that positions have fine round-off.
-pub const MIDDLE: Vec3 = Vec3::new(0.5, 0.0, 0.5);
+/// Where free experiments happen (m): below an eighth of a metre positions are rounded to 7e-18 m.
+pub const MIDDLE: Vec3 = Vec3::new(0.09375, 0.0, 0.09375);
 
 /// A container a metre wide and deep.
 pub const ROOM: Container = Container { width: 1.0, depth: 1.0 };

@@ -1,5 +1,7 @@
 //! The same impacts on the same bed as in an independent DEM code, before chaos takes over.
 
+#![allow(clippy::print_stdout, reason = "the deviations, shown where the test fails")]
+
 use std::path::PathBuf;
 
 use engine::body::RigidBody;

@@ -32,7 +32,6 @@ fn resting_bed() -> &'static RestingBed {
         while settling.clock().step < 1_000 || settling.restlessness() > 100.0 {
             settling.advance().expect("a sound step");
         }
-        println!("settled for {} s", settling.clock().time());
         settling.bed().resting()
     })
 }
@@ -57,13 +56,11 @@ fn closure(speed: f64, dt: f64) -> f64 {
 #[test]
 fn an_impact_on_two_thousand_grains_accounts_for_its_energy_to_second_order() {
     let at_10_us = [1.0, 2.0, 3.0].map(|speed| closure(speed, 1e-5));
-    println!("{at_10_us:?}");
     for (closure, speed) in at_10_us.iter().zip([1, 2, 3]) {
         // 6e-4, 4e-4 and 3e-4 in an independent study of 3 000 grains.
         assert!(*closure <= 1e-3, "{speed} m/s: {closure:e}");
     }
     let at_5_us = closure(2.0, 5e-6);
-    println!("{at_5_us}");
     // Second order divides by four.
     assert!(at_10_us[1] / at_5_us >= 3.5, "{:e} against {at_5_us:e}", at_10_us[1]);
 }
@@ -98,7 +95,6 @@ fn without_dissipation_the_energy_of_a_box_of_grains_does_not_drift() {
     .expect("one thread");
     let worst = series.iter().fold(0.0_f64, |worst, value| worst.max(value.abs()));
     let trend = slope(&series) * series.len() as f64;
-    println!("worst {worst:e}, trend {trend:e}");
     // A spring touched in mid-step errs by up to (ω₀ dt/2)² = 7e-5 of the energy of the two, either
     // way: some thousand collisions of two among two hundred add up to a hundredth of that.
     assert!(worst <= 1e-4, "{worst:e}");

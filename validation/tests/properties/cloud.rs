@@ -9,16 +9,16 @@ use engine::world::World;
 use rand::RngExt;
 use validation::rig::{MIDDLE, ROOM, S1, Size, bed, rolling};
 
-/// A collision of two of the small grains lasts 60 µs.
-pub(crate) const DT: f64 = 2e-6;
+/// A collision of two of the small grains lasts 0.12 ms.
+pub(crate) const DT: f64 = 4e-6;
 
 /// Of the small grains (m).
-pub(crate) const DIAMETER: f64 = 1e-3;
+pub(crate) const DIAMETER: f64 = 2e-3;
 
 /// The small ones, and ones four times as wide.
-const SIZES: [Size; 2] = [Size { radius: 5e-4, mass: 2.4e-6 }, Size { radius: 2e-3, mass: 3.8e-5 }];
+const SIZES: [Size; 2] = [Size { radius: 1e-3, mass: 9.4e-6 }, Size { radius: 4e-3, mass: 1.5e-4 }];
 
-const DISC: Size = Size { radius: 1e-2, mass: 2e-3 };
+const DISC: Size = Size { radius: 1.5e-2, mass: 2e-3 };
 
 /// Grains, and a disc with velocity (m/s) and spin (rad/s).
 #[derive(Clone)]
@@ -40,10 +40,10 @@ impl Cloud {
         let mut grains: Vec<Grain> = Vec::new();
         while grains.len() < n {
             let size = SIZES[grains.len() % 2];
-            let place = Vec3::new(number(-0.04, 0.04), 0.0, number(-0.04, 0.04));
+            let place = Vec3::new(number(-0.06, 0.06), 0.0, number(-0.06, 0.06));
             let reach = place.norm();
             let position = MIDDLE + place;
-            let free = reach < 0.04
+            let free = reach < 0.06
                 && reach > 1.05 * (DISC.radius + size.radius)
                 && grains.iter().all(|other| {
                     (other.position - position).norm() > 1.05 * (other.radius + size.radius)
