@@ -11,12 +11,12 @@ use crate::registry::{ActsOn, FromParams, LawEntry};
 /// Linear springs along the normal and in the contact plane, damping scaled with the reduced mass,
 /// and a Coulomb limit.
 ///
-/// F_n = k_n δ + m_r γ_n dδ/dt   [N], repulsion positive; it may attract while damping exceeds the
+/// F_n = k_n δ + m_r γ_n dδ/dt   (N), repulsion positive; it may attract while damping exceeds the
 /// spring, as the source prints it
 ///
 /// F_t = −(k_t ξ + m_r γ_t v_t), |F_t| ≤ μ |F_n|
 ///
-/// ξ [m] is the tangential spring, kept in [`Memory`] and turned with the contact plane. Above the
+/// ξ (m) is the tangential spring, kept in [`Memory`] and turned with the contact plane. Above the
 /// limit the viscous part is dropped and ξ = −F_t/k_t: with the γ_t of the source the dashpot alone
 /// exceeds the limit almost always, and keeping it would wind the spring backwards.
 ///
@@ -37,7 +37,7 @@ pub(crate) struct LinearSpringDashpot {
 pub(crate) struct Pair {
     normal_stiffness: f64,
     tangential_stiffness: f64,
-    /// 1/k_t [m/N].
+    /// 1/k_t (m/N).
     tangential_compliance: f64,
     normal_damping_rate: f64,
     tangential_damping_rate: f64,
@@ -48,11 +48,11 @@ pub(crate) struct Pair {
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(crate) struct Memory {
-    /// ξ [m].
+    /// ξ (m).
     spring: Vec3,
-    /// Damping force at the end of the last step [N].
+    /// Damping force at the end of the last step (N).
     normal_damping: f64,
-    /// Viscous resistance at the end of the last step [N].
+    /// Viscous resistance at the end of the last step (N).
     tangential_damping: Vec3,
 }
 

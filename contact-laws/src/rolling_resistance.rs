@@ -10,11 +10,11 @@ use crate::registry::{ActsOn, FromParams, LawEntry};
 
 /// A couple against rolling: a spring in the relative rotation with a dashpot, and a plastic limit.
 ///
-/// M = −(k_r θ + c_r dθ/dt), |M| ≤ μ_r R* |F_n|   [N m]
+/// M = −(k_r θ + c_r dθ/dt), |M| ≤ μ_r R* |F_n|   (N m)
 ///
 /// k_r = 2.25 k_n (μ_r R*)², c_r = 2 η_r √(I_r k_r), 1/I_r = Σ 1/(I + m R²)
 ///
-/// θ [rad] is the relative rotation ω_i − ω_j summed over the contact, without its part along the
+/// θ (rad) is the relative rotation ω_i − ω_j summed over the contact, without its part along the
 /// normal. While it yields the dashpot is dropped and θ = −M/k_r. k_n is the stiffness that the base
 /// law reports; R* is half a radius for equal grains and the radius at a wall, so codes that scale
 /// with R or the diameter have another μ_r.
@@ -38,9 +38,9 @@ pub(crate) struct Pair {
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(crate) struct Memory {
-    /// θ [rad].
+    /// θ (rad).
     angle: Vec3,
-    /// Viscous couple at the end of the last step [N m].
+    /// Viscous couple at the end of the last step (N m).
     damping: Vec3,
 }
 

@@ -13,9 +13,9 @@ use crate::world::World;
 /// What a run is told besides the bed and the intruder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Length of a step [s].
+    /// Length of a step (s).
     pub dt: f64,
-    /// The run ends here at the latest [s].
+    /// The run ends here at the latest (s).
     pub duration: f64,
     /// Closure above which the run is given up.
     pub abort_above: f64,
@@ -136,7 +136,7 @@ impl Simulation {
         self.world.books.ledger.closure(self.energy_scale)
     }
 
-    /// Kinetic energy of the intruder at the start [J].
+    /// Kinetic energy of the intruder at the start (J).
     #[must_use]
     pub fn impact_energy(&self) -> f64 {
         self.impact_energy
@@ -154,7 +154,7 @@ impl Simulation {
         &self.stopping
     }
 
-    /// Height of the undisturbed surface [m]: where the lowest point of the intruder was at the
+    /// Height of the undisturbed surface (m): where the lowest point of the intruder was at the
     /// start.
     #[must_use]
     pub fn surface(&self) -> f64 {

@@ -7,7 +7,7 @@ use crate::math::Vec3;
 /// A speed below this share of the greatest so far counts as rest.
 const REST_SPEED: f64 = 0.05;
 
-/// How long [s] an intruder has to be at rest before the impact is over.
+/// How long (s) an intruder has to be at rest before the impact is over.
 const REST_HOLD: f64 = 0.01;
 
 /// Follows one impact and notes its stopping times, depth and range.
@@ -49,7 +49,7 @@ struct Stop {
 }
 
 impl Stopping {
-    /// An impact that starts at `position` [m] with `velocity` [m/s].
+    /// An impact that starts at `position` (m) with `velocity` (m/s).
     #[must_use]
     pub fn new(position: Vec3, velocity: Vec3) -> Self {
         let speed = velocity.norm();
@@ -75,7 +75,7 @@ impl Stopping {
         }
     }
 
-    /// Takes note of the state at `time` [s].
+    /// Takes note of the state at `time` (s).
     pub fn observe(&mut self, time: f64, position: Vec3, velocity: Vec3) {
         let now = Sample {
             time,
@@ -115,38 +115,38 @@ impl Stopping {
             && self.rest_since.is_some_and(|since| self.now - since >= REST_HOLD)
     }
 
-    /// The larger stopping time [s].
+    /// The larger stopping time (s).
     #[must_use]
     pub fn stopping_time(&self) -> Option<f64> {
         Some(self.horizontal_time()?.max(self.vertical?))
     }
 
-    /// When the horizontal velocity first came to zero [s].
+    /// When the horizontal velocity first came to zero (s).
     #[must_use]
     pub fn horizontal_time(&self) -> Option<f64> {
         self.horizontal.map(|stop| stop.time)
     }
 
-    /// When the vertical velocity first came to zero [s].
+    /// When the vertical velocity first came to zero (s).
     #[must_use]
     pub fn vertical_time(&self) -> Option<f64> {
         self.vertical
     }
 
-    /// Since when the speed has stayed below 5 % of the greatest [s].
+    /// Since when the speed has stayed below 5 % of the greatest (s).
     #[must_use]
     pub fn rest_time(&self) -> Option<f64> {
         self.rest_since
     }
 
-    /// Largest depth of the lowest point below where it was at the start [m], up to the stopping
+    /// Largest depth of the lowest point below where it was at the start (m), up to the stopping
     /// time. For a body that turns, of its centre.
     #[must_use]
     pub fn depth(&self) -> f64 {
         self.deepest
     }
 
-    /// Horizontal distance covered when the horizontal velocity first came to zero [m]; until then,
+    /// Horizontal distance covered when the horizontal velocity first came to zero (m); until then,
     /// the distance so far.
     #[must_use]
     pub fn range(&self) -> f64 {
@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_vertical_impact_has_no_horizontal_stopping_time() {
-        let v = Vec3::new(2.0 * (0.5 * std::f64::consts::PI).cos(), 0.0, -2.0);
+        let v = Vec3::new(2.0 * libm::cos(0.5 * std::f64::consts::PI), 0.0, -2.0);
         let stopping = decelerate(v, Vec3::new(0.0, 0.0, 8.0), 1e-3);
         assert_eq!(stopping.horizontal_time(), Some(0.0));
         assert!((stopping.stopping_time().unwrap() - 0.25).abs() < 1e-12);
@@ -201,8 +201,8 @@ mod tests {
         for step in 1..=400 {
             let t = f64::from(step) * 1e-3;
             let phase = std::f64::consts::PI * t.min(0.2) / 0.2;
-            let z = phase.cos() - 1.0;
-            let v = if t < 0.2 { -phase.sin() } else { 0.0 };
+            let z = libm::cos(phase) - 1.0;
+            let v = if t < 0.2 { -libm::sin(phase) } else { 0.0 };
             stopping.observe(t, Vec3::new(0.0, 0.0, z), Vec3::new(0.0, 0.0, v));
         }
         assert!((stopping.stopping_time().unwrap() - 0.2).abs() < 1e-12);

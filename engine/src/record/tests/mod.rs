@@ -85,7 +85,7 @@ fn stamp(step: u64) -> Stamp {
 /// Writes every message of one step of the made-up run.
 fn write_step(log: &mut RunLog, step: u64, n_grains: u32) -> Result<(), RecordError> {
     let at = stamp(step);
-    let x = (step as f64 * 0.1).sin();
+    let x = libm::sin(step as f64 * 0.1);
     log.energy(at, &[x * x, 1.0, 0.5 * x, 2.0, 0.25], 1e-9 * x, 1e-9)?;
     for body in 0..2 {
         let sample = BodySample {
