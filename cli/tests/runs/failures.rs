@@ -55,6 +55,17 @@ fn an_open_energy_budget_ends_the_run_with_step_and_smaller_step_and_a_readable_
     assert_eq!(call().arg("--resume").fails(1), message);
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_result_that_cannot_be_said_is_a_failure() {
+    let out = folder();
+    let call = || Call::run(out.path()).set(&["run.duration=1 ms"]);
+    let message = call().after("exec >/dev/full").fails(1);
+    assert!(message.contains("stdout"), "{message}");
+    // The run itself is done.
+    call().done();
+}
+
 #[test]
 fn a_time_step_that_is_too_large_is_refused_with_one_that_is_not() {
     let out = folder();
