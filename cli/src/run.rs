@@ -97,8 +97,12 @@ fn one_as_text(summary: &Summary, out: &Path) -> String {
     );
     line("energy at impact", format!("{:.4e} J, of which in the end", energy.initial));
     let mut share = |name: &str, value: f64, note: &str| {
-        let percent = 100.0 * value / energy.initial;
-        line(&format!("  {name}"), format!("{percent:8.2} %  {note}").trim_end().to_owned());
+        // An intruder let go from rest has no energy of impact to take shares of.
+        let amount = match energy.initial {
+            initial if initial > 0.0 => format!("{:8.2} %", 100.0 * value / initial),
+            _ => format!("{value:12.4e} J"),
+        };
+        line(&format!("  {name}"), format!("{amount}  {note}").trim_end().to_owned());
     };
     for (name, value) in &energy.dissipated {
         share(&name.replace('_', "-"), *value, "lost");

@@ -11,12 +11,12 @@ use crate::registry::{ActsOn, FromParams, LawEntry};
 /// Linear springs along the normal and in the contact plane, damping scaled with the reduced mass,
 /// and a Coulomb limit.
 ///
-/// F_n = k_n δ + m_r γ_n dδ/dt   [N], repulsion positive; it may attract while damping exceeds the
+/// F_n = k_n δ + m_r γ_n dδ/dt   (N), repulsion positive; it may attract while damping exceeds the
 /// spring, as the source prints it
 ///
 /// F_t = −(k_t ξ + m_r γ_t v_t), |F_t| ≤ μ |F_n|
 ///
-/// ξ [m] is the tangential spring, kept in [`Memory`] and turned with the contact plane. Above the
+/// ξ (m) is the tangential spring, kept in [`Memory`] and turned with the contact plane. Above the
 /// limit the viscous part is dropped and ξ = −F_t/k_t: with the γ_t of the source the dashpot alone
 /// exceeds the limit almost always, and keeping it would wind the spring backwards.
 ///
@@ -37,7 +37,7 @@ pub(crate) struct LinearSpringDashpot {
 pub(crate) struct Pair {
     normal_stiffness: f64,
     tangential_stiffness: f64,
-    /// 1/k_t [m/N].
+    /// 1/k_t (m/N).
     tangential_compliance: f64,
     normal_damping_rate: f64,
     tangential_damping_rate: f64,
@@ -48,11 +48,11 @@ pub(crate) struct Pair {
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(crate) struct Memory {
-    /// ξ [m].
+    /// ξ (m).
     spring: Vec3,
-    /// Damping force at the end of the last step [N].
+    /// Damping force at the end of the last step (N).
     normal_damping: f64,
-    /// Viscous resistance at the end of the last step [N].
+    /// Viscous resistance at the end of the last step (N).
     tangential_damping: Vec3,
 }
 
@@ -229,3 +229,88 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
     params: PARAMS,
     ..LawEntry::of::<LinearSpringDashpot>()
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// γ = 0, μ = 1/2; overlap of 1e-4 m, so F_n = 0.1 N and the limit is 0.05 N.
+    const FRICTION: f64 = 0.5;
+    const STIFFNESS: f64 = 1000.0;
+
+    fn act(damping_rate: f64, slip_step: f64, slip_rate: f64, history: &mut Memory) -> Outcome {
+        let law = LinearSpringDashpot {
+            normal_stiffness: STIFFNESS,
+            tangential_stiffness: STIFFNESS,
+            normal_damping_rate: 0.0,
+            tangential_damping_rate: damping_rate,
+            friction: [FRICTION; 3],
+        };
+        let contact = Contact {
+            normal: Vec3::z(),
+            overlap: 1e-4,
+            overlap_rate: 0.0,
+            overlap_step: 0.0,
+            slip_velocity: Vec3::x() * slip_rate,
+            slip_step: Vec3::x() * slip_step,
+            relative_spin: Vec3::zeros(),
+            relative_turn: Vec3::zeros(),
+            inverse_radius_eff: 1e3,
+            inverse_mass_eff: 1e4,
+            rolling_mobility: 1e9,
+            partner: Partner::Grain,
+        };
+        let (mut response, mut energy) = (Response::default(), bytemuck::Zeroable::zeroed());
+        let pair = law.pair(Partner::Grain);
+        LinearSpringDashpot::act(&pair, &contact, 1e-5, history, &mut response, &mut energy);
+        Outcome { response, energy }
+    }
+
+    struct Outcome {
+        response: Response,
+        energy: Energy,
+    }
+
+    /// Sums of a handful of terms of order one.
+    fn close(value: f64, expected: f64) -> bool {
+        (value - expected).abs() <= 1e-14 * expected.abs().max(1e-3)
+    }
+
+    #[test]
+    fn a_sliding_contact_resists_with_friction_times_the_normal_force_and_cuts_its_spring() {
+        let mut history = bytemuck::Zeroable::zeroed();
+        let slip = 1e-3;
+        let Outcome { response, energy } = act(0.0, slip, 100.0, &mut history);
+        let limit = FRICTION * response.normal_force;
+        assert!(close(response.normal_force, 0.1));
+        assert!(close(response.tangential_force.x, -limit));
+        assert!(close(history.spring.x, limit / STIFFNESS));
+        // From no force to the limit, so half the limit on average, over what was not stored.
+        assert!(close(energy.sliding, 0.5 * limit * (slip - history.spring.x)));
+        // From the limit on, all of it over all of the way.
+        let Outcome { energy, .. } = act(0.0, slip, 100.0, &mut history);
+        assert!(close(energy.sliding, limit * slip));
+    }
+
+    #[test]
+    fn a_sliding_contact_drops_its_viscous_part() {
+        let mut history = bytemuck::Zeroable::zeroed();
+        let Outcome { response, energy } = act(8e3, 1e-6, 0.1, &mut history);
+        assert!(close(response.tangential_force.x, -FRICTION * response.normal_force));
+        assert!(close(history.spring.x, -response.tangential_force.x / STIFFNESS));
+        assert!(close(energy.tangential_damping, 0.0));
+        assert!(close(history.tangential_damping.norm(), 0.0));
+    }
+
+    #[test]
+    fn a_sticking_contact_gives_back_what_its_spring_took() {
+        let mut history = bytemuck::Zeroable::zeroed();
+        let there = act(0.0, 2e-5, 2.0, &mut history);
+        assert!(close(there.response.tangential_force.x, -2e-5 * STIFFNESS));
+        assert!(close(there.energy.tangential, 0.5 * STIFFNESS * 2e-5 * 2e-5));
+        let back = act(0.0, -2e-5, -2.0, &mut history);
+        assert!(close(back.response.tangential_force.x, 0.0));
+        assert!(close(back.energy.tangential, 0.0));
+        assert!(close(there.energy.sliding + back.energy.sliding, 0.0));
+    }
+}

@@ -10,11 +10,11 @@ use crate::registry::{ActsOn, FromParams, LawEntry};
 
 /// A couple against rolling: a spring in the relative rotation with a dashpot, and a plastic limit.
 ///
-/// M = −(k_r θ + c_r dθ/dt), |M| ≤ μ_r R* |F_n|   [N m]
+/// M = −(k_r θ + c_r dθ/dt), |M| ≤ μ_r R* |F_n|   (N m)
 ///
 /// k_r = 2.25 k_n (μ_r R*)², c_r = 2 η_r √(I_r k_r), 1/I_r = Σ 1/(I + m R²)
 ///
-/// θ [rad] is the relative rotation ω_i − ω_j summed over the contact, without its part along the
+/// θ (rad) is the relative rotation ω_i − ω_j summed over the contact, without its part along the
 /// normal. While it yields the dashpot is dropped and θ = −M/k_r. k_n is the stiffness that the base
 /// law reports; R* is half a radius for equal grains and the radius at a wall, so codes that scale
 /// with R or the diameter have another μ_r.
@@ -38,9 +38,9 @@ pub(crate) struct Pair {
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(crate) struct Memory {
-    /// θ [rad].
+    /// θ (rad).
     angle: Vec3,
-    /// Viscous couple at the end of the last step [N m].
+    /// Viscous couple at the end of the last step (N m).
     damping: Vec3,
 }
 
@@ -158,3 +158,69 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
     params: PARAMS,
     ..LawEntry::of::<RollingResistance>()
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FRICTION: f64 = 0.1;
+    /// R* is 1 mm.
+    const LEVER: f64 = FRICTION * 1e-3;
+    const NORMAL_FORCE: f64 = 0.3;
+    const STIFFNESS: f64 = 3200.0;
+
+    fn act(turn: Vec3, history: &mut Memory) -> (Vec3, Energy) {
+        let law = RollingResistance { rolling_friction: FRICTION, rolling_damping_ratio: 0.0 };
+        let contact = Contact {
+            normal: Vec3::z(),
+            overlap: NORMAL_FORCE / STIFFNESS,
+            overlap_rate: 0.0,
+            overlap_step: 0.0,
+            slip_velocity: Vec3::zeros(),
+            slip_step: Vec3::zeros(),
+            relative_spin: Vec3::zeros(),
+            relative_turn: turn,
+            inverse_radius_eff: 1e3,
+            inverse_mass_eff: 1e4,
+            rolling_mobility: 1e9,
+            partner: Partner::Grain,
+        };
+        let mut response = Response {
+            normal_force: NORMAL_FORCE,
+            normal_stiffness: STIFFNESS,
+            ..Response::default()
+        };
+        let mut energy = bytemuck::Zeroable::zeroed();
+        let pair = law.pair(Partner::Grain);
+        RollingResistance::act(&pair, &contact, 1e-5, history, &mut response, &mut energy);
+        (response.couple, energy)
+    }
+
+    /// Sums of a handful of terms.
+    fn close(value: f64, expected: f64) -> bool {
+        (value - expected).abs() <= 1e-14 * expected.abs().max(LEVER * NORMAL_FORCE)
+    }
+
+    #[test]
+    fn a_rolling_contact_resists_with_the_limit_couple_and_dissipates_the_rest() {
+        let mut history = bytemuck::Zeroable::zeroed();
+        let limit = LEVER * NORMAL_FORCE;
+        act(Vec3::y(), &mut history);
+        let (couple, energy) = act(Vec3::y() * 0.2, &mut history);
+        assert!(close(couple.y, -limit));
+        assert!(close(history.angle.y, limit / (2.25 * STIFFNESS * LEVER * LEVER)));
+        assert!(close(energy.stored, 0.5 * limit * history.angle.y));
+        assert!(close(energy.dissipated, limit * 0.2));
+    }
+
+    #[test]
+    fn a_small_turn_is_given_back_and_twisting_is_not_resisted() {
+        let mut history = bytemuck::Zeroable::zeroed();
+        let stiffness = 2.25 * STIFFNESS * LEVER * LEVER;
+        let (couple, energy) = act(Vec3::y() * 0.1 + Vec3::z() * 5.0, &mut history);
+        assert!(close(couple.y, -0.1 * stiffness) && close(couple.z, 0.0));
+        assert!(close(energy.stored, 0.5 * stiffness * 0.01) && close(energy.dissipated, 0.0));
+        let (couple, energy) = act(Vec3::y() * -0.1, &mut history);
+        assert!(close(couple.norm(), 0.0) && close(energy.stored, 0.0));
+    }
+}

@@ -11,9 +11,8 @@ use crate::contact::ContactStage;
 use crate::error::StepError;
 use crate::grain_bed::{GrainBed, RestingBed};
 use crate::grains::{Grain, Grains, Space};
-use crate::ledger::Ledger;
 use crate::math::Vec3;
-use crate::step::{Books, prime, step};
+use crate::world::World;
 
 /// Share of the area that grains fill when they are placed at random.
 const FILL_FRACTION: f64 = 0.5;
@@ -128,9 +127,7 @@ impl FreeSpace {
 
 /// A bed on its way to rest.
 pub struct Settling {
-    bed: GrainBed,
-    books: Books,
-    clock: Clock,
+    world: World,
     quiet_since: Option<f64>,
     quiet_energy: f64,
 }
@@ -149,14 +146,13 @@ impl Settling {
         dt: f64,
     ) -> Self {
         let start = RestingBed::without_history(Space::Planar, grains);
-        let mut bed = GrainBed::new(&start, container, gravity, stages, 0);
-        let mut books = Books::new(Ledger::new(bed.terms()));
-        prime(&mut bed, &mut NoIntruder, &mut books);
+        let bed = GrainBed::new(&start, container, gravity, stages, 0);
         let n = grains.len() as f64;
         let mean_mass = grains.iter().map(|grain| grain.mass).sum::<f64>() / n;
         let mean_diameter = 2.0 * grains.iter().map(|grain| grain.radius).sum::<f64>() / n;
         let quiet_energy = REST_ENERGY * mean_mass * gravity.norm() * mean_diameter;
-        Self { bed, books, clock: Clock::new(dt), quiet_since: None, quiet_energy }
+        let world = World::new(bed, Box::new(NoIntruder), dt);
+        Self { world, quiet_since: None, quiet_energy }
     }
 
     /// Moves on by one step.
@@ -164,13 +160,11 @@ impl Settling {
     /// # Errors
     /// If the step cannot be trusted.
     pub fn advance(&mut self) -> Result<(), StepError> {
-        self.clock.tick();
-        let (number, dt) = (self.clock.step, self.clock.dt);
-        step(&mut self.bed, &mut NoIntruder, &mut self.books, number, dt)?;
+        self.world.advance()?;
         if self.restlessness() >= 1.0 {
             self.quiet_since = None;
         } else if self.quiet_since.is_none() {
-            self.quiet_since = Some(self.clock.time());
+            self.quiet_since = Some(self.clock().time());
         }
         Ok(())
     }
@@ -178,25 +172,25 @@ impl Settling {
     /// Whether the bed has kept quiet for long enough.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
-        self.quiet_since.is_some_and(|since| self.clock.time() - since >= REST_HOLD)
+        self.quiet_since.is_some_and(|since| self.clock().time() - since >= REST_HOLD)
     }
 
     /// Mean kinetic energy of a grain over the one that counts as rest.
     #[must_use]
     pub fn restlessness(&self) -> f64 {
-        self.bed.mean_kinetic_energy() / self.quiet_energy
+        self.bed().mean_kinetic_energy() / self.quiet_energy
     }
 
     /// Simulated time and steps.
     #[must_use]
     pub fn clock(&self) -> Clock {
-        self.clock
+        self.world.clock()
     }
 
     /// The bed as it stands.
     #[must_use]
     pub fn bed(&self) -> &GrainBed {
-        &self.bed
+        self.world.bed()
     }
 }
 

@@ -19,13 +19,13 @@ pub struct Part {
 
 /// Something that moves under the forces of the bed: a rigid body, or bodies that are linked.
 pub trait Mechanism: Send + Sync {
-    /// Half a kick and the drift; `dt` [s].
+    /// Half a kick and the drift; `dt` (s).
     fn kick_drift(&mut self, dt: f64);
     /// The second half of the kick, under the load set in between.
     fn kick(&mut self, dt: f64);
     /// Its parts, placed as [`Mechanism::kick_drift`] left them.
     fn parts(&self) -> &[Part];
-    /// Sets the load of the bed on each part, and gravity [m/s²].
+    /// Sets the load of the bed on each part, and gravity (m/s²).
     fn load(&mut self, wrenches: &[Wrench], gravity: Vec3);
     /// Its bodies, for the log and the energy.
     fn bodies(&self) -> &[RigidBody];
@@ -68,27 +68,27 @@ impl Mechanism for NoIntruder {
 pub struct RigidBody {
     /// Its name in the log.
     pub name: String,
-    /// [kg].
+    /// (kg).
     pub mass: f64,
-    /// Principal moments of inertia, along the axes of the body frame [kg m²].
+    /// Principal moments of inertia, along the axes of the body frame (kg m²).
     pub inertia: Vec3,
-    /// Centre of mass [m].
+    /// Centre of mass (m).
     pub position: Vec3,
     /// Body frame to world.
     pub orientation: Quat,
-    /// [m/s].
+    /// (m/s).
     pub velocity: Vec3,
-    /// About the centre of mass [kg m²/s].
+    /// About the centre of mass (kg m²/s).
     pub angular_momentum: Vec3,
     /// Load of the bed, and how many contacts make it.
     pub contact: Wrench,
-    /// Weight [N].
+    /// Weight (N).
     pub weight: Vec3,
     part: [Part; 1],
 }
 
 impl RigidBody {
-    /// A body at rest at the origin; `mass` [kg], `inertia` [kg m²] about its principal axes.
+    /// A body at rest at the origin; `mass` (kg), `inertia` (kg m²) about its principal axes.
     #[must_use]
     pub fn new(name: &str, surface: Arc<dyn Surface>, mass: f64, inertia: Vec3) -> Self {
         let part = Part { surface, placement: Placement::fixed(), partner: Partner::Intruder };
@@ -108,7 +108,7 @@ impl RigidBody {
         body
     }
 
-    /// Puts the body at `position` [m] with `velocity` [m/s] and `spin` [rad/s].
+    /// Puts the body at `position` (m) with `velocity` (m/s) and `spin` (rad/s).
     pub fn launch(&mut self, position: Vec3, velocity: Vec3, spin: Vec3) {
         self.position = position;
         self.velocity = velocity;
@@ -116,13 +116,13 @@ impl RigidBody {
         self.place();
     }
 
-    /// Spin [rad/s].
+    /// Spin (rad/s).
     #[must_use]
     pub fn spin(&self) -> Vec3 {
         spin_of(self.orientation, self.inertia, self.angular_momentum)
     }
 
-    /// Kinetic energy of translation and of rotation [J].
+    /// Kinetic energy of translation and of rotation (J).
     #[must_use]
     pub fn kinetic_energy(&self) -> [f64; 2] {
         [
@@ -131,7 +131,7 @@ impl RigidBody {
         ]
     }
 
-    /// Height of its lowest point [m].
+    /// Height of its lowest point (m).
     #[must_use]
     pub fn lowest(&self) -> f64 {
         let down = self.orientation.inverse_transform_vector(&-Vec3::z());

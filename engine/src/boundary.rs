@@ -7,7 +7,7 @@ use crate::surface::{Surface, SurfacePoint};
 /// The half space behind a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace {
-    /// A point of the plane [m].
+    /// A point of the plane (m).
     pub origin: Vec3,
     /// Unit normal, towards the grains.
     pub normal: Vec3,
@@ -35,9 +35,9 @@ impl Surface for HalfSpace {
 /// 0 ≤ y ≤ `depth`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Container {
-    /// [m].
+    /// (m).
     pub width: f64,
-    /// [m]; ignored in a planar bed.
+    /// (m); ignored in a planar bed.
     pub depth: f64,
 }
 

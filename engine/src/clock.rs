@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct Clock {
     /// Steps done.
     pub step: u64,
-    /// Length of a step [s].
+    /// Length of a step (s).
     pub dt: f64,
 }
 
@@ -18,7 +18,7 @@ impl Clock {
         Self { step: 0, dt }
     }
 
-    /// Time since the start [s].
+    /// Time since the start (s).
     #[must_use]
     pub fn time(&self) -> f64 {
         self.step as f64 * self.dt

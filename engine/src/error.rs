@@ -22,7 +22,7 @@ pub enum StepError {
         step: u64,
         /// Which quantity.
         what: &'static str,
-        /// The time step [s].
+        /// The time step (s).
         dt: f64,
     },
     /// A grain passed through another or through a wall.
@@ -35,11 +35,11 @@ pub enum StepError {
         step: u64,
         /// Identity of the grain.
         grain: u32,
-        /// [m].
+        /// (m).
         overlap: f64,
-        /// [m].
+        /// (m).
         radius: f64,
-        /// The time step [s].
+        /// The time step (s).
         dt: f64,
     },
     /// The energy budget no longer closes.
@@ -51,17 +51,17 @@ pub enum StepError {
     OpenBudget {
         /// The step.
         step: u64,
-        /// Energy unaccounted for [J].
+        /// Energy unaccounted for (J).
         unaccounted: f64,
-        /// Initial energy of the intruder [J].
+        /// What it is compared with: the initial energy of the intruder (J).
         scale: f64,
         /// Their ratio.
         closure: f64,
         /// What the run allows.
         limit: f64,
-        /// Half the present step [s].
+        /// Half the present step (s).
         suggested_dt: f64,
-        /// Largest overlap in the bed [m].
+        /// Largest overlap in the bed (m).
         overlap: f64,
         /// Identity of the grain that has it.
         grain: u32,

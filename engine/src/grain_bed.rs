@@ -27,7 +27,7 @@ const INTRUDER_MARGIN: f64 = 0.4;
 pub struct GrainBed {
     /// The grains.
     pub grains: Grains,
-    /// [m/s²].
+    /// (m/s²).
     pub gravity: Vec3,
     container: Container,
     walls: Vec<Part>,
@@ -37,11 +37,11 @@ pub struct GrainBed {
     grid: CellGrid,
     pair_list: Freshness,
     intruder_list: Freshness,
-    /// Greatest speed of a grain in the last drift [m/s].
+    /// Greatest speed of a grain in the last drift (m/s).
     fastest: f64,
 }
 
-/// Energies of the grains of a block [J].
+/// Energies of the grains of a block (J).
 #[derive(Clone, Copy, Debug, Default)]
 struct GrainEnergy {
     translation: f64,
@@ -156,7 +156,14 @@ impl GrainBed {
         (2 * pairs + walls) as f64 / self.grains.len() as f64
     }
 
-    /// Half a kick and the drift of the grains; `dt` [s].
+    /// Indices of the grains of every contact between grains that overlap, the smaller first,
+    /// ascending.
+    #[must_use]
+    pub fn touching_pairs(&self) -> Vec<[usize; 2]> {
+        self.contacts.touching_pairs()
+    }
+
+    /// Half a kick and the drift of the grains; `dt` (s).
     pub(crate) fn kick_drift(&mut self, dt: f64) {
         self.fastest = self.grains.kick_drift(dt);
     }
@@ -303,7 +310,7 @@ impl GrainBed {
         entries.push(walls);
     }
 
-    /// Mean kinetic energy of a grain [J].
+    /// Mean kinetic energy of a grain (J).
     #[must_use]
     pub fn mean_kinetic_energy(&self) -> f64 {
         let total: f64 = self.energy.iter().map(|block| block.translation + block.rotation).sum();
@@ -330,7 +337,7 @@ impl GrainBed {
         Ok(())
     }
 
-    /// Largest overlap [m], and the identity of the grain that has it.
+    /// Largest overlap (m), and the identity of the grain that has it.
     #[must_use]
     pub fn largest_overlap(&self) -> (f64, u32) {
         let (relative, grain) = self.sums.overlap;

@@ -16,7 +16,7 @@ pub enum Space {
 }
 
 impl Space {
-    /// Moment of inertia [kg m²] of a grain: a disc's ½ m r² or a sphere's ⅖ m r².
+    /// Moment of inertia (kg m²) of a grain: a disc's ½ m r² or a sphere's ⅖ m r².
     #[must_use]
     pub fn grain_inertia(self, mass: f64, radius: f64) -> f64 {
         let factor = match self {
@@ -30,15 +30,15 @@ impl Space {
 /// One grain as a recipe or a file gives it: at rest, unless it says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Grain {
-    /// Centre [m].
+    /// Centre (m).
     pub position: Vec3,
-    /// [m/s].
+    /// (m/s).
     pub velocity: Vec3,
-    /// [rad/s].
+    /// (rad/s).
     pub spin: Vec3,
-    /// [m].
+    /// (m).
     pub radius: f64,
-    /// [kg].
+    /// (kg).
     pub mass: f64,
     /// Its name in the log, kept when grains are reordered.
     pub id: u32,
@@ -54,11 +54,11 @@ pub struct Grains {
     pub space: Space,
     /// Names that outlive reordering.
     pub id: Vec<u32>,
-    /// [m].
+    /// (m).
     pub radius: Vec<f64>,
-    /// [kg].
+    /// (kg).
     pub mass: Vec<f64>,
-    /// [kg m²].
+    /// (kg m²).
     pub inertia: Vec<f64>,
     /// 1/r (1/m).
     pub inverse_radius: Vec<f64>,
@@ -66,28 +66,28 @@ pub struct Grains {
     pub inverse_mass: Vec<f64>,
     /// 1/I (1/(kg m²)).
     pub inverse_inertia: Vec<f64>,
-    /// 1/(I + m r²) [1/(kg m²)], a grain's part of the inertia of rolling.
+    /// 1/(I + m r²) (1/(kg m²)), a grain's part of the inertia of rolling.
     pub rolling_mobility: Vec<f64>,
-    /// Centres [m].
+    /// Centres (m).
     pub position: Vec<Vec3>,
-    /// [m/s].
+    /// (m/s).
     pub velocity: Vec<Vec3>,
-    /// [rad/s].
+    /// (rad/s).
     pub spin: Vec<Vec3>,
-    /// Velocity extrapolated to the end of the step [m/s].
+    /// Velocity extrapolated to the end of the step (m/s).
     pub velocity_now: Vec<Vec3>,
-    /// Spin extrapolated to the end of the step [rad/s].
+    /// Spin extrapolated to the end of the step (rad/s).
     pub spin_now: Vec<Vec3>,
-    /// Force [N] and torque [N m] on each grain, gravity included.
+    /// Force (N) and torque (N m) on each grain, gravity included.
     pub load: Vec<Load>,
 }
 
 /// Force and torque on a grain.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Load {
-    /// [N].
+    /// (N).
     pub force: Vec3,
-    /// About the centre [N m].
+    /// About the centre (N m).
     pub torque: Vec3,
 }
 
@@ -176,7 +176,7 @@ impl Grains {
         })
     }
 
-    /// Half a kick, then the drift; `dt` [s]. Returns the greatest speed [m/s] of a grain.
+    /// Half a kick, then the drift; `dt` (s). Returns the greatest speed (m/s) of a grain.
     pub(crate) fn kick_drift(&mut self, dt: f64) -> f64 {
         let half = 0.5 * dt;
         let (inverse_mass, inverse_inertia, load) =

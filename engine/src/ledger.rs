@@ -12,11 +12,11 @@ use serde::{Deserialize, Serialize};
 /// `kinetic + potential + Σ stored + Σ dissipated − Σ input = E₀ + unaccounted`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum ChannelKind {
-    /// Energy held now [J].
+    /// Energy held now (J).
     Stored,
-    /// Energy lost since the start [J].
+    /// Energy lost since the start (J).
     Dissipated,
-    /// Energy put in since the start [J].
+    /// Energy put in since the start (J).
     Input,
 }
 
@@ -80,13 +80,13 @@ pub struct Ledger {
 /// What changes in a ledger.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Balance {
-    /// Per term [J].
+    /// Per term (J).
     pub values: Vec<f64>,
-    /// E₀ [J].
+    /// E₀ (J).
     pub initial: f64,
-    /// [J], since the start.
+    /// (J), since the start.
     pub unaccounted: f64,
-    /// Largest |unaccounted| so far [J].
+    /// Largest |unaccounted| so far (J).
     pub worst: f64,
 }
 
@@ -110,20 +110,20 @@ impl Ledger {
         &self.balance
     }
 
-    /// The value [J] of the term called `key` in logs.
+    /// The value (J) of the term called `key` in logs.
     #[must_use]
     pub fn value(&self, key: &str) -> Option<f64> {
         let index = self.terms.iter().position(|term| term.key() == key)?;
         Some(self.balance.values[index])
     }
 
-    /// Sum [J] of the terms for which `of` holds.
+    /// Sum (J) of the terms for which `of` holds.
     pub fn sum(&self, of: impl Fn(&Term) -> bool) -> f64 {
         let terms = self.terms.iter().zip(&self.balance.values);
         terms.filter(|(term, _)| of(term)).map(|(_, value)| value).sum()
     }
 
-    /// Largest |unaccounted| so far in units of `scale` [J].
+    /// Largest |unaccounted| so far in units of `scale` (J).
     #[must_use]
     pub fn closure(&self, scale: f64) -> f64 {
         self.balance.worst / scale

@@ -26,3 +26,4 @@ pub mod step;
 pub mod stopping;
 pub mod surface;
 pub mod units;
+pub mod world;

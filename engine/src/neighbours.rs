@@ -14,17 +14,17 @@ pub(crate) struct Freshness {
 }
 
 impl Freshness {
-    /// A list that is stale from the start; `margin` [m].
+    /// A list that is stale from the start; `margin` (m).
     pub(crate) fn stale(margin: f64) -> Self {
         Self { margin, left: -1.0 }
     }
 
-    /// The gap [m] up to which the list has to hold pairs.
+    /// The gap (m) up to which the list has to hold pairs.
     pub(crate) fn margin(&self) -> f64 {
         self.margin
     }
 
-    /// Takes note of a relative displacement [m]; returns whether the list has to be rebuilt now.
+    /// Takes note of a relative displacement (m); returns whether the list has to be rebuilt now.
     pub(crate) fn spend(&mut self, displacement: f64) -> bool {
         self.left -= displacement;
         self.left < 0.0
@@ -49,7 +49,7 @@ pub(crate) struct CellGrid {
 }
 
 impl CellGrid {
-    /// Sorts the grains into cells of at least `reach` [m], the largest distance of centres that
+    /// Sorts the grains into cells of at least `reach` (m), the largest distance of centres that
     /// counts as near.
     pub(crate) fn fill(&mut self, grains: &Grains, reach: f64) {
         let mut low = grains.position[0];
@@ -112,7 +112,7 @@ impl CellGrid {
         ]
     }
 
-    /// Appends to `keys` every pair (i, j) with j > i whose gap is below `margin` [m], j ascending.
+    /// Appends to `keys` every pair (i, j) with j > i whose gap is below `margin` (m), j ascending.
     pub(crate) fn pairs_of(
         &self,
         grains: &Grains,

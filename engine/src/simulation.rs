@@ -7,15 +7,15 @@ use crate::clock::Clock;
 use crate::error::StepError;
 use crate::grain_bed::{GrainBed, SavedBed};
 use crate::ledger::{Balance, Ledger};
-use crate::step::{Books, prime, step};
 use crate::stopping::Stopping;
+use crate::world::World;
 
 /// What a run is told besides the bed and the intruder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Length of a step [s].
+    /// Length of a step (s).
     pub dt: f64,
-    /// The run ends here at the latest [s].
+    /// The run ends here at the latest (s).
     pub duration: f64,
     /// Closure above which the run is given up.
     pub abort_above: f64,
@@ -23,14 +23,12 @@ pub struct Settings {
 
 /// An intruder in a bed.
 pub struct Simulation {
-    bed: GrainBed,
-    intruder: Box<dyn Mechanism>,
-    books: Books,
-    clock: Clock,
+    world: World,
     settings: Settings,
     stopping: Stopping,
     surface: f64,
     impact_energy: f64,
+    energy_scale: f64,
 }
 
 /// The state of a run between two steps, bit by bit.
@@ -59,24 +57,17 @@ impl Simulation {
     /// # Panics
     /// If the intruder has no body.
     #[must_use]
-    pub fn new(mut bed: GrainBed, mut intruder: Box<dyn Mechanism>, settings: Settings) -> Self {
-        let mut books = Books::new(Ledger::new(bed.terms()));
-        prime(&mut bed, &mut *intruder, &mut books);
-        let body = intruder.bodies().first().expect("an impact has an intruder");
+    pub fn new(bed: GrainBed, intruder: Box<dyn Mechanism>, settings: Settings) -> Self {
+        let world = World::new(bed, intruder, settings.dt);
+        let bodies = world.intruder.bodies();
+        let body = bodies.first().expect("an impact has an intruder");
         let stopping = Stopping::new(body.position, body.velocity);
         let surface = body.lowest();
-        let impact_energy =
-            intruder.bodies().iter().flat_map(|body| body.kinetic_energy()).sum::<f64>();
-        Self {
-            bed,
-            intruder,
-            books,
-            clock: Clock::new(settings.dt),
-            settings,
-            stopping,
-            surface,
-            impact_energy,
-        }
+        let impact_energy = bodies.iter().flat_map(|body| body.kinetic_energy()).sum::<f64>();
+        // An intruder let go from rest has no energy of impact to compare with.
+        let fall = body.mass * world.bed.gravity.norm() * 2.0 * body.surface().bounding_radius();
+        let energy_scale = if impact_energy > 0.0 { impact_energy } else { fall };
+        Self { world, settings, stopping, surface, impact_energy, energy_scale }
     }
 
     /// Moves on by one step.
@@ -84,18 +75,16 @@ impl Simulation {
     /// # Errors
     /// If the step cannot be trusted.
     pub fn advance(&mut self) -> Result<(), StepError> {
-        let dt = self.settings.dt;
-        self.clock.tick();
-        step(&mut self.bed, &mut *self.intruder, &mut self.books, self.clock.step, dt)?;
-        let body = &self.intruder.bodies()[0];
-        self.stopping.observe(self.clock.time(), body.position, body.velocity);
+        self.world.advance()?;
+        let body = &self.world.intruder.bodies()[0];
+        self.stopping.observe(self.world.clock.time(), body.position, body.velocity);
         self.check_budget()
     }
 
     /// Whether the intruder has stopped, or time is up.
     #[must_use]
     pub fn is_over(&self) -> bool {
-        self.stopping.is_over() || self.clock.step >= self.last_step()
+        self.stopping.is_over() || self.world.clock.step >= self.last_step()
     }
 
     /// The step at which the run ends at the latest.
@@ -109,11 +98,11 @@ impl Simulation {
         if closure <= self.settings.abort_above {
             return Ok(());
         }
-        let (overlap, grain) = self.bed.largest_overlap();
+        let (overlap, grain) = self.world.bed.largest_overlap();
         Err(StepError::OpenBudget {
-            step: self.clock.step,
-            unaccounted: self.books.ledger.balance().unaccounted,
-            scale: self.impact_energy,
+            step: self.world.clock.step,
+            unaccounted: self.world.books.ledger.balance().unaccounted,
+            scale: self.energy_scale,
             closure,
             limit: self.settings.abort_above,
             suggested_dt: 0.5 * self.settings.dt,
@@ -125,28 +114,29 @@ impl Simulation {
     /// The bed.
     #[must_use]
     pub fn bed(&self) -> &GrainBed {
-        &self.bed
+        &self.world.bed
     }
 
     /// The intruder.
     #[must_use]
     pub fn intruder(&self) -> &dyn Mechanism {
-        &*self.intruder
+        &*self.world.intruder
     }
 
     /// The energy ledger.
     #[must_use]
     pub fn ledger(&self) -> &Ledger {
-        &self.books.ledger
+        &self.world.books.ledger
     }
 
-    /// Largest |energy unaccounted for| so far over the initial energy of the intruder.
+    /// Largest |energy unaccounted for| so far over the initial energy of the intruder; over what it
+    /// gains in falling its own size, if it is let go from rest.
     #[must_use]
     pub fn closure(&self) -> f64 {
-        self.books.ledger.closure(self.impact_energy)
+        self.world.books.ledger.closure(self.energy_scale)
     }
 
-    /// Kinetic energy of the intruder at the start [J].
+    /// Kinetic energy of the intruder at the start (J).
     #[must_use]
     pub fn impact_energy(&self) -> f64 {
         self.impact_energy
@@ -155,7 +145,7 @@ impl Simulation {
     /// Simulated time and steps.
     #[must_use]
     pub fn clock(&self) -> Clock {
-        self.clock
+        self.world.clock
     }
 
     /// Stopping times and depth.
@@ -164,7 +154,7 @@ impl Simulation {
         &self.stopping
     }
 
-    /// Height of the undisturbed surface [m]: where the lowest point of the intruder was at the
+    /// Height of the undisturbed surface (m): where the lowest point of the intruder was at the
     /// start.
     #[must_use]
     pub fn surface(&self) -> f64 {
@@ -175,10 +165,10 @@ impl Simulation {
     #[must_use]
     pub fn save(&self) -> Snapshot {
         Snapshot {
-            clock: self.clock,
-            bed: self.bed.save(),
-            intruder: self.intruder.save(),
-            balance: self.books.ledger.balance().clone(),
+            clock: self.world.clock,
+            bed: self.world.bed.save(),
+            intruder: self.world.intruder.save(),
+            balance: self.world.books.ledger.balance().clone(),
             stopping: self.stopping,
             surface: self.surface,
             impact_energy: self.impact_energy,
@@ -189,13 +179,13 @@ impl Simulation {
     /// another one.
     #[must_use]
     pub fn restore(&mut self, saved: Snapshot) -> bool {
-        self.clock = saved.clock;
+        self.world.clock = saved.clock;
         self.stopping = saved.stopping;
         self.surface = saved.surface;
         self.impact_energy = saved.impact_energy;
-        saved.clock.dt == self.settings.dt
-            && self.books.ledger.restore(saved.balance)
-            && self.intruder.restore(&saved.intruder)
-            && self.bed.restore(saved.bed)
+        saved.clock.dt.to_bits() == self.settings.dt.to_bits()
+            && self.world.books.ledger.restore(saved.balance)
+            && self.world.intruder.restore(&saved.intruder)
+            && self.world.bed.restore(saved.bed)
     }
 }

@@ -21,7 +21,7 @@ use crate::error::StepError;
 use crate::grain_bed::GrainBed;
 use crate::ledger::Ledger;
 
-/// Moves the bed and the intruder by one step of `dt` [s]; `step` is its number, from 1.
+/// Moves the bed and the intruder by one step of `dt` (s); `step` is its number, from 1.
 ///
 /// # Errors
 /// If something is no longer finite, or a grain has passed through another.

@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::math::Vec3;
 
-/// A speed below this share of the impact speed counts as rest.
+/// A speed below this share of the greatest so far counts as rest.
 const REST_SPEED: f64 = 0.05;
 
-/// How long [s] an intruder has to be at rest before the impact is over.
+/// How long (s) an intruder has to be at rest before the impact is over.
 const REST_HOLD: f64 = 0.01;
 
 /// Follows one impact and notes its stopping times, depth and range.
@@ -17,9 +17,11 @@ const REST_HOLD: f64 = 0.01;
 /// impact is the larger of the two (Wang, Ye & Zheng 2012, §3.4). The depth is the largest up to
 /// that time (§3.3), so a rebound or a second settling does not count. That definition hangs on a
 /// fluctuation where the intruder creeps; the rest time does not: from then on the speed stays
-/// below 5 % of the impact speed.
+/// below 5 % of the greatest, which is the impact speed except for an intruder that is let go from
+/// rest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stopping {
+    /// Greatest speed so far.
     speed: f64,
     start: Vec3,
     /// Unit vector of the horizontal part of the impact velocity, or zero.
@@ -47,7 +49,7 @@ struct Stop {
 }
 
 impl Stopping {
-    /// An impact that starts at `position` [m] with `velocity` [m/s].
+    /// An impact that starts at `position` (m) with `velocity` (m/s).
     #[must_use]
     pub fn new(position: Vec3, velocity: Vec3) -> Self {
         let speed = velocity.norm();
@@ -66,14 +68,14 @@ impl Stopping {
                 range: 0.0,
             },
             horizontal: if oblique { None } else { Some(Stop { time: 0.0, range: 0.0 }) },
-            vertical: if velocity.z < 0.0 { None } else { Some(0.0) },
+            vertical: None,
             deepest: 0.0,
             rest_since: None,
             now: 0.0,
         }
     }
 
-    /// Takes note of the state at `time` [s].
+    /// Takes note of the state at `time` (s).
     pub fn observe(&mut self, time: f64, position: Vec3, velocity: Vec3) {
         let now = Sample {
             time,
@@ -92,10 +94,11 @@ impl Stopping {
                 range: before.range + share * (now.range - before.range),
             });
         }
-        if self.vertical.is_none() && now.down <= 0.0 {
+        if self.vertical.is_none() && before.down > 0.0 && now.down <= 0.0 {
             let share = before.down / (before.down - now.down);
             self.vertical = Some(before.time + share * (now.time - before.time));
         }
+        self.speed = self.speed.max(velocity.norm());
         if velocity.norm() >= REST_SPEED * self.speed {
             self.rest_since = None;
         } else if self.rest_since.is_none() {
@@ -112,38 +115,38 @@ impl Stopping {
             && self.rest_since.is_some_and(|since| self.now - since >= REST_HOLD)
     }
 
-    /// The larger stopping time [s].
+    /// The larger stopping time (s).
     #[must_use]
     pub fn stopping_time(&self) -> Option<f64> {
         Some(self.horizontal_time()?.max(self.vertical?))
     }
 
-    /// When the horizontal velocity first came to zero [s].
+    /// When the horizontal velocity first came to zero (s).
     #[must_use]
     pub fn horizontal_time(&self) -> Option<f64> {
         self.horizontal.map(|stop| stop.time)
     }
 
-    /// When the vertical velocity first came to zero [s].
+    /// When the vertical velocity first came to zero (s).
     #[must_use]
     pub fn vertical_time(&self) -> Option<f64> {
         self.vertical
     }
 
-    /// Since when the speed has stayed below 5 % of the impact speed [s].
+    /// Since when the speed has stayed below 5 % of the greatest (s).
     #[must_use]
     pub fn rest_time(&self) -> Option<f64> {
         self.rest_since
     }
 
-    /// Largest depth of the lowest point below where it was at the start [m], up to the stopping
+    /// Largest depth of the lowest point below where it was at the start (m), up to the stopping
     /// time. For a body that turns, of its centre.
     #[must_use]
     pub fn depth(&self) -> f64 {
         self.deepest
     }
 
-    /// Horizontal distance covered when the horizontal velocity first came to zero [m]; until then,
+    /// Horizontal distance covered when the horizontal velocity first came to zero (m); until then,
     /// the distance so far.
     #[must_use]
     pub fn range(&self) -> f64 {
@@ -185,9 +188,25 @@ mod tests {
 
     #[test]
     fn a_vertical_impact_has_no_horizontal_stopping_time() {
-        let v = Vec3::new(2.0 * (0.5 * std::f64::consts::PI).cos(), 0.0, -2.0);
+        let v = Vec3::new(2.0 * libm::cos(0.5 * std::f64::consts::PI), 0.0, -2.0);
         let stopping = decelerate(v, Vec3::new(0.0, 0.0, 8.0), 1e-3);
         assert_eq!(stopping.horizontal_time(), Some(0.0));
         assert!((stopping.stopping_time().unwrap() - 0.25).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_intruder_let_go_from_rest_stops_when_it_has_fallen_and_not_at_once() {
+        let mut stopping = Stopping::new(Vec3::zeros(), Vec3::zeros());
+        assert!(stopping.stopping_time().is_none());
+        for step in 1..=400 {
+            let t = f64::from(step) * 1e-3;
+            let phase = std::f64::consts::PI * t.min(0.2) / 0.2;
+            let z = libm::cos(phase) - 1.0;
+            let v = if t < 0.2 { -libm::sin(phase) } else { 0.0 };
+            stopping.observe(t, Vec3::new(0.0, 0.0, z), Vec3::new(0.0, 0.0, v));
+        }
+        assert!((stopping.stopping_time().unwrap() - 0.2).abs() < 1e-12);
+        assert!((stopping.depth() - 2.0).abs() < 1e-9);
+        assert!(stopping.is_over());
     }
 }

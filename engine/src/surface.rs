@@ -7,7 +7,7 @@ use crate::math::{Quat, Vec3};
 pub struct SurfacePoint {
     /// Outward unit normal at the nearest point.
     pub normal: Vec3,
-    /// Distance of the query point from the surface [m]; negative inside.
+    /// Distance of the query point from the surface (m); negative inside.
     pub gap: f64,
     /// Curvature of the surface there [1/m]: 1/R of a sphere, 0 of a flat face.
     pub curvature: f64,
@@ -24,35 +24,35 @@ pub trait Surface: Send + Sync {
         nearest.extend(points.iter().map(|&point| self.closest(point)));
     }
 
-    /// How far the surface reaches along the unit vector `direction` from the origin [m].
+    /// How far the surface reaches along the unit vector `direction` from the origin (m).
     fn support(&self, direction: Vec3) -> f64;
 
-    /// Radius of the smallest sphere about the origin that holds the surface [m].
+    /// Radius of the smallest sphere about the origin that holds the surface (m).
     fn bounding_radius(&self) -> f64;
 }
 
 /// Where a rigid part is, and how it moves, during one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// Reference point at the end of the step [m].
+    /// Reference point at the end of the step (m).
     pub position: Vec3,
-    /// Reference point half a step earlier [m].
+    /// Reference point half a step earlier (m).
     pub position_half: Vec3,
     /// Body frame to world at the end of the step.
     pub orientation: Quat,
     /// Body frame to world half a step earlier.
     pub orientation_half: Quat,
-    /// Velocity of the reference point at the half step [m/s].
+    /// Velocity of the reference point at the half step (m/s).
     pub velocity: Vec3,
-    /// Spin at the half step [rad/s].
+    /// Spin at the half step (rad/s).
     pub spin: Vec3,
-    /// Velocity extrapolated to the end of the step [m/s].
+    /// Velocity extrapolated to the end of the step (m/s).
     pub velocity_now: Vec3,
-    /// Spin extrapolated to the end of the step [rad/s].
+    /// Spin extrapolated to the end of the step (rad/s).
     pub spin_now: Vec3,
-    /// 1/m of the body [1/kg]; 0 for one that cannot move.
+    /// 1/m of the body (1/kg); 0 for one that cannot move.
     pub inverse_mass: f64,
-    /// Moment of inertia of the body that counts in rolling [kg m²]; infinite for one that cannot
+    /// Moment of inertia of the body that counts in rolling (kg m²); infinite for one that cannot
     /// turn.
     pub inertia: f64,
 }
@@ -89,7 +89,7 @@ impl Placement {
         self.orientation_half.inverse_transform_vector(&(point - self.position_half))
     }
 
-    /// Bound on the speed of any point of a part of radius `bounding_radius` [m/s].
+    /// Bound on the speed of any point of a part of radius `bounding_radius` (m/s).
     #[must_use]
     pub fn max_speed(&self, bounding_radius: f64) -> f64 {
         self.velocity.norm() + self.spin.norm() * bounding_radius
@@ -99,9 +99,9 @@ impl Placement {
 /// Force on a rigid part, and torque about its reference point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wrench {
-    /// [N].
+    /// (N).
     pub force: Vec3,
-    /// [N m].
+    /// (N m).
     pub torque: Vec3,
     /// How many contacts it is the sum of.
     pub contacts: u32,

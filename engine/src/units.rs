@@ -34,33 +34,33 @@ impl Dimension {
 
     /// A pure number.
     pub const NONE: Self = Self::of(0, 0, 0, 0);
-    /// Length [m].
+    /// Length (m).
     pub const LENGTH: Self = Self::of(0, 1, 0, 0);
-    /// Mass [kg].
+    /// Mass (kg).
     pub const MASS: Self = Self::of(1, 0, 0, 0);
-    /// Time [s].
+    /// Time (s).
     pub const TIME: Self = Self::of(0, 0, 1, 0);
-    /// Rate [1/s].
+    /// Rate (1/s).
     pub const RATE: Self = Self::of(0, 0, -1, 0);
-    /// Speed [m/s].
+    /// Speed (m/s).
     pub const SPEED: Self = Self::of(0, 1, -1, 0);
-    /// Acceleration [m/s²].
+    /// Acceleration (m/s²).
     pub const ACCELERATION: Self = Self::of(0, 1, -2, 0);
-    /// Plane angle [rad].
+    /// Plane angle (rad).
     pub const ANGLE: Self = Self::of(0, 0, 0, 1);
-    /// Angular velocity [rad/s].
+    /// Angular velocity (rad/s).
     pub const SPIN: Self = Self::of(0, 0, -1, 1);
-    /// Spring stiffness [N/m].
+    /// Spring stiffness (N/m).
     pub const STIFFNESS: Self = Self::of(1, 0, -2, 0);
-    /// Mass density [kg/m³].
+    /// Mass density (kg/m³).
     pub const DENSITY: Self = Self::of(1, -3, 0, 0);
-    /// Density of a planar medium [kg/m²].
+    /// Density of a planar medium (kg/m²).
     pub const AREA_DENSITY: Self = Self::of(1, -2, 0, 0);
-    /// Force [N].
+    /// Force (N).
     pub const FORCE: Self = Self::of(1, 1, -2, 0);
-    /// Pressure or elastic modulus [Pa].
+    /// Pressure or elastic modulus (Pa).
     pub const PRESSURE: Self = Self::of(1, -1, -2, 0);
-    /// Energy [J].
+    /// Energy (J).
     pub const ENERGY: Self = Self::of(1, 2, -2, 0);
 
     /// What it is called, with its article, such as `a length`.

@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
-use engine::ledger::ChannelKind::{Dissipated, Input, Stored};
 use engine::math::{Quat, Vec3};
 use engine::record::{
     BodyFrame, BodyLoad, BodySample, EventLevel, GrainSample, LogSetup, LoggedBody, LoggedShape,
-    RunLog, Stamp, energy_term_name,
+    RunLog, Stamp,
 };
 
 const LAST: u64 = 20_000;
@@ -91,12 +90,12 @@ fn setup() -> LogSetup {
         }],
         container: Some((Vec3::new(-0.05, -0.001, 0.0), Vec3::new(0.05, 0.001, 0.2))),
         energy_terms: [
-            (Stored, "kinetic-intruder"),
-            (Stored, "gravity"),
-            (Dissipated, "drag"),
-            (Input, "drive"),
+            "kinetic_intruder_J",
+            "potential_gravity_J",
+            "dissipated_drag_J",
+            "input_drive_J",
         ]
-        .map(|(kind, name)| energy_term_name(kind, name))
+        .map(str::to_owned)
         .to_vec(),
         force_origins: vec!["contact".to_owned(), "gravity".to_owned()],
         arrow_m_per_newton: 0.05,

@@ -37,9 +37,9 @@ pub struct Recovered {
 /// A part of the input that did not make it, or not wholly.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lost {
-    /// Where it starts [bytes].
+    /// Where it starts (bytes).
     pub offset: u64,
-    /// Its length [bytes].
+    /// Its length (bytes).
     pub bytes: u64,
     /// What is wrong with it.
     pub why: String,

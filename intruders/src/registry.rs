@@ -27,8 +27,8 @@ pub struct ShapeEntry {
 pub struct Body {
     /// Surface about the centre of mass, along the principal axes.
     pub surface: Arc<dyn Surface>,
-    /// Principal moments of inertia of one kilogram of it [m²].
+    /// Principal moments of inertia of one kilogram of it (m²).
     pub inertia_per_mass: Vec3,
-    /// Volume [m³], or area [m²] of a planar shape.
+    /// Volume (m³), or area (m²) of a planar shape.
     pub volume: f64,
 }

@@ -1,5 +1,7 @@
 //! The same impacts on the same bed as in an independent DEM code, before chaos takes over.
 
+#![allow(clippy::print_stdout, reason = "the deviations, shown where the test fails")]
+
 use std::path::PathBuf;
 
 use engine::body::RigidBody;
@@ -107,7 +109,7 @@ fn simulation(impact: &ImpactRow) -> Simulation {
     Simulation::new(bed, Box::new(disc), settings)
 }
 
-/// Largest distance [m] to the other code's intruder, up to 5 ms and up to 10 ms.
+/// Largest distance (m) to the other code's intruder, up to 5 ms and up to 10 ms.
 fn deviation(impact: &ImpactRow, trajectory: &[TrajectoryRow]) -> [f64; 2] {
     let mut simulation = simulation(impact);
     let mut worst = [0.0_f64; 2];

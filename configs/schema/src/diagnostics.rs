@@ -191,7 +191,7 @@ struct Window {
     first_line: usize,
 }
 
-/// Longest stretch of input shown [byte]; a span beyond it is cut off.
+/// Longest stretch of input shown (byte); a span beyond it is cut off.
 const LONGEST_WINDOW: usize = 20_000;
 
 impl Window {

@@ -3,11 +3,11 @@
 use crate::model::Model;
 use crate::stability;
 
-/// Memory per grain [byte].
-const BYTES_PER_GRAIN: u64 = 1000;
-/// Memory that does not depend on the grains [byte].
-const BYTES_FIXED: u64 = 20_000_000;
-/// Speed of the engine on two cores [1/s].
+/// Memory per grain (byte).
+const BYTES_PER_GRAIN: u64 = 2400;
+/// Memory that does not depend on the grains (byte).
+const BYTES_FIXED: u64 = 9_000_000;
+/// Speed of the engine on two cores (1/s).
 const GRAIN_STEPS_PER_S: f64 = 2e7;
 
 /// What one impact of a model will cost.
@@ -19,9 +19,9 @@ pub struct Estimate {
     pub n_conditions: usize,
     /// Steps of one impact at most; `None` when the law alone knows the step.
     pub steps: Option<u64>,
-    /// Memory while running [byte].
+    /// Memory while running (byte).
     pub memory_bytes: u64,
-    /// Time for one impact at most, the bed's preparation not counted [s].
+    /// Time for one impact at most, the bed's preparation not counted (s).
     pub run_time_s: Option<f64>,
 }
 
@@ -43,7 +43,7 @@ impl Estimate {
     }
 }
 
-/// Memory that this process may still take [byte], where the system says so: what is free, or what
+/// Memory that this process may still take (byte), where the system says so: what is free, or what
 /// the control group leaves if that is less.
 #[must_use]
 pub fn available_memory_bytes() -> Option<u64> {

@@ -7,13 +7,13 @@ use crate::diagnostics::{nearest, shorten};
 /// One grain of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CsvGrain {
-    /// Centre, from the left side [m].
+    /// Centre, from the left side (m).
     pub x: f64,
-    /// Centre, up from the bottom [m].
+    /// Centre, up from the bottom (m).
     pub y: f64,
-    /// Radius [m].
+    /// Radius (m).
     pub radius: f64,
-    /// Mass [kg].
+    /// Mass (kg).
     pub mass: f64,
 }
 
@@ -57,7 +57,7 @@ const KNOWN: [&str; 7] =
 /// How deep a grain may reach into a wall, over its radius; deeper counts as outside.
 const DEEPEST_IN_WALL: f64 = 0.5;
 
-/// Reads the grains of a planar bed in a box of `width` [m].
+/// Reads the grains of a planar bed in a box of `width` (m).
 ///
 /// # Errors
 /// Everything wrong with it, up to ten faults.

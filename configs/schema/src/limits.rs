@@ -1,10 +1,10 @@
 //! How much a model file may ask for; each limit is refused by name.
 
-/// Largest model file [byte].
+/// Largest model file (byte).
 pub const FILE_BYTES: u64 = 10_000_000;
-/// Largest data file that a model may name [byte].
+/// Largest data file that a model may name (byte).
 pub const DATA_FILE_BYTES: u64 = 512_000_000;
-/// Longest string in a model file [byte].
+/// Longest string in a model file (byte).
 pub const STRING_BYTES: usize = 4096;
 /// Most `[[effect]]` tables.
 pub const EFFECTS: usize = 1000;

@@ -45,7 +45,7 @@ pub struct Model {
 pub struct RunSettings {
     /// Name of the run and of its folder: 1 to 64 of a–z, 0–9, `-` and `_`.
     pub name: String,
-    /// Longest simulated time [s].
+    /// Longest simulated time (s).
     pub duration: f64,
     /// The step before [`RunSettings::time_step_factor`].
     pub time_step: TimeStep,
@@ -60,7 +60,7 @@ pub struct RunSettings {
 /// The time step as the file states it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeStep {
-    /// This long [s].
+    /// This long (s).
     Fixed(f64),
     /// A fraction of the shortest collision.
     Auto,
@@ -71,7 +71,7 @@ pub enum TimeStep {
 pub struct LogSettings {
     /// Steps between flushes.
     pub flush_every: u64,
-    /// Frames of all grains per simulated second [1/s].
+    /// Frames of all grains per simulated second (1/s).
     pub frames_per_s: f64,
     /// Whether grains are logged at all.
     pub grains: bool,
@@ -89,14 +89,14 @@ pub struct EnergySettings {
 pub struct Medium {
     /// Number of space dimensions: 2.
     pub dimension: u8,
-    /// Magnitude of gravity, downward [m/s²].
+    /// Magnitude of gravity, downward (m/s²).
     pub gravity: f64,
 }
 
 /// The box: x from 0 to `width`, y up from its bottom at 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Container {
-    /// Inner width [m].
+    /// Inner width (m).
     pub width: f64,
 }
 
@@ -107,7 +107,7 @@ pub struct Bed {
     pub source: BedSource,
     /// Packing fraction that the preparation should come near to.
     pub target_packing_fraction: Option<f64>,
-    /// Height that the preparation should come near to [m].
+    /// Height that the preparation should come near to (m).
     pub target_height: Option<f64>,
 }
 
@@ -138,9 +138,9 @@ pub struct Settle {
 pub struct GrainKind {
     /// How many.
     pub count: u64,
-    /// Diameter [m].
+    /// Diameter (m).
     pub diameter: f64,
-    /// Mass of one [kg].
+    /// Mass of one (kg).
     pub mass: f64,
 }
 
@@ -162,7 +162,7 @@ pub struct CsvBed {
 pub struct LawChoice {
     /// The registry's entry.
     pub entry: &'static LawEntry,
-    /// All its parameters [SI].
+    /// All its parameters (SI).
     pub params: ParamTable,
     /// Where the file names it.
     pub span: Span,
@@ -187,9 +187,9 @@ pub struct Intruder {
     pub name: String,
     /// The registry's entry.
     pub shape: &'static ShapeEntry,
-    /// All parameters of the shape [SI].
+    /// All parameters of the shape (SI).
     pub params: ParamTable,
-    /// Mass [kg].
+    /// Mass (kg).
     pub mass: f64,
 }
 
@@ -216,26 +216,26 @@ impl std::fmt::Debug for Intruder {
 /// How the intruder meets the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Impact {
-    /// Speed at first contact [m/s].
+    /// Speed at first contact (m/s).
     pub speed: f64,
-    /// Angle of the velocity below the horizontal [rad]: π/2 is straight down.
+    /// Angle of the velocity below the horizontal (rad): π/2 is straight down.
     pub angle_rad: f64,
-    /// Angular velocity, counter-clockwise positive [rad/s].
+    /// Angular velocity, counter-clockwise positive (rad/s).
     pub spin: f64,
-    /// Where the centre starts [m], if the file says so.
+    /// Where the centre starts (m), if the file says so.
     pub x: Option<f64>,
-    /// Where drawn positions lie [m].
+    /// Where drawn positions lie (m).
     pub x_range: (f64, f64),
 }
 
 /// The lists of `[conditions]`; one that is not given is the single value of `[impact]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionLists {
-    /// Speeds [m/s].
+    /// Speeds (m/s).
     pub speed: Option<Vec<f64>>,
-    /// Angles [rad].
+    /// Angles (rad).
     pub angle_rad: Option<Vec<f64>>,
-    /// Start positions [m].
+    /// Start positions (m).
     pub x: Option<Vec<f64>>,
     /// Number of drawn start positions.
     pub positions: Option<u64>,
@@ -244,9 +244,9 @@ pub struct ConditionLists {
 /// One impact of a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
-    /// Speed at first contact [m/s].
+    /// Speed at first contact (m/s).
     pub speed: f64,
-    /// Angle below the horizontal [rad].
+    /// Angle below the horizontal (rad).
     pub angle_rad: f64,
     /// Counts the start positions of one speed and angle, from 0.
     pub position_index: usize,
@@ -266,7 +266,7 @@ impl Condition {
 /// Where an intruder starts along x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StartX {
-    /// Here [m].
+    /// Here (m).
     At(f64),
     /// Drawn in [`Impact::x_range`], from the seed and [`Condition::position_index`].
     Drawn,

@@ -18,7 +18,7 @@ pub const FEWEST_STEPS_PER_COLLISION: f64 = 10.0;
 /// Fewer steps per collision than this are accepted with a warning.
 pub const FEW_STEPS_PER_COLLISION: f64 = 20.0;
 
-/// The mass of the lightest grain [kg].
+/// The mass of the lightest grain (kg).
 fn lightest_grain(model: &Model) -> f64 {
     let lightest = |masses: &mut dyn Iterator<Item = f64>| masses.fold(f64::INFINITY, f64::min);
     match &model.bed.source {
@@ -31,14 +31,14 @@ fn lightest_grain(model: &Model) -> f64 {
     }
 }
 
-/// How long the shortest collision of two grains lasts without damping, π √(m*/k_n) [s]; `None`
+/// How long the shortest collision of two grains lasts without damping, π √(m*/k_n) (s); `None`
 /// for a law without a constant normal stiffness.
 #[must_use]
 pub fn grain_collision_time(model: &Model) -> Option<f64> {
     collision_time(model, 0.5 * lightest_grain(model))
 }
 
-/// How long the shortest collision of the run lasts, the intruder's included [s].
+/// How long the shortest collision of the run lasts, the intruder's included (s).
 #[must_use]
 pub fn shortest_collision_time(model: &Model) -> Option<f64> {
     let (grain, intruder) = (lightest_grain(model), model.intruder.mass);
@@ -65,7 +65,7 @@ fn automatic(model: &Model, collision: f64) -> f64 {
     (collision / STEPS_PER_COLLISION).min(relaxation / STEPS_PER_DAMPING_TIME)
 }
 
-/// The step of the run, its factor included [s]; `None` when it is automatic and the law has no
+/// The step of the run, its factor included (s); `None` when it is automatic and the law has no
 /// constant normal stiffness.
 #[must_use]
 pub fn time_step(model: &Model) -> Option<f64> {
@@ -76,7 +76,7 @@ pub fn time_step(model: &Model) -> Option<f64> {
     Some(step * model.run.time_step_factor)
 }
 
-/// The step while the bed settles [s]; `None` as for [`time_step`], and for a bed from a file.
+/// The step while the bed settles (s); `None` as for [`time_step`], and for a bed from a file.
 #[must_use]
 pub fn preparation_time_step(model: &Model) -> Option<f64> {
     let BedSource::Settle(settle) = &model.bed.source else {

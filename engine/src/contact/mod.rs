@@ -46,21 +46,21 @@ impl Partner {
 /// be booked.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact {
-    /// n, from j to i [–].
+    /// n, from j to i (–).
     pub normal: Vec3,
-    /// δ [m]; zero or less once the contact has opened.
+    /// δ (m); zero or less once the contact has opened.
     pub overlap: f64,
-    /// dδ/dt [m/s], positive while the two approach.
+    /// dδ/dt (m/s), positive while the two approach.
     pub overlap_rate: f64,
-    /// Overlap gained in this step [m].
+    /// Overlap gained in this step (m).
     pub overlap_step: f64,
-    /// v_t [m/s], of i relative to j at the contact point, spin included.
+    /// v_t (m/s), of i relative to j at the contact point, spin included.
     pub slip_velocity: Vec3,
-    /// Slip made in this step [m], turned into the present contact plane.
+    /// Slip made in this step (m), turned into the present contact plane.
     pub slip_step: Vec3,
-    /// ω_i − ω_j [rad/s].
+    /// ω_i − ω_j (rad/s).
     pub relative_spin: Vec3,
-    /// Rotation of i relative to j in this step [rad].
+    /// Rotation of i relative to j in this step (rad).
     pub relative_turn: Vec3,
     /// 1/R* = 1/R_i + 1/R_j (1/m); a flat face has no curvature.
     pub inverse_radius_eff: f64,
@@ -105,13 +105,13 @@ impl Contact {
 /// What the laws of a contact build up. Force and couple act on i; j receives the opposite.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Response {
-    /// F_n [N], repulsion positive.
+    /// F_n (N), repulsion positive.
     pub normal_force: f64,
-    /// dF_n/dδ [N/m], which rolling resistance scales with.
+    /// dF_n/dδ (N/m), which rolling resistance scales with.
     pub normal_stiffness: f64,
-    /// F_t [N].
+    /// F_t (N).
     pub tangential_force: Vec3,
-    /// Couple [N m] of rolling resistance; the torque of F_t about the centres is the engine's job.
+    /// Couple (N m) of rolling resistance; the torque of F_t about the centres is the engine's job.
     pub couple: Vec3,
 }
 
@@ -140,13 +140,13 @@ pub trait ContactLaw: Send + Sync + 'static {
     type Pair: Copy + Send + Sync;
     /// What it remembers of a contact, zero at first touch.
     type History: bytemuck::Pod;
-    /// One `f64` [J] per channel.
+    /// One `f64` (J) per channel.
     type Energy: bytemuck::Pod;
 
     /// Its parameters for contacts of grains with `partner`.
     fn pair(&self, partner: Partner) -> Self::Pair;
 
-    /// Adds the force of one contact to `response` and its energy to `energy`; `dt` [s] is the step.
+    /// Adds the force of one contact to `response` and its energy to `energy`; `dt` (s) is the step.
     fn act(
         pair: &Self::Pair,
         contact: &Contact,
@@ -156,7 +156,7 @@ pub trait ContactLaw: Send + Sync + 'static {
         energy: &mut Self::Energy,
     );
 
-    /// How long a head-on collision of two bodies of reduced mass `mass_eff` [kg] lasts [s];
+    /// How long a head-on collision of two bodies of reduced mass `mass_eff` (kg) lasts (s);
     /// `None` if this law does not decide it. Sets `time_step = "auto"`.
     fn collision_time(pair: &Self::Pair, mass_eff: f64) -> Option<f64>;
 

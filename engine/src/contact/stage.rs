@@ -23,10 +23,10 @@ pub trait ContactStage: Send + Sync {
     fn channels(&self) -> &'static [Channel];
     /// How many `f64` it remembers of a contact.
     fn history_len(&self) -> usize;
-    /// Evaluates a batch of contacts; `dt` [s], `history` holds all rows of the table, `energy` [J]
+    /// Evaluates a batch of contacts; `dt` (s), `history` holds all rows of the table, `energy` (J)
     /// has one entry per channel and is added to.
     fn sweep(&self, batch: Batch<'_>, dt: f64, history: &mut [f64], energy: &mut [f64]);
-    /// Duration [s] of a head-on collision, see [`ContactLaw::collision_time`].
+    /// Duration (s) of a head-on collision, see [`ContactLaw::collision_time`].
     fn collision_time(&self, partner: Partner, mass_eff: f64) -> Option<f64>;
     /// Shortest relaxation (s), see [`ContactLaw::damping_time`].
     fn damping_time(&self, partner: Partner) -> Option<f64>;

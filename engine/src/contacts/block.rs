@@ -42,7 +42,7 @@ pub(super) struct Delivery {
 /// What one block adds to the sums of the bed.
 #[derive(Default)]
 pub(super) struct Tally {
-    /// Per stage and channel: energies [J] of contacts between grains and with the intruder.
+    /// Per stage and channel: energies (J) of contacts between grains and with the intruder.
     pub(super) energy: Vec<f64>,
     /// The same for contacts with walls.
     pub(super) wall_energy: Vec<f64>,

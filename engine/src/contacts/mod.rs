@@ -67,7 +67,7 @@ impl Contacts {
         &self.stages
     }
 
-    /// Lists again which grains are nearer to each other than `margin` [m].
+    /// Lists again which grains are nearer to each other than `margin` (m).
     pub(crate) fn list_pairs(&mut self, grains: &Grains, grid: &CellGrid, margin: f64) {
         self.blocks.par_iter_mut().for_each(|block| {
             let mut keys = std::mem::take(&mut block.bench.keys);
@@ -81,7 +81,7 @@ impl Contacts {
         self.address_outboxes();
     }
 
-    /// Lists again which grains are nearer to `part` than `margin` [m].
+    /// Lists again which grains are nearer to `part` than `margin` (m).
     pub(crate) fn list_surface(&mut self, grains: &Grains, part: (usize, &Part), margin: f64) {
         let (index, part) = part;
         self.blocks.par_iter_mut().for_each(|block| {
@@ -201,6 +201,19 @@ impl Contacts {
             .map(|part| self.blocks.iter().map(|block| block.surfaces[part].n_touching()).sum())
             .collect();
         (pairs, surfaces)
+    }
+
+    /// Indices of the grains of every contact between grains that touch, ascending.
+    pub(crate) fn touching_pairs(&self) -> Vec<[usize; 2]> {
+        let mut touching = Vec::new();
+        for Block { pairs, .. } in &self.blocks {
+            for (row, &[i, j]) in pairs.keys().iter().enumerate() {
+                if pairs.is_touching(row) {
+                    touching.push([i as usize, j as usize]);
+                }
+            }
+        }
+        touching
     }
 
     /// All tables, for a checkpoint.

@@ -4,7 +4,7 @@ use mcap::McapError;
 use mcap::records::op;
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
-/// The most a chunk may hold, compressed or not [bytes]; a log's own chunks are 64 times smaller.
+/// The most a chunk may hold, compressed or not (bytes); a log's own chunks are 64 times smaller.
 pub const CHUNK_LIMIT: u64 = 256 << 20;
 
 /// Bytes before the body of a record: its opcode and its length.
@@ -13,15 +13,15 @@ pub const RECORD_PREFIX: usize = 9;
 /// What the header of a chunk record says.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChunkHead {
-    /// Size of the records when unpacked [bytes]; all ones in a chunk that was never ended.
+    /// Size of the records when unpacked (bytes); all ones in a chunk that was never ended.
     pub uncompressed_size: u64,
     /// Checksum of the unpacked records; 0 if there is none.
     pub crc: u32,
     /// `zstd`, or empty.
     pub compression: String,
-    /// Size of the packed records [bytes]; all ones in a chunk that was never ended.
+    /// Size of the packed records (bytes); all ones in a chunk that was never ended.
     pub compressed_size: u64,
-    /// Where the packed records start in the body of the record [bytes].
+    /// Where the packed records start in the body of the record (bytes).
     pub data_start: usize,
 }
 

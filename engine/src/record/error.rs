@@ -37,7 +37,7 @@ pub enum RecordError {
     OutOfRange {
         /// The step.
         step: u64,
-        /// The time [s].
+        /// The time (s).
         time_s: f64,
     },
     /// A message of an earlier step than one already written.
@@ -79,7 +79,7 @@ pub enum RecordError {
     Damaged {
         /// The old log.
         path: PathBuf,
-        /// Where the damaged record starts [bytes].
+        /// Where the damaged record starts (bytes).
         offset: u64,
         /// What is wrong there.
         why: String,

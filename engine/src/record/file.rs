@@ -15,7 +15,7 @@ use super::error::RecordError;
 pub struct Stamp {
     /// Step, counted from 0.
     pub step: u64,
-    /// Simulated time since the start of the run [s].
+    /// Simulated time since the start of the run (s).
     pub time_s: f64,
 }
 
@@ -44,7 +44,7 @@ pub(super) struct Definition {
 pub(super) struct Cut {
     /// A chunk ends after the last message of every multiple of these steps.
     pub(super) every: Vec<u64>,
-    /// A chunk ends when its messages exceed this [bytes].
+    /// A chunk ends when its messages exceed this (bytes).
     pub(super) chunk_bytes: u64,
 }
 

@@ -37,7 +37,6 @@ use schema::{Fields, Layout};
 
 pub use error::RecordError;
 pub use file::Stamp;
-pub use schema::energy_term_name;
 pub use setup::{
     BodyFrame, BodyLoad, BodySample, EventLevel, GrainSample, LogAttachment, LogSetup, LoggedBody,
     LoggedShape,
@@ -148,7 +147,7 @@ impl RunLog {
 
     /// Writes the energy budget of a step.
     ///
-    /// `values` [J] are in the order of [`LogSetup::energy_terms`]; `closure` is the largest
+    /// `values` (J) are in the order of [`LogSetup::energy_terms`]; `closure` is the largest
     /// energy unaccounted for so far over the initial energy of the intruder.
     ///
     /// # Errors

@@ -9,27 +9,7 @@ use prost::encoding::{WireType, double, encode_key, encode_varint, uint32, uint6
 use prost_types::field_descriptor_proto::{Label, Type};
 use prost_types::{DescriptorProto, FieldDescriptorProto, FileDescriptorProto, FileDescriptorSet};
 
-use crate::ledger::ChannelKind;
 use crate::math::Vec3;
-
-/// The log's name of an energy channel: `normal-damping`, dissipated, is
-/// `dissipated_normal_damping_J`.
-///
-/// Stored energy is elastic unless its channel says `kinetic-…` or `potential-…`; `gravity` is
-/// potential. The prefix is the sign in the closure: all terms add, `input_…` subtracts.
-#[must_use]
-pub fn energy_term_name(kind: ChannelKind, name: &str) -> String {
-    let name = snake_case(name);
-    match kind {
-        ChannelKind::Stored if name.starts_with("kinetic_") || name.starts_with("potential_") => {
-            format!("{name}_J")
-        }
-        ChannelKind::Stored if name == "gravity" => format!("potential_{name}_J"),
-        ChannelKind::Stored => format!("elastic_{name}_J"),
-        ChannelKind::Dissipated => format!("dissipated_{name}_J"),
-        ChannelKind::Input => format!("input_{name}_J"),
-    }
-}
 
 /// The closure that the energy terms obey, as text.
 pub(super) fn closure_identity(terms: &[String]) -> String {

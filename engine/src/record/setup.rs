@@ -13,25 +13,25 @@ use crate::math::{Quat, Vec3};
 #[derive(Clone, Debug)]
 pub struct LogSetup {
     /// Chunks of `run.mcap` end, and are brought to the disk, after the last message of every
-    /// multiple of this [steps].
+    /// multiple of this (steps).
     pub flush_every: u64,
-    /// Checkpoints are written at multiples of this [steps]; both files are flushed there.
+    /// Checkpoints are written at multiples of this (steps); both files are flushed there.
     /// `grains.mcap` is flushed at these only, since its chunks compress the better the longer
     /// they are. [`u64::MAX`] for a run without checkpoints.
     pub checkpoint_every: u64,
     /// Whether to write `grains.mcap`.
     pub grains: bool,
-    /// Height of the undisturbed surface [m].
+    /// Height of the undisturbed surface (m).
     pub surface_z_m: f64,
     /// The bodies, in the order in which the engine numbers them.
     pub bodies: Vec<LoggedBody>,
-    /// Lowest and highest corner of the container [m], if it is to be drawn.
+    /// Lowest and highest corner of the container (m), if it is to be drawn.
     pub container: Option<(Vec3, Vec3)>,
-    /// Names of the energy terms, each from [`energy_term_name`](super::energy_term_name).
+    /// Names of the energy terms, each a [`Term::key`](crate::ledger::Term::key).
     pub energy_terms: Vec<String>,
     /// Names of the origins of force on a body: `contact`, `gravity`, each added effect.
     pub force_origins: Vec<String>,
-    /// Length of a drawn force [m/N].
+    /// Length of a drawn force (m/N).
     pub arrow_m_per_newton: f64,
     /// The metadata record `run`: seed, versions, hashes. Nothing that depends on the wall clock
     /// or on the number of threads. The closure identity and the scale of the arrows are added.
@@ -54,19 +54,19 @@ pub struct LoggedBody {
 pub enum LoggedShape {
     /// A sphere.
     Sphere {
-        /// Radius [m].
+        /// Radius (m).
         radius: f64,
     },
     /// The disc of a planar run, with its axis along y.
     Disc {
-        /// Radius [m].
+        /// Radius (m).
         radius: f64,
-        /// Length along y, for the eye only [m].
+        /// Length along y, for the eye only (m).
         thickness: f64,
     },
     /// A closed surface of triangles.
     Mesh {
-        /// Corners [m].
+        /// Corners (m).
         vertices: Vec<Vec3>,
         /// Indices into `vertices`, counter-clockwise seen from outside.
         triangles: Vec<[u32; 3]>,
@@ -74,7 +74,7 @@ pub enum LoggedShape {
 }
 
 impl LoggedShape {
-    /// Largest distance from the origin of the body frame to the surface [m].
+    /// Largest distance from the origin of the body frame to the surface (m).
     pub(super) fn extent(&self) -> f64 {
         match self {
             Self::Sphere { radius } | Self::Disc { radius, .. } => *radius,
@@ -97,22 +97,22 @@ pub struct LogAttachment {
 /// The state of a body at the end of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct BodySample {
-    /// Centre of mass [m].
+    /// Centre of mass (m).
     pub position: Vec3,
-    /// Its velocity [m/s].
+    /// Its velocity (m/s).
     pub velocity: Vec3,
-    /// Angular velocity in the world frame [rad/s].
+    /// Angular velocity in the world frame (rad/s).
     pub spin: Vec3,
-    /// Depth of the lowest point below the undisturbed surface, positive downward [m].
+    /// Depth of the lowest point below the undisturbed surface, positive downward (m).
     pub depth_m: f64,
 }
 
 /// The load on a body in a step, by origin in the order of [`LogSetup::force_origins`].
 #[derive(Clone, Copy, Debug)]
 pub struct BodyLoad<'a> {
-    /// Forces [N].
+    /// Forces (N).
     pub forces: &'a [Vec3],
-    /// Torques about the centre of mass, in the world frame [N m].
+    /// Torques about the centre of mass, in the world frame (N m).
     pub torques: &'a [Vec3],
     /// Number of touching grains and walls.
     pub contacts: u32,
@@ -121,24 +121,24 @@ pub struct BodyLoad<'a> {
 /// A body in a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyFrame {
-    /// Centre of mass [m].
+    /// Centre of mass (m).
     pub position: Vec3,
     /// Rotation from the body frame to the world frame.
     pub orientation: Quat,
-    /// The force drawn as an arrow [N].
+    /// The force drawn as an arrow (N).
     pub force: Vec3,
 }
 
 /// A grain in a frame; the log keeps 32-bit floats.
 #[derive(Clone, Copy, Debug)]
 pub struct GrainSample {
-    /// Centre [m].
+    /// Centre (m).
     pub position: Vec3,
-    /// Radius [m].
+    /// Radius (m).
     pub radius: f64,
-    /// Magnitude of its velocity [m/s].
+    /// Magnitude of its velocity (m/s).
     pub speed: f64,
-    /// Magnitude of its contact force [N].
+    /// Magnitude of its contact force (N).
     pub force: f64,
     /// Its identifier, the same in every frame.
     pub id: u32,

@@ -170,7 +170,7 @@ fn map(entries: &std::collections::BTreeMap<String, String>) -> usize {
     entries.iter().map(|(key, value)| 8 + key.len() + value.len()).sum()
 }
 
-/// The length of an attachment by its inner lengths [bytes].
+/// The length of an attachment by its inner lengths (bytes).
 fn attachment_length(body: &[u8]) -> Option<u64> {
     let text = |at: usize| {
         let length = u32::from_le_bytes(body.get(at..at.checked_add(4)?)?.try_into().ok()?);

@@ -55,10 +55,11 @@ fn sample(last: u64) -> Sample {
     let mut log = RunLog::create(&scratch.0, &setup()).unwrap();
     for step in 0..=last {
         let at = Stamp { step, time_s: step as f64 * 1e-5 };
-        let x = (step as f64).sin();
+        let x = libm::sin(step as f64);
         log.energy(at, &[x, x * x], 0.0, 0.0).unwrap();
-        let (position, velocity, spin) = (Vec3::repeat(x), Vec3::repeat(x.cos()), Vec3::zeros());
-        let state = BodySample { position, velocity, spin, depth_m: x.tan() };
+        let (position, velocity, spin) =
+            (Vec3::repeat(x), Vec3::repeat(libm::cos(x)), Vec3::zeros());
+        let state = BodySample { position, velocity, spin, depth_m: libm::tan(x) };
         log.body_state(at, 0, &state).unwrap();
         let (forces, torques) = ([Vec3::repeat(x * 0.7)], [Vec3::zeros()]);
         log.body_load(at, 0, &BodyLoad { forces: &forces, torques: &torques, contacts: 1 })
@@ -183,7 +184,7 @@ fn a_cut_chunk_counts_as_far_as_it_unpacks() {
     let mut log = RunLog::create(&scratch.0, &setup).unwrap();
     for step in 0..=9000 {
         // incompressible enough for several blocks per chunk
-        let x = (step as f64 * 0.37).sin().exp();
+        let x = libm::exp(libm::sin(step as f64 * 0.37));
         log.energy(Stamp { step, time_s: x }, &[x, 1.0 / x], 0.0, 0.0).unwrap();
     }
     // killed with the chunk open: its lengths are all ones

@@ -63,7 +63,7 @@ fn own_messages_decode_by_the_descriptors_in_the_file() {
         assert_eq!(message.publish_time, message.log_time);
         decode(&message.channel.schema.as_ref().unwrap().data, &message.data)
     };
-    let x = 1.0_f64.sin();
+    let x = libm::sin(1.0);
     let budget = last("/energy/budget");
     assert_eq!(budget["step"], 10.0);
     assert_eq!(budget["kinetic_intruder_J"], x * x);

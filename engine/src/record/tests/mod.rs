@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::*;
-use crate::ledger::ChannelKind;
 use crate::math::{Quat, Vec3};
 
 /// Steps between frames of the made-up run.
@@ -42,15 +41,14 @@ impl Drop for Scratch {
 }
 
 fn setup() -> LogSetup {
-    use ChannelKind::{Dissipated, Input, Stored};
     let energy_terms = [
-        (Stored, "kinetic-intruder"),
-        (Stored, "gravity"),
-        (Stored, "normal-elastic"),
-        (Dissipated, "sliding"),
-        (Input, "drive"),
+        "kinetic_intruder_J",
+        "potential_gravity_J",
+        "elastic_normal_elastic_J",
+        "dissipated_sliding_J",
+        "input_drive_J",
     ]
-    .map(|(kind, name)| energy_term_name(kind, name))
+    .map(str::to_owned)
     .to_vec();
     LogSetup {
         flush_every: 20,
@@ -87,7 +85,7 @@ fn stamp(step: u64) -> Stamp {
 /// Writes every message of one step of the made-up run.
 fn write_step(log: &mut RunLog, step: u64, n_grains: u32) -> Result<(), RecordError> {
     let at = stamp(step);
-    let x = (step as f64 * 0.1).sin();
+    let x = libm::sin(step as f64 * 0.1);
     log.energy(at, &[x * x, 1.0, 0.5 * x, 2.0, 0.25], 1e-9 * x, 1e-9)?;
     for body in 0..2 {
         let sample = BodySample {

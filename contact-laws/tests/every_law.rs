@@ -1,0 +1,243 @@
+//! What must hold for every registered law, whatever it says.
+
+use contact_laws::{LAWS, LawEntry};
+use engine::contact::stage::Batch;
+use engine::contact::{Contact, ContactStage, Partner, Response, Slot};
+use engine::math::{Quat, Vec3};
+use engine::params::{Default as Given, ParamTable};
+
+const DT: f64 = 1e-5;
+
+/// Middle of the plausible range, or what the entry gives where a file need not say anything.
+fn table(entry: &LawEntry) -> ParamTable {
+    let mut table = ParamTable::new();
+    for spec in entry.params {
+        let middle = 0.5 * (spec.plausible.min + spec.plausible.max);
+        let value = match spec.default {
+            // The span of a stiffness is decades: its middle is the geometric one.
+            Given::Required if spec.plausible.min > 0.0 => {
+                (spec.plausible.min * spec.plausible.max).sqrt()
+            }
+            Given::Required => middle,
+            Given::Value(value) => value,
+            Given::SameAs(key) => table.get(key),
+        };
+        table.set(spec.key, value);
+    }
+    table
+}
+
+/// A contact that closes, shears, turns over and opens again, at unequal bodies.
+fn episode() -> Vec<Contact> {
+    let tilted = |angle: f64| Vec3::new(libm::sin(angle), 0.1, libm::cos(angle)).normalize();
+    let overlaps = [2e-6, 1.5e-5, 4e-5, 3e-5, 1e-5, -1e-6];
+    let mut before = 0.0;
+    (0..overlaps.len())
+        .map(|step| {
+            let normal = tilted(0.02 * step as f64);
+            let slip = Vec3::new(3e-6, -1e-6, 2e-6) * (step as f64 - 1.5);
+            let slip = slip - normal * slip.dot(&normal);
+            let overlap_step = overlaps[step] - before;
+            before = overlaps[step];
+            Contact {
+                normal,
+                overlap: overlaps[step],
+                overlap_rate: overlap_step / DT,
+                overlap_step,
+                slip_velocity: slip / DT,
+                slip_step: slip,
+                relative_spin: Vec3::new(20.0, -30.0, 10.0),
+                relative_turn: Vec3::new(2e-4, -3e-4, 1e-4),
+                inverse_radius_eff: 1.0 / 2e-3 + 1.0 / 3e-3,
+                inverse_mass_eff: 1.0 / 5e-5 + 1.0 / 1e-4,
+                rolling_mobility: 1.0 / 7e-10,
+                partner: Partner::Grain,
+            }
+        })
+        .collect()
+}
+
+/// The episode seen from a world turned by `turn`.
+fn turned(contact: &Contact, turn: Quat) -> Contact {
+    Contact {
+        normal: turn * contact.normal,
+        slip_velocity: turn * contact.slip_velocity,
+        slip_step: turn * contact.slip_step,
+        relative_spin: turn * contact.relative_spin,
+        relative_turn: turn * contact.relative_turn,
+        ..*contact
+    }
+}
+
+/// The episode with the names of both bodies exchanged.
+fn swapped(contact: &Contact) -> Contact {
+    Contact {
+        normal: -contact.normal,
+        slip_velocity: -contact.slip_velocity,
+        slip_step: -contact.slip_step,
+        relative_spin: -contact.relative_spin,
+        relative_turn: -contact.relative_turn,
+        ..*contact
+    }
+}
+
+/// What `law` answers to each contact of an episode, and what it books in all.
+fn play(law: &dyn ContactStage, episode: &[Contact]) -> (Vec<Response>, Vec<f64>) {
+    let mut history = vec![0.0; law.history_len()];
+    let mut energy = vec![0.0; law.channels().len()];
+    let responses = episode
+        .iter()
+        .map(|contact| {
+            let mut response = before_the_law(law, contact);
+            let batch = Batch {
+                contacts: std::slice::from_ref(contact),
+                rows: &[0],
+                responses: std::slice::from_mut(&mut response),
+            };
+            law.sweep(batch, DT, &mut history, &mut energy);
+            response
+        })
+        .collect();
+    (responses, energy)
+}
+
+/// An effect finds what a base law would have answered.
+fn before_the_law(law: &dyn ContactStage, contact: &Contact) -> Response {
+    match law.slot() {
+        Slot::Base => Response::default(),
+        _ => Response {
+            normal_force: 3200.0 * contact.overlap.max(0.0),
+            normal_stiffness: 3200.0,
+            ..Response::default()
+        },
+    }
+}
+
+/// Round-off of some tens of operations, of the largest value of the episode.
+fn assert_close(values: impl Iterator<Item = (f64, f64)>, what: &str) {
+    let values: Vec<(f64, f64)> = values.collect();
+    let scale = values.iter().fold(0.0_f64, |scale, (a, b)| scale.max(a.abs()).max(b.abs()));
+    for (a, b) in values {
+        assert!((a - b).abs() <= 1e-13 * scale, "{what}: {a:e} against {b:e}");
+    }
+}
+
+fn vectors(a: Vec3, b: Vec3) -> impl Iterator<Item = (f64, f64)> {
+    (0..3).map(move |axis| (a[axis], b[axis]))
+}
+
+#[test]
+fn every_registered_law_says_what_it_is_and_where_it_comes_from() {
+    for entry in LAWS {
+        let name = entry.name;
+        for (text, what) in [
+            (entry.summary, "summary"),
+            (entry.formula, "formula"),
+            (entry.signature, "signature"),
+            (entry.source, "source"),
+        ] {
+            assert!(!text.trim().is_empty(), "{name} has no {what}");
+        }
+        assert!(!entry.params.is_empty() && !entry.channels.is_empty(), "{name}");
+        assert!(name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-'));
+        for spec in entry.params {
+            let key = spec.key;
+            let snake = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+            assert!(key.starts_with(|c: char| c.is_ascii_lowercase()), "{name}.{key}");
+            assert!(key.chars().all(snake), "{name}.{key}");
+            assert!(!spec.meaning.is_empty(), "{name}.{key}");
+            assert!(spec.plausible.min < spec.plausible.max, "{name}.{key}");
+            for bound in [spec.plausible.min, spec.plausible.max] {
+                assert!(spec.allowed.contains(bound), "{name}.{key}: {bound} is not allowed");
+            }
+            if let Given::Value(value) = spec.default {
+                assert!(spec.allowed.contains(value), "{name}.{key}: {value} is not allowed");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_registered_law_can_be_built_from_its_param_specs_and_rejects_each_missing_key() {
+    for entry in LAWS {
+        let full = table(entry);
+        let law = (entry.build)(&full);
+        assert_eq!(law.name(), entry.name);
+        assert_eq!(law.channels(), entry.channels);
+        for missing in entry.params {
+            let mut short = ParamTable::new();
+            for (key, value) in full.iter().filter(|(key, _)| *key != missing.key) {
+                short.set(key, value);
+            }
+            let built = std::panic::catch_unwind(|| (entry.build)(&short));
+            assert!(built.is_err(), "{} is built without `{}`", entry.name, missing.key);
+        }
+    }
+}
+
+#[test]
+fn every_registered_law_is_unchanged_by_a_rotation_of_the_world() {
+    let turn = Quat::new_normalize(nalgebra::Quaternion::new(0.3, -0.7, 0.2, 0.5));
+    for entry in LAWS {
+        let law = (entry.build)(&table(entry));
+        let episode = episode();
+        let other: Vec<Contact> = episode.iter().map(|contact| turned(contact, turn)).collect();
+        let (here, energy) = play(&*law, &episode);
+        let (there, other_energy) = play(&*law, &other);
+        let both = || here.iter().zip(&there);
+        assert_close(both().map(|(a, b)| (a.normal_force, b.normal_force)), entry.name);
+        assert_close(
+            both().flat_map(|(a, b)| vectors(turn * a.tangential_force, b.tangential_force)),
+            entry.name,
+        );
+        assert_close(both().flat_map(|(a, b)| vectors(turn * a.couple, b.couple)), entry.name);
+        assert_close(energy.into_iter().zip(other_energy), entry.name);
+    }
+}
+
+#[test]
+fn every_registered_law_gives_equal_and_opposite_force_when_i_and_j_swap() {
+    for entry in LAWS {
+        let law = (entry.build)(&table(entry));
+        let episode = episode();
+        let other: Vec<Contact> = episode.iter().map(swapped).collect();
+        let (here, energy) = play(&*law, &episode);
+        let (there, other_energy) = play(&*law, &other);
+        for (a, b) in here.iter().zip(&there) {
+            // A change of sign is exact.
+            assert_eq!(a.normal_force.to_bits(), b.normal_force.to_bits(), "{}", entry.name);
+            assert_eq!(a.tangential_force, -b.tangential_force, "{}", entry.name);
+            assert_eq!(a.couple, -b.couple, "{}", entry.name);
+        }
+        assert_eq!(energy, other_energy, "{}", entry.name);
+    }
+}
+
+#[test]
+fn every_registered_law_is_silent_where_nothing_touches() {
+    for entry in LAWS {
+        let law = (entry.build)(&table(entry));
+        let mut contact = episode().remove(0);
+        for overlap in [0.0, -1e-9] {
+            contact.overlap = overlap;
+            contact.overlap_step = 0.0;
+            let before = before_the_law(&*law, &contact);
+            let (after, energy) = play(&*law, std::slice::from_ref(&contact));
+            let change = (after[0].normal_force - before.normal_force).abs()
+                + after[0].tangential_force.norm()
+                + after[0].couple.norm()
+                + energy.iter().map(|energy| energy.abs()).sum::<f64>();
+            assert!(change <= 0.0, "{} at {overlap:e}: {change:e}", entry.name);
+        }
+    }
+}
+
+#[test]
+fn every_registered_law_has_channels_of_its_own() {
+    let mut seen = Vec::new();
+    for channel in LAWS.iter().flat_map(|entry| entry.channels) {
+        let account = (channel.name, channel.kind);
+        assert!(!seen.contains(&account), "{account:?} is booked twice");
+        seen.push(account);
+    }
+}

@@ -1,0 +1,32 @@
+//! The table of cases.
+
+use crate::case::Case;
+
+#[path = "../cases/ballistic_flight.rs"]
+mod ballistic_flight;
+#[path = "../cases/friction_on_incline.rs"]
+mod friction_on_incline;
+#[path = "../cases/grain_in_groove.rs"]
+mod grain_in_groove;
+#[path = "../cases/head_on_collision.rs"]
+mod head_on_collision;
+#[path = "../cases/oblique_collision_energy.rs"]
+mod oblique_collision_energy;
+#[path = "../cases/rolling_to_rest.rs"]
+mod rolling_to_rest;
+#[path = "../cases/sliding_to_rolling.rs"]
+mod sliding_to_rolling;
+#[path = "../cases/squeezed_grain.rs"]
+mod squeezed_grain;
+
+/// Every case, simple ones first.
+pub static CASES: &[&Case] = &[
+    &ballistic_flight::CASE,
+    &head_on_collision::CASE,
+    &oblique_collision_energy::CASE,
+    &friction_on_incline::CASE,
+    &sliding_to_rolling::CASE,
+    &rolling_to_rest::CASE,
+    &squeezed_grain::CASE,
+    &grain_in_groove::CASE,
+];
