@@ -31,11 +31,14 @@ enum BarOf {
 }
 
 impl Terminal {
-    /// Listens for signals: the first asks the run to stop, a second ends the program at once.
+    /// Listens for signals: the first asks the run to stop, a second ends the program at once. A signal
+    /// that is ignored, as `nohup` has it, stays ignored.
     pub(crate) fn new(quiet: bool) -> anyhow::Result<Self> {
         let signal = Arc::new(AtomicUsize::new(0));
         let asked = Arc::new(AtomicBool::new(false));
-        for number in [SIGINT, SIGTERM, SIGHUP] {
+        let ignored = ignored_signals();
+        for number in [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|n| ignored >> (n - 1) & 1 == 0)
+        {
             flag::register_conditional_shutdown(number, 128 + number, Arc::clone(&asked))
                 .and_then(|_| flag::register(number, Arc::clone(&asked)))
                 .and_then(|_| {
@@ -76,6 +79,14 @@ impl Terminal {
         self.bar.set_style(style.progress_chars("━╸ "));
         self.bar.enable_steady_tick(Duration::from_millis(200));
     }
+}
+
+/// The signals that whoever started the program had it ignore, signal n as bit n − 1, where the system
+/// says so.
+fn ignored_signals() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
 impl Control for Terminal {

@@ -72,6 +72,15 @@ impl Call {
         self
     }
 
+    /// The same call by a shell that first does `before`.
+    pub(crate) fn after(self, before: &str) -> Self {
+        let mut shell = Command::new("sh");
+        shell.arg("-c").arg(format!("{before}; exec \"$0\" \"$@\""));
+        shell.arg(self.0.get_program()).args(self.0.get_args()).env_remove("PLUNGE_CACHE");
+        shell.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        Self(shell)
+    }
+
     /// In the folder `here`.
     pub(crate) fn inside(mut self, here: &Path) -> Self {
         self.0.current_dir(here);

@@ -97,6 +97,38 @@ fn sigterm_ends_with_143_within_2_s_and_sigint_with_130() {
 }
 
 #[test]
+fn a_second_signal_ends_the_program_at_once_and_it_can_be_resumed() {
+    let out = folder();
+    let child = busy(out.path()).start();
+    wait_for(&out.path().join("checkpoint"));
+    signal(&child, "TERM");
+    signal(&child, "TERM");
+    assert_eq!(Ended::of(child).code, Some(143));
+    resumes_to_the_same_bytes(out.path());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn under_nohup_a_run_outlives_its_terminal() {
+    let out = folder();
+    let child = busy(out.path()).after("trap '' HUP").start();
+    wait_for(&out.path().join("checkpoint"));
+    signal(&child, "HUP");
+    assert_eq!(Ended::of(child).code, Some(0));
+    assert_same_run(out.path(), undisturbed().0);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_that_cannot_grow_ends_the_run_with_a_message_and_it_can_be_resumed() {
+    let out = folder();
+    // In 512 bytes, or in some shells in 1024: the log gets a part of its two megabytes.
+    let message = busy(out.path()).after("trap '' XFSZ; ulimit -f 600").fails(1);
+    assert!(message.contains("run.mcap.partial") && message.contains("too large"), "{message}");
+    resumes_to_the_same_bytes(out.path());
+}
+
+#[test]
 fn a_checkpoint_of_1_thread_goes_on_with_8() {
     let out = folder();
     let child = busy(out.path()).arg("--threads").arg("1").start();
