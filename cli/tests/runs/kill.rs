@@ -12,7 +12,7 @@ use tempfile::TempDir;
 use crate::common::{Call, Ended, assert_same_run, folder, names, small_model, wait_for};
 
 /// A run that flushes and checkpoints all the time.
-const BUSY: [&str; 3] = ["run.duration=40 ms", "run.checkpoint_every=200", "log.flush_every=100"];
+const BUSY: [&str; 3] = ["run.duration=60 ms", "run.checkpoint_every=200", "log.flush_every=100"];
 
 const RANDOM_KILLS: u32 = 10;
 
@@ -152,8 +152,10 @@ fn a_kill_while_the_bed_settles_leaves_nothing_in_the_way() {
     sleep(Duration::from_millis(100));
     child.kill().expect("it can be killed");
     assert_eq!(Ended::of(child).code, None);
+    // Once it holds its folder, it listens for signals.
+    fs::remove_file(out.join(".lock")).expect("the lock");
     let child = run().start();
-    sleep(Duration::from_millis(200));
+    wait_for(&out.join(".lock"));
     signal(&child, "TERM");
     assert_eq!(Ended::of(child).code, Some(143));
     assert_eq!(run().arg("--resume").done().json()["bed"]["cache"], "miss");
