@@ -205,6 +205,12 @@ impl<'a> Recovery<'a> {
             return Ok(false);
         };
         match scan::parse(opcode, &body) {
+            // Logs are written in chunks or without: this is an index with a damaged opcode.
+            Some(Record::Message { .. } | Record::Channel(_) | Record::Schema { .. })
+                if self.chunks > 0 =>
+            {
+                Ok(false)
+            }
             Some(record) => {
                 self.output.record(&record, &body)?;
                 Ok(true)
@@ -256,7 +262,11 @@ impl<'a> Recovery<'a> {
                 }
             }
         }
-        if next.is_some() {
+        // Only a chunk that claims to go on behind the end of the file was cut; its checksum is that of
+        // the whole, so what unpacks of it cannot be checked. One that is all there and does not
+        // match its checksum is damaged, and nothing of it can be trusted.
+        let is_cut = next.is_none() && head.compressed_size > room;
+        if !is_cut {
             self.lose(at, end - at, "damaged chunk".to_owned());
         } else {
             let packed = self.input.bytes(from, room.min(CHUNK_LIMIT))?;
