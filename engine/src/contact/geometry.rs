@@ -66,9 +66,11 @@ fn assemble(now: &Meeting, half: &Meeting, bodies: Bodies, dt: f64) -> Contact {
     }
 }
 
-/// The contact of grains `i` and `j`, whose centres are `apart` = x_i − x_j (m).
+/// The contact of grains `i` and `j`.
 #[inline(always)]
-pub(crate) fn between_grains(grains: &Grains, i: usize, j: usize, apart: Vec3, dt: f64) -> Contact {
+pub(crate) fn between_grains(grains: &Grains, i: usize, j: usize, dt: f64) -> Contact {
+    let both = |of: &[Vec3]| [of[i], of[j]];
+    let apart = grains.position[i] - grains.position[j];
     let (r_i, r_j) = (grains.radius[i], grains.radius[j]);
     let meet = |apart: Vec3, [v_i, v_j]: [Vec3; 2], [w_i, w_j]: [Vec3; 2]| {
         let distance = apart.norm();
@@ -77,14 +79,9 @@ pub(crate) fn between_grains(grains: &Grains, i: usize, j: usize, apart: Vec3, d
         let (arm_i, arm_j) = arms_between_grains(normal, overlap, r_i, r_j);
         (Meeting { normal, arm_i, arm_j, v_i, w_i, v_j, w_j }, overlap)
     };
-    let made = [grains.velocity[i], grains.velocity[j]];
-    let (now, overlap) = meet(
-        apart,
-        [grains.velocity_now[i], grains.velocity_now[j]],
-        [grains.spin_now[i], grains.spin_now[j]],
-    );
-    let (half, _) =
-        meet(apart - (made[0] - made[1]) * (0.5 * dt), made, [grains.spin[i], grains.spin[j]]);
+    let made = both(&grains.velocity);
+    let (now, overlap) = meet(apart, both(&grains.velocity_now), both(&grains.spin_now));
+    let (half, _) = meet(apart - (made[0] - made[1]) * (0.5 * dt), made, both(&grains.spin));
     let bodies = Bodies {
         overlap,
         inverse_radius_eff: grains.inverse_radius[i] + grains.inverse_radius[j],

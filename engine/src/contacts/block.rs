@@ -142,17 +142,25 @@ impl Block {
         dt: f64,
     ) {
         let (keys, touching, history) = self.pairs.rows_mut();
-        let mut row = 0;
-        while row < keys.len() {
+        // Without a branch: about half of the candidates touch, and which ones cannot be foreseen.
+        let near = &mut self.bench.near_rows;
+        near.resize(keys.len(), 0);
+        let mut n_near = 0;
+        for (row, (&[i, j], &touched)) in keys.iter().zip(&*touching).enumerate() {
+            let (i, j) = (i as usize, j as usize);
+            let reach = grains.radius[i] + grains.radius[j];
+            let apart = grains.position[i] - grains.position[j];
+            near[n_near] = row as u32;
+            n_near += usize::from((apart.norm_squared() < reach * reach) | touched);
+        }
+        let mut next = 0;
+        while next < n_near {
             self.bench.clear();
-            while row < keys.len() && !self.bench.is_full() {
+            while next < n_near && !self.bench.is_full() {
+                let row = self.bench.near_rows[next] as usize;
                 let [i, j] = keys[row].map(|k| k as usize);
-                let apart = grains.position[i] - grains.position[j];
-                let reach = grains.radius[i] + grains.radius[j];
-                if apart.norm_squared() < reach * reach || touching[row] {
-                    self.bench.push(between_grains(grains, i, j, apart, dt), row);
-                }
-                row += 1;
+                self.bench.push(between_grains(grains, i, j, dt), row);
+                next += 1;
             }
             self.bench.evaluate(stages, dt, touching, history, &mut self.tally.energy);
             let evaluated = self.bench.contacts.iter().zip(&self.bench.responses);
