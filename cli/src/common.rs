@@ -1,6 +1,5 @@
 //! The flags that commands about a model share.
 
-use std::num::NonZeroU16;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -22,9 +21,9 @@ pub(crate) struct Common {
     /// The folder to write to.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Threads to use; they never change a result.
-    #[arg(long, value_name = "N")]
-    pub(crate) threads: Option<NonZeroU16>,
+    /// Threads to use, 1 to 256; they never change a result.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub(crate) threads: Option<u16>,
     /// Print one JSON object to stdout.
     #[arg(long)]
     pub(crate) json: bool,
@@ -98,7 +97,7 @@ impl Common {
         &self,
         work: impl FnOnce() -> R + Send,
     ) -> Result<R, CommandError> {
-        let threads = self.threads.map_or(0, |n| usize::from(n.get()));
+        let threads = self.threads.map_or(0, usize::from);
         with_threads(threads, work).map_err(|error| CommandError::Failed(error.into()))
     }
 }
