@@ -28,7 +28,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let prepared = common.on_threads(|| prepare(&model, &cache, &mut terminal))?;
     terminal.clear();
     let Some(bed) = prepared.map_err(CommandError::from)? else {
-        return Err(terminal.interrupted("the bed was not prepared"));
+        return Err(terminal.interrupted("the same command goes on from here"));
     };
     let report = BedReport::of(&model.bed(&bed.resting));
     let summary = BedSummary::new(&report, bed.cache, &model);

@@ -97,7 +97,7 @@ impl Control for Terminal {
                 self.bar.set_message(format!("{time:.3} s, {restlessness:.1e} of rest"));
                 self.bar.set_position(step);
             }
-            Progress::Impact { index, of, step, last_step, time, depth, relative_speed } => {
+            Progress::Impact { index, of, step, last_step, time, depth, speed } => {
                 self.show(
                     BarOf::Impact(index),
                     "{prefix}{bar:24} {msg}, {per_sec}, at most {eta} left",
@@ -108,9 +108,8 @@ impl Control for Terminal {
                 self.bar.set_length(last_step);
                 self.bar.set_position(step);
                 self.bar.set_message(format!(
-                    "{time:.3} s, {:.1} mm deep, {:.0} % of the speed",
-                    1e3 * depth,
-                    1e2 * relative_speed
+                    "{time:.3} s, {:.1} mm deep, {speed:.2} m/s",
+                    1e3 * depth
                 ));
             }
         }

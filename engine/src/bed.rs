@@ -3,6 +3,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use serde::{Deserialize, Serialize};
 
 use crate::body::NoIntruder;
 use crate::boundary::Container;
@@ -12,7 +13,7 @@ use crate::error::StepError;
 use crate::grain_bed::{GrainBed, RestingBed};
 use crate::grains::{Grain, Grains, Space};
 use crate::math::Vec3;
-use crate::world::World;
+use crate::world::{SavedWorld, World};
 
 /// Share of the area that grains fill when they are placed at random.
 const FILL_FRACTION: f64 = 0.5;
@@ -187,11 +188,32 @@ impl Settling {
         self.world.clock()
     }
 
+    /// Everything that changes while it settles.
+    #[must_use]
+    pub fn save(&self) -> SavedSettling {
+        SavedSettling { world: self.world.save(), quiet_since: self.quiet_since }
+    }
+
+    /// Takes back a saved state of the same preparation; `false`, and an unusable one, if it is of
+    /// another.
+    #[must_use]
+    pub fn restore(&mut self, saved: SavedSettling) -> bool {
+        self.quiet_since = saved.quiet_since;
+        self.world.restore(saved.world)
+    }
+
     /// The bed as it stands.
     #[must_use]
     pub fn bed(&self) -> &GrainBed {
         self.world.bed()
     }
+}
+
+/// The state of a settling bed between two steps, bit by bit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SavedSettling {
+    world: SavedWorld,
+    quiet_since: Option<f64>,
 }
 
 /// What a planar bed at rest looks like.

@@ -27,7 +27,7 @@ pub enum StepError {
     },
     /// A grain passed through another or through a wall.
     #[error(
-        "step {step}: grain {grain} overlaps its neighbour by {overlap:.2e} m, more than its radius of \
+        "step {step}: grain {grain} overlaps its neighbour by {overlap:.2e} m, more than a radius of \
          {radius:e} m; take a smaller time step than {dt:e} s or a stiffer contact"
     )]
     OverlapTooLarge {

@@ -80,6 +80,17 @@ impl RestingBed {
     }
 }
 
+impl RestingBed {
+    /// Whether it has `n` grains, all of them finite and of some size, for a bed read from a file.
+    #[must_use]
+    pub fn is_sound(&self, n: u64) -> bool {
+        n > 0
+            && self.grains.len() as u64 == n
+            && Grains::new(self.space, &self.grains).is_consistent(self.grains.len())
+            && self.grains.iter().all(|grain| grain.radius > 0.0 && grain.mass > 0.0)
+    }
+}
+
 impl GrainBed {
     /// The bed `resting` in `container`, under the laws `stages`, ready for an intruder of
     /// `n_intruder_parts` convex parts. The laws act in the order of their slots.
@@ -161,6 +172,20 @@ impl GrainBed {
     #[must_use]
     pub fn touching_pairs(&self) -> Vec<[usize; 2]> {
         self.contacts.touching_pairs()
+    }
+
+    /// The first two grains, by identity, that overlap by more than `limit` radii of the smaller one,
+    /// and their overlap (m).
+    #[must_use]
+    pub fn pair_deeper_than(&self, limit: f64) -> Option<([u32; 2], f64)> {
+        let Grains { position, radius, id, .. } = &self.grains;
+        self.contacts.listed_pairs().find_map(|[i, j]| {
+            let overlap = radius[i] + radius[j] - (position[i] - position[j]).norm();
+            (overlap > limit * radius[i].min(radius[j])).then(|| {
+                let (a, b) = (id[i].min(id[j]), id[i].max(id[j]));
+                ([a, b], overlap)
+            })
+        })
     }
 
     /// Half a kick and the drift of the grains; `dt` (s).
@@ -323,26 +348,19 @@ impl GrainBed {
         if !total.is_finite() {
             return Err(StepError::NotFinite { step, what: "the energy of the grains", dt });
         }
-        let (relative, grain) = self.sums.overlap;
-        if relative > 1.0 {
-            let radius = self.grains.radius[grain as usize];
-            return Err(StepError::OverlapTooLarge {
-                step,
-                grain: self.grains.id[grain as usize],
-                overlap: relative * radius,
-                radius,
-                dt,
-            });
+        if self.sums.overlap.relative > 1.0 {
+            let (overlap, grain) = self.largest_overlap();
+            let radius = overlap / self.sums.overlap.relative;
+            return Err(StepError::OverlapTooLarge { step, grain, overlap, radius, dt });
         }
         Ok(())
     }
 
-    /// Largest overlap (m), and the identity of the grain that has it.
+    /// The largest overlap in units of the smaller radius (m), and the identity of a grain that has it.
     #[must_use]
     pub fn largest_overlap(&self) -> (f64, u32) {
-        let (relative, grain) = self.sums.overlap;
-        let grain = grain as usize;
-        (relative * self.grains.radius[grain], self.grains.id[grain])
+        let deepest = self.sums.overlap;
+        (deepest.overlap, self.grains.id[deepest.grain as usize])
     }
 
     pub(crate) fn save(&self) -> SavedBed {

@@ -62,7 +62,8 @@ impl CellGrid {
         // A grain thrown far out must not cost memory: wider cells are slower, never wrong.
         let mut width = reach;
         loop {
-            let cells = [extent.x, extent.y, extent.z].map(|length| (length / width) as usize + 1);
+            let cells = [extent.x, extent.y, extent.z]
+                .map(|length| ((length / width) as usize).saturating_add(1));
             self.n = match grains.space {
                 Space::Planar => [cells[0], 1, cells[2]],
                 Space::Spatial => cells,

@@ -3,12 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use crate::body::Mechanism;
-use crate::clock::Clock;
+use crate::clock::{Clock, steps_in};
 use crate::error::StepError;
-use crate::grain_bed::{GrainBed, SavedBed};
-use crate::ledger::{Balance, Ledger};
+use crate::grain_bed::GrainBed;
+use crate::ledger::Ledger;
 use crate::stopping::Stopping;
-use crate::world::World;
+use crate::world::{SavedWorld, World};
 
 /// What a run is told besides the bed and the intruder.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,10 +34,7 @@ pub struct Simulation {
 /// The state of a run between two steps, bit by bit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
-    clock: Clock,
-    bed: SavedBed,
-    intruder: Vec<f64>,
-    balance: Balance,
+    world: SavedWorld,
     stopping: Stopping,
     surface: f64,
     impact_energy: f64,
@@ -47,7 +44,7 @@ impl Snapshot {
     /// Steps done.
     #[must_use]
     pub fn step(&self) -> u64 {
-        self.clock.step
+        self.world.clock.step
     }
 }
 
@@ -90,7 +87,7 @@ impl Simulation {
     /// The step at which the run ends at the latest.
     #[must_use]
     pub fn last_step(&self) -> u64 {
-        (self.settings.duration / self.settings.dt).ceil() as u64
+        steps_in(self.settings.duration, self.settings.dt)
     }
 
     fn check_budget(&self) -> Result<(), StepError> {
@@ -165,10 +162,7 @@ impl Simulation {
     #[must_use]
     pub fn save(&self) -> Snapshot {
         Snapshot {
-            clock: self.world.clock,
-            bed: self.world.bed.save(),
-            intruder: self.world.intruder.save(),
-            balance: self.world.books.ledger.balance().clone(),
+            world: self.world.save(),
             stopping: self.stopping,
             surface: self.surface,
             impact_energy: self.impact_energy,
@@ -179,13 +173,9 @@ impl Simulation {
     /// another one.
     #[must_use]
     pub fn restore(&mut self, saved: Snapshot) -> bool {
-        self.world.clock = saved.clock;
         self.stopping = saved.stopping;
         self.surface = saved.surface;
         self.impact_energy = saved.impact_energy;
-        saved.clock.dt.to_bits() == self.settings.dt.to_bits()
-            && self.world.books.ledger.restore(saved.balance)
-            && self.world.intruder.restore(&saved.intruder)
-            && self.world.bed.restore(saved.bed)
+        self.world.restore(saved.world)
     }
 }

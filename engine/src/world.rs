@@ -1,10 +1,12 @@
 //! What an impact and a settling bed have in common: a bed, what moves in it, a ledger and a clock.
 
+use serde::{Deserialize, Serialize};
+
 use crate::body::Mechanism;
 use crate::clock::Clock;
 use crate::error::StepError;
-use crate::grain_bed::GrainBed;
-use crate::ledger::Ledger;
+use crate::grain_bed::{GrainBed, SavedBed};
+use crate::ledger::{Balance, Ledger};
 use crate::step::{Books, prime, step};
 
 /// A bed and an intruder that are stepped without asking when to stop: for preparations, and for
@@ -58,4 +60,34 @@ impl World {
     pub fn clock(&self) -> Clock {
         self.clock
     }
+
+    /// Everything that changes from step to step.
+    pub(crate) fn save(&self) -> SavedWorld {
+        SavedWorld {
+            clock: self.clock,
+            bed: self.bed.save(),
+            intruder: self.intruder.save(),
+            balance: self.books.ledger.balance().clone(),
+        }
+    }
+
+    /// Takes back a saved state of the same world; `false`, and an unusable world, if it is of another
+    /// one.
+    pub(crate) fn restore(&mut self, saved: SavedWorld) -> bool {
+        let same_step = saved.clock.dt.to_bits() == self.clock.dt.to_bits();
+        self.clock = saved.clock;
+        same_step
+            && self.books.ledger.restore(saved.balance)
+            && self.intruder.restore(&saved.intruder)
+            && self.bed.restore(saved.bed)
+    }
+}
+
+/// The state of a world between two steps, bit by bit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct SavedWorld {
+    pub(crate) clock: Clock,
+    bed: SavedBed,
+    intruder: Vec<f64>,
+    balance: Balance,
 }

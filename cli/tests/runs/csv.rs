@@ -101,3 +101,25 @@ fn a_changed_table_is_other_inputs_and_refused_where_the_model_knows_its_hash() 
     let message = Call::run_model(&out.join("model.toml"), &parent.path().join("again")).fails(2);
     assert!(message.contains("grains.csv") && message.contains("model.toml"), "{message}");
 }
+
+#[test]
+fn grains_of_a_table_that_lie_in_each_other_are_refused_with_their_lines() {
+    let (project, out) = (folder(), folder());
+    let model = model_with_a_table(project.path());
+    let table = project.path().join("table.csv");
+    let mut file = OpenOptions::new().append(true).open(table).expect("the table");
+    writeln!(file, "0.0026,0.0025,0.0025,4.9e-5").expect("a row");
+    let message = Call::run_model(&model, out.path()).fails(2);
+    assert!(message.contains("lines 2 and 62 overlap by 4.90e-3 m"), "{message}");
+}
+
+#[test]
+fn a_grain_at_the_end_of_the_world_costs_no_memory_and_no_panic() {
+    let (project, out) = (folder(), folder());
+    let model = model_with_a_table(project.path());
+    let table = project.path().join("table.csv");
+    let mut file = OpenOptions::new().append(true).open(table).expect("the table");
+    writeln!(file, "0.05,1e300,0.0025,4.9e-5").expect("a row");
+    let message = Call::run_model(&model, out.path()).fails(1);
+    assert!(message.starts_with("error: "), "{message}");
+}

@@ -83,3 +83,25 @@ fn an_intruder_that_starts_in_a_wall_is_refused() {
     let message = Call::run(out.path()).set(&["impact.x=5 mm"]).fails(2);
     assert!(message.contains("side") || message.contains("wall"), "{message}");
 }
+
+#[test]
+fn a_bed_that_settles_needs_gravity() {
+    let message = Call::new(["bed"]).arg(small_model()).set(&["medium.gravity=0 m/s^2"]).fails(2);
+    assert!(message.contains("needs gravity"), "{message}");
+}
+
+#[test]
+fn a_bed_that_loses_no_energy_is_given_up_with_a_reason() {
+    let cache = folder();
+    let call = Call::new(["bed", "--cache"]).arg(cache.path()).arg(small_model());
+    let lossless = [
+        "contact_law.normal_damping_rate=0 1/s",
+        "contact_law.tangential_damping_rate=0 1/s",
+        "contact_law.friction=0",
+        "bed.preparation_friction=0",
+        "bed.grains.0.count=12",
+        "bed.grains.1.count=3",
+    ];
+    let message = call.set(&lossless).fails(1);
+    assert!(message.contains("the kinetic energy of a bed at rest"), "{message}");
+}

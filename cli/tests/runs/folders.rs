@@ -146,11 +146,25 @@ fn files_of_others_are_refused_and_kept_when_forced() {
     fs::write(deep.join("model.toml"), "mine").expect("a file");
     let message = short(out.path()).fails(2);
     assert!(message.contains("`data`") && message.contains("--force"), "{message}");
-    assert_eq!(names(out.path()), [".lock", "data", "notes.txt"]);
+    assert_eq!(names(out.path()), ["data", "notes.txt"]);
     for _ in 0..2 {
         short(out.path()).arg("--force").done();
         assert_eq!(fs::read_to_string(&notes).expect("the file"), "mine");
         assert_eq!(fs::read_to_string(deep.join("model.toml")).expect("the file"), "mine");
+    }
+}
+
+#[test]
+fn a_file_named_like_a_result_is_kept_even_when_forced_where_no_run_has_been() {
+    for name in ["summary.json", "grains.csv", "model.toml"] {
+        let out = folder();
+        fs::write(out.path().join(name), "mine").expect("a file");
+        for _ in 0..2 {
+            let message = short(out.path()).arg("--force").fails(2);
+            assert!(message.contains(name) && message.contains("--out"), "{message}");
+        }
+        assert_eq!(names(out.path()), [name]);
+        assert_eq!(fs::read_to_string(out.path().join(name)).expect("the file"), "mine");
     }
 }
 

@@ -31,6 +31,9 @@ pub enum BuildError {
         /// How many.
         count: u64,
     },
+    /// Without gravity nothing settles.
+    #[error("a bed that settles needs gravity: give medium.gravity, or a bed from a table")]
+    NoGravity,
     /// The drawn start lies too near to a side.
     #[error("an intruder that starts at x = {x} m touches a side of the container, {width} m wide")]
     StartTouchesSide {
@@ -73,6 +76,9 @@ impl Model {
     /// If there are too many grains, or no time step.
     pub fn settling(&self) -> Result<Option<Settling>, BuildError> {
         let BedSource::Settle(settle) = &self.bed.source else { return Ok(None) };
+        if self.medium.gravity <= 0.0 {
+            return Err(BuildError::NoGravity);
+        }
         if self.n_grains() > u64::from(u32::MAX) {
             return Err(BuildError::TooManyGrains { count: self.n_grains() });
         }

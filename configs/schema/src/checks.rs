@@ -176,6 +176,19 @@ impl Checks<'_> {
             Some(n) => usize::try_from(n).unwrap_or(usize::MAX),
             None => length(&lists.x),
         };
+        let repeats = |list: &Option<Vec<f64>>| {
+            let values = list.as_deref().unwrap_or_default();
+            (1..values.len())
+                .any(|k| values[..k].iter().any(|v| v.to_bits() == values[k].to_bits()))
+        };
+        let named = [("speed", &lists.speed), ("angle", &lists.angle_rad), ("x", &lists.x)];
+        for (name, _) in named.into_iter().filter(|(_, list)| repeats(list)) {
+            self.reader.report(
+                Diagnostic::error(format!("`{name}` in [conditions] lists a value twice"))
+                    .at(self.places.conditions, "in this table")
+                    .help("the same impact again gives the same bytes: no scatter to average over"),
+            );
+        }
         let total =
             length(&lists.speed).saturating_mul(length(&lists.angle_rad)).saturating_mul(starts);
         if total > limits::CONDITIONS {

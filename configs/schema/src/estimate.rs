@@ -1,5 +1,7 @@
 //! What a model will cost, before anything is run.
 
+use engine::clock::steps_in;
+
 use crate::model::Model;
 use crate::stability;
 
@@ -31,8 +33,7 @@ impl Estimate {
     pub fn of(model: &Model) -> Self {
         let n_grains = model.n_grains();
         // At most `limits::STEPS`, so the cast is exact.
-        let steps =
-            stability::time_step(model).map(|step| (model.run.duration / step).ceil() as u64);
+        let steps = stability::time_step(model).map(|step| steps_in(model.run.duration, step));
         Self {
             n_grains,
             n_conditions: model.conditions().len(),

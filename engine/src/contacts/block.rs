@@ -39,6 +39,16 @@ pub(super) struct Delivery {
     pub(super) grain: u32,
 }
 
+/// The largest overlap in units of the smaller radius.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Deepest {
+    pub(crate) relative: f64,
+    /// (m).
+    pub(crate) overlap: f64,
+    /// Index of the grain.
+    pub(crate) grain: u32,
+}
+
 /// What one block adds to the sums of the bed.
 #[derive(Default)]
 pub(super) struct Tally {
@@ -48,8 +58,7 @@ pub(super) struct Tally {
     pub(super) wall_energy: Vec<f64>,
     /// Per part.
     pub(super) wrenches: Vec<Wrench>,
-    /// Largest overlap in units of the radius, and the grain that has it.
-    pub(super) overlap: (f64, u32),
+    pub(super) overlap: Deepest,
 }
 
 /// Contacts waiting to be evaluated, in buffers that are kept.
@@ -122,13 +131,14 @@ impl Tally {
         self.energy.fill(0.0);
         self.wall_energy.fill(0.0);
         self.wrenches.fill(Wrench::default());
-        self.overlap = (0.0, 0);
+        self.overlap = Deepest::default();
     }
 
-    fn note_overlap(&mut self, contact: &Contact, grain: usize) {
-        let relative = 0.5 * contact.overlap * contact.inverse_radius_eff;
-        if relative > self.overlap.0 {
-            self.overlap = (relative, grain as u32);
+    /// Takes note of a contact of `grain`; `curvature` (1/m) is that of the smaller grain.
+    fn note_overlap(&mut self, contact: &Contact, grain: usize, curvature: f64) {
+        let relative = contact.overlap * curvature;
+        if relative > self.overlap.relative {
+            self.overlap = Deepest { relative, overlap: contact.overlap, grain: grain as u32 };
         }
     }
 }
@@ -173,7 +183,8 @@ impl Block {
                     INSIDE => load[j - self.first].add(&on_j),
                     slot => self.outbox[slot as usize] = on_j,
                 }
-                self.tally.note_overlap(contact, i);
+                let curvature = grains.inverse_radius[i].max(grains.inverse_radius[j]);
+                self.tally.note_overlap(contact, i, curvature);
             }
         }
     }
@@ -235,7 +246,7 @@ impl Block {
                 if contact.overlap > 0.0 {
                     self.tally.wrenches[index].add(&on_part);
                 }
-                self.tally.note_overlap(contact, i);
+                self.tally.note_overlap(contact, i, grains.inverse_radius[i]);
             }
         }
     }

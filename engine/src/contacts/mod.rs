@@ -18,6 +18,7 @@ use crate::neighbours::CellGrid;
 use crate::parallel::{BLOCK, block_of};
 use crate::surface::Wrench;
 
+pub(crate) use block::Deepest;
 use block::{Bench, Block, Delivery, INSIDE, Tally};
 
 /// The contacts of a bed, by block of grains.
@@ -35,8 +36,7 @@ pub(crate) struct ContactSums {
     pub(crate) wall_energy: Vec<f64>,
     /// Per part.
     pub(crate) wrenches: Vec<Wrench>,
-    /// Largest overlap in units of the radius, and the index of the grain that has it.
-    pub(crate) overlap: (f64, u32),
+    pub(crate) overlap: Deepest,
 }
 
 impl Contacts {
@@ -55,7 +55,7 @@ impl Contacts {
                     energy: vec![0.0; n_channels],
                     wall_energy: vec![0.0; n_channels],
                     wrenches: vec![Wrench::default(); n_parts],
-                    overlap: (0.0, 0),
+                    overlap: Deepest::default(),
                 },
                 bench: Bench::default(),
             })
@@ -176,7 +176,7 @@ impl Contacts {
         sums.wall_energy.resize(n_channels, 0.0);
         sums.wrenches.clear();
         sums.wrenches.resize(n_parts, Wrench::default());
-        sums.overlap = (0.0, 0);
+        sums.overlap = Deepest::default();
         for Block { tally, .. } in &self.blocks {
             for (sum, part) in sums.energy.iter_mut().zip(&tally.energy) {
                 *sum += part;
@@ -187,7 +187,7 @@ impl Contacts {
             for (sum, part) in sums.wrenches.iter_mut().zip(&tally.wrenches) {
                 sum.add(part);
             }
-            if tally.overlap.0 > sums.overlap.0 {
+            if tally.overlap.relative > sums.overlap.relative {
                 sums.overlap = tally.overlap;
             }
         }
@@ -201,6 +201,11 @@ impl Contacts {
             .map(|part| self.blocks.iter().map(|block| block.surfaces[part].n_touching()).sum())
             .collect();
         (pairs, surfaces)
+    }
+
+    /// Indices of the grains of every pair that is near enough to be listed, ascending.
+    pub(crate) fn listed_pairs(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
+        self.blocks.iter().flat_map(|block| block.pairs.keys()).map(|key| key.map(|k| k as usize))
     }
 
     /// Indices of the grains of every contact between grains that touch, ascending.

@@ -68,9 +68,9 @@ fn the_same_run_on_1_2_3_and_8_threads_is_bit_identical() {
 }
 
 #[test]
-fn restart_from_a_checkpoint_continues_bit_identically() {
+fn restart_from_a_checkpoint_continues_bit_identically_on_several_blocks_of_grains() {
     with_threads(1, || {
-        let mut whole = impact(300, 0.1);
+        let mut whole = impact(1_500, 0.2);
         let mut saved = Vec::new();
         for step in 0..200 {
             if step % 10 == 0 {
@@ -83,7 +83,7 @@ fn restart_from_a_checkpoint_continues_bit_identically() {
         for state in &saved {
             let state: Snapshot = postcard::from_bytes(state).expect("a snapshot can be read");
             let from = state.step();
-            let mut resumed = impact(300, 0.1);
+            let mut resumed = impact(1_500, 0.2);
             assert!(resumed.restore(state), "step {from} does not fit");
             advance_to(&mut resumed, 200);
             assert!(bytes(&resumed.save()) == end, "from step {from} the run ends otherwise");

@@ -5,14 +5,24 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
 
-use engine::checkpoint::{self, FORMAT, with_suffix};
+use engine::bed::{SavedSettling, Settling};
+use engine::checkpoint::{self, with_suffix};
 use engine::grain_bed::RestingBed;
 
-use super::{Control, Progress, RunError};
-use crate::model::Model;
+use super::{Control, Progress, RunError, result_key};
+use crate::model::{BedSource, Model};
 
 /// Steps between two looks at the control while a bed settles.
 const LOOK_EVERY: u64 = 100;
+
+/// Steps between two checkpoints of a settling bed.
+const SAVE_EVERY: u64 = 20_000;
+
+/// A bed that has not come to rest in this many times the fall through its own height never will.
+const PATIENCE: f64 = 60.0;
+
+/// Overlap of two grains of a table, in radii of the smaller, that no bed at rest has.
+const DEEPEST_IN_TABLE: f64 = 0.1;
 
 /// Time between two looks at the control while another run prepares the bed.
 const WAIT: Duration = Duration::from_millis(50);
@@ -27,11 +37,10 @@ pub struct PreparedBed {
     pub path: Option<PathBuf>,
 }
 
-/// The key of the bed of `model`: canonical recipe, version and format.
+/// The key of the bed of `model`.
 #[must_use]
 pub fn bed_key(model: &Model) -> [u8; 32] {
-    let text = format!("{}\n{FORMAT}\n{}", env!("CARGO_PKG_VERSION"), model.bed_key_text());
-    *blake3::hash(text.as_bytes()).as_bytes()
+    result_key(model.bed_key_text())
 }
 
 /// The bed of `model`: read from its table, or from the cache below `folder`, or prepared now and put
@@ -45,12 +54,16 @@ pub fn prepare(
     control: &mut dyn Control,
 ) -> Result<Option<PreparedBed>, RunError> {
     if let Some(resting) = model.read_bed() {
+        refuse_overlaps(model, &resting)?;
         return Ok(Some(PreparedBed { resting, cache: "file", path: None }));
     }
     let key = bed_key(model);
     let beds = folder.join("beds");
     let path = beds.join(format!("{}.bed", blake3::Hash::from_bytes(key).to_hex()));
-    match checkpoint::load(&path, &key) {
+    match checkpoint::load::<RestingBed>(&path, &key) {
+        Ok(resting) if !resting.is_sound(model.n_grains()) => {
+            control.warn(&format!("{} is not this bed; it is prepared again", path.display()));
+        }
         Ok(resting) => return Ok(Some(PreparedBed { resting, cache: "hit", path: Some(path) })),
         Err(error) if error.is_missing() => {}
         Err(error) => control.warn(&format!("{error}; the bed is prepared again")),
@@ -63,36 +76,80 @@ pub fn prepare(
     if let Ok(resting) = checkpoint::load(&path, &key) {
         return Ok(Some(PreparedBed { resting, cache: "hit", path: Some(path) }));
     }
-    let Some(resting) = settle(model, control)? else { return Ok(None) };
+    let unfinished = with_suffix(&path, ".settling");
+    let Some(resting) = settle(model, &unfinished, &key, control)? else { return Ok(None) };
     // What is there is damaged, and not worth keeping as the one before.
     let _ = fs::remove_file(&path);
     checkpoint::save(&path, &key, &resting)?;
+    for leftover in [with_suffix(&unfinished, ".prev"), unfinished] {
+        let _ = fs::remove_file(leftover);
+    }
     // Whoever waits for this lock, or makes a new one, finds the bed.
     let _ = fs::remove_file(&lock_path);
     drop(lock);
     Ok(Some(PreparedBed { resting, cache: "miss", path: Some(path) }))
 }
 
-/// The bed of `model`, settled now. Nothing if `control` wants to stop.
-fn settle(model: &Model, control: &mut dyn Control) -> Result<Option<RestingBed>, RunError> {
-    let Some(mut settling) = model.settling()? else {
-        unreachable!("a bed is read from a table or settles")
-    };
+/// Refuses a table whose grains lie in each other: its first step would throw them apart.
+fn refuse_overlaps(model: &Model, resting: &RestingBed) -> Result<(), RunError> {
+    let BedSource::Csv(table) = &model.bed.source else { return Ok(()) };
+    let bed = model.bed(resting);
+    match bed.pair_deeper_than(DEEPEST_IN_TABLE) {
+        // The identity of a grain of a table is its place in it; line 1 is the header.
+        Some((grains, overlap)) => Err(RunError::TableOverlaps {
+            table: table.file.clone(),
+            lines: grains.map(|grain| grain + 2),
+            overlap,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// The bed of `model`, settled now, from the checkpoint `unfinished` if there is one. Nothing if
+/// `control` wants to stop.
+fn settle(
+    model: &Model,
+    unfinished: &Path,
+    key: &[u8; 32],
+    control: &mut dyn Control,
+) -> Result<Option<RestingBed>, RunError> {
+    let mut settling = recipe(model)?;
+    let height = settling.bed().grains.position.iter().fold(0.0_f64, |top, x| top.max(x.z));
+    let patience = PATIENCE * (2.0 * height / model.medium.gravity).sqrt();
+    if let Ok((saved, _)) = checkpoint::load_latest::<SavedSettling>(unfinished, key)
+        && !settling.restore(saved)
+    {
+        settling = recipe(model)?;
+    }
     while !settling.is_at_rest() {
         settling.advance().map_err(|source| RunError::Settling { source })?;
-        let clock = settling.clock();
+        let (clock, restlessness) = (settling.clock(), settling.restlessness());
+        if clock.time() > patience {
+            return Err(RunError::Restless { time: clock.time(), restlessness });
+        }
+        if clock.step.is_multiple_of(SAVE_EVERY) {
+            checkpoint::save(unfinished, key, &settling.save())?;
+        }
         if clock.step.is_multiple_of(LOOK_EVERY) {
             control.progress(&Progress::Settling {
                 step: clock.step,
                 time: clock.time(),
-                restlessness: settling.restlessness(),
+                restlessness,
             });
             if control.wants_to_stop() {
+                checkpoint::save(unfinished, key, &settling.save())?;
                 return Ok(None);
             }
         }
     }
     Ok(Some(settling.bed().resting()))
+}
+
+fn recipe(model: &Model) -> Result<Settling, RunError> {
+    match model.settling()? {
+        Some(settling) => Ok(settling),
+        None => unreachable!("a bed is read from a table or settles"),
+    }
 }
 
 /// Holds the lock at `path`, once it is free. Nothing if `control` wants to stop before.

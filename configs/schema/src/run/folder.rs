@@ -55,6 +55,8 @@ const LOCK: &str = ".lock";
 #[derive(Debug)]
 pub(super) struct OutputFolder {
     path: PathBuf,
+    /// Whether a run has been here before.
+    is_ours: bool,
     _lock: File,
 }
 
@@ -64,9 +66,10 @@ impl OutputFolder {
         let refused = |source| RunError::Folder { folder: path.to_owned(), source };
         fs::create_dir_all(path).map_err(refused)?;
         let name = path.join(LOCK);
+        let is_ours = name.exists();
         let lock = File::create(&name).map_err(refused)?;
         match lock.try_lock() {
-            Ok(()) => Ok(Self { path: path.to_owned(), _lock: lock }),
+            Ok(()) => Ok(Self { path: path.to_owned(), is_ours, _lock: lock }),
             Err(TryLockError::WouldBlock) => Err(RunError::Busy { folder: path.to_owned() }),
             Err(TryLockError::Error(source)) => Err(RunError::io("lock", &name, source)),
         }
@@ -86,10 +89,20 @@ impl OutputFolder {
         }
         match fs::read_to_string(self.file("model.toml")) {
             Ok(text) if text == model => {}
-            Ok(_) => return Err(RunError::OtherInputs { folder }),
+            Ok(_) => {
+                if !self.is_ours {
+                    remove(&self.file(LOCK))?;
+                }
+                return Err(RunError::OtherInputs { folder });
+            }
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 return match self.stranger()? {
-                    Some(file) => Err(RunError::NotEmpty { folder, file }),
+                    Some(file) => {
+                        if !self.is_ours {
+                            remove(&self.file(LOCK))?;
+                        }
+                        Err(RunError::NotEmpty { folder, file })
+                    }
                     None => Ok(Found::Nothing),
                 };
             }
@@ -110,8 +123,17 @@ impl OutputFolder {
         self.path.join(name)
     }
 
-    /// Removes the results of earlier runs, and nothing else.
+    /// Removes the results of earlier runs, and nothing else: in a folder where no run has been, a file
+    /// with the name of a result is somebody's own.
     fn clear(&self) -> Result<(), RunError> {
+        if !self.is_ours
+            && let Some(name) = RESULTS.iter().find(|name| self.file(name).exists())
+        {
+            // The lock would make it look like ours the next time.
+            remove(&self.file(LOCK))?;
+            let (folder, file) = (self.path.clone(), (*name).to_owned());
+            return Err(RunError::NotOurs { folder, file });
+        }
         for name in RESULTS.iter().chain(&UNFINISHED) {
             remove(&self.file(name))?;
         }

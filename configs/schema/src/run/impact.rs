@@ -11,7 +11,7 @@ use engine::math::Vec3;
 use engine::parallel::n_threads;
 use engine::record::{
     BodyFrame, BodyLoad, BodySample, EventLevel, GrainSample, LogAttachment, LogPosition, LogSetup,
-    LoggedBody, LoggedShape, RunLog, Stamp,
+    LoggedBody, LoggedShape, RecordError, RunLog, Stamp,
 };
 use engine::simulation::{Simulation, Snapshot};
 use serde::{Deserialize, Serialize};
@@ -20,7 +20,7 @@ use toml_edit::{DocumentMut, value};
 use super::folder::OutputFolder;
 use super::{
     BedSummary, Control, CostSummary, FinalEnergy, PreparedBed, Progress, RunError, Summary,
-    bed_key,
+    bed_key, result_key,
 };
 use crate::load::{LoadOptions, ModelSource};
 use crate::model::{BedSource, Condition, Model};
@@ -173,7 +173,7 @@ impl Setting<'_> {
             last_step: simulation.last_step(),
             time: simulation.clock().time(),
             depth: simulation.surface() - body.lowest(),
-            relative_speed: body.velocity.norm() / self.model.impact.speed,
+            speed: body.velocity.norm(),
         }
     }
 
@@ -184,7 +184,7 @@ impl Setting<'_> {
         condition: &Condition,
         control: &mut dyn Control,
     ) -> Result<Run<'f>, RunError> {
-        let key = *blake3::hash(model_text(self.model).as_bytes()).as_bytes();
+        let key = result_key(&model_text(self.model));
         let mut simulation = self.model.simulation(&self.bed.resting, condition)?;
         let setup = self.log_setup(&simulation, condition);
         let steps_per_frame =
@@ -218,7 +218,18 @@ impl Setting<'_> {
                         checkpoint_every,
                     });
                 }
-                Err(why) => control.warn(&format!("{why}; starting again")),
+                // What the log lacks can only be made again; a full disk is no reason to drop it.
+                Err(
+                    why @ (RecordError::Missing { .. }
+                    | RecordError::Damaged { .. }
+                    | RecordError::OtherRun { .. }),
+                ) => control.warn(&format!("{why}; starting again")),
+                Err(RecordError::Io { path, ref source, .. })
+                    if source.kind() == std::io::ErrorKind::NotFound =>
+                {
+                    control.warn(&format!("{} is missing; starting again", path.display()));
+                }
+                Err(why) => return Err(why.into()),
             }
         }
         let log = RunLog::create(folder.path(), &setup)?;

@@ -9,7 +9,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use engine::bed::BedReport;
-use engine::checkpoint::CheckpointError;
+use engine::checkpoint::{CheckpointError, FORMAT};
 use engine::error::StepError;
 use engine::record::RecordError;
 use thiserror::Error;
@@ -26,6 +26,15 @@ pub use summary::{
 };
 
 use folder::{Found, OutputFolder};
+
+/// Counts the changes that move a result: states and beds of another number are not taken up.
+const RESULTS: u32 = 1;
+
+/// The key of everything that follows from `inputs`, by this version of the engine.
+fn result_key(inputs: &str) -> [u8; 32] {
+    let text = format!("{} {FORMAT} {RESULTS}\n{inputs}", env!("CARGO_PKG_VERSION"));
+    *blake3::hash(text.as_bytes()).as_bytes()
+}
 
 /// What a run asks of whoever started it.
 pub trait Control {
@@ -63,8 +72,8 @@ pub enum Progress {
         time: f64,
         /// Depth so far (m).
         depth: f64,
-        /// Speed over impact speed.
-        relative_speed: f64,
+        /// Speed (m/s).
+        speed: f64,
     },
 }
 
@@ -141,6 +150,44 @@ pub enum RunError {
         /// One of the files.
         file: String,
     },
+    /// A file with the name of a result, in a folder where no run has been.
+    #[error(
+        "{} has never been an output folder, and its `{file}` would be replaced; choose another --out",
+        folder.display()
+    )]
+    NotOurs {
+        /// The folder.
+        folder: PathBuf,
+        /// The file.
+        file: String,
+    },
+    /// Grains of a table that lie in each other.
+    #[error(
+        "{}: the grains in lines {} and {} overlap by {overlap:.2e} m, more than a tenth of the smaller \
+         radius; a table is a bed at rest",
+        table.display(),
+        lines[0],
+        lines[1]
+    )]
+    TableOverlaps {
+        /// The table.
+        table: PathBuf,
+        /// Of the first such pair.
+        lines: [u32; 2],
+        /// (m).
+        overlap: f64,
+    },
+    /// The bed does not come to rest.
+    #[error(
+        "after {time:.3} s the bed still has {restlessness:.1e} times the kinetic energy of a bed at \
+         rest; give it more damping or friction, or a smaller bed.preparation_time_step"
+    )]
+    Restless {
+        /// Simulated time (s).
+        time: f64,
+        /// Mean kinetic energy of a grain over the one that counts as rest.
+        restlessness: f64,
+    },
     /// The model cannot be built.
     #[error(transparent)]
     Build(#[from] BuildError),
@@ -186,6 +233,8 @@ impl RunError {
                 | Self::OtherInputs { .. }
                 | Self::Unfinished { .. }
                 | Self::NotEmpty { .. }
+                | Self::NotOurs { .. }
+                | Self::TableOverlaps { .. }
                 | Self::Build(_)
                 | Self::Config(_)
         )
