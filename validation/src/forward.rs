@@ -1,0 +1,98 @@
+//! What the statistics ask of a model: predictions of observables, nothing else.
+//!
+//! A resistive-force model answers by integrating an impact; a grain bed will answer from cached runs.
+
+use thiserror::Error;
+
+/// A model that predicts the observables of every condition of a measurement set.
+///
+/// Implementations are pure: equal requests give equal bits, in any order, from any thread.
+pub trait Forward: Sync {
+    /// The free parameters β.
+    fn parameters(&self) -> &[Parameter];
+
+    /// The effects that could be added, in the order of the registry.
+    fn candidates(&self) -> &[Candidate];
+
+    /// How many coefficients scatter from run to run: [`Scatter::coefficients`] has this length.
+    fn n_scattering_coefficients(&self) -> usize;
+
+    /// The observables of condition `condition` of the set, in the order of the layout of
+    /// that condition.
+    ///
+    /// # Errors
+    /// If the model cannot be integrated with these values.
+    fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError>;
+}
+
+/// Where a prediction is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Request<'a> {
+    /// β, in the order of [`Forward::parameters`].
+    pub parameters: &'a [f64],
+    /// Amplitudes of candidates, as (index in [`Forward::candidates`], q); others are absent.
+    pub effects: &'a [(usize, f64)],
+    /// What differs from run to run.
+    pub scatter: &'a Scatter,
+}
+
+/// A free parameter of a model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Its path in the model file: `resistance.drag`.
+    pub name: String,
+    /// Unit for reports; empty if dimensionless.
+    pub unit: String,
+    /// Where a fit starts (SI).
+    pub start: f64,
+    /// Least allowed value (SI).
+    pub min: f64,
+    /// Greatest allowed value (SI).
+    pub max: f64,
+}
+
+/// An effect that could be added to a model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// kebab-case.
+    pub id: &'static str,
+    /// Least allowed amplitude.
+    pub min: f64,
+    /// Greatest allowed amplitude.
+    pub max: f64,
+    /// A small amplitude, for derivatives at zero.
+    pub step: f64,
+    /// Why these data cannot show it at all; `None` if they can.
+    pub not_testable: Option<String>,
+    /// What it takes to tell it from its twins, in words.
+    pub separable_from: &'static str,
+}
+
+/// Run-level random inputs: all zero for the run of the mean bed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scatter {
+    /// Logarithm of the factor on each scattering coefficient.
+    pub coefficients: Vec<f64>,
+    /// Relative deviation of the impact speed.
+    pub speed: f64,
+    /// Deviation of the level of the surface (m): positive when it lies lower than assumed.
+    pub level: f64,
+    /// Relative deviation of the whole resistance at equally spaced nodes of depth, from the surface
+    /// to [`Scatter::reach`], linear in between; empty for none.
+    pub along: Vec<f64>,
+    /// Force normal to the velocity, in units of the resistance, at nodes likewise; in the plane of
+    /// motion, positive out of the bed.
+    pub sideways: Vec<f64>,
+    /// Depth of the last node (m); beyond it the last value holds.
+    pub reach: f64,
+}
+
+/// Why a model could not predict.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("the model cannot be integrated for condition {condition}: {why}")]
+pub struct PredictError {
+    /// Index of the condition.
+    pub condition: usize,
+    /// What went wrong.
+    pub why: String,
+}

@@ -1,0 +1,180 @@
+//! Measurement sets: conditions, runs and instrument of one campaign, as `measurement.toml` with its
+//! tables says them.
+
+/// Measurements of impacts under one or more conditions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasurementSet {
+    /// Its name, as in reports and folders.
+    pub id: String,
+    /// Where the numbers are from.
+    pub source: Option<String>,
+    /// What was measured.
+    pub kind: Kind,
+    /// What is known of the instrument.
+    pub instrument: Instrument,
+    /// What the intruder fell into.
+    pub bed: Bed,
+    /// The model that the set starts from: a shipped name, or a path beside the set.
+    pub baseline: Option<String>,
+    /// Stated relative errors, for where there are no repeats.
+    pub stated: StatedError,
+    /// When an intruder counts as stopped.
+    pub stop: StopDefinition,
+    /// Which depth and range a run gives.
+    pub last: FinalDefinition,
+    /// In the order of the file.
+    pub conditions: Vec<Condition>,
+    /// By condition, and within it in an order that names and rows of the file do not decide.
+    pub runs: Vec<Run>,
+    /// What the reader assumed or left aside, in sentences for the report.
+    pub notes: Vec<String>,
+}
+
+/// What was measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Positions over time.
+    Trajectory,
+    /// Stopping time, final depth and final range alone.
+    Scalar,
+}
+
+/// What is known of the instrument.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instrument {
+    /// Frames per second (1/s).
+    pub rate: Option<f64>,
+    /// Root mean square of one reading of a position (m).
+    pub position_sigma: Option<f64>,
+    /// How well the set impact speed is known, relative, per run.
+    pub speed_sigma_rel: Option<f64>,
+    /// How well the level of the surface is known (m).
+    pub level_sigma: Option<f64>,
+}
+
+/// Number of space dimensions of a bed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Geometry {
+    /// Discs; densities are per area (kg/m²).
+    Planar,
+    /// Densities are per volume (kg/m³).
+    Spatial,
+}
+
+/// What the intruder fell into.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bed {
+    /// Discs or grains.
+    pub geometry: Geometry,
+    /// Bulk density (kg/m³, planar kg/m²).
+    pub bulk_density: Option<f64>,
+    /// Magnitude of gravity (m/s²).
+    pub gravity: f64,
+    /// Mean diameter of the grains (m).
+    pub grain_diameter: Option<f64>,
+}
+
+/// Stated relative errors (1 = 100 %).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StatedError {
+    /// Of the stopping time.
+    pub stop_time: Option<f64>,
+    /// Of the final depth.
+    pub final_z: Option<f64>,
+    /// Of the final range.
+    pub final_x: Option<f64>,
+}
+
+/// When an intruder counts as stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StopDefinition {
+    /// The later of the first zeros of the velocity components.
+    ComponentZero,
+    /// When the speed first falls below 5 % of the impact speed.
+    SpeedFivePercent,
+}
+
+/// Which depth and range a run gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FinalDefinition {
+    /// The largest up to the stop.
+    Deepest,
+    /// Where the body rests.
+    Resting,
+}
+
+/// Whether a condition may be fitted to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// For fitting and choosing.
+    Fit,
+    /// For judging alone.
+    Holdout,
+}
+
+/// One setting of the experiment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Condition {
+    /// Its name in the tables.
+    pub id: String,
+    /// Whether it may be fitted to.
+    pub role: Role,
+    /// Speed at first contact (m/s).
+    pub speed: f64,
+    /// Angle of the velocity below the horizontal (deg): 90 is straight down.
+    pub angle_deg: f64,
+    /// Shape of the intruder, as in `plunge new --list`: sphere, disc, cylinder, …
+    pub shape: String,
+    /// Diameter (m).
+    pub diameter: f64,
+    /// Mass (kg).
+    pub mass: f64,
+    /// Angular velocity (rad/s), positive when it rolls forward.
+    pub spin: f64,
+    /// Packing fraction of the bed.
+    pub packing: Option<f64>,
+    /// Depth of the bed (m).
+    pub bed_depth: Option<f64>,
+    /// Length of a link (m).
+    pub length: Option<f64>,
+    /// Height of a cylinder or cone (m).
+    pub height: Option<f64>,
+    /// Full apex angle of a cone (deg).
+    pub apex_deg: Option<f64>,
+    /// Angle of a link's axis to the vertical (deg).
+    pub link_angle_deg: Option<f64>,
+}
+
+/// One repeat of a condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Its name in the tables; nothing depends on it.
+    pub name: String,
+    /// Index of its condition in [`MeasurementSet::conditions`].
+    pub condition: usize,
+    /// Which repeat, as the table says.
+    pub repeat: Option<i64>,
+    /// Place in time among all runs, as the table says.
+    pub order: Option<i64>,
+    /// Stopping time (s).
+    pub stop_time: Option<f64>,
+    /// Final depth of the lowest point below the undisturbed surface (m).
+    pub final_z: Option<f64>,
+    /// Final horizontal distance from first contact (m).
+    pub final_x: Option<f64>,
+    /// Frames in the order of time; empty for scalars.
+    pub frames: Vec<Frame>,
+}
+
+/// One reading of a trajectory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Time since first contact (s); negative before.
+    pub t: f64,
+    /// Depth of the lowest point below the undisturbed surface (m); negative above.
+    pub z: f64,
+    /// Horizontal distance along the motion (m).
+    pub x: f64,
+    /// Root mean square error of this reading (m), where the table says it.
+    pub sigma: Option<f64>,
+}
