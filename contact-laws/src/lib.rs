@@ -2,9 +2,14 @@
 
 mod linear_spring_dashpot;
 mod registry;
+mod resistance;
 mod rolling_resistance;
 
 pub use registry::{ActsOn, FromParams, LawEntry};
+pub use resistance::{
+    Coefficients, Expression, ExpressionError, Facts, Needs, RESISTANCE_LAWS, ResistanceEntry,
+    Role, find_resistance,
+};
 
 /// Every law and effect, in the order of the docs.
 pub static LAWS: &[&LawEntry] = &[&linear_spring_dashpot::ENTRY, &rolling_resistance::ENTRY];

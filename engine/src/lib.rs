@@ -21,6 +21,7 @@ mod neighbours;
 pub mod parallel;
 pub mod params;
 pub mod record;
+pub mod resistance;
 pub mod simulation;
 pub mod step;
 pub mod stopping;

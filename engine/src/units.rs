@@ -52,6 +52,8 @@ impl Dimension {
     pub const SPIN: Self = Self::of(0, 0, -1, 1);
     /// Spring stiffness (N/m).
     pub const STIFFNESS: Self = Self::of(1, 0, -2, 0);
+    /// Mass per length (kg/m).
+    pub const MASS_PER_LENGTH: Self = Self::of(1, -1, 0, 0);
     /// Mass density (kg/m³).
     pub const DENSITY: Self = Self::of(1, -3, 0, 0);
     /// Density of a planar medium (kg/m²).
@@ -147,6 +149,11 @@ const KINDS: &[Kind] = &[
         units: &["rpm", "deg/s", "rad/s"],
     },
     Kind { dimension: Dimension::STIFFNESS, name: "a stiffness", units: &["N/mm", "N/m"] },
+    Kind {
+        dimension: Dimension::MASS_PER_LENGTH,
+        name: "a mass per length",
+        units: &["g/cm", "kg/m"],
+    },
     Kind { dimension: Dimension::DENSITY, name: "a density", units: &["g/cm^3", "kg/m^3"] },
     Kind { dimension: Dimension::AREA_DENSITY, name: "a density per area", units: &["kg/m^2"] },
     Kind { dimension: Dimension::FORCE, name: "a force", units: &["mN", "N"] },

@@ -4,7 +4,7 @@ mod parry_surface;
 mod registry;
 mod sphere;
 
-pub use registry::{Body, ShapeEntry};
+pub use registry::{Body, Casting, Launchable, ShapeEntry};
 
 /// Every shape, in the order of the docs.
 pub static SHAPES: &[&ShapeEntry] = &[&sphere::DISC, &sphere::SPHERE];

@@ -6,11 +6,12 @@ use std::sync::Arc;
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::resistance::{Compact, Silhouette};
 use engine::units::Dimension;
 use parry3d_f64::shape::Ball;
 
 use crate::parry_surface::BallSurface;
-use crate::registry::{Body, ShapeEntry};
+use crate::registry::{Body, Casting, Launchable, ShapeEntry};
 
 const PARAMS: &[ParamSpec] = &[ParamSpec {
     key: "diameter",
@@ -28,7 +29,9 @@ pub(crate) const DISC: ShapeEntry = ShapeEntry {
     planar: true,
     spatial: false,
     params: PARAMS,
-    build: disc,
+    build: Some(disc),
+    volume: |params, _| planar_area(params),
+    assembly: |casting| compact(casting, disc),
 };
 
 /// The registry's line for the sphere; in a planar bed it is a disc with a sphere's moment of inertia.
@@ -38,7 +41,9 @@ pub(crate) const SPHERE: ShapeEntry = ShapeEntry {
     planar: true,
     spatial: true,
     params: PARAMS,
-    build: sphere,
+    build: Some(sphere),
+    volume,
+    assembly: |casting| compact(casting, sphere),
 };
 
 fn disc(params: &ParamTable, _: Space) -> Body {
@@ -47,17 +52,91 @@ fn disc(params: &ParamTable, _: Space) -> Body {
     Body {
         surface: surface(radius),
         inertia_per_mass: Vec3::new(across, 2.0 * across, across),
-        volume: PI * radius * radius,
+        volume: planar_area(params),
     }
 }
 
 fn sphere(params: &ParamTable, space: Space) -> Body {
     let radius = 0.5 * params.get("diameter");
-    let volume = match space {
-        Space::Planar => PI * radius * radius,
-        Space::Spatial => 4.0 / 3.0 * PI * radius.powi(3),
-    };
-    Body { surface: surface(radius), inertia_per_mass: Vec3::repeat(0.4 * radius * radius), volume }
+    Body {
+        surface: surface(radius),
+        inertia_per_mass: Vec3::repeat(0.4 * radius * radius),
+        volume: volume(params, space),
+    }
+}
+
+fn planar_area(params: &ParamTable) -> f64 {
+    let radius = 0.5 * params.get("diameter");
+    PI * radius * radius
+}
+
+fn volume(params: &ParamTable, space: Space) -> f64 {
+    match space {
+        Space::Planar => planar_area(params),
+        Space::Spatial => 4.0 / 3.0 * PI * (0.5 * params.get("diameter")).powi(3),
+    }
+}
+
+/// The body for a resistive medium; `body` has its moment of inertia.
+fn compact(casting: &Casting, body: fn(&ParamTable, Space) -> Body) -> Launchable {
+    let radius = 0.5 * casting.params.get("diameter");
+    let inertia = casting.mass * body(casting.params, casting.space).inertia_per_mass.y;
+    let silhouette = Arc::new(Cap { radius, space: casting.space });
+    Launchable {
+        assembly: Box::new(Compact::new(silhouette, radius, casting.mass, inertia)),
+        start: Compact::at_surface(casting.velocity, casting.spin),
+    }
+}
+
+/// A sphere or a disc, by how much of it is below the surface.
+struct Cap {
+    radius: f64,
+    space: Space,
+}
+
+impl Cap {
+    /// Half the width of the section at the surface (m).
+    fn half_chord(&self, depth: f64) -> f64 {
+        let depth = depth.min(2.0 * self.radius);
+        (depth * (2.0 * self.radius - depth)).sqrt()
+    }
+}
+
+impl Silhouette for Cap {
+    fn diameter(&self) -> f64 {
+        2.0 * self.radius
+    }
+
+    fn height(&self) -> f64 {
+        2.0 * self.radius
+    }
+
+    fn frontal_area(&self) -> f64 {
+        match self.space {
+            Space::Planar => 2.0 * self.radius,
+            Space::Spatial => PI * self.radius * self.radius,
+        }
+    }
+
+    fn immersed_area(&self, depth: f64) -> f64 {
+        if depth >= self.radius { self.frontal_area() } else { self.section(depth) }
+    }
+
+    fn section(&self, depth: f64) -> f64 {
+        let half = self.half_chord(depth);
+        match self.space {
+            Space::Planar => 2.0 * half,
+            Space::Spatial => PI * half * half,
+        }
+    }
+
+    fn volume(&self, depth: f64) -> f64 {
+        let (r, z) = (self.radius, depth.min(2.0 * self.radius));
+        match self.space {
+            Space::Planar => r * r * libm::acos(1.0 - z / r) - (r - z) * self.half_chord(z),
+            Space::Spatial => PI * z * z * (r - z / 3.0),
+        }
+    }
 }
 
 fn surface(radius: f64) -> Arc<BallSurface> {

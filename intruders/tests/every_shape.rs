@@ -12,7 +12,7 @@ use intruders::{Body, SHAPES, ShapeEntry};
 fn every_body() -> impl Iterator<Item = (&'static ShapeEntry, Space, Body)> {
     SHAPES.iter().flat_map(|entry| {
         let spaces = [(entry.planar, Space::Planar), (entry.spatial, Space::Spatial)];
-        spaces.into_iter().filter(|(is_there, _)| *is_there).map(|(_, space)| {
+        spaces.into_iter().filter(|(is_there, _)| *is_there).filter_map(|(_, space)| {
             let mut params = ParamTable::new();
             for spec in entry.params {
                 let middle = (spec.plausible.min * spec.plausible.max).sqrt();
@@ -25,7 +25,7 @@ fn every_body() -> impl Iterator<Item = (&'static ShapeEntry, Space, Body)> {
                     },
                 );
             }
-            (*entry, space, (entry.build)(&params, space))
+            Some((*entry, space, entry.build?(&params, space)))
         })
     })
 }

@@ -53,7 +53,7 @@ impl Size {
         let mut params = ParamTable::new();
         params.set("diameter", 2.0 * self.radius);
         let shape = intruders::find("disc").expect("the disc is registered");
-        let body = (shape.build)(&params, Space::Planar);
+        let body = (shape.build.expect("a shape for beds of grains"))(&params, Space::Planar);
         let inertia = body.inertia_per_mass * self.mass;
         let mut disc = RigidBody::new("disc", body.surface, self.mass, inertia);
         disc.launch(position, velocity, spin);

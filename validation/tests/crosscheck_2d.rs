@@ -97,7 +97,10 @@ fn simulation(impact: &ImpactRow) -> Simulation {
 
     let mut params = ParamTable::new();
     params.set("diameter", 0.03);
-    let shape = (intruders::find("disc").expect("registered").build)(&params, Space::Planar);
+    let shape = (intruders::find("disc").and_then(|shape| shape.build).expect("registered"))(
+        &params,
+        Space::Planar,
+    );
     let mass = 0.0146;
     let mut disc = RigidBody::new("disc", shape.surface, mass, shape.inertia_per_mass * mass);
     disc.launch(

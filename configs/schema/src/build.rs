@@ -162,7 +162,10 @@ impl Model {
         condition: &Condition,
     ) -> Result<Box<dyn Mechanism>, BuildError> {
         let intruder = &self.intruder;
-        let shape = (intruder.shape.build)(&intruder.params, Space::Planar);
+        let shape = (intruder.shape.build.expect("a model of grains has a shape for grains"))(
+            &intruder.params,
+            Space::Planar,
+        );
         let inertia = shape.inertia_per_mass * intruder.mass;
         let mut body = RigidBody::new(&intruder.name, shape.surface, intruder.mass, inertia);
         let x = self.start_x(condition);

@@ -1,0 +1,149 @@
+//! The coefficients of a law: numbers, or expressions of what an impact is made with.
+
+use engine::params::ParamTable;
+use exmex::{Express, FlatEx};
+use thiserror::Error;
+
+/// SI values of a law's parameters; some may be functions of depth.
+#[derive(Clone, Debug, std::default::Default)]
+pub struct Coefficients {
+    numbers: ParamTable,
+    functions: Vec<(&'static str, Expression)>,
+}
+
+impl Coefficients {
+    /// Plain numbers.
+    #[must_use]
+    pub fn new(numbers: ParamTable) -> Self {
+        Self { numbers, functions: Vec::new() }
+    }
+
+    /// The same with `key` as a function of the variable `depth` (m).
+    #[must_use]
+    pub fn with_function(mut self, key: &'static str, function: Expression) -> Self {
+        self.functions.retain(|(name, _)| *name != key);
+        self.functions.push((key, function));
+        self
+    }
+
+    /// The SI value of `key`.
+    ///
+    /// # Panics
+    /// If the table was not filled from the specs of whoever asks.
+    #[must_use]
+    pub fn get(&self, key: &str) -> f64 {
+        self.numbers.get(key)
+    }
+
+    /// `key` as a function of depth (m): the expression that was given, or a constant.
+    pub(super) fn of_depth(&self, key: &str) -> OfDepth {
+        match self.functions.iter().find(|(name, _)| *name == key) {
+            Some((_, function)) => OfDepth::Expression(function.clone()),
+            None => OfDepth::Constant(self.get(key)),
+        }
+    }
+}
+
+/// A coefficient that may depend on depth.
+#[derive(Clone, Debug)]
+pub(super) enum OfDepth {
+    Constant(f64),
+    Expression(Expression),
+}
+
+impl OfDepth {
+    /// The value at `depth` (m).
+    pub(super) fn at(&self, depth: f64) -> f64 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Expression(expression) => expression.eval(&[("depth", depth)]),
+        }
+    }
+}
+
+/// A formula of named variables, in SI.
+#[derive(Clone, Debug)]
+pub struct Expression {
+    text: String,
+    parsed: FlatEx<f64>,
+}
+
+/// Why a text is no expression.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ExpressionError {
+    /// It does not parse.
+    #[error("{0}")]
+    Syntax(String),
+    /// It uses something that is not there.
+    #[error("`{unknown}` is not known here; known: {}", known.join(", "))]
+    UnknownVariable {
+        /// What it uses.
+        unknown: String,
+        /// What it may use.
+        known: Vec<String>,
+    },
+}
+
+impl Expression {
+    /// Reads `text`, which may use `variables`.
+    ///
+    /// # Errors
+    /// If it does not parse, or uses anything else.
+    pub fn parse(text: &str, variables: &[&str]) -> Result<Self, ExpressionError> {
+        let parsed: FlatEx<f64> =
+            exmex::parse(text).map_err(|error| ExpressionError::Syntax(error.to_string()))?;
+        let stranger = parsed.var_names().iter().find(|name| !variables.contains(&name.as_str()));
+        match stranger {
+            Some(unknown) => Err(ExpressionError::UnknownVariable {
+                unknown: unknown.clone(),
+                known: variables.iter().map(|&name| name.to_owned()).collect(),
+            }),
+            None => Ok(Self { text: text.to_owned(), parsed }),
+        }
+    }
+
+    /// As it was written.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Whether it uses `variable`.
+    #[must_use]
+    pub fn uses(&self, variable: &str) -> bool {
+        self.parsed.var_names().iter().any(|name| name == variable)
+    }
+
+    /// Its value; `variables` hold at least those that it uses, and NaN stands for any other.
+    #[must_use]
+    pub fn eval(&self, variables: &[(&str, f64)]) -> f64 {
+        let values: Vec<f64> = self
+            .parsed
+            .var_names()
+            .iter()
+            .map(|name| {
+                let found = variables.iter().find(|(known, _)| known == name);
+                found.map_or(f64::NAN, |(_, value)| *value)
+            })
+            .collect();
+        self.parsed.eval(&values).unwrap_or(f64::NAN)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_expression_is_what_it_says() {
+        let expression = Expression::parse("2 * depth^1.5 + 1", &["depth"]).unwrap();
+        assert!((expression.eval(&[("depth", 4.0)]) - 17.0).abs() < 1e-14);
+        assert!(expression.uses("depth") && !expression.uses("angle"));
+    }
+
+    #[test]
+    fn a_stranger_is_named_with_what_is_known() {
+        let error = Expression::parse("dpeth", &["depth", "angle"]).unwrap_err();
+        assert_eq!(error.to_string(), "`dpeth` is not known here; known: depth, angle");
+    }
+}

@@ -1,0 +1,42 @@
+//! The force laws of a resistive medium and the effects that can be added to them, each in a file of
+//! its own and one line of [`RESISTANCE_LAWS`].
+
+mod added_mass;
+mod buoyancy;
+mod coefficients;
+mod depth_exponent;
+mod janssen;
+mod link;
+mod poncelet;
+mod rail_friction;
+mod registry;
+#[cfg(test)]
+mod testing;
+mod two_term_components;
+mod two_term_vector;
+mod viscous_drag;
+mod yield_stress;
+
+pub use coefficients::{Coefficients, Expression, ExpressionError};
+pub use registry::{Facts, Needs, ResistanceEntry, Role};
+
+/// Every baseline and every effect, in the order of the docs, of the sum and of a diagnosis.
+pub static RESISTANCE_LAWS: &[&ResistanceEntry] = &[
+    &two_term_vector::ENTRY,
+    &two_term_components::ENTRY,
+    &poncelet::ENTRY,
+    &link::ENTRY,
+    &viscous_drag::ENTRY,
+    &yield_stress::ENTRY,
+    &janssen::ENTRY,
+    &depth_exponent::ENTRY,
+    &added_mass::ENTRY,
+    &buoyancy::ENTRY,
+    &rail_friction::ENTRY,
+];
+
+/// The baseline or effect called `name`.
+#[must_use]
+pub fn find_resistance(name: &str) -> Option<&'static ResistanceEntry> {
+    RESISTANCE_LAWS.iter().find(|entry| entry.name == name).copied()
+}

@@ -1,0 +1,81 @@
+//! What a law of a resistive medium says of itself, and how it is built by name.
+
+use engine::params::{Default, ParamSpec, Range};
+use engine::resistance::{Account, ResistanceLaw};
+use engine::units::Dimension;
+
+use super::coefficients::Coefficients;
+
+/// One baseline or effect: its line in [`super::RESISTANCE_LAWS`] makes it exist for `run`, `compare`,
+/// `diagnose`, `effects`, the docs and the shared tests.
+pub struct ResistanceEntry {
+    /// The name in TOML, kebab-case.
+    pub name: &'static str,
+    /// Whether a model starts from it or adds it.
+    pub role: Role,
+    /// What it is, in one sentence.
+    pub summary: &'static str,
+    /// The law as a formula, in plain text.
+    pub formula: &'static str,
+    /// What it does to depth, stopping time and forces.
+    pub signature: &'static str,
+    /// Paper and equation.
+    pub source: &'static str,
+    /// The parameters it takes.
+    pub params: &'static [ParamSpec],
+    /// What an expression in place of a parameter may depend on.
+    pub variables: &'static [&'static str],
+    /// The accounts it books energy to.
+    pub accounts: &'static [Account],
+    /// Makes it from SI values that fill `params`.
+    pub build: fn(&Coefficients) -> Box<dyn ResistanceLaw>,
+}
+
+/// What a law is to a model.
+#[derive(Clone, Copy, Debug)]
+pub enum Role {
+    /// The law that a model starts from.
+    Baseline,
+    /// Something added to it, with one amplitude `q` that is 0 when it is absent.
+    Effect(Facts),
+}
+
+/// What decides whether data can show an effect.
+#[derive(Clone, Copy, Debug)]
+pub struct Facts {
+    /// What the data must contain for it to act at all.
+    pub visible: &'static [Needs],
+    /// What it takes to tell it from its twins, in words.
+    pub separable_from: &'static str,
+}
+
+/// Something that a measurement set may contain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Needs {
+    /// Impacts that are not vertical.
+    Oblique,
+    /// An intruder that spins.
+    Spin,
+    /// Two packing fractions.
+    Packings,
+    /// A known depth of the bed.
+    BedDepth,
+    /// A known bulk density.
+    BulkDensity,
+}
+
+/// The amplitude of an effect.
+pub(super) const fn amplitude(
+    allowed: Range,
+    plausible: Range,
+    meaning: &'static str,
+) -> ParamSpec {
+    ParamSpec {
+        key: "q",
+        dimension: Dimension::NONE,
+        default: Default::Required,
+        allowed,
+        plausible,
+        meaning,
+    }
+}

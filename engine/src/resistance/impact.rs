@@ -1,0 +1,524 @@
+//! One impact on a resistive medium, from first contact to rest.
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::assembly::{Assembly, COORDINATES, PARTS, State};
+use super::modes::{AXES, Modes, accelerate, is_held};
+use super::motion::System;
+use super::observe::{Observer, Stretch};
+use super::solver::{Plan, Solver};
+use super::{ResistanceLaw, Surroundings};
+
+/// A speed below this share of the greatest so far counts as rest.
+const REST_SPEED: f64 = 0.05;
+
+/// A body on a curved path whose speed falls below this share of √(gD) is asked whether friction
+/// holds it; what is left of its way, some 1e-10 m, is covered at constant deceleration.
+const ALMOST_REST: f64 = 1e-4;
+
+/// More changes of mode than any impact has.
+const MOST_STRETCHES: usize = 10_000;
+
+/// A tip this near to the surface touches it (m).
+const TOUCH: f64 = 1e-12;
+
+/// Events this near to each other are one (s).
+const SIMULTANEOUS: f64 = 1e-12;
+
+/// Errors that a step may make, as the solver weighs them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Relative to each coordinate and rate.
+    pub relative: f64,
+    /// Absolute (m, m/s, rad, rad/s).
+    pub absolute: f64,
+}
+
+impl Default for Tolerance {
+    /// Errors of a whole impact stay near 1e-10 m.
+    fn default() -> Self {
+        Self { relative: 1e-10, absolute: 1e-12 }
+    }
+}
+
+/// Why an impact could not be integrated.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum ImpactError {
+    /// The solver found no step small enough.
+    #[error(
+        "the solver finds no step small enough after {time:e} s: a force is not finite or too stiff"
+    )]
+    Stalled {
+        /// Where (s).
+        time: f64,
+    },
+    /// The body chatters between two modes.
+    #[error("the motion changes its mode without end after {time:e} s")]
+    Chatter {
+        /// Where (s).
+        time: f64,
+    },
+}
+
+/// An assembly on its way into a medium.
+pub struct Impact {
+    assembly: Box<dyn Assembly>,
+    laws: Vec<Box<dyn ResistanceLaw>>,
+    bed: Surroundings,
+    start: State,
+    tolerance: Tolerance,
+}
+
+/// When and where a part stopped, as the literature defines it ([`crate::stopping::Stopping`]).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PartStop {
+    /// When its tip first touched the surface (s).
+    pub contact: Option<f64>,
+    /// When its tip first stopped sinking (s).
+    pub vertical: Option<f64>,
+    /// When the horizontal velocity of its tip first came to zero (s); 0 if it had none.
+    pub horizontal: Option<f64>,
+    /// Largest depth of the tip up to its stop (m).
+    pub depth: f64,
+    /// Horizontal distance from the start up to the horizontal stop (m).
+    pub range: f64,
+}
+
+impl PartStop {
+    /// The later of the two components (s).
+    #[must_use]
+    pub fn time(&self) -> Option<f64> {
+        Some(self.horizontal?.max(self.vertical?))
+    }
+}
+
+/// How an impact ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ending {
+    /// When (s).
+    pub time: f64,
+    /// Whether the body is at rest, held by friction, or, of a chain, all tips have stopped.
+    pub stopped: bool,
+    /// The last state.
+    pub state: State,
+    /// By part.
+    pub parts: [PartStop; PARTS],
+    /// When the speed of the first part first fell below 5 % of the impact speed (s).
+    pub slow: Option<f64>,
+    /// Since when it has stayed below 5 % of its greatest speed (s).
+    pub rest: Option<f64>,
+    /// Steps of the solver.
+    pub steps: u64,
+}
+
+/// What can happen between two steps, as indices of [`Impact::margins`].
+const N_MARGINS: usize = 5 * PARTS + 2;
+const SURFACE: usize = 0;
+const COMPONENTS: usize = 1;
+const SINKING: usize = 3;
+const FORWARD: usize = 4;
+const STOPPING: usize = 5 * PARTS;
+const SLOWING: usize = STOPPING + 1;
+
+type Margins = [f64; N_MARGINS];
+
+/// What happened first in a step, and what else at the same time.
+struct Fired {
+    time: f64,
+    which: [bool; N_MARGINS],
+}
+
+/// Everything of a run that is not the state.
+struct Progress {
+    modes: Modes,
+    parts: [PartStop; PARTS],
+    /// Sign of the horizontal velocity of each tip at the start.
+    forward: [f64; PARTS],
+    first_x: [f64; PARTS],
+    top_speed: f64,
+    slow: Option<f64>,
+    rest: Option<f64>,
+    /// Whether friction holds the body.
+    held: bool,
+    steps: u64,
+}
+
+impl Impact {
+    /// `assembly` in the state `start`, in contact or above, on `bed` under `laws`.
+    #[must_use]
+    pub fn new(
+        assembly: Box<dyn Assembly>,
+        laws: Vec<Box<dyn ResistanceLaw>>,
+        bed: Surroundings,
+        start: State,
+    ) -> Self {
+        Self { assembly, laws, bed, start, tolerance: Tolerance::default() }
+    }
+
+    /// The same, integrated to another tolerance.
+    #[must_use]
+    pub fn with_tolerance(mut self, tolerance: Tolerance) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// What falls.
+    #[must_use]
+    pub fn assembly(&self) -> &dyn Assembly {
+        &*self.assembly
+    }
+
+    /// The laws, in the order in which they act.
+    #[must_use]
+    pub fn laws(&self) -> &[Box<dyn ResistanceLaw>] {
+        &self.laws
+    }
+
+    /// What it falls into.
+    #[must_use]
+    pub fn bed(&self) -> &Surroundings {
+        &self.bed
+    }
+
+    /// The state at time 0.
+    #[must_use]
+    pub fn start(&self) -> &State {
+        &self.start
+    }
+
+    pub(super) fn system(&self) -> System<'_> {
+        System { assembly: &*self.assembly, laws: &self.laws, bed: self.bed }
+    }
+
+    /// Integrates to rest, or to `duration` (s); `observer` sees every stretch of it.
+    ///
+    /// # Errors
+    /// If the equations have no solution that a solver can follow.
+    pub fn run(&self, duration: f64, observer: &mut dyn Observer) -> Result<Ending, ImpactError> {
+        let system = self.system();
+        let (mut time, mut state) = (0.0, self.start);
+        let mut progress = self.begin(&system);
+        let mut hint = 0.0;
+        for _ in 0..MOST_STRETCHES {
+            if time >= duration || self.is_over(&progress) {
+                observer.end(time, &state);
+                return Ok(self.ending(time, &state, progress));
+            }
+            let modes = progress.modes;
+            let stalled = ImpactError::Stalled { time };
+            let plan = Plan { from: time, to: duration, first_step: hint };
+            let mut solver =
+                Solver::start(&system, &modes, plan, &state, &self.tolerance).ok_or(stalled)?;
+            let mut margins = self.margins(&system, &state, &progress);
+            let mut first = true;
+            loop {
+                let (from, to) = solver.step().ok_or(ImpactError::Stalled { time })?;
+                hint = to - from;
+                progress.steps += 1;
+                let fired =
+                    self.look(&mut solver, &system, (from, to), (margins, first), &progress);
+                time = fired.as_ref().map_or(to, |fired| fired.time);
+                state = solver.at(time);
+                let mut stretch =
+                    Stretch { from, to: time, solver: &mut solver, system: &system, modes: &modes };
+                observer.stretch(&mut stretch);
+                progress.top_speed = progress.top_speed.max(self.speed(&state));
+                if let Some(fired) = fired {
+                    self.respond(&system, &mut time, &mut state, &mut progress, &fired);
+                    break;
+                }
+                if to >= duration {
+                    break;
+                }
+                margins = self.margins(&system, &state, &progress);
+                first = false;
+            }
+        }
+        Err(ImpactError::Chatter { time })
+    }
+
+    /// States at `times` (s), all before first contact and in falling order: the flight that led to it.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn flight(&self, times: &[f64]) -> Result<Vec<State>, ImpactError> {
+        let system = self.system();
+        let Some(&last) = times.last() else { return Ok(Vec::new()) };
+        let modes = Modes::at(&system, &self.start, [false; PARTS], [[false; 2]; PARTS]);
+        let plan = Plan { from: 0.0, to: last, first_step: 0.0 };
+        let stalled = ImpactError::Stalled { time: 0.0 };
+        let mut solver =
+            Solver::start(&system, &modes, plan, &self.start, &self.tolerance).ok_or(stalled)?;
+        let mut states = Vec::with_capacity(times.len());
+        let mut reached = 0.0;
+        for &time in times {
+            while reached > time {
+                reached = solver.step().ok_or(ImpactError::Stalled { time })?.1;
+            }
+            states.push(solver.at(time));
+        }
+        Ok(states)
+    }
+
+    /// The modes at the start.
+    pub(super) fn first_modes(&self) -> Modes {
+        self.begin(&self.system()).modes
+    }
+
+    /// The modes of a body that has come to `state` and stays there.
+    pub(super) fn last_modes(&self, state: &State) -> Modes {
+        let in_bed = std::array::from_fn(|index| {
+            index < self.assembly.n_parts()
+                && self.assembly.part(index, state).immersion.depth > 0.0
+        });
+        Modes::at(&self.system(), state, in_bed, [[true; 2]; PARTS])
+    }
+
+    fn begin(&self, system: &System<'_>) -> Progress {
+        let mut parts = [PartStop::default(); PARTS];
+        let mut in_bed = [false; PARTS];
+        let mut still = [[false; 2]; PARTS];
+        let (mut first_x, mut forward) = ([0.0; PARTS], [0.0; PARTS]);
+        for index in 0..self.assembly.n_parts() {
+            let part = self.assembly.part(index, &self.start);
+            // A body that touches the surface and moves on, or has nothing else to lie on, is in.
+            in_bed[index] = part.immersion.depth > 0.0
+                || part.immersion.depth >= -TOUCH && part.tip_velocity.z <= 0.0;
+            still[index] = AXES.map(|axis| part.velocity[axis] == 0.0);
+            first_x[index] = part.tip.x;
+            forward[index] = part.tip_velocity.x.signum();
+            parts[index].contact = in_bed[index].then_some(0.0);
+            parts[index].horizontal = (part.tip_velocity.x == 0.0).then_some(0.0);
+        }
+        let speed = self.speed(&self.start);
+        Progress {
+            modes: Modes::at(system, &self.start, in_bed, still),
+            parts,
+            forward,
+            first_x,
+            top_speed: speed,
+            slow: None,
+            rest: None,
+            held: false,
+            steps: 0,
+        }
+    }
+
+    fn speed(&self, state: &State) -> f64 {
+        self.assembly.part(0, state).velocity.norm()
+    }
+
+    fn is_over(&self, progress: &Progress) -> bool {
+        let n_parts = self.assembly.n_parts();
+        let all_stopped = progress.parts[..n_parts].iter().all(|part| part.vertical.is_some());
+        progress.held || self.assembly.ends_with_its_tips() && all_stopped
+    }
+
+    /// Quantities that stay positive until something happens; infinite where it cannot.
+    fn margins(&self, system: &System<'_>, state: &State, progress: &Progress) -> Margins {
+        let mut margins = [f64::INFINITY; N_MARGINS];
+        let modes = &progress.modes;
+        let speed = self.speed(state);
+        for index in 0..self.assembly.n_parts() {
+            let part = self.assembly.part(index, state);
+            let (own, stop) = (&mut margins[5 * index..5 * index + 5], &progress.parts[index]);
+            let depth = part.immersion.depth;
+            own[SURFACE] = if modes.in_bed[index] { depth } else { -depth };
+            if stop.contact.is_some() && stop.vertical.is_none() {
+                own[SINKING] = -part.tip_velocity.z;
+            }
+            if stop.horizontal.is_none() {
+                own[FORWARD] = part.tip_velocity.x * progress.forward[index];
+            }
+            if modes.gripping && modes.in_bed[index] {
+                for (component, axis) in AXES.into_iter().enumerate() {
+                    let sense = modes.sense[index][component].sign();
+                    own[COMPONENTS + component] = part.velocity[axis] * sense;
+                }
+            }
+        }
+        if modes.gripping {
+            let (_, holds) = accelerate(system, state, modes);
+            for hold in holds.iter() {
+                let slot = 5 * hold.part + COMPONENTS + hold.component;
+                margins[slot] = modes.slack(system, state, hold);
+            }
+        } else if self.assembly.n_parts() == 1 {
+            let part = self.assembly.part(0, state);
+            margins[STOPPING] = match modes.straight {
+                Some(direction) => part.velocity.dot(&direction),
+                None => {
+                    let scale = (self.bed.gravity * part.immersion.diameter).sqrt();
+                    let above = speed - ALMOST_REST * scale;
+                    if modes.creeping { -above } else { above }
+                }
+            };
+        }
+        let above = speed - REST_SPEED * progress.top_speed;
+        margins[SLOWING] = if progress.rest.is_some() { -above } else { above };
+        margins
+    }
+
+    /// The first thing that happens in the last step of `solver`.
+    fn look(
+        &self,
+        solver: &mut Solver<'_>,
+        system: &System<'_>,
+        (from, to): (f64, f64),
+        (before, first): (Margins, bool),
+        progress: &Progress,
+    ) -> Option<Fired> {
+        let middle = 0.5 * (from + to);
+        let halfway = self.margins(system, &solver.at(middle), progress);
+        let after = self.margins(system, &solver.at(to), progress);
+        let mut roots = [f64::INFINITY; N_MARGINS];
+        for which in 0..N_MARGINS {
+            // Round-off may leave a margin below zero where a stretch begins; it has not been crossed.
+            let start = if first { before[which].max(0.0) } else { before[which] };
+            let value = |state: &State| self.margins(system, state, progress)[which];
+            if start >= 0.0 && halfway[which] < 0.0 {
+                roots[which] = solver.root((from, start), (middle, halfway[which]), value);
+            } else if halfway[which] >= 0.0 && after[which] < 0.0 {
+                roots[which] = solver.root((middle, halfway[which]), (to, after[which]), value);
+            }
+        }
+        let time = roots.iter().copied().fold(f64::INFINITY, f64::min);
+        time.is_finite()
+            .then(|| Fired { time, which: roots.map(|root| root <= time + SIMULTANEOUS) })
+    }
+
+    /// Takes note of what happened and changes the modes accordingly.
+    fn respond(
+        &self,
+        system: &System<'_>,
+        time: &mut f64,
+        state: &mut State,
+        progress: &mut Progress,
+        fired: &Fired,
+    ) {
+        let mut still = progress.modes.held();
+        let mut in_bed = progress.modes.in_bed;
+        let mut changed = false;
+        for index in 0..self.assembly.n_parts() {
+            let own = &fired.which[5 * index..5 * index + 5];
+            let part = self.assembly.part(index, state);
+            let stop = &mut progress.parts[index];
+            if own[SURFACE] {
+                in_bed[index] = !in_bed[index];
+                stop.contact = stop.contact.or(Some(*time));
+                changed = true;
+            }
+            if own[SINKING] {
+                stop.vertical = Some(*time);
+                stop.depth = stop.depth.max(-part.tip.z);
+            }
+            if own[FORWARD] {
+                stop.horizontal = Some(*time);
+                stop.range = (part.tip.x - progress.first_x[index]).abs();
+            }
+            for component in 0..2 {
+                if own[COMPONENTS + component] {
+                    let held = still[index][component];
+                    still[index][component] = !held || own[COMPONENTS + component];
+                    changed = true;
+                }
+            }
+        }
+        if fired.which[SLOWING] {
+            progress.rest = match progress.rest {
+                Some(_) => None,
+                None => Some(*time),
+            };
+            progress.slow = progress.slow.or(progress.rest);
+        }
+        let stopping = fired.which[STOPPING];
+        let creeping = progress.modes.creeping;
+        if stopping && !creeping && is_held(system, state, &progress.modes) {
+            self.come_to_rest(system, time, state, progress);
+            return;
+        }
+        if !(changed || stopping) {
+            return;
+        }
+        if stopping && progress.modes.straight.is_some() {
+            still[0] = [true; 2];
+        }
+        if self.assembly.n_parts() == 1 && !self.assembly.ends_with_its_tips() {
+            for (component, held) in still[0].iter().enumerate() {
+                if *held {
+                    state.rate[component] = 0.0;
+                }
+            }
+        }
+        let modes = Modes::at(system, state, in_bed, still);
+        progress.modes =
+            Modes { creeping: stopping && modes.straight.is_none() && !creeping, ..modes };
+        let held = progress.modes.held()[0];
+        progress.held = !self.assembly.ends_with_its_tips() && held == [true; 2];
+        if progress.held {
+            self.close(*time, state, progress);
+        }
+    }
+
+    /// Covers what is left of the way at constant deceleration.
+    fn come_to_rest(
+        &self,
+        system: &System<'_>,
+        time: &mut f64,
+        state: &mut State,
+        progress: &mut Progress,
+    ) {
+        let (acceleration, _) = accelerate(system, state, &progress.modes);
+        let [vx, vz, ..] = state.rate;
+        let speed = vx.hypot(vz);
+        let deceleration = -(acceleration[0] * vx + acceleration[1] * vz) / speed;
+        if speed > 0.0 && deceleration > 0.0 {
+            let left = speed / deceleration;
+            *time += left;
+            for index in 0..COORDINATES {
+                state.position[index] += 0.5 * left * state.rate[index];
+            }
+        }
+        state.rate = [0.0; COORDINATES];
+        progress.held = true;
+        self.close(*time, state, progress);
+    }
+
+    /// What comes to its end with the body itself.
+    fn close(&self, time: f64, state: &State, progress: &mut Progress) {
+        let tip = self.assembly.part(0, state).tip;
+        let stop = &mut progress.parts[0];
+        stop.depth = stop.depth.max(if stop.time().is_none() { -tip.z } else { 0.0 });
+        stop.vertical = stop.vertical.or(Some(time));
+        if stop.horizontal.is_none() {
+            stop.horizontal = Some(time);
+            stop.range = (tip.x - progress.first_x[0]).abs();
+        }
+        progress.rest = progress.rest.or(Some(time));
+        progress.slow = progress.slow.or(Some(time));
+    }
+
+    fn ending(&self, time: f64, state: &State, mut progress: Progress) -> Ending {
+        let stopped = self.is_over(&progress);
+        for index in 0..self.assembly.n_parts() {
+            let tip = self.assembly.part(index, state).tip;
+            let stop = &mut progress.parts[index];
+            if stop.vertical.is_none() {
+                stop.depth = stop.depth.max(-tip.z);
+            }
+            if stop.horizontal.is_none() {
+                stop.range = (tip.x - progress.first_x[index]).abs();
+            }
+        }
+        Ending {
+            time,
+            stopped,
+            state: *state,
+            parts: progress.parts,
+            slow: progress.slow,
+            rest: progress.rest,
+            steps: progress.steps,
+        }
+    }
+}

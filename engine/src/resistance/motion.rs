@@ -1,0 +1,117 @@
+//! The forces of the medium on the parts of an assembly, in a given mode of motion.
+
+use super::assembly::{Assembly, PARTS, Part, PartLoad, State};
+use super::modes::{Modes, Sense};
+use super::{Immersion, Load, Motion, ResistanceLaw, Surroundings};
+use crate::math::Vec3;
+
+/// An assembly in a medium: everything that decides a force but the state.
+pub(super) struct System<'a> {
+    pub(super) assembly: &'a dyn Assembly,
+    pub(super) laws: &'a [Box<dyn ResistanceLaw>],
+    pub(super) bed: Surroundings,
+}
+
+/// A part with its motion and what the medium does to it.
+#[derive(Clone, Copy)]
+pub(super) struct Loaded {
+    pub(super) part: Part,
+    pub(super) motion: Motion,
+    pub(super) load: Load,
+}
+
+impl Loaded {
+    /// Force of the terms that vary smoothly with the velocity (N).
+    pub(super) fn dynamic(&self) -> Vec3 {
+        self.load.dynamic - self.part.velocity * self.load.recruitment
+    }
+
+    /// Force of the frictions (N), without those that hold a component.
+    pub(super) fn sliding(&self) -> Vec3 {
+        let Self { motion, load, .. } = self;
+        let mut force = -load.friction.component_mul(&motion.direction);
+        for (axis, (grip, sense)) in [0, 2].into_iter().zip(load.grip.iter().zip(motion.sense)) {
+            if sense > 0.0 {
+                force[axis] -= grip.positive;
+            } else if sense < 0.0 {
+                force[axis] += grip.negative;
+            }
+        }
+        force
+    }
+
+    /// Everything but the frictions that hold.
+    pub(super) fn on_part(&self) -> PartLoad {
+        PartLoad {
+            force: self.dynamic() + self.sliding(),
+            couple: self.load.couple,
+            added_mass: self.load.added_mass,
+        }
+    }
+}
+
+impl System<'_> {
+    /// Part `index` under all laws.
+    pub(super) fn loaded(&self, index: usize, state: &State, modes: &Modes) -> Loaded {
+        self.visit(index, state, modes, |_, _, _| {})
+    }
+
+    /// The same; `each` is told what every law added, as the loads before and after it.
+    pub(super) fn visit(
+        &self,
+        index: usize,
+        state: &State,
+        modes: &Modes,
+        mut each: impl FnMut(usize, &Load, &Load),
+    ) -> Loaded {
+        let mut part = self.assembly.part(index, state);
+        let motion = motion(&part, index, modes);
+        let immersion: &mut Immersion = &mut part.immersion;
+        let mut load = Load::default();
+        let inside = modes.in_bed[index];
+        if inside {
+            for law in self.laws {
+                law.expose(immersion, &motion, &self.bed);
+            }
+        }
+        for (number, law) in self.laws.iter().enumerate() {
+            let before = load;
+            if inside {
+                law.act(immersion, &motion, &self.bed, &mut load);
+            }
+            law.act_everywhere(immersion, &motion, &self.bed, &mut load);
+            each(number, &before, &load);
+        }
+        if inside {
+            for (number, law) in self.laws.iter().enumerate() {
+                let before = load;
+                law.modulate(immersion, &motion, &mut load);
+                each(number, &before, &load);
+            }
+        }
+        Loaded { part, motion, load }
+    }
+
+    /// All parts under all laws; those that an assembly does not have carry nothing.
+    pub(super) fn on_parts(&self, state: &State, modes: &Modes) -> [PartLoad; PARTS] {
+        let mut loads = [PartLoad::default(); PARTS];
+        for (index, load) in loads.iter_mut().enumerate().take(self.assembly.n_parts()) {
+            *load = self.loaded(index, state, modes).on_part();
+        }
+        loads
+    }
+}
+
+/// How a part moves, with the signs that `modes` hold.
+fn motion(part: &Part, index: usize, modes: &Modes) -> Motion {
+    let velocity = part.velocity;
+    let (speed, direction) = match modes.straight {
+        Some(direction) => (velocity.dot(&direction), direction),
+        None => {
+            let speed = velocity.norm();
+            (speed, if speed > 0.0 { velocity / speed } else { Vec3::zeros() })
+        }
+    };
+    let sense = modes.sense[index].map(Sense::sign);
+    Motion { velocity, speed, direction, sense, spin: part.spin }
+}

@@ -1,0 +1,128 @@
+//! One smooth stretch of an impact: an adaptive Runge–Kutta pair of order 8 with dense output of
+//! order 7 (Dormand & Prince 1980; Hairer, Nørsett & Wanner, II.10).
+
+use differential_equations::interpolate::Interpolation;
+use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
+use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
+use differential_equations::status::Status;
+use roots::{SimpleConvergency, find_root_brent};
+
+use super::assembly::{COORDINATES, State};
+use super::impact::Tolerance;
+use super::modes::{Modes, accelerate};
+use super::motion::System;
+
+/// Coordinates and rates, as the library counts them.
+type Flat = [f64; 2 * COORDINATES];
+
+/// More steps than any impact takes: beyond, the equations are stiffer than this method.
+const MOST_STEPS: usize = 200_000;
+
+struct Equations<'a> {
+    system: &'a System<'a>,
+    modes: &'a Modes,
+}
+
+impl ODE<f64, Flat> for Equations<'_> {
+    fn diff(&self, _: f64, flat: &Flat, rates: &mut Flat) {
+        let state = State::from(*flat);
+        let (acceleration, _) = accelerate(self.system, &state, self.modes);
+        rates[..COORDINATES].copy_from_slice(&state.rate);
+        rates[COORDINATES..].copy_from_slice(&acceleration);
+    }
+}
+
+impl From<Flat> for State {
+    fn from(flat: Flat) -> Self {
+        let mut state = Self::default();
+        state.position.copy_from_slice(&flat[..COORDINATES]);
+        state.rate.copy_from_slice(&flat[COORDINATES..]);
+        state
+    }
+}
+
+impl From<State> for Flat {
+    fn from(state: State) -> Self {
+        let mut flat = [0.0; 2 * COORDINATES];
+        flat[..COORDINATES].copy_from_slice(&state.position);
+        flat[COORDINATES..].copy_from_slice(&state.rate);
+        flat
+    }
+}
+
+/// From when to when (s), forward or backward, and how long a step to try first; 0 to find one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plan {
+    pub(super) from: f64,
+    pub(super) to: f64,
+    pub(super) first_step: f64,
+}
+
+/// An integration that is under way in one mode.
+pub(super) struct Solver<'a> {
+    method: ExplicitRungeKutta<Ordinary, DormandPrince, f64, Flat, 8, 12, 16>,
+    equations: Equations<'a>,
+    end: f64,
+}
+
+impl<'a> Solver<'a> {
+    /// Starts as `plan` says. Nothing if the equations give no step to start with.
+    pub(super) fn start(
+        system: &'a System<'a>,
+        modes: &'a Modes,
+        plan: Plan,
+        state: &State,
+        tolerance: &Tolerance,
+    ) -> Option<Self> {
+        let mut method = ExplicitRungeKutta::dop853()
+            .rtol(tolerance.relative)
+            .atol(tolerance.absolute)
+            .max_steps(MOST_STEPS)
+            .h0(plan.first_step.min(plan.to - plan.from).max(0.0));
+        let equations = Equations { system, modes };
+        method.init(&equations, plan.from, plan.to, &(*state).into()).ok()?;
+        method.set_status(Status::Solving);
+        Some(Self { method, equations, end: plan.to })
+    }
+
+    /// Takes a step; its start and end (s). Nothing if no step is small enough.
+    pub(super) fn step(&mut self) -> Option<(f64, f64)> {
+        loop {
+            let left = self.end - self.method.t();
+            if self.method.h().abs() > left.abs() {
+                self.method.set_h(left);
+            }
+            self.method.step(&self.equations).ok()?;
+            if !matches!(self.method.status(), Status::RejectedStep) {
+                let finite = self.method.y().iter().all(|value| value.is_finite());
+                return finite.then(|| (self.method.t_prev(), self.method.t()));
+            }
+        }
+    }
+
+    /// The state at `time` (s) within the last step.
+    pub(super) fn at(&mut self, time: f64) -> State {
+        let (from, to) = (self.method.t_prev(), self.method.t());
+        if time == to {
+            return (*self.method.y()).into();
+        }
+        // Within the step, the library has no reason to refuse.
+        let time = time.clamp(from.min(to), from.max(to));
+        self.method.interpolate(time).unwrap_or(*self.method.y()).into()
+    }
+
+    /// When `value` of the state comes to zero within the last step, given its values at both ends of
+    /// an interval, the second of them negative.
+    pub(super) fn root(
+        &mut self,
+        (from, start): (f64, f64),
+        (to, end): (f64, f64),
+        value: impl Fn(&State) -> f64,
+    ) -> f64 {
+        debug_assert!(start >= 0.0 && end < 0.0);
+        let eps = 4.0 * f64::EPSILON * (1.0 + to.abs());
+        let mut convergence = SimpleConvergency { eps, max_iter: 200 };
+        let at = |time: f64| if time == from { start } else { value(&self.at(time)) };
+        find_root_brent(from, to, at, &mut convergence).unwrap_or(to)
+    }
+}
