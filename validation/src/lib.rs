@@ -9,10 +9,19 @@
 pub mod case;
 mod cases;
 pub mod encounter;
+pub mod fit;
 pub mod fixed;
 pub mod forward;
 pub mod measurement;
+pub mod noise;
+pub mod observable;
+pub mod observed;
+mod resampling;
 pub mod rig;
+pub mod sensitivity;
+#[cfg(test)]
+mod test_sets;
+pub mod weights;
 
 pub use case::{Case, Expected, Outcome};
 pub use cases::CASES;
