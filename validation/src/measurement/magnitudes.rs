@@ -1,0 +1,147 @@
+//! Magnitudes that no impact has, and the factor that they look like.
+
+use configs::Diagnostic;
+
+use super::checks::Start;
+use super::conditions::ConditionPlaces;
+use super::findings::Findings;
+use super::{Condition, MeasurementSet, Run};
+
+/// Measured over stated impact speed beyond which a unit is wrong: no bed makes an intruder faster.
+const FASTEST: f64 = 5.0;
+/// The same downwards; a slow camera that sees the intruder brake stays above it.
+const SLOWEST: f64 = 0.02;
+/// How many times its natural scale a depth, range or stopping time may be.
+const LARGEST: f64 = 10.0;
+/// How far from its rate the frames of a camera may be.
+const RATE: f64 = 3.0;
+
+/// Factors between units that are taken for each other.
+const FACTORS: [(f64, &str); 6] = [
+    (10.0, "×10, as mm for cm"),
+    (25.4, "×25.4, as mm for inches"),
+    (39.37, "×39.37, as inches for m"),
+    (100.0, "×100, as cm for m"),
+    (1e3, "×1000, as mm for m or ms for s"),
+    (1e6, "×1e6, as µm for m or µs for s"),
+];
+
+/// Warns of magnitudes that look like another unit.
+pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+    if !check_speeds(set, places, findings) {
+        check_ways(set, places, findings);
+    }
+    check_rate(set, findings);
+}
+
+/// Warns when the trajectories do not start with the stated speeds; whether it did.
+fn check_speeds(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) -> bool {
+    let ratio = |run: &Run| {
+        let (start, stated) = (Start::of(run)?, set.conditions[run.condition].speed);
+        let measured = libm::hypot(start.dx, start.dz) / start.dt;
+        (stated > 0.0).then_some((measured / stated, run.condition))
+    };
+    let mut ratios: Vec<(f64, usize)> = set.runs.iter().filter_map(ratio).collect();
+    ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((ratio, condition)) = ratios.get(ratios.len() / 2).copied() else { return false };
+    if (SLOWEST..=FASTEST).contains(&ratio) {
+        return false;
+    }
+    let message = format!(
+        "the trajectories start with {} the stated impact speed",
+        match ratio > 1.0 {
+            true => format!("about {ratio:.0} times"),
+            false => format!("a share of {ratio:.1e} of"),
+        }
+    );
+    let factor = match ratio > 1.0 {
+        true => nearest(ratio).to_owned(),
+        false => format!("the inverse of {}", nearest(1.0 / ratio)),
+    };
+    let help = format!("it looks like {factor}; [columns] gives the units of a table");
+    let speed = places[condition].speed;
+    findings.warn(Diagnostic::warning(message).at(speed, "the stated speed").help(help));
+    true
+}
+
+/// Warns of depths, ranges and stopping times that no impact at these speeds has.
+fn check_ways(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+    let gravity = set.bed.gravity;
+    if gravity <= 0.0 {
+        return;
+    }
+    // A fall from as high as the speed needs, and a few diameters of resistance.
+    let fall = |condition: &Condition| {
+        condition.speed.powi(2) / (2.0 * gravity) + 5.0 * condition.diameter
+    };
+    let depth = |condition: &Condition| condition.bed_depth.unwrap_or_else(|| fall(condition));
+    let range = |condition: &Condition| 2.0 * fall(condition);
+    let time = |condition: &Condition| {
+        condition.speed / gravity + 10.0 * (condition.diameter / gravity).sqrt()
+    };
+    let deepest = |run: &Run| farthest(run, run.final_z, |frame| frame.z);
+    let widest = |run: &Run| farthest(run, run.final_x, |frame| frame.x);
+    let mut warn = |what: &str, unit: &str, worst: Option<(f64, f64, usize)>| {
+        let Some((value, scale, condition)) = worst else { return };
+        // Typical values are a third to a fifth of the scale.
+        let factor = nearest(4.0 * value / scale);
+        findings.warn(
+            Diagnostic::warning(format!("a {what} of {value} {unit} is implausible"))
+                .at(places[condition].speed, "at this impact speed")
+                .help(format!("it looks like {factor}; [columns] gives the units of a table")),
+        );
+    };
+    warn("depth", "m", worst(set, deepest, depth));
+    warn("range", "m", worst(set, widest, range));
+    warn("stopping time", "s", worst(set, |run| run.stop_time, time));
+}
+
+/// The value farthest beyond its scale, with that scale and its condition.
+fn worst(
+    set: &MeasurementSet,
+    value: impl Fn(&Run) -> Option<f64>,
+    scale: impl Fn(&Condition) -> f64,
+) -> Option<(f64, f64, usize)> {
+    set.runs
+        .iter()
+        .filter_map(|run| Some((value(run)?, scale(&set.conditions[run.condition]), run.condition)))
+        .filter(|(value, scale, _)| *value > LARGEST * scale)
+        .max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))
+}
+
+/// The largest size of a coordinate in a run (m).
+fn farthest(
+    run: &Run,
+    last: Option<f64>,
+    coordinate: impl Fn(&super::Frame) -> f64,
+) -> Option<f64> {
+    let frames = run.frames.iter().filter(|frame| frame.t >= 0.0).map(coordinate);
+    frames.chain(last).map(f64::abs).max_by(f64::total_cmp)
+}
+
+/// Warns when the steps between frames are not those of the camera.
+fn check_rate(set: &MeasurementSet, findings: &mut Findings) {
+    let Some(rate) = set.instrument.rate else { return };
+    let steps = |run: &Run| {
+        let pairs = run.frames.windows(2).map(|pair| pair[1].t - pair[0].t);
+        pairs.collect::<Vec<f64>>()
+    };
+    let mut steps: Vec<f64> = set.runs.iter().flat_map(steps).collect();
+    steps.sort_by(f64::total_cmp);
+    let Some(step) = steps.get(steps.len() / 2) else { return };
+    let ratio = step * rate;
+    if !(1.0 / RATE..=RATE).contains(&ratio) {
+        let factor = nearest(ratio.max(1.0 / ratio));
+        findings.warn(
+            Diagnostic::warning(format!("a step of {step} s between readings is not 1/rate_hz"))
+                .help(format!("rate_hz = {rate}; it looks like {factor}")),
+        );
+    }
+}
+
+/// The name of the factor nearest to `ratio` (at least 1).
+fn nearest(ratio: f64) -> &'static str {
+    let distance = |factor: f64| libm::fabs(libm::log(ratio / factor));
+    let by_distance = |a: &&(f64, &str), b: &&(f64, &str)| distance(a.0).total_cmp(&distance(b.0));
+    FACTORS.iter().min_by(by_distance).map_or("another unit", |(_, name)| name)
+}
