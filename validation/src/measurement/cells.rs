@@ -1,7 +1,7 @@
 //! What stands in one cell.
 
-use configs::engine::units::{self, Dimension};
 use configs::shorten;
+use engine::units::{self, Dimension};
 
 use super::dialect::Decimal;
 

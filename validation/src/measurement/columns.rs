@@ -1,8 +1,8 @@
 //! The columns of the tables, and `[columns]`, which says how a file names and counts them.
 
-use configs::engine::units::{self, Dimension};
 use configs::reader::TableReader;
 use configs::{Diagnostic, Span};
+use engine::units::{self, Dimension};
 
 use super::keys;
 

@@ -37,6 +37,15 @@ impl Delimiter {
         }
     }
 
+    /// What notes call it.
+    pub(super) fn noun(self) -> &'static str {
+        match self {
+            Self::Comma => "commas",
+            Self::Semicolon => "semicolons",
+            Self::Tab => "tabs",
+        }
+    }
+
     /// The one that a header uses; `None` when it holds several.
     pub(super) fn of_header(header: &str) -> Option<Self> {
         let mut found = Self::ALL.into_iter().filter(|one| header.as_bytes().contains(&one.byte()));

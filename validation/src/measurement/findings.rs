@@ -1,6 +1,6 @@
 //! What is found wrong or odd while a set is read.
 
-use configs::{Diagnostic, Severity, Sources, Span};
+use configs::{Diagnostic, Severity, Sources, Span, nearest};
 
 use super::table::Row;
 
@@ -40,6 +40,14 @@ impl Findings {
         Span { source, start: range.start, end: range.end }
     }
 
+    /// Gives a place to all that has none yet.
+    pub(super) fn point_at(&mut self, span: Option<Span>, label: &str) {
+        let no_place = |one: &&mut Diagnostic| one.primary.is_none();
+        for one in self.diagnostics.iter_mut().filter(no_place) {
+            one.primary = span.map(|span| (span, label.to_owned()));
+        }
+    }
+
     pub(super) fn errors(&self) -> usize {
         self.diagnostics.iter().filter(|one| one.severity == Severity::Error).count()
     }
@@ -54,6 +62,22 @@ impl Findings {
 fn sentence(message: &str) -> String {
     let mut letters = message.chars();
     letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
+
+/// The name in `known` that `found` may stand for: `c2` for `c02`, or a near spelling.
+pub(super) fn nearest_name<'a>(
+    found: &str,
+    known: impl Iterator<Item = &'a str> + Clone,
+) -> Option<&'a str> {
+    let bare = |name: &str| {
+        let kept = name.chars().filter(|c| c.is_alphanumeric() && *c != '0');
+        kept.flat_map(char::to_lowercase).collect::<String>()
+    };
+    let wanted = bare(found);
+    known
+        .clone()
+        .find(|name| !wanted.is_empty() && bare(name) == wanted)
+        .or_else(|| nearest(found, known))
 }
 
 /// The numbers of lines in words, the first ten of them.

@@ -1,7 +1,7 @@
 //! The numeric keys of `measurement.toml`, specified like the parameters of a law.
 
-use configs::engine::params::{Default, ParamSpec, Range};
-use configs::engine::units::Dimension;
+use engine::params::{Default, ParamSpec, Range};
+use engine::units::Dimension;
 
 const fn key(
     key: &'static str,

@@ -6,9 +6,7 @@ use std::path::Path;
 
 use configs::paths::{self, PathError};
 use configs::reader::{FileKind, Reader};
-use configs::{
-    Color, Diagnostic, Severity, Sources, document as toml, limits, render_all, shorten,
-};
+use configs::{Color, Diagnostic, Sources, document as toml, limits, render_all, shorten};
 use thiserror::Error;
 
 use super::document::{self, Document, FileName, Missing};
@@ -86,7 +84,12 @@ impl MeasurementSet {
             _ => Path::new("."),
         };
         let mut set = document.set.clone();
-        findings.notes = std::mem::take(&mut set.notes);
+        let warnings: Vec<String> =
+            findings.diagnostics.iter().map(|one| format!("{}.", one.message)).collect();
+        std::mem::take(&mut set.notes)
+            .into_iter()
+            .chain(warnings)
+            .for_each(|one| findings.note(one));
         let tables = read_tables(&mut set, &document, folder, &mut findings);
         if findings.errors() == 0 {
             checks::check(&set, &document, &mut findings);
@@ -130,15 +133,8 @@ fn read_document(file: &Path, findings: &mut Findings) -> Option<Document> {
     };
     let reader = Reader::new(&findings.sources, FileKind::MeasurementSet);
     let document = document::read(reader.root(&root));
-    let diagnostics = reader.into_diagnostics();
-    if let Some(mut document) = document {
-        let warnings = diagnostics.iter().filter(|one| one.severity == Severity::Warning);
-        document.set.notes.extend(warnings.map(|one| format!("{}.", one.message)));
-        findings.diagnostics = diagnostics;
-        return Some(document);
-    }
-    findings.diagnostics = diagnostics;
-    None
+    findings.diagnostics = reader.into_diagnostics();
+    document
 }
 
 /// Reads the tables into `set`, and gives what is understood of each.
@@ -152,9 +148,9 @@ fn read_tables(
     let mut tables = Vec::new();
     let Some((name, file)) = open(&files.runs, folder, findings) else { return tables };
     let (format, missing) = (&files.format, files.missing);
-    let Some(read) = runs::read((&name, file), &set.conditions, format, missing, findings) else {
-        return tables;
-    };
+    let read = runs::read((&name, file), &set.conditions, format, missing, findings);
+    findings.point_at(files.runs.span, "this table");
+    let Some(read) = read else { return tables };
     set.runs = read.runs;
     tables.push(format!("{}: {}", file_name(&name), read.columns));
     if findings.errors() == 0
@@ -162,6 +158,7 @@ fn read_tables(
         && let Some((name, file)) = open(named, folder, findings)
     {
         let columns = trajectories::read((&name, file), &mut set.runs, format, missing, findings);
+        findings.point_at(named.span, "this table");
         tables.extend(columns.map(|columns| format!("{}: {columns}", file_name(&name))));
         if findings.errors() == 0 && set.kind == Kind::Trajectory {
             settle_empty_runs(set, missing, findings);

@@ -16,22 +16,27 @@ const LARGEST: f64 = 10.0;
 /// How far from its rate the frames of a camera may be.
 const RATE: f64 = 3.0;
 
-/// Factors between units that are taken for each other.
-const FACTORS: [(f64, &str); 6] = [
-    (10.0, "×10, as mm for cm"),
-    (25.4, "×25.4, as mm for inches"),
-    (39.37, "×39.37, as inches for m"),
-    (100.0, "×100, as cm for m"),
-    (1e3, "×1000, as mm for m or ms for s"),
-    (1e6, "×1e6, as µm for m or µs for s"),
+/// Factors between units of length that are taken for each other.
+const LENGTHS: &[(f64, &str)] = &[
+    (10.0, "×10 (mm for cm)"),
+    (25.4, "×25.4 (mm for inches)"),
+    (39.37, "×39.37 (inches for m)"),
+    (100.0, "×100 (cm for m)"),
+    (1e3, "×1000 (mm for m)"),
+    (1e6, "×1e6 (µm for m)"),
 ];
+
+/// Factors between units of time that are taken for each other.
+const TIMES: &[(f64, &str)] =
+    &[(10.0, "×10"), (100.0, "×100"), (1e3, "×1000 (ms for s)"), (1e6, "×1e6 (µs for s)")];
 
 /// Warns of magnitudes that look like another unit.
 pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+    // One wrong unit is told once.
     if !check_speeds(set, places, findings) {
         check_ways(set, places, findings);
+        check_rate(set, findings);
     }
-    check_rate(set, findings);
 }
 
 /// Warns when the trajectories do not start with the stated speeds; whether it did.
@@ -54,11 +59,11 @@ fn check_speeds(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut
             false => format!("a share of {ratio:.1e} of"),
         }
     );
-    let factor = match ratio > 1.0 {
-        true => nearest(ratio).to_owned(),
-        false => format!("the inverse of {}", nearest(1.0 / ratio)),
+    let (what, factor) = match ratio > 1.0 {
+        true => ("positions", nearest(ratio, LENGTHS)),
+        false => ("times", nearest(1.0 / ratio, TIMES)),
     };
-    let help = format!("it looks like {factor}; [columns] gives the units of a table");
+    let help = format!("the {what} look like {factor}; [columns] gives the units of a table");
     let speed = places[condition].speed;
     findings.warn(Diagnostic::warning(message).at(speed, "the stated speed").help(help));
     true
@@ -81,19 +86,22 @@ fn check_ways(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut F
     };
     let deepest = |run: &Run| farthest(run, run.final_z, |frame| frame.z);
     let widest = |run: &Run| farthest(run, run.final_x, |frame| frame.x);
-    let mut warn = |what: &str, unit: &str, worst: Option<(f64, f64, usize)>| {
-        let Some((value, scale, condition)) = worst else { return };
-        // Typical values are a third to a fifth of the scale.
-        let factor = nearest(4.0 * value / scale);
-        findings.warn(
-            Diagnostic::warning(format!("a {what} of {value} {unit} is implausible"))
+    let mut warn =
+        |what: &str, factors: &[(f64, &'static str)], worst: Option<(f64, f64, usize)>| {
+            let Some((value, scale, condition)) = worst else { return };
+            // Typical values are a third to a fifth of the scale.
+            let factor = nearest(4.0 * value / scale, factors);
+            findings.warn(
+                Diagnostic::warning(
+                    format!("a {what} is implausible").replace("{}", &value.to_string()),
+                )
                 .at(places[condition].speed, "at this impact speed")
                 .help(format!("it looks like {factor}; [columns] gives the units of a table")),
-        );
-    };
-    warn("depth", "m", worst(set, deepest, depth));
-    warn("range", "m", worst(set, widest, range));
-    warn("stopping time", "s", worst(set, |run| run.stop_time, time));
+            );
+        };
+    warn("depth of {} m", LENGTHS, worst(set, deepest, depth));
+    warn("range of {} m", LENGTHS, worst(set, widest, range));
+    warn("stopping time of {} s", TIMES, worst(set, |run| run.stop_time, time));
 }
 
 /// The value farthest beyond its scale, with that scale and its condition.
@@ -131,7 +139,7 @@ fn check_rate(set: &MeasurementSet, findings: &mut Findings) {
     let Some(step) = steps.get(steps.len() / 2) else { return };
     let ratio = step * rate;
     if !(1.0 / RATE..=RATE).contains(&ratio) {
-        let factor = nearest(ratio.max(1.0 / ratio));
+        let factor = nearest(ratio.max(1.0 / ratio), TIMES);
         findings.warn(
             Diagnostic::warning(format!("a step of {step} s between readings is not 1/rate_hz"))
                 .help(format!("rate_hz = {rate}; it looks like {factor}")),
@@ -139,9 +147,9 @@ fn check_rate(set: &MeasurementSet, findings: &mut Findings) {
     }
 }
 
-/// The name of the factor nearest to `ratio` (at least 1).
-fn nearest(ratio: f64) -> &'static str {
-    let distance = |factor: f64| libm::fabs(libm::log(ratio / factor));
+/// The name of the factor nearest to `ratio`, which is at least 1.
+fn nearest(ratio: f64, factors: &[(f64, &'static str)]) -> &'static str {
+    let distance = |factor: f64| libm::log(ratio / factor).abs();
     let by_distance = |a: &&(f64, &str), b: &&(f64, &str)| distance(a.0).total_cmp(&distance(b.0));
-    FACTORS.iter().min_by(by_distance).map_or("another unit", |(_, name)| name)
+    factors.iter().min_by(by_distance).map_or("another unit", |(_, name)| name)
 }

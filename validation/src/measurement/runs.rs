@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::io::BufRead;
 
-use configs::{Diagnostic, nearest, shorten};
+use configs::{Diagnostic, shorten};
 
 use super::cells::Cell;
 use super::columns::RUNS;
 use super::document::Missing;
-use super::findings::{Findings, lines_in_words};
+use super::findings::{Findings, lines_in_words, nearest_name};
 use super::table::{Format, Row, Table, file_name};
 use super::{Condition, Run};
 
@@ -47,7 +47,10 @@ pub(super) fn read(
     let mut marks = Vec::new();
     while table.next(&mut row, findings) {
         if runs.len() == MOST {
-            findings.report(Diagnostic::error(format!("{name} has more than {MOST} rows")));
+            findings.report(Diagnostic::error(format!(
+                "{} has more than {MOST} rows",
+                file_name(name)
+            )));
             break;
         }
         let run = table.text(&row, RUN).to_owned();
@@ -87,7 +90,8 @@ pub(super) fn read(
         runs.push(Run { name: run, condition, repeat, order, stop_time, final_z, final_x, frames });
     }
     if lines.is_empty() && findings.errors() == 0 {
-        findings.report(Diagnostic::error(format!("{name} has no row below its header")));
+        findings
+            .report(Diagnostic::error(format!("{} has no row below its header", file_name(name))));
     }
     tell_marks(&marks, name, missing, findings);
     Some(Runs { runs, columns: table.describe() })
@@ -104,7 +108,7 @@ fn condition(
     let index = conditions.iter().position(|condition| condition.id == name);
     if index.is_none() {
         let ids = || conditions.iter().map(|condition| condition.id.as_str());
-        let label = match nearest(name, ids()) {
+        let label = match nearest_name(name, ids()) {
             Some(near) => format!("did you mean `{near}`?"),
             None => "not the id of a [[condition]]".to_owned(),
         };
@@ -125,12 +129,10 @@ fn tell_marks(marks: &[(u64, usize)], name: &str, missing: Missing, findings: &m
         return;
     }
     let lines: Vec<u64> = marks.iter().map(|(line, _)| *line).collect();
-    let (n, lines) = (marks.len(), lines_in_words(&lines));
+    let (n, lines, name) = (marks.len(), lines_in_words(&lines), file_name(name));
     match missing {
-        Missing::Drop => findings.note(format!(
-            "{n} cells of {} without a number count as not measured: {lines}.",
-            file_name(name)
-        )),
+        Missing::Drop => findings
+            .note(format!("{n} cells of {name} without a number count as not measured: {lines}.")),
         Missing::Error => findings.report(
             Diagnostic::error(format!("{name}: {n} cells hold no number: {lines}")).help(
                 "leave a cell empty when it was not measured, \

@@ -49,8 +49,11 @@ pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: 
 
 /// Refuses angles that the trajectories have to the vertical.
 fn check_angles(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
-    // Near 45 deg the two conventions cannot be told apart.
-    let told = |condition: &Condition| (condition.angle_deg - 45.0).abs() > 10.0;
+    // Near 45 deg the two conventions cannot be told apart, and 90 deg is vertical in both when
+    // only the others were converted.
+    let told = |condition: &Condition| {
+        (condition.angle_deg - 45.0).abs() > 10.0 && condition.angle_deg < 89.0
+    };
     let measured = |run: &Run| {
         let start = Start::of(run)?;
         Some(libm::atan2(start.dz, start.dx).to_degrees())

@@ -5,6 +5,7 @@ use std::io::BufRead;
 use std::ops::Range;
 
 use configs::{Diagnostic, SourceId, Span, nearest, shorten};
+use engine::units::{self, Dimension};
 
 use super::cells::{self, Cell};
 use super::columns::{ColumnNames, ColumnSpec, Content};
@@ -115,7 +116,7 @@ impl<R: BufRead> Table<R> {
         let mut lines = Lines::new(reader);
         let header = lines.next(&mut row.text);
         row.line = line(header, name, findings)?.or_else(|| {
-            findings.report(Diagnostic::error(format!("{name} is empty")));
+            findings.report(Diagnostic::error(format!("{} is empty", file_name(name))));
             None
         })?;
         let delimiter =
@@ -372,8 +373,8 @@ impl<R: BufRead> Table<R> {
     fn note_dialect(&self, format: &Format, row: &Row, findings: &mut Findings) {
         let table = file_name(&row.table);
         if format.delimiter.is_none() && self.dialect.delimiter != Delimiter::Comma {
-            let word = self.dialect.delimiter.word();
-            findings.note(format!("The columns of {table} are separated by {word}."));
+            let noun = self.dialect.delimiter.noun();
+            findings.note(format!("The columns of {table} are separated by {noun}."));
         }
         if format.decimal.is_none() && self.dialect.decimal == Decimal::Comma {
             findings.note(format!("The numbers of {table} have a decimal comma."));
@@ -392,7 +393,8 @@ fn line(
     table: &str,
     findings: &mut Findings,
 ) -> Option<Option<u64>> {
-    read.map_err(|fault| findings.report(Diagnostic::error(format!("{table}: {fault}")))).ok()
+    let name = file_name(table);
+    read.map_err(|fault| findings.report(Diagnostic::error(format!("{name}: {fault}")))).ok()
 }
 
 fn part(source: SourceId, range: Range<usize>) -> Span {
@@ -401,24 +403,19 @@ fn part(source: SourceId, range: Range<usize>) -> Span {
 
 /// Reports that no column has the name `name`.
 fn missing(name: &str, spec: &ColumnSpec, found: &[String], row: &Row, findings: &mut Findings) {
-    let stem =
-        |found: &str| found.split(['_', ' ', '(', '[']).next().unwrap_or_default().to_lowercase();
-    let near = nearest(name, found.iter().map(String::as_str)).or_else(|| {
-        found.iter().map(String::as_str).find(|found| stem(found) == name.to_lowercase())
-    });
-    let other = near.map_or("…".to_owned(), shorten);
+    let near = like(name, found);
+    let other = near.map_or("…".to_owned(), |at| shorten(&found[at]));
     let entry = match spec.content {
         Content::Quantity(dimension) => {
-            format!("{} = {{ name = \"{other}\", unit = \"{}\" }}", spec.key, dimension.si_unit())
+            let unit = near.and_then(|at| unit_in(&found[at], dimension));
+            let unit = unit.unwrap_or_else(|| dimension.si_unit());
+            format!("{} = {{ name = \"{other}\", unit = \"{unit}\" }}", spec.key)
         }
         Content::Name | Content::Count => format!("{} = {{ name = \"{other}\" }}", spec.key),
     };
     let shown: Vec<String> = found.iter().take(20).map(|name| shorten(name)).collect();
-    let label = match near {
-        Some(near) => format!("is it `{}`?", shorten(near)),
-        None => "no column has this name".to_owned(),
-    };
-    let span = findings.place(row, None);
+    let span = findings.place(row, near);
+    let label = if near.is_some() { "is it this one?" } else { "no column has this name" };
     findings.report(
         Diagnostic::error(format!("the column `{}` is missing", shorten(name)))
             .at(span, label)
@@ -427,4 +424,22 @@ fn missing(name: &str, spec: &ColumnSpec, found: &[String], row: &Row, findings:
                 shown.join(", ")
             )),
     );
+}
+
+/// The column that is likely meant by `name`: spelt nearly so, or with a unit behind the name.
+fn like(name: &str, found: &[String]) -> Option<usize> {
+    let stem = |found: &String| found.split(BEFORE_UNIT).next().unwrap_or_default().to_lowercase();
+    match nearest(name, found.iter().map(String::as_str)) {
+        Some(near) => found.iter().position(|found| found == near),
+        None => found.iter().position(|found| stem(found) == name.to_lowercase()),
+    }
+}
+
+/// What stands between a name and its unit in `z_mm`, `z (mm)`, `z/mm`.
+const BEFORE_UNIT: [char; 5] = ['_', ' ', '(', '[', '/'];
+
+/// The unit that a column has in its name.
+fn unit_in(name: &str, dimension: Dimension) -> Option<String> {
+    let unit = name.rsplit(BEFORE_UNIT).next()?.trim_end_matches([')', ']']);
+    units::parse(&format!("1 {unit}"), dimension).ok().map(|_| unit.to_owned())
 }

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::io::BufRead;
 
-use configs::{Diagnostic, nearest, shorten};
+use configs::{Diagnostic, shorten};
 
 use super::cells::Cell;
 use super::columns::TRAJECTORIES;
 use super::document::Missing;
-use super::findings::{Findings, lines_in_words};
+use super::findings::{Findings, lines_in_words, nearest_name};
 use super::table::{Format, Row, Table, file_name};
 use super::{Frame, Run};
 
@@ -43,7 +43,7 @@ pub(super) fn read(
         rows += 1;
         if rows > MOST {
             findings.report(
-                Diagnostic::error(format!("{name} has more than {MOST} rows"))
+                Diagnostic::error(format!("{} has more than {MOST} rows", file_name(name)))
                     .help("keep every second or tenth row: neighbouring readings say the same"),
             );
             break;
@@ -89,7 +89,8 @@ pub(super) fn read(
         findings.note(format!("An error of zero is taken as not stated: {zeros} rows of {table}."));
     }
     if rows == 0 && findings.errors() == 0 {
-        findings.report(Diagnostic::error(format!("{name} has no row below its header")));
+        findings
+            .report(Diagnostic::error(format!("{} has no row below its header", file_name(name))));
     }
     tell_holes(&holes, name, missing, findings);
     Some(table.describe())
@@ -105,7 +106,7 @@ fn run(
     let name = table.text(row, RUN);
     let found = index.get(name).copied();
     if found.is_none() {
-        let label = match nearest(name, index.keys().map(String::as_str)) {
+        let label = match nearest_name(name, index.keys().map(String::as_str)) {
             Some(near) => format!("did you mean `{near}`?"),
             None => "not in the table of runs".to_owned(),
         };
@@ -122,16 +123,65 @@ fn tell_holes(holes: &[u64], name: &str, missing: Missing, findings: &mut Findin
     if holes.is_empty() {
         return;
     }
-    let (n, lines) = (holes.len(), lines_in_words(holes));
+    let (n, lines, name) = (holes.len(), lines_in_words(holes), file_name(name));
     let rows = if n == 1 { "row" } else { "rows" };
     match missing {
         Missing::Drop => {
-            let table = file_name(name);
-            findings.note(format!("{n} {rows} of {table} without a number were dropped: {lines}."));
+            findings.note(format!("{n} {rows} of {name} without a number were dropped: {lines}."));
         }
         Missing::Error => findings.report(
             Diagnostic::error(format!("{name}: {n} {rows} without a number: {lines}"))
                 .help("write missing = \"drop\" below [files] to go on without these rows"),
         ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{self, BufReader, Read};
+
+    use super::*;
+
+    /// A table without an end.
+    struct Endless {
+        row: u64,
+        rest: Vec<u8>,
+    }
+
+    impl Read for Endless {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            while self.rest.len() < buffer.len() {
+                self.row += 1;
+                self.rest.extend_from_slice(format!("r1,{}e-6,0.01,0\n", self.row).as_bytes());
+            }
+            let taken = buffer.len();
+            buffer.copy_from_slice(&self.rest[..taken]);
+            self.rest.drain(..taken);
+            Ok(taken)
+        }
+    }
+
+    #[test]
+    fn a_table_of_too_many_rows_is_refused_before_it_fills_the_memory() {
+        let table = Endless { row: 0, rest: b"run,t,z,x\n".to_vec() };
+        let run = |name: &str| Run {
+            name: name.to_owned(),
+            condition: 0,
+            repeat: None,
+            order: None,
+            stop_time: None,
+            final_z: None,
+            final_x: None,
+            frames: Vec::new(),
+        };
+        let (mut runs, mut findings) = ([run("r1")], Findings::default());
+        let source = ("trajectories.csv", BufReader::new(table));
+        read(source, &mut runs, &Format::default(), Missing::Error, &mut findings);
+        let messages: Vec<&str> =
+            findings.diagnostics.iter().map(|one| one.message.as_str()).collect();
+        assert_eq!(messages, ["trajectories.csv has more than 2000000 rows"]);
+        let held = runs[0].frames.capacity() * size_of::<Frame>();
+        // While the list grows, half of it again is held.
+        assert!(held + held / 2 < 200_000_000, "{held} bytes");
     }
 }
