@@ -56,8 +56,11 @@ fn every_set_loads_without_a_warning_and_says_its_source_and_its_errors() {
     }
 }
 
-/// Angle (deg), then λ_x1 (s), λ_x2 (m), λ_y1 (s), λ_y2 (m): Wang, Ye and Zheng 2012, Table 1.
-const PENETRATION: [(f64, Option<(f64, f64)>, (f64, f64)); 7] = [
+/// Slope (s) and intercept (m) of a way over the impact speed.
+type Line = (f64, f64);
+
+/// Angle (deg), range and depth: Wang, Ye and Zheng 2012, Table 1.
+const PENETRATION: [(f64, Option<Line>, Line); 7] = [
     (5.0, Some((0.13553, -0.01677)), (0.0064, 0.08188)),
     (15.0, Some((0.09257, 0.00876)), (0.01193, 0.07595)),
     (30.0, Some((0.05877, 0.01848)), (0.01802, 0.07257)),
@@ -90,7 +93,7 @@ fn s1_tables_hold_the_published_laws() {
         let (angle, v) = (condition.angle_deg, condition.speed);
         let row = PENETRATION.iter().find(|row| (row.0 - angle).abs() < 1e-9);
         let (_, x, z) = row.expect("an angle of the table");
-        let line = |(slope, intercept): (f64, f64)| slope * v + intercept;
+        let line = |(slope, intercept): Line| slope * v + intercept;
         assert_near(run.final_z, Some(line(*z)), ROUNDING, &condition.id);
         assert_near(run.final_x, x.map(line), ROUNDING, &condition.id);
         assert_near(run.stop_time, stopping_time(angle, v), ROUNDING, &condition.id);

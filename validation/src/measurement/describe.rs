@@ -1,11 +1,24 @@
 //! A set in a few lines of plain text.
 
-use super::{Condition, Geometry, Kind, MeasurementSet, Role, Run};
+use super::{Condition, Geometry, Kind, Loaded, MeasurementSet, Role, Run};
+
+impl Loaded {
+    /// [`MeasurementSet::describe`] with the columns that were understood.
+    #[must_use]
+    pub fn describe(&self) -> String {
+        self.set.describe_with(&self.tables)
+    }
+}
 
 impl MeasurementSet {
     /// What the set holds, for a reader at a terminal: conditions, roles, runs, units and notes.
     #[must_use]
     pub fn describe(&self) -> String {
+        self.describe_with(&[])
+    }
+
+    /// The same with a line for each table.
+    fn describe_with(&self, tables: &[String]) -> String {
         let kind = match self.kind {
             Kind::Trajectory => "trajectories",
             Kind::Scalar => "scalars",
@@ -22,8 +35,12 @@ impl MeasurementSet {
         }
         text.push('\n');
         text.push_str(&aligned(&self.rows()));
+        text.push('\n');
+        for table in tables {
+            text.push_str(&format!("{table}\n"));
+        }
         if let Some(source) = &self.source {
-            text.push_str(&format!("\nsource: {}\n", source.trim()));
+            text.push_str(&format!("source: {}\n", source.trim()));
         }
         for note in &self.notes {
             text.push_str(&format!("note: {note}\n"));

@@ -22,7 +22,8 @@ impl Findings {
 
     /// A warning stands among the notes too, for the report.
     pub(super) fn warn(&mut self, diagnostic: Diagnostic) {
-        self.note(format!("{}.", sentence(&diagnostic.message)));
+        let help = diagnostic.help.as_ref().map_or(String::new(), |help| format!(": {help}"));
+        self.note(format!("{}{help}.", sentence(&diagnostic.message)));
         self.diagnostics.push(diagnostic);
     }
 

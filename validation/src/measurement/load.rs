@@ -12,7 +12,7 @@ use thiserror::Error;
 use super::document::{self, Document, FileName, Missing};
 use super::findings::Findings;
 use super::table::file_name;
-use super::{Kind, MeasurementSet, checks, order, runs, trajectories};
+use super::{MeasurementSet, checks, order, runs, trajectories};
 
 /// A set and what came with it.
 #[derive(Clone, Debug)]
@@ -158,11 +158,11 @@ fn read_tables(
         && let Some((name, file)) = open(named, folder, findings)
     {
         let columns = trajectories::read((&name, file), &mut set.runs, format, missing, findings);
-        findings.point_at(named.span, "this table");
         tables.extend(columns.map(|columns| format!("{}: {columns}", file_name(&name))));
-        if findings.errors() == 0 && set.kind == Kind::Trajectory {
+        if findings.errors() == 0 {
             settle_empty_runs(set, missing, findings);
         }
+        findings.point_at(named.span, "this table");
     }
     if findings.errors() == 0 {
         find_empty_conditions(set, document, findings);

@@ -86,35 +86,55 @@ fn check_ways(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut F
     };
     let deepest = |run: &Run| farthest(run, run.final_z, |frame| frame.z);
     let widest = |run: &Run| farthest(run, run.final_x, |frame| frame.x);
-    let mut warn =
-        |what: &str, factors: &[(f64, &'static str)], worst: Option<(f64, f64, usize)>| {
-            let Some((value, scale, condition)) = worst else { return };
-            // Typical values are a third to a fifth of the scale.
-            let factor = nearest(4.0 * value / scale, factors);
-            findings.warn(
-                Diagnostic::warning(
-                    format!("a {what} is implausible").replace("{}", &value.to_string()),
-                )
+    let all = [
+        (DEPTH, worst(set, deepest, depth)),
+        (RANGE, worst(set, widest, range)),
+        (STOPPING_TIME, worst(set, |run| run.stop_time, time)),
+    ];
+    for (observable, worst) in all {
+        let Some(Worst { value, scale, condition }) = worst else { continue };
+        let Observable { name, unit, factors } = observable;
+        // Typical values are a third to a fifth of the scale.
+        let factor = nearest(4.0 * value / scale, factors);
+        findings.warn(
+            Diagnostic::warning(format!("a {name} of {value} {unit} is implausible"))
                 .at(places[condition].speed, "at this impact speed")
                 .help(format!("it looks like {factor}; [columns] gives the units of a table")),
-            );
-        };
-    warn("depth of {} m", LENGTHS, worst(set, deepest, depth));
-    warn("range of {} m", LENGTHS, worst(set, widest, range));
-    warn("stopping time of {} s", TIMES, worst(set, |run| run.stop_time, time));
+        );
+    }
 }
 
-/// The value farthest beyond its scale, with that scale and its condition.
+/// What is measured of a run, in words.
+struct Observable {
+    name: &'static str,
+    unit: &'static str,
+    factors: &'static [(f64, &'static str)],
+}
+
+const DEPTH: Observable = Observable { name: "depth", unit: "m", factors: LENGTHS };
+const RANGE: Observable = Observable { name: "range", unit: "m", factors: LENGTHS };
+const STOPPING_TIME: Observable = Observable { name: "stopping time", unit: "s", factors: TIMES };
+
+/// A value far beyond its natural scale.
+struct Worst {
+    value: f64,
+    scale: f64,
+    condition: usize,
+}
+
+/// The value farthest beyond its scale.
 fn worst(
     set: &MeasurementSet,
     value: impl Fn(&Run) -> Option<f64>,
     scale: impl Fn(&Condition) -> f64,
-) -> Option<(f64, f64, usize)> {
-    set.runs
-        .iter()
-        .filter_map(|run| Some((value(run)?, scale(&set.conditions[run.condition]), run.condition)))
-        .filter(|(value, scale, _)| *value > LARGEST * scale)
-        .max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))
+) -> Option<Worst> {
+    let of = |run: &Run| {
+        let (condition, value) = (run.condition, value(run)?);
+        Some(Worst { value, scale: scale(&set.conditions[condition]), condition })
+    };
+    let all = set.runs.iter().filter_map(of);
+    all.filter(|one| one.value > LARGEST * one.scale)
+        .max_by(|a, b| (a.value / a.scale).total_cmp(&(b.value / b.scale)))
 }
 
 /// The largest size of a coordinate in a run (m).

@@ -14,7 +14,7 @@ const SHORTEST: f64 = 0.05;
 pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
     let depth = against(set, |run, condition| {
         let downward = condition.speed * sine(condition) > 0.0;
-        downward.then(|| way(run, run.final_z, |frame| frame.z)).flatten()
+        downward.then(|| way(run, run.final_z, |frame| frame.z)).flatten().filter(far(condition))
     });
     if let Some(Against { condition, contrary, told }) = depth {
         let angle = set.conditions[condition].angle_deg;
@@ -32,7 +32,7 @@ pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: 
     }
     let range = against(set, |run, condition| {
         let forward = condition.speed * cosine(condition) > 0.05 * condition.speed;
-        forward.then(|| way(run, run.final_x, |frame| frame.x)).flatten()
+        forward.then(|| way(run, run.final_x, |frame| frame.x)).flatten().filter(far(condition))
     });
     if let Some(Against { condition, contrary, told }) = range {
         findings.report(
@@ -94,12 +94,7 @@ fn against(
 ) -> Option<Against> {
     let mut found = Against { condition: 0, contrary: 0, told: 0 };
     for run in &set.runs {
-        let condition = &set.conditions[run.condition];
-        let Some(way) = direction(run, condition) else { continue };
-        // A share of the diameter, or plus or minus one.
-        if way.abs() < SHORTEST * condition.diameter {
-            continue;
-        }
+        let Some(way) = direction(run, &set.conditions[run.condition]) else { continue };
         found.told += 1;
         if way < 0.0 {
             if found.contrary == 0 {
@@ -116,6 +111,12 @@ fn way(run: &Run, last: Option<f64>, coordinate: impl Fn(&super::Frame) -> f64) 
     let start = run.frames.first().map(&coordinate);
     let ways = run.frames.iter().map(|frame| coordinate(frame) - start.unwrap_or_default());
     ways.max_by(|a, b| a.abs().total_cmp(&b.abs())).or(last)
+}
+
+/// Whether a way (m) is long enough to tell a direction.
+fn far(condition: &Condition) -> impl Fn(&f64) -> bool {
+    let shortest = SHORTEST * condition.diameter;
+    move |way| way.abs() >= shortest
 }
 
 fn sine(condition: &Condition) -> f64 {
