@@ -2,7 +2,7 @@
 
 use configs::{Diagnostic, Severity, Sources, Span, nearest};
 
-use super::table::Row;
+use super::row::Row;
 
 /// Most faults of one table that are listed.
 const FAULTS: usize = 10;

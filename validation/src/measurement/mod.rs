@@ -2,8 +2,8 @@
 //! tables says them.
 //!
 //! [`MeasurementSet::load`] reads a set, [`MeasurementSet::write`] writes one. `document` knows
-//! `measurement.toml` and `conditions` its conditions; `lines`, `dialect`, `columns`, `cells` and
-//! `table` read a table, `runs` and `trajectories` know the two tables there are; `checks`, `signs`
+//! `measurement.toml` and `conditions` its conditions; `lines`, `dialect`, `columns`, `header`, `row`,
+//! `cells` and `table` read a table, `runs` and `trajectories` know the two tables there are; `checks`, `signs`
 //! and `magnitudes` look at the whole.
 
 mod cells;
@@ -14,11 +14,13 @@ mod describe;
 mod dialect;
 mod document;
 mod findings;
+mod header;
 mod keys;
 mod lines;
 mod load;
 mod magnitudes;
 mod order;
+mod row;
 mod runs;
 mod signs;
 mod table;

@@ -9,7 +9,8 @@ use super::cells::Cell;
 use super::columns::RUNS;
 use super::document::Missing;
 use super::findings::{Findings, lines_in_words, nearest_name};
-use super::table::{Format, Row, Table, file_name};
+use super::row::Row;
+use super::table::{Format, Table, file_name};
 use super::{Condition, Run};
 
 /// Most runs of a set.
@@ -42,6 +43,8 @@ pub(super) fn read(
 ) -> Option<Runs> {
     let mut row = Row::default();
     let mut table = Table::open((name, reader), &RUNS, format, &mut row, findings)?;
+    let index: BTreeMap<&str, usize> =
+        conditions.iter().enumerate().map(|(index, one)| (one.id.as_str(), index)).collect();
     let mut lines = BTreeMap::<String, u64>::new();
     let mut runs = Vec::new();
     let mut marks = Vec::new();
@@ -54,7 +57,7 @@ pub(super) fn read(
             break;
         }
         let run = table.text(&row, RUN).to_owned();
-        let condition = condition(&table, &row, conditions, findings);
+        let condition = condition(&table, &row, &index, findings);
         let repeat = table.count(&row, REPEAT, findings);
         let order = table.count(&row, ORDER, findings);
         let mut number = |key| match table.quantity(&row, key, findings) {
@@ -101,26 +104,25 @@ pub(super) fn read(
 fn condition(
     table: &Table<impl BufRead>,
     row: &Row,
-    conditions: &[Condition],
+    index: &BTreeMap<&str, usize>,
     findings: &mut Findings,
 ) -> Option<usize> {
     let name = table.text(row, CONDITION);
-    let index = conditions.iter().position(|condition| condition.id == name);
-    if index.is_none() {
-        let ids = || conditions.iter().map(|condition| condition.id.as_str());
-        let label = match nearest_name(name, ids()) {
+    let found = index.get(name).copied();
+    if found.is_none() {
+        let label = match nearest_name(name, index.keys().copied()) {
             Some(near) => format!("did you mean `{near}`?"),
             None => "not the id of a [[condition]]".to_owned(),
         };
         let span = table.place(row, CONDITION, findings);
-        let known: Vec<&str> = ids().take(20).collect();
+        let known: Vec<&str> = index.keys().take(20).copied().collect();
         findings.report(
             Diagnostic::error(format!("there is no condition `{}`", shorten(name)))
                 .at(span, label)
                 .help(format!("conditions of the set: {}", known.join(", "))),
         );
     }
-    index
+    found
 }
 
 /// Refuses or notes marks such as NaN, which leave open whether something was measured.

@@ -5,7 +5,7 @@ use configs::Diagnostic;
 use super::checks::Start;
 use super::conditions::ConditionPlaces;
 use super::findings::Findings;
-use super::{Condition, MeasurementSet, Run};
+use super::{Condition, Frame, MeasurementSet, Run};
 
 /// A way shorter than this share of the diameter says nothing about a direction.
 const SHORTEST: f64 = 0.05;
@@ -14,7 +14,8 @@ const SHORTEST: f64 = 0.05;
 pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
     let depth = against(set, |run, condition| {
         let downward = condition.speed * sine(condition) > 0.0;
-        downward.then(|| way(run, run.final_z, |frame| frame.z)).flatten().filter(far(condition))
+        let ways = [travel(run, |frame| frame.z), run.final_z];
+        downward.then(|| least(ways, condition)).flatten()
     });
     if let Some(Against { condition, contrary, told }) = depth {
         let angle = set.conditions[condition].angle_deg;
@@ -32,7 +33,8 @@ pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: 
     }
     let range = against(set, |run, condition| {
         let forward = condition.speed * cosine(condition) > 0.05 * condition.speed;
-        forward.then(|| way(run, run.final_x, |frame| frame.x)).flatten().filter(far(condition))
+        let ways = [travel(run, |frame| frame.x), run.final_x];
+        forward.then(|| least(ways, condition)).flatten()
     });
     if let Some(Against { condition, contrary, told }) = range {
         findings.report(
@@ -106,17 +108,17 @@ fn against(
     (2 * found.contrary > found.told).then_some(found)
 }
 
-/// How far a run goes along one coordinate (m): its final value, or the largest way of its frames.
-fn way(run: &Run, last: Option<f64>, coordinate: impl Fn(&super::Frame) -> f64) -> Option<f64> {
-    let start = run.frames.first().map(&coordinate);
-    let ways = run.frames.iter().map(|frame| coordinate(frame) - start.unwrap_or_default());
-    ways.max_by(|a, b| a.abs().total_cmp(&b.abs())).or(last)
+/// How far the frames of a run go along one coordinate (m).
+fn travel(run: &Run, coordinate: impl Fn(&Frame) -> f64) -> Option<f64> {
+    let start = coordinate(run.frames.first()?);
+    let ways = run.frames.iter().map(|frame| coordinate(frame) - start);
+    ways.max_by(|a, b| a.abs().total_cmp(&b.abs()))
 }
 
-/// Whether a way (m) is long enough to tell a direction.
-fn far(condition: &Condition) -> impl Fn(&f64) -> bool {
-    let shortest = SHORTEST * condition.diameter;
-    move |way| way.abs() >= shortest
+/// The way that goes back farthest, of those (m) that are long enough to tell a direction.
+fn least(ways: [Option<f64>; 2], condition: &Condition) -> Option<f64> {
+    let far = |way: &f64| way.abs() >= SHORTEST * condition.diameter;
+    ways.into_iter().flatten().filter(far).min_by(f64::total_cmp)
 }
 
 fn sine(condition: &Condition) -> f64 {

@@ -2,16 +2,16 @@
 
 use std::collections::VecDeque;
 use std::io::BufRead;
-use std::ops::Range;
 
-use configs::{Diagnostic, SourceId, Span, nearest, shorten};
-use engine::units::{self, Dimension};
+use configs::{Diagnostic, Span, shorten};
 
 use super::cells::{self, Cell};
 use super::columns::{ColumnNames, ColumnSpec, Content};
 use super::dialect::{Decimal, Delimiter, Dialect};
 use super::findings::Findings;
+use super::header::{self, Column};
 use super::lines::{LineFault, Lines};
+use super::row::Row;
 
 /// How many rows are looked at before the first is understood.
 const SAMPLE: usize = 200;
@@ -22,73 +22,6 @@ pub(super) struct Format {
     pub(super) delimiter: Option<Delimiter>,
     pub(super) decimal: Option<Decimal>,
     pub(super) columns: ColumnNames,
-}
-
-/// One row, in place of the one before.
-#[derive(Default)]
-pub(super) struct Row {
-    /// Name of the table, for messages.
-    pub(super) table: String,
-    /// From 1.
-    pub(super) line: u64,
-    /// As it stands in the file.
-    pub(super) text: String,
-    delimiter: u8,
-    /// The cells without quotes, one after the other, and where each ends.
-    fields: Vec<u8>,
-    ends: Vec<usize>,
-    width: usize,
-}
-
-impl Row {
-    /// The cell at `column`, without blanks around it.
-    fn cell(&self, column: usize) -> &str {
-        let start = if column == 0 { 0 } else { self.ends[column - 1] };
-        std::str::from_utf8(&self.fields[start..self.ends[column]]).unwrap_or_default().trim()
-    }
-
-    fn cells(&self) -> impl Iterator<Item = &str> {
-        (0..self.width).map(|column| self.cell(column))
-    }
-
-    /// Where the cell at `column` stands in the text.
-    pub(super) fn range(&self, column: usize) -> Range<usize> {
-        let (mut start, mut at, mut quoted) = (0, 0, false);
-        for (index, byte) in self.text.bytes().enumerate() {
-            if byte == b'"' {
-                quoted = !quoted;
-            } else if byte == self.delimiter && !quoted {
-                if at == column {
-                    return start..index;
-                }
-                at += 1;
-                start = index + 1;
-            }
-        }
-        start..self.text.len()
-    }
-
-    /// Takes the text apart; `false` when a quote stays open.
-    fn split(&mut self, parser: &mut csv_core::Reader) -> bool {
-        // No text has more cells than bytes, nor longer ones.
-        self.fields.resize(self.text.len() + 1, 0);
-        self.ends.resize(self.text.len() + 2, 0);
-        parser.reset();
-        let (_, _, written, ended) =
-            parser.read_record(self.text.as_bytes(), &mut self.fields, &mut self.ends);
-        let (_, _, _, last) =
-            parser.read_record(&[], &mut self.fields[written..], &mut self.ends[ended..]);
-        self.width = ended + last;
-        self.text.bytes().filter(|byte| *byte == b'"').count() % 2 == 0
-    }
-}
-
-/// Where a column stands, and how it is written.
-struct Column {
-    at: usize,
-    name: String,
-    unit: Option<String>,
-    sign: f64,
 }
 
 /// A table behind its header.
@@ -139,7 +72,9 @@ impl<R: BufRead> Table<R> {
             columns: Vec::new(),
             width: 0,
         };
-        table.header(row, &format.columns, findings)?;
+        row.split(&mut table.parser);
+        table.width = row.width;
+        table.columns = header::read(row, specs, &format.columns, findings)?;
         table.look_ahead(row, findings)?;
         table.dialect.decimal = table.decimal(format.decimal, row, findings)?;
         table.note_dialect(format, row, findings);
@@ -166,7 +101,7 @@ impl<R: BufRead> Table<R> {
             let span = findings.place(row, None);
             findings.report(match closed {
                 false => Diagnostic::error("a quoted cell does not end on its line")
-                    .at(span, "the number of quotes is odd"),
+                    .at(span, "a quote stays open here"),
                 true => self.wrong_width(row.width, span),
             });
         }
@@ -238,76 +173,9 @@ impl<R: BufRead> Table<R> {
 
     /// What is understood of the table: columns with their units.
     pub(super) fn describe(&self) -> String {
-        let columns = self.columns.iter().zip(self.specs).filter_map(|(column, spec)| {
-            let column = column.as_ref()?;
-            let unit = match (spec.content, &column.unit) {
-                (Content::Quantity(dimension), None) => format!(" ({})", dimension.si_unit()),
-                (_, Some(unit)) if column.sign < 0.0 => format!(" ({unit}, turned round)"),
-                (_, Some(unit)) => format!(" ({unit})"),
-                (Content::Name | Content::Count, None) => String::new(),
-            };
-            Some(match column.name == spec.key {
-                true => format!("{}{unit}", spec.key),
-                false => format!("{} = {}{unit}", spec.key, column.name),
-            })
-        });
-        columns.collect::<Vec<_>>().join(", ")
-    }
-
-    fn header(
-        &mut self,
-        row: &mut Row,
-        names: &ColumnNames,
-        findings: &mut Findings,
-    ) -> Option<()> {
-        row.split(&mut self.parser);
-        self.width = row.width;
-        let found: Vec<String> = row.cells().map(str::to_owned).collect();
-        let before = findings.errors();
-        for (at, name) in found.iter().enumerate() {
-            if let Some(first) = found[..at].iter().position(|other| other == name) {
-                let (again, first) = (row.range(at), row.range(first));
-                let whole = findings.place(row, None);
-                let part = |range: Range<usize>| part(whole.source, range);
-                findings.report(
-                    Diagnostic::error(format!("the column `{}` stands twice", shorten(name)))
-                        .at(part(again), "again here")
-                        .with(part(first), "first here"),
-                );
-            }
-        }
-        for spec in self.specs {
-            let renamed = names.of(spec.key);
-            let name = renamed.map_or(spec.key, |renamed| renamed.name.as_str());
-            let (mut name, mut at) = (name, found.iter().position(|found| found == name));
-            // Both tables have a column `run`, and perhaps only one calls it otherwise.
-            if at.is_none() && spec.key == "run" {
-                name = spec.key;
-                at = found.iter().position(|found| found == name);
-            }
-            if at.is_none() && (spec.required || renamed.is_some()) {
-                missing(name, spec, &found, row, findings);
-            }
-            self.columns.push(at.map(|at| Column {
-                at,
-                name: name.to_owned(),
-                unit: renamed.and_then(|renamed| renamed.unit.clone()),
-                sign: renamed.map_or(1.0, |renamed| renamed.sign),
-            }));
-        }
-        let known = |at: usize| self.columns.iter().flatten().any(|column| column.at == at);
-        let ignored: Vec<String> = (0..found.len())
-            .filter(|at| !known(*at))
-            .take(20)
-            .map(|at| format!("`{}`", shorten(&found[at])))
-            .collect();
-        if !ignored.is_empty() {
-            let (noun, verb) =
-                if ignored.len() == 1 { ("column", "is") } else { ("columns", "are") };
-            let table = file_name(&row.table);
-            findings.note(format!("In {table} the {noun} {} {verb} ignored.", ignored.join(", ")));
-        }
-        (findings.errors() == before).then_some(())
+        let columns = self.columns.iter().zip(self.specs);
+        let known = columns.filter_map(|(column, spec)| Some(column.as_ref()?.describe(spec)));
+        known.collect::<Vec<_>>().join(", ")
     }
 
     fn look_ahead(&mut self, row: &Row, findings: &mut Findings) -> Option<()> {
@@ -332,11 +200,7 @@ impl<R: BufRead> Table<R> {
         if given.is_some() {
             return given;
         }
-        let mut row = Row {
-            table: header.table.clone(),
-            delimiter: self.dialect.delimiter.byte(),
-            ..Row::default()
-        };
+        let mut row = Row::of(&header.table, header.delimiter);
         let mut numbers: Vec<(usize, usize, String)> = Vec::new();
         for (index, (_, text)) in self.ahead.iter().enumerate() {
             row.text.clone_from(text);
@@ -395,51 +259,4 @@ fn line(
 ) -> Option<Option<u64>> {
     let name = file_name(table);
     read.map_err(|fault| findings.report(Diagnostic::error(format!("{name}: {fault}")))).ok()
-}
-
-fn part(source: SourceId, range: Range<usize>) -> Span {
-    Span { source, start: range.start, end: range.end }
-}
-
-/// Reports that no column has the name `name`.
-fn missing(name: &str, spec: &ColumnSpec, found: &[String], row: &Row, findings: &mut Findings) {
-    let near = like(name, found);
-    let other = near.map_or("…".to_owned(), |at| shorten(&found[at]));
-    let entry = match spec.content {
-        Content::Quantity(dimension) => {
-            let unit = near.and_then(|at| unit_in(&found[at], dimension));
-            let unit = unit.unwrap_or_else(|| dimension.si_unit());
-            format!("{} = {{ name = \"{other}\", unit = \"{unit}\" }}", spec.key)
-        }
-        Content::Name | Content::Count => format!("{} = {{ name = \"{other}\" }}", spec.key),
-    };
-    let shown: Vec<String> = found.iter().take(20).map(|name| shorten(name)).collect();
-    let span = findings.place(row, near);
-    let label = if near.is_some() { "is it this one?" } else { "no column has this name" };
-    findings.report(
-        Diagnostic::error(format!("the column `{}` is missing", shorten(name)))
-            .at(span, label)
-            .help(format!(
-                "found: {}\nwhere it has another name, say it below [columns]: {entry}",
-                shown.join(", ")
-            )),
-    );
-}
-
-/// The column that is likely meant by `name`: spelt nearly so, or with a unit behind the name.
-fn like(name: &str, found: &[String]) -> Option<usize> {
-    let stem = |found: &String| found.split(BEFORE_UNIT).next().unwrap_or_default().to_lowercase();
-    match nearest(name, found.iter().map(String::as_str)) {
-        Some(near) => found.iter().position(|found| found == near),
-        None => found.iter().position(|found| stem(found) == name.to_lowercase()),
-    }
-}
-
-/// What stands between a name and its unit in `z_mm`, `z (mm)`, `z/mm`.
-const BEFORE_UNIT: [char; 5] = ['_', ' ', '(', '[', '/'];
-
-/// The unit that a column has in its name.
-fn unit_in(name: &str, dimension: Dimension) -> Option<String> {
-    let unit = name.rsplit(BEFORE_UNIT).next()?.trim_end_matches([')', ']']);
-    units::parse(&format!("1 {unit}"), dimension).ok().map(|_| unit.to_owned())
 }

@@ -1,8 +1,9 @@
-//! What is written reads back, and what names and rows decide is nothing.
+//! What is written reads back, what names and rows decide is nothing, and no table breaks the reader.
 
 use std::fs;
 use std::path::Path;
 
+use configs::Color;
 use proptest::prelude::*;
 use proptest::sample::Index;
 use validation::measurement::{Frame, Kind, MeasurementSet, Run};
@@ -140,6 +141,26 @@ proptest! {
         let folder = tempfile::tempdir().expect("a folder for the test");
         set.write(folder.path()).expect("a writable folder");
         prop_assert_eq!(load(folder.path()), set);
+    }
+
+    #[test]
+    fn whatever_a_table_holds_the_answer_is_a_set_or_a_message(
+        runs in "(run[,;\t]condition[,;\t]final_z[,;\t]repeat)?[a-c0-9éµ\\-.,;#\" \t\r\n\u{0}\u{feff}]{0,80}",
+        rows in "(run,t,z,x,sigma_z\n)?(r1,[0-9e\\-.]{0,4},[0-9\\-.]{0,3},0,\"?1?\n){0,5}[ -~é\r\n]{0,40}",
+    ) {
+        let folder = tempfile::tempdir().expect("a folder for the test");
+        let write = |name: &str, text: &str| {
+            fs::write(folder.path().join(name), text).expect("a writable folder");
+        };
+        write("measurement.toml", HEAD);
+        for runs in [runs.as_str(), "run,condition\nr1,c01\nr2,c02\nr3,c03\n"] {
+            write("runs.csv", runs);
+            write("trajectories.csv", &rows);
+            if let Err(error) = MeasurementSet::load(folder.path()) {
+                let told = error.render(Color::Off);
+                prop_assert!(told.starts_with("error: ") || told.starts_with("warning: "), "{told}");
+            }
+        }
     }
 }
 
