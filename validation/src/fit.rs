@@ -25,7 +25,9 @@ pub struct Data<'a> {
     pub forward: &'a dyn Forward,
     /// The measurements.
     pub observed: &'a Observed,
-    /// One per condition of `observed.fit`, in that order.
+    /// Indices of the conditions that are fitted to, or judged by.
+    pub conditions: &'a [usize],
+    /// One per condition of `conditions`, in that order.
     pub weights: &'a [Weight],
 }
 
@@ -42,13 +44,21 @@ pub struct Fit {
     pub residual: DVector<f64>,
     /// Whitened derivative of the prediction by what is not held at a bound.
     pub jacobian: DMatrix<f64>,
+    /// Unknowns that are not held at a bound, parameters first.
+    free: Vec<usize>,
 }
 
 impl Fit {
     /// Number of unknowns that are not held at a bound.
     #[must_use]
     pub fn n_free(&self) -> usize {
-        self.jacobian.ncols()
+        self.free.len()
+    }
+
+    /// Covariance of the unknowns that are not held at a bound.
+    #[must_use]
+    pub fn free_covariance(&self) -> DMatrix<f64> {
+        self.covariance.select_rows(&self.free).select_columns(&self.free)
     }
 
     /// Standard error of unknown `index`, parameters first; 0 when it is held at a bound.
@@ -68,7 +78,7 @@ impl Data<'_> {
         self.residual(start)?;
         let mut point = start.clone();
         let mut held = vec![false; scales.len()];
-        loop {
+        while held.contains(&false) {
             let unknowns = unknowns(&point, &scales);
             let search = Search { data: self, scales: &scales, held: &held, like: start, unknowns };
             let solver = LevenbergMarquardt::new().with_ftol(TOLERANCE).with_xtol(TOLERANCE);
@@ -81,9 +91,10 @@ impl Data<'_> {
                 outside |= beyond;
             }
             if !outside {
-                return self.result(point, &scales, &held);
+                break;
             }
         }
+        self.result(point, &scales, &held)
     }
 
     /// Whitened measured less predicted at `point`, condition after condition.
@@ -92,7 +103,7 @@ impl Data<'_> {
     /// If the model cannot be integrated there.
     pub fn residual(&self, point: &Point) -> Result<DVector<f64>, PredictError> {
         let mut residual = Vec::new();
-        for (&condition, weight) in self.observed.fit.iter().zip(self.weights) {
+        for (&condition, weight) in self.conditions.iter().zip(self.weights) {
             let mean = &self.observed.conditions[condition].mean;
             let difference = mean - weight.predict(point, self.forward, condition)?;
             residual.extend(weight.whiten(&difference).iter());
@@ -100,23 +111,39 @@ impl Data<'_> {
         Ok(DVector::from_vec(residual))
     }
 
-    fn result(&self, point: Point, scales: &[Scale], held: &[bool]) -> Result<Fit, PredictError> {
-        let free: Vec<usize> = (0..scales.len()).filter(|&at| !held[at]).collect();
-        let mut columns = Vec::with_capacity(free.len());
-        for &at in &free {
-            let step = scales[at].physical_step(value(&point, at));
+    /// Whitened derivative of the prediction at `point` by the unknowns of `fit` that are not held at
+    /// a bound.
+    ///
+    /// # Errors
+    /// If the model cannot be integrated there.
+    pub fn jacobian(&self, fit: &Fit) -> Result<DMatrix<f64>, PredictError> {
+        self.derivative(&fit.point, &self.scales(&fit.point), &fit.free)
+    }
+
+    fn derivative(
+        &self,
+        point: &Point,
+        scales: &[Scale],
+        free: &[usize],
+    ) -> Result<DMatrix<f64>, PredictError> {
+        let rows = self.weights.iter().map(|weight| weight.shift.len()).sum();
+        let mut jacobian = DMatrix::zeros(rows, free.len());
+        for (column, &at) in free.iter().enumerate() {
+            let step = scales[at].physical_step(value(point, at));
             let moved = |by: f64| {
                 let mut point = point.clone();
                 *value_mut(&mut point, at) += by;
                 self.residual(&point)
             };
-            columns.push((moved(-step)? - moved(step)?) / (2.0 * step));
+            jacobian.set_column(column, &((moved(-step)? - moved(step)?) / (2.0 * step)));
         }
+        Ok(jacobian)
+    }
+
+    fn result(&self, point: Point, scales: &[Scale], held: &[bool]) -> Result<Fit, PredictError> {
+        let free: Vec<usize> = (0..scales.len()).filter(|&at| !held[at]).collect();
+        let jacobian = self.derivative(&point, scales, &free)?;
         let residual = self.residual(&point)?;
-        let jacobian = match columns.is_empty() {
-            true => DMatrix::zeros(residual.len(), 0),
-            false => DMatrix::from_columns(&columns),
-        };
         let mut covariance = DMatrix::zeros(scales.len(), scales.len());
         if let Some(factor) = Cholesky::new(jacobian.tr_mul(&jacobian)) {
             let inverse = factor.inverse();
@@ -126,7 +153,7 @@ impl Data<'_> {
                 }
             }
         }
-        Ok(Fit { point, covariance, chi2: residual.norm_squared(), residual, jacobian })
+        Ok(Fit { point, covariance, chi2: residual.norm_squared(), residual, jacobian, free })
     }
 
     fn scales(&self, start: &Point) -> Vec<Scale> {

@@ -8,9 +8,11 @@ use argmin::core::{CostFunction, Executor, State};
 use argmin::solver::neldermead::NelderMead;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Serialize;
+use serde_json::{Value, json};
 
 use crate::measurement::Instrument;
 use crate::observed::{Observed, ObservedCondition, POSITION_FLOOR};
+use crate::rounding::rounded;
 use crate::sensitivity::{Sensitivity, Spread};
 
 /// Bounds of a relative scatter: below, it is nothing; above, a bed is no longer one condition.
@@ -41,7 +43,12 @@ pub enum NoiseSource {
     Repeats,
     /// Errors that the set states.
     Stated,
+    /// Nothing: 5 % of every number, so that a fit has weights. No test is made on it.
+    Assumed,
 }
+
+/// Relative error of numbers about whose error nothing is known.
+const ASSUMED: f64 = 0.05;
 
 impl Noise {
     /// What the set states: nothing is known about the run-to-run scatter.
@@ -49,6 +56,12 @@ impl Noise {
     pub fn stated() -> Self {
         let spread = Spread { coefficient: 0.0, path: 0.0, speed: 0.0, level: 0.0 };
         Self { source: NoiseSource::Stated, reading: 1.0, spread }
+    }
+
+    /// For comparing where nothing is known.
+    #[must_use]
+    pub fn assumed() -> Self {
+        Self { source: NoiseSource::Assumed, ..Self::stated() }
     }
 
     /// A first guess where there are repeats: coefficients to 5 %, the path to 12 %.
@@ -67,6 +80,9 @@ impl Noise {
         sensitivities: &[Sensitivity],
         instrument: &Instrument,
     ) -> Self {
+        if self.source != NoiseSource::Repeats {
+            return *self;
+        }
         let conditions = observed.fit.iter().map(|&index| &observed.conditions[index]);
         let terms: Vec<Term> = conditions
             .zip(sensitivities)
@@ -93,6 +109,20 @@ impl Noise {
         best.map_or(*self, |at| from_logarithms(&at, instrument))
     }
 
+    /// As JSON for a report.
+    #[must_use]
+    pub fn to_json(&self, instrument: &Instrument) -> Value {
+        let position = instrument.position_sigma.unwrap_or(0.0).max(POSITION_FLOOR);
+        json!({
+            "source": self.source,
+            "position_sigma_m": rounded(self.reading * position),
+            "coefficient_sd": rounded(self.spread.coefficient),
+            "path_force_sd": rounded(self.spread.path),
+            "speed_sd": rounded(self.spread.speed),
+            "level_sd_m": rounded(self.spread.level),
+        })
+    }
+
     /// Covariance of the numbers of one run.
     #[must_use]
     pub fn covariance(
@@ -106,15 +136,16 @@ impl Noise {
                 let readings = condition.reading.map(|sd| (self.reading * sd).powi(2));
                 DMatrix::from_diagonal(&readings) + &scatter * scatter.transpose()
             }
-            NoiseSource::Stated => stated_covariance(condition),
+            NoiseSource::Stated => stated_covariance(condition, 0.0),
+            NoiseSource::Assumed => stated_covariance(condition, ASSUMED),
         }
     }
 }
 
 /// A stated relative error is one factor on all numbers of a kind, beside the error of readings.
-fn stated_covariance(condition: &ObservedCondition) -> DMatrix<f64> {
+fn stated_covariance(condition: &ObservedCondition, otherwise: f64) -> DMatrix<f64> {
     let kinds = condition.layout.kinds();
-    let error = |at: usize| condition.stated[at].unwrap_or(0.0) * condition.mean[at];
+    let error = |at: usize| condition.stated[at].unwrap_or(otherwise) * condition.mean[at];
     DMatrix::from_fn(kinds.len(), kinds.len(), |i, j| {
         let together = if kinds[i] == kinds[j] { error(i) * error(j) } else { 0.0 };
         together + if i == j { condition.reading[i].powi(2) } else { 0.0 }

@@ -16,6 +16,10 @@ const PENETRATION_FRAMES: usize = 24;
 /// Most frames before first contact that are compared: they carry speed and friction of a guide.
 const FLIGHT_FRAMES: usize = 6;
 
+/// Share of the time to the stop whose frames are compared where the resting point is measured too:
+/// later, some runs have stopped and others not, and a prediction has a kink in every parameter.
+const BEFORE_STOP: f64 = 0.9;
+
 /// The observables of all conditions, in the order of the set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observed {
@@ -51,7 +55,8 @@ impl Observed {
     ///
     /// Trajectories are brought to common times (interpolated where the frames of runs differ) and
     /// thinned; the analysed part ends when the speed of the mean run first falls below 5 % of the
-    /// impact speed, so the creep of shallow slow shots is left out. Scalars count where every run
+    /// impact speed (a tenth earlier, where the resting point is measured), so the creep of shallow
+    /// slow shots is left out. Scalars count where every run
     /// of the condition has them.
     #[must_use]
     pub fn of(set: &MeasurementSet) -> Self {
@@ -108,14 +113,15 @@ impl ObservedCondition {
                 ));
             }
         }
-        let frames = match set.kind {
-            Kind::Trajectory => frames_of(&runs, condition),
-            Kind::Scalar => CommonFrames::default(),
-        };
         let common = |of: fn(&Run) -> Option<f64>| {
             !runs.is_empty()
                 && runs.iter().all(|run| of(run).is_some())
                 && runs.iter().any(|run| of(run) != Some(0.0))
+        };
+        let share = if common(|run| run.final_z) { BEFORE_STOP } else { 1.0 };
+        let frames = match set.kind {
+            Kind::Trajectory => frames_of(&runs, condition, share),
+            Kind::Scalar => CommonFrames::default(),
         };
         let layout = Layout {
             along_x: frames.range.iter().flatten().any(|x| *x != 0.0),
@@ -172,7 +178,8 @@ struct CommonFrames {
     sigma: Vec<Option<f64>>,
 }
 
-fn frames_of(runs: &[&Run], condition: &Condition) -> CommonFrames {
+/// Frames of `runs` up to `share` of the time to the stop.
+fn frames_of(runs: &[&Run], condition: &Condition, share: f64) -> CommonFrames {
     let tracks: Vec<&[Frame]> = runs.iter().map(|run| run.frames.as_slice()).collect();
     let grid = common_grid(&tracks);
     let readings: Vec<_> = tracks.iter().map(|track| depth_and_range(track, &grid)).collect();
@@ -181,11 +188,12 @@ fn frames_of(runs: &[&Run], condition: &Condition) -> CommonFrames {
     };
     let mean: Vec<(f64, f64)> =
         (0..grid.len()).map(|time| (at(time, |r| r.0), at(time, |r| r.1))).collect();
-    let end = stopped_at(&grid, &mean, condition.speed);
     let flight = grid.iter().take_while(|t| **t < 0.0).count();
+    let stop = stopped_at(&grid, &mean, condition.speed);
+    let end = flight + (share * stop.saturating_sub(flight) as f64).ceil() as usize;
     let kept: Vec<usize> = thinned(0..flight, FLIGHT_FRAMES)
         .into_iter()
-        .chain(thinned(flight..end.max(flight), PENETRATION_FRAMES))
+        .chain(thinned(flight..end, PENETRATION_FRAMES))
         .collect();
     let part = |of: fn(&(f64, f64)) -> f64| {
         readings.iter().map(|run| kept.iter().map(|&time| of(&run[time])).collect()).collect()

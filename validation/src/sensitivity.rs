@@ -184,8 +184,17 @@ impl Input {
     }
 }
 
-/// Change of the observables by a relative change of the resistance around each of `nodes` equally
-/// spaced depths from the surface to `reach` (m), one column per node.
+/// Which way a force acts on a moving body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Against the motion.
+    Along,
+    /// Normal to it, out of the bed.
+    Sideways,
+}
+
+/// Change of the observables by a force around each of `nodes` equally spaced depths from the surface
+/// to `reach` (m), in units of the resistance; one column per node.
 ///
 /// # Errors
 /// If the model cannot be integrated there.
@@ -193,15 +202,21 @@ pub fn force_response(
     point: &Point,
     forward: &dyn Forward,
     condition: usize,
+    direction: Direction,
     (nodes, reach): (usize, f64),
 ) -> Result<DMatrix<f64>, PredictError> {
     const STEP: f64 = 0.05;
+    let coefficients = forward.n_scattering_coefficients();
     let mut columns = Vec::with_capacity(nodes);
     for node in 0..nodes {
         let run = |by: f64| {
-            let along = (0..nodes).map(|k| if k == node { by } else { 0.0 }).collect();
-            let coefficients = vec![0.0; forward.n_scattering_coefficients()];
-            let scatter = Scatter { coefficients, along, reach, ..Scatter::default() };
+            let force = (0..nodes).map(|k| if k == node { by } else { 0.0 }).collect();
+            let none =
+                Scatter { coefficients: vec![0.0; coefficients], reach, ..Scatter::default() };
+            let scatter = match direction {
+                Direction::Along => Scatter { along: force, ..none },
+                Direction::Sideways => Scatter { sideways: force, ..none },
+            };
             point.predict_run(forward, condition, &scatter)
         };
         columns.push((run(STEP)? - run(-STEP)?) / (2.0 * STEP));

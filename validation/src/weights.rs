@@ -3,7 +3,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::forward::{Forward, PredictError};
-use crate::noise::{Noise, log_determinant};
+use crate::noise::Noise;
 use crate::observed::ObservedCondition;
 use crate::sensitivity::{Point, Sensitivity};
 
@@ -14,8 +14,6 @@ pub struct Weight {
     factor: Cholesky<f64, Dyn>,
     /// What is added to the run of the mean bed (in the units of the observables).
     pub shift: DVector<f64>,
-    /// Logarithm of the determinant of the covariance.
-    pub log_determinant: f64,
 }
 
 impl Weight {
@@ -30,7 +28,7 @@ impl Weight {
         let covariance = noise.covariance(condition, sensitivity) / runs;
         let factor = Cholesky::new(covariance)?;
         let shift = sensitivity.shift_of_mean(&noise.spread);
-        Some(Self { shift, log_determinant: log_determinant(&factor), factor })
+        Some(Self { shift, factor })
     }
 
     /// `vector` in units of its standard deviation, freed of correlation.
@@ -50,11 +48,10 @@ impl Weight {
         white
     }
 
-    /// Standard deviation of each number of the mean.
+    /// The vector that [`Weight::whiten`] makes `white` of.
     #[must_use]
-    pub fn standard_deviations(&self) -> DVector<f64> {
-        let factor = self.factor.l();
-        DVector::from_iterator(factor.nrows(), factor.row_iter().map(|row| row.norm()))
+    pub fn colour(&self, white: &DVector<f64>) -> DVector<f64> {
+        self.factor.l() * white
     }
 
     /// What the mean of runs is expected to be at `point`.
