@@ -42,7 +42,7 @@ pub fn diagnose(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
     let mut ranking = Ranking::of(bench, &weighed, &candidates, seed)?;
     for _ in 1..ROUNDS {
         let Some(best) = ranking.scores.first() else { break };
-        let leader = bench.fit_once(&best.fit.point, &weighed.noise)?;
+        let leader = bench.fit_once(&best.point, &weighed.noise)?;
         let fit = bench.data(&leader.weights).fit(&baseline.fit.point)?;
         weighed = Fitted { fit, ..leader };
         ranking = Ranking::of(bench, &weighed, &candidates, seed)?;
@@ -50,7 +50,7 @@ pub fn diagnose(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
     let Some(best) = ranking.scores.first() else {
         return Ok(cannot_tell(bench, "no effect can be tested with these data".to_owned()));
     };
-    let leader = bench.fit_once(&best.fit.point, &weighed.noise)?;
+    let leader = bench.fit_once(&best.point, &weighed.noise)?;
     Judge { bench, seed, baseline, weighed, ranking, leader }.verdict()
 }
 
@@ -208,7 +208,7 @@ fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
             RankedEffect {
                 id: candidate.id.to_owned(),
                 q: Some(score.amplitude()),
-                se: Some(score.standard_error()),
+                se: Some(score.standard_error),
                 unit: "1",
                 delta: Some(score.delta),
                 predicted_top1: Some(score.ranked_first),

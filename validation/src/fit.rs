@@ -13,7 +13,7 @@ use crate::sensitivity::Point;
 use crate::weights::Weight;
 
 /// Where the search ends: relative change of χ² and of the unknowns.
-const TOLERANCE: f64 = 1e-7;
+const TOLERANCE: f64 = 1e-6;
 
 /// Share of a parameter by which it is moved for a derivative.
 const STEP: f64 = 1e-3;
