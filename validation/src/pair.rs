@@ -51,7 +51,7 @@ pub(crate) fn best_pair(
         let fall = fit.chi2 - fitted.fit.chi2;
         let without_it = Fitted { fit, ..fitted.clone() };
         let others = without(&candidates, alone.effects[0].0);
-        p = p.max(by_chance(bench, &without_it, &others, (removed, fall), seed)?);
+        p = p.max(by_chance(bench, &without_it, &others, (removed, fall), seed));
     }
     Ok(Some(Pair { fitted, p }))
 }

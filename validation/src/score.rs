@@ -1,6 +1,7 @@
 //! Refits of a model with one more effect, and which of them the measurements tell apart.
 
 use crate::bench::{Bench, BenchError, Fitted};
+use crate::forward::PredictError;
 use crate::sensitivity::Point;
 use crate::signature::{Signature, collinearity, signature, variance_along};
 use crate::significance::NullScores;
@@ -20,7 +21,7 @@ pub(crate) struct Score {
     pub(crate) signature: Signature,
     /// Parameters and amplitudes, that of the effect last.
     pub(crate) point: Point,
-    /// Standard error of its amplitude; 0 at a bound.
+    /// Standard error of its amplitude, enlarged like the fall of χ² is reduced; 0 at a bound.
     pub(crate) standard_error: f64,
     /// Fall of χ², over the variance that the repeats show along the signature where that is larger.
     pub(crate) delta: f64,
@@ -52,6 +53,8 @@ pub(crate) struct Ranking {
     /// Places in `scores` by rows of the null scores.
     rows: Vec<usize>,
     null: NullScores,
+    /// Candidates with which the model cannot be integrated, and why.
+    pub(crate) failed: Vec<(usize, PredictError)>,
 }
 
 impl Ranking {
@@ -63,7 +66,7 @@ impl Ranking {
         candidates: &[usize],
         seed: u64,
     ) -> Result<Self, BenchError> {
-        let signatures = signatures(bench, fitted, candidates)?;
+        let (signatures, failed) = signatures(bench, fitted, candidates);
         let null = NullScores::new(collinearity(&signatures), seed);
         let mut scores = signatures
             .into_iter()
@@ -82,7 +85,7 @@ impl Ranking {
         let mut scores: Vec<Option<Score>> = scores.into_iter().map(Some).collect();
         let scores: Vec<Score> = rows.iter().filter_map(|&row| scores[row].take()).collect();
         let p = scores.first().map_or(1.0, |best| null.family_wise_p(best.delta));
-        Ok(Self { scores, p, rows, null })
+        Ok(Self { scores, p, rows, null, failed })
     }
 
     /// The best few of `candidates`, judged to first order, refitted.
@@ -92,7 +95,7 @@ impl Ranking {
         candidates: &[usize],
         count: usize,
     ) -> Result<Vec<Score>, BenchError> {
-        let signatures = signatures(bench, fitted, candidates)?;
+        let (signatures, _) = signatures(bench, fitted, candidates);
         let mut scores: Vec<Score> =
             signatures.into_iter().map(|s| first_order(bench, fitted, s)).collect();
         scores.sort_by(|a, b| b.delta.total_cmp(&a.delta));
@@ -119,25 +122,29 @@ pub(crate) fn by_chance(
     candidates: &[usize],
     (candidate, fall): (usize, f64),
     seed: u64,
-) -> Result<f64, BenchError> {
-    let signatures = signatures(bench, fitted, candidates)?;
+) -> f64 {
+    let (signatures, _) = signatures(bench, fitted, candidates);
     let Some(own) = signatures.iter().find(|signature| signature.candidate == candidate) else {
-        return Ok(1.0);
+        return 1.0;
     };
     let scale = variance_along(bench, fitted, &own.unit).max(1.0);
-    Ok(NullScores::new(collinearity(&signatures), seed).family_wise_p(fall / scale))
+    NullScores::new(collinearity(&signatures), seed).family_wise_p(fall / scale)
 }
 
+/// The signatures that exist, and the candidates whose failed.
 fn signatures(
     bench: &Bench<'_>,
     fitted: &Fitted,
     candidates: &[usize],
-) -> Result<Vec<Signature>, BenchError> {
-    let mut found = Vec::with_capacity(candidates.len());
+) -> (Vec<Signature>, Vec<(usize, PredictError)>) {
+    let (mut found, mut failed) = (Vec::new(), Vec::new());
     for &candidate in candidates {
-        found.extend(signature(bench, fitted, candidate)?);
+        match signature(bench, fitted, candidate) {
+            Ok(signature) => found.extend(signature),
+            Err(error) => failed.push((candidate, error)),
+        }
     }
-    Ok(found)
+    (found, failed)
 }
 
 /// The fall of χ² that the score promises, within the range of the amplitude.
@@ -148,8 +155,8 @@ fn first_order(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Scor
     let mut point = fitted.fit.point.clone();
     point.effects.push((signature.candidate, amplitude));
     let held = (amplitude - signature.score / signature.norm).abs() > 0.0;
-    let standard_error = if held { 0.0 } else { 1.0 / signature.norm };
     let scale = variance_along(bench, fitted, &signature.unit).max(1.0);
+    let standard_error = if held { 0.0 } else { scale.sqrt() / signature.norm };
     let delta = delta.max(0.0) / scale;
     Score { signature, point, standard_error, delta, ranked_first: 0.0 }
 }
@@ -159,16 +166,19 @@ fn refit(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Result<Sco
     let first = first_order(bench, fitted, signature);
     let data = bench.data(&fitted.weights);
     let mut start = first.point.clone();
-    let mut fit = data.fit(&start)?;
-    if fit.chi2 > fitted.fit.chi2 {
+    let guessed = data.fit(&start).ok().filter(|fit| fit.chi2 <= fitted.fit.chi2);
+    let fit = match guessed {
+        Some(fit) => fit,
         // A first guess beyond what the effect is linear in; absent, it is no worse than before.
-        if let Some(last) = start.effects.last_mut() {
-            last.1 = 0.0;
+        None => {
+            if let Some(last) = start.effects.last_mut() {
+                last.1 = 0.0;
+            }
+            data.fit(&start)?
         }
-        fit = data.fit(&start)?;
-    }
+    };
     let scale = variance_along(bench, fitted, &first.signature.unit).max(1.0);
     let delta = (fitted.fit.chi2 - fit.chi2).max(0.0) / scale;
-    let standard_error = fit.standard_error(fit.covariance.nrows() - 1);
+    let standard_error = fit.standard_error(fit.covariance.nrows() - 1) * scale.sqrt();
     Ok(Score { point: fit.point, standard_error, delta, ..first })
 }

@@ -70,7 +70,7 @@ fn the_json_has_the_keys_that_users_rely_on_and_no_others() {
     assert_eq!(keys(&model["parameters"]["drag"]), ["value", "se", "unit"]);
     assert_eq!(
         keys(&model["rms"]["fit"]),
-        ["z_m", "x_m", "stop_time_s", "final_z_m", "final_x_m", "relative"]
+        ["z_m", "x_m", "stop_time_s", "final_z_m", "final_x_m", "rms_relative"]
     );
     assert_eq!(keys(&model["fails"][0]), ["over", "from", "to", "force_error", "se"]);
 }
@@ -88,6 +88,6 @@ fn without_any_error_the_errors_are_compared_and_nothing_is_tested() {
     assert!(found.models.iter().all(|model| model.rms.holdout.is_null()));
     assert_eq!(found.noise["source"], "assumed");
     assert_eq!(found.notes.len(), 2, "{:?}", found.notes);
-    let relative = |at: usize| found.models[at].rms.fit["relative"].as_f64().expect("scalars");
+    let relative = |at: usize| found.models[at].rms.fit["rms_relative"].as_f64().expect("scalars");
     assert!(relative(1) < relative(0));
 }
