@@ -23,6 +23,10 @@ pub const ALPHA: f64 = 0.01;
 /// How often weights and ranking are taken in turn: the weights are those along the best model.
 const ROUNDS: usize = 2;
 
+/// Fewest deviations of repeats from their means that make more than a suggestion: a standard deviation
+/// from eight is known to a quarter.
+const CONTRASTS: usize = 8;
+
 /// Diagnoses the model on `bench`; equal `seed` and measurements give equal bytes.
 ///
 /// # Errors
@@ -42,7 +46,7 @@ pub fn diagnose(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
     let mut ranking = Ranking::of(bench, &weighed, &candidates, seed)?;
     for _ in 1..ROUNDS {
         let Some(best) = ranking.scores.first() else { break };
-        let leader = bench.fit_once(&best.fit.point, &weighed.noise)?;
+        let leader = bench.fit_once(&best.point, &weighed.noise)?;
         let fit = bench.data(&leader.weights).fit(&baseline.fit.point)?;
         weighed = Fitted { fit, ..leader };
         ranking = Ranking::of(bench, &weighed, &candidates, seed)?;
@@ -50,7 +54,7 @@ pub fn diagnose(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
     let Some(best) = ranking.scores.first() else {
         return Ok(cannot_tell(bench, "no effect can be tested with these data".to_owned()));
     };
-    let leader = bench.fit_once(&best.fit.point, &weighed.noise)?;
+    let leader = bench.fit_once(&best.point, &weighed.noise)?;
     Judge { bench, seed, baseline, weighed, ranking, leader }.verdict()
 }
 
@@ -151,7 +155,8 @@ impl Judge<'_> {
             })
             .collect();
         let held_out = HeldOut::of(bench, before, proposed)?;
-        let confirmed = amplitudes.is_empty() || held_out.confirms();
+        let confirmed = bench.observed.contrasts() >= CONTRASTS
+            && (amplitudes.is_empty() || held_out.confirms());
         Ok(Diagnosis {
             verdict,
             strength: match proposed.noise.source {
@@ -170,12 +175,23 @@ impl Judge<'_> {
             next: Vec::new(),
             parameters: parameters(bench.forward, proposed),
             amplitudes,
+            amplitude_correlation: correlation(proposed),
         })
     }
 
     fn name(&self, candidate: usize) -> String {
         self.bench.forward.candidates()[candidate].id.to_owned()
     }
+}
+
+/// Of the amplitudes of a pair.
+fn correlation(fitted: &Fitted) -> Option<f64> {
+    let first = fitted.fit.point.parameters.len();
+    if fitted.fit.point.effects.len() != 2 {
+        return None;
+    }
+    let (a, b) = (fitted.fit.standard_error(first), fitted.fit.standard_error(first + 1));
+    Some(fitted.fit.covariance[(first, first + 1)] / (a * b)).filter(|c| c.is_finite())
 }
 
 fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {
@@ -194,6 +210,7 @@ fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {
         next: Vec::new(),
         parameters: Map::new(),
         amplitudes: Vec::new(),
+        amplitude_correlation: None,
     }
 }
 
@@ -208,7 +225,7 @@ fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
             RankedEffect {
                 id: candidate.id.to_owned(),
                 q: Some(score.amplitude()),
-                se: Some(score.standard_error()),
+                se: Some(score.standard_error),
                 unit: "1",
                 delta: Some(score.delta),
                 predicted_top1: Some(score.ranked_first),
@@ -229,11 +246,18 @@ fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
             predicted_top1: None,
             testable: false,
             detection_limit: None,
-            note: candidates[index].not_testable.clone().unwrap_or_else(|| match ranking {
-                Some(_) => "in these data the parameters of the model do the same".to_owned(),
-                None => "not tested".to_owned(),
-            }),
+            note: candidates[index].not_testable.clone().unwrap_or_else(|| why_not(ranking, index)),
         });
     list.extend(not_ranked);
     list
+}
+
+/// Why candidate `index`, which the data could show, was not ranked.
+fn why_not(ranking: Option<&Ranking>, index: usize) -> String {
+    let Some(ranking) = ranking else { return "not tested".to_owned() };
+    let failed = ranking.failed.iter().find(|(candidate, _)| *candidate == index);
+    failed.map_or_else(
+        || "in these data the parameters of the model do the same".to_owned(),
+        |(_, error)| error.to_string(),
+    )
 }

@@ -51,7 +51,7 @@ impl Errors {
             .map(|(kind, error)| (kind.key().to_owned(), rounded(*error)))
             .collect();
         if let Some(relative) = self.relative {
-            map.insert("relative".to_owned(), rounded(relative));
+            map.insert("rms_relative".to_owned(), rounded(relative));
         }
         Value::Object(map)
     }

@@ -3,6 +3,8 @@
 //! A parameter that cannot be negative is fitted in its logarithm, the others and all amplitudes as
 //! they are. One that ends outside its range is held at the bound while the rest is fitted again.
 
+use std::cell::RefCell;
+
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -13,7 +15,7 @@ use crate::sensitivity::Point;
 use crate::weights::Weight;
 
 /// Where the search ends: relative change of χ² and of the unknowns.
-const TOLERANCE: f64 = 1e-7;
+const TOLERANCE: f64 = 1e-6;
 
 /// Share of a parameter by which it is moved for a derivative.
 const STEP: f64 = 1e-3;
@@ -80,9 +82,12 @@ impl Data<'_> {
         let mut held = vec![false; scales.len()];
         while held.contains(&false) {
             let unknowns = unknowns(&point, &scales);
-            let search = Search { data: self, scales: &scales, held: &held, like: start, unknowns };
+            let best = RefCell::new((f64::INFINITY, unknowns.clone()));
+            let search =
+                Search { data: self, scales: &scales, held: &held, like: start, unknowns, best };
             let solver = LevenbergMarquardt::new().with_ftol(TOLERANCE).with_xtol(TOLERANCE);
-            let unknowns = solver.minimize(search).0.unknowns;
+            // The best that was tried, since the search may end where the model cannot be integrated.
+            let (_, unknowns) = solver.minimize(search).0.best.into_inner();
             point = point_of(&unknowns, &scales, start);
             let mut outside = false;
             for (at, scale) in scales.iter().enumerate() {
@@ -236,6 +241,8 @@ struct Search<'a> {
     held: &'a [bool],
     like: &'a Point,
     unknowns: Vec<f64>,
+    /// χ² and unknowns of the best that was tried.
+    best: RefCell<(f64, Vec<f64>)>,
 }
 
 impl Search<'_> {
@@ -266,7 +273,13 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        self.residual_at(&self.unknowns)
+        let residual = self.residual_at(&self.unknowns)?;
+        let chi2 = residual.norm_squared();
+        let mut best = self.best.borrow_mut();
+        if chi2 < best.0 {
+            *best = (chi2, self.unknowns.clone());
+        }
+        Some(residual)
     }
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {

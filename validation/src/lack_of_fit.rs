@@ -17,6 +17,11 @@ use crate::projection::Basis;
 use crate::random::{Purpose, normal, stream};
 use crate::sensitivity::{Direction, force_response};
 
+/// Fewest runs of a condition that are resampled. The deviations of two have one direction and one
+/// size, whatever their sign, so that draws from them hardly differ; fewer are drawn from the noise
+/// model, which is learned from all conditions together.
+const ENOUGH_RUNS: usize = 4;
+
 /// Resampled sets of means.
 const DRAWS: usize = 999;
 
@@ -124,7 +129,7 @@ fn standardised(values: Vec<f64>) -> Vec<f64> {
 
 /// Errors of means, drawn from the deviations of runs.
 pub(crate) struct Resampled {
-    /// Per condition: whitened deviations of its runs (none without repeats), and how many numbers.
+    /// Per condition: whitened deviations of its runs (none of too few), and how many numbers.
     conditions: Vec<(Vec<DVector<f64>>, usize, Pcg64)>,
 }
 
@@ -133,7 +138,7 @@ impl Resampled {
         let fit = bench.observed.fit.iter();
         let conditions = fit.zip(&fitted.weights).map(|(&condition, weight)| {
             let observed = &bench.observed.conditions[condition];
-            let runs = if observed.runs.len() > 1 { observed.runs.len() } else { 0 };
+            let runs = if observed.runs.len() >= ENOUGH_RUNS { observed.runs.len() } else { 0 };
             let deviations = (0..runs).map(|run| weight.whiten(&observed.deviation(run))).collect();
             (deviations, observed.mean.len(), stream(seed, Purpose::Resampling, condition))
         });
@@ -144,10 +149,10 @@ impl Resampled {
     pub(crate) fn draw(&mut self) -> DVector<f64> {
         let mut all = Vec::new();
         for (deviations, len, random) in &mut self.conditions {
-            let factors = factors(deviations.len(), random);
             if deviations.is_empty() {
                 all.extend((0..*len).map(|_| normal(random)));
             } else {
+                let factors = factors(deviations.len(), random);
                 let error = deviations.iter().zip(factors);
                 all.extend(
                     error.fold(DVector::zeros(*len), |sum, (d, factor)| sum + d * factor).iter(),
@@ -158,20 +163,10 @@ impl Resampled {
     }
 }
 
-/// Factors on the deviations of `runs` runs whose sum has the covariance of their mean.
-///
-/// Many runs are drawn with replacement, enlarged by √(r/(r−1)) since deviations from a mean are too
-/// small by that; of two or three, which would often give nothing, a random contrast of the right
-/// size is taken, which for two is a sign.
+/// Factors on the deviations of `runs` runs whose sum has the covariance of their mean: they are drawn
+/// with replacement, and enlarged by √(r/(r−1)) since deviations from a mean are too small by that.
 fn factors(runs: usize, random: &mut Pcg64) -> Vec<f64> {
     let r = runs as f64;
-    if runs <= 3 {
-        let mut contrast: Vec<f64> = (0..runs).map(|_| normal(random)).collect();
-        let mean = contrast.iter().sum::<f64>() / r;
-        contrast.iter_mut().for_each(|c| *c -= mean);
-        let size = contrast.iter().map(|c| c * c).sum::<f64>().sqrt() * r.sqrt();
-        return contrast.iter().map(|c| c / size).collect();
-    }
     let mut counts = vec![0.0; runs];
     for _ in 0..runs {
         counts[random.random_range(0..runs)] += 1.0;
@@ -186,7 +181,7 @@ mod tests {
 
     #[test]
     fn resampled_means_scatter_as_much_as_means_do() {
-        for runs in [2, 3, 5] {
+        for runs in [4, 5, 10] {
             let mut random = stream(1, Purpose::Resampling, 0);
             let values: Vec<f64> = (0..runs).map(|_| normal(&mut random)).collect();
             let mean = values.iter().sum::<f64>() / runs as f64;

@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use crate::measurement::{Condition, Frame, Kind, MeasurementSet, Role, Run, StatedError};
 use crate::observable::{Layout, Observable};
-use crate::resampling::{common_grid, depth_and_range, stopped_at};
+use crate::resampling::{STOPPED, common_grid, depth_and_range, stopped_at};
 
 /// Least error that a reading of a position is credited with (m): below it the error of models and
 /// of their integration shows, and better cameras do not help.
@@ -80,7 +80,13 @@ impl Observed {
     /// Whether any condition that may be fitted to was repeated.
     #[must_use]
     pub fn has_repeats(&self) -> bool {
-        self.fit.iter().any(|&index| self.conditions[index].runs.len() > 1)
+        self.contrasts() > 0
+    }
+
+    /// How many independent deviations from the means of conditions the repeats give.
+    #[must_use]
+    pub fn contrasts(&self) -> usize {
+        self.fit.iter().map(|&index| self.conditions[index].runs.len() - 1).sum()
     }
 
     /// Whether every number of every condition to fit has a stated error.
@@ -258,10 +264,11 @@ fn reading(
     let position = set.instrument.position_sigma.unwrap_or(0.0).max(POSITION_FLOOR);
     // A stop is seen to a frame; without a rate, to the time in which the intruder, at the speed that
     // counts as stopped, moves by the error of a reading.
-    let time = set
-        .instrument
-        .rate
-        .map_or(position / (0.05 * condition.speed), |rate| 1.0 / (rate * 12.0_f64.sqrt()));
+    let own_speed = (set.bed.gravity * condition.diameter).sqrt();
+    let time =
+        set.instrument.rate.map_or(position / (STOPPED * condition.speed.max(own_speed)), |rate| {
+            1.0 / (rate * 12.0_f64.sqrt())
+        });
     let frame = |at: usize| frames[at].map_or(position, |sigma| sigma.max(POSITION_FLOOR));
     let n = layout.times.len();
     let kinds = layout.kinds();

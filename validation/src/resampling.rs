@@ -6,7 +6,7 @@ use crate::measurement::Frame;
 const SAME_TIME: f64 = 1e-7;
 
 /// Share of the impact speed below which an intruder counts as stopped.
-const STOPPED: f64 = 0.05;
+pub(crate) const STOPPED: f64 = 0.05;
 
 /// Frames on each side over which a speed is taken: neighbouring frames differ by little more than
 /// their noise.
@@ -66,17 +66,25 @@ pub(crate) fn depth_and_range(track: &[Frame], grid: &[f64]) -> Vec<(f64, f64)> 
         .collect()
 }
 
-/// How many frames of `grid` lie before the speed first falls below 5 % of `speed` (m/s).
+/// How many frames of `grid` lie before the speed first falls below 5 % of `speed` (m/s), or of the
+/// greatest since, for an intruder that is let go from rest.
 #[must_use]
 pub(crate) fn stopped_at(grid: &[f64], mean: &[(f64, f64)], speed: f64) -> usize {
-    let slow = |at: usize| {
+    let speed_at = |at: usize| {
         let window = at.saturating_sub(HALF_WINDOW)..(at + HALF_WINDOW + 1).min(grid.len());
         let velocity =
             |part: fn(&(f64, f64)) -> f64| slope(window.clone().map(|k| (grid[k], part(&mean[k]))));
-        let (down, along) = (velocity(|m| m.0), velocity(|m| m.1));
-        down * down + along * along < (STOPPED * speed).powi(2)
+        libm::hypot(velocity(|m| m.0), velocity(|m| m.1))
     };
-    (0..grid.len()).find(|&at| grid[at] > 0.0 && slow(at)).unwrap_or(grid.len())
+    let mut greatest = speed;
+    for at in (0..grid.len()).filter(|&at| grid[at] > 0.0) {
+        let now = speed_at(at);
+        if now < STOPPED * greatest {
+            return at;
+        }
+        greatest = greatest.max(now);
+    }
+    grid.len()
 }
 
 /// Slope of the least-squares line through `points`.

@@ -69,6 +69,9 @@ pub struct Diagnosis {
     pub parameters: Map<String, Value>,
     /// Amplitudes of what is named, fitted together.
     pub amplitudes: Vec<Amplitude>,
+    /// Correlation of the two amplitudes of a pair.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub amplitude_correlation: Option<f64>,
 }
 
 /// One effect in a ranking.

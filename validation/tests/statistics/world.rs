@@ -214,6 +214,7 @@ pub(crate) struct TwoTerm {
     settings: Vec<Setting>,
     layouts: Vec<Layout>,
     effects: Vec<Effect>,
+    adopted: Vec<(Effect, f64)>,
     parameters: Vec<Parameter>,
     candidates: Vec<Candidate>,
 }
@@ -242,10 +243,16 @@ impl TwoTerm {
             settings: settings.to_vec(),
             layouts,
             effects: effects.to_vec(),
+            adopted: Vec::new(),
             // Off the truth, as an analyst would start.
             parameters: vec![parameter("drag", 1.0), parameter("friction", 10.0)],
             candidates: effects.iter().map(candidate).collect(),
         }
+    }
+
+    /// Makes `effects` part of the model.
+    pub(crate) fn adopt(&mut self, effects: &[(Effect, f64)]) {
+        self.adopted.extend_from_slice(effects);
     }
 
     /// Declares that the data cannot show candidate `index`.
@@ -269,8 +276,8 @@ impl Forward for TwoTerm {
 
     fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError> {
         let Scatter { coefficients, speed, level, along, sideways, reach } = at.scatter;
-        let effects: Vec<(Effect, f64)> =
-            at.effects.iter().map(|&(index, q)| (self.effects[index], q)).collect();
+        let mut effects = self.adopted.clone();
+        effects.extend(at.effects.iter().map(|&(index, q)| (self.effects[index], q)));
         let impact = Impact {
             setting: self.settings[condition],
             coefficients: std::array::from_fn(|i| at.parameters[i] * libm::exp(coefficients[i])),
