@@ -28,6 +28,7 @@ mod pair;
 mod projection;
 mod random;
 mod resampling;
+pub mod residual;
 pub mod rig;
 mod rounding;
 mod score;
