@@ -1,6 +1,7 @@
 //! Several revisions of a model side by side.
 
 use serde_json::Value;
+use validation::bench::DEFAULT_SEED;
 use validation::compare::{Comparison, Revision, compare};
 use validation::measurement::Kind;
 use validation::observed::Observed;
@@ -19,7 +20,7 @@ fn comparison(laboratory: &Laboratory) -> Comparison {
         Revision { name: "two-term", forward: &plain },
         Revision { name: "two-term+effect", forward: &right },
     ];
-    compare(&set, &observed, &revisions, 1).expect("spheres stop")
+    compare(&set, &observed, &revisions, DEFAULT_SEED).expect("spheres stop")
 }
 
 #[test]
