@@ -8,7 +8,7 @@
 //!
 //! 1. [`observed`] makes vectors of the runs, one [`observable::Layout`] per condition;
 //! 2. [`sensitivity`], [`noise`] and [`weights`] learn from repeats how much they scatter;
-//! 3. [`bench`] fits a model under that noise, by [`fit`];
+//! 3. [`mod@bench`] fits a model under that noise, by [`fit`];
 //! 4. [`compare::compare`] says how wrong each revision of a model is and where
 //!    ([`errors`], [`lack_of_fit`], [`force_error`], [`residual`]);
 //! 5. [`diagnose::diagnose`] says which effect is missing, as a [`verdict`].
