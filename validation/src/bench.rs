@@ -14,6 +14,9 @@ use crate::weights::Weight;
 /// model, and the first guess of a model is wrong by construction.
 const ROUNDS: usize = 3;
 
+/// Seed of resampled and drawn noise, where none is asked for.
+pub const DEFAULT_SEED: u64 = 1;
+
 /// Measurements and the model that they are compared with.
 #[derive(Clone, Copy)]
 pub struct Bench<'a> {

@@ -12,6 +12,7 @@ use crate::lack_of_fit::lack_of_fit;
 use crate::measurement::MeasurementSet;
 use crate::noise::{Noise, NoiseSource};
 use crate::observed::Observed;
+use crate::residual::{Residual, residuals};
 use crate::rounding::{rounded, six_digits, six_digits_or_null};
 use crate::sensitivity::Point;
 
@@ -58,6 +59,9 @@ pub struct ModelComparison {
     /// The map of it by condition and depth.
     #[serde(skip)]
     pub cells: Vec<ForceCell>,
+    /// Every number beside its prediction.
+    #[serde(skip)]
+    pub residuals: Vec<Residual>,
     /// The fit behind it.
     #[serde(skip)]
     pub fitted: Fitted,
@@ -138,6 +142,7 @@ fn compare_one(bench: &Bench<'_>, name: &str, seed: u64) -> Result<ModelComparis
         rms,
         fails,
         cells,
+        residuals: residuals(bench, &fitted.fit.point, &fitted.noise)?,
         fitted,
     })
 }

@@ -176,6 +176,8 @@ impl Judge<'_> {
             parameters: parameters(bench.forward, proposed),
             amplitudes,
             amplitude_correlation: correlation(proposed),
+            baseline: Some(self.baseline.clone()),
+            proposed: Some(proposed.clone()),
         })
     }
 
@@ -211,6 +213,8 @@ fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {
         parameters: Map::new(),
         amplitudes: Vec::new(),
         amplitude_correlation: None,
+        baseline: None,
+        proposed: None,
     }
 }
 
@@ -232,6 +236,7 @@ fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
                 testable: true,
                 detection_limit: Some(score.signature.detection_limit()),
                 note: candidate.separable_from.to_owned(),
+                point: Some(score.point.clone()),
             }
         })
         .collect();
@@ -247,6 +252,7 @@ fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
             testable: false,
             detection_limit: None,
             note: candidates[index].not_testable.clone().unwrap_or_else(|| why_not(ranking, index)),
+            point: None,
         });
     list.extend(not_ranked);
     list

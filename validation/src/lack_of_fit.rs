@@ -22,6 +22,9 @@ use crate::sensitivity::{Direction, force_response};
 /// model, which is learned from all conditions together.
 const ENOUGH_RUNS: usize = 4;
 
+/// How many numbers the noise model has.
+const NOISE_PARAMETERS: usize = 3;
+
 /// Resampled sets of means.
 const DRAWS: usize = 999;
 
@@ -131,6 +134,9 @@ fn standardised(values: Vec<f64>) -> Vec<f64> {
 pub(crate) struct Resampled {
     /// Per condition: whitened deviations of its runs (none of too few), and how many numbers.
     conditions: Vec<(Vec<DVector<f64>>, usize, Pcg64)>,
+    /// From how many independent numbers the noise model is known.
+    freedom: f64,
+    scale: Pcg64,
 }
 
 impl Resampled {
@@ -142,15 +148,22 @@ impl Resampled {
             let deviations = (0..runs).map(|run| weight.whiten(&observed.deviation(run))).collect();
             (deviations, observed.mean.len(), stream(seed, Purpose::Resampling, condition))
         });
-        Self { conditions: conditions.collect() }
+        let conditions = conditions.collect();
+        let deviations = bench.observed.fit.iter().map(|&condition| {
+            let observed = &bench.observed.conditions[condition];
+            (observed.runs.len() - 1) * observed.mean.len()
+        });
+        let freedom = deviations.sum::<usize>().saturating_sub(NOISE_PARAMETERS).max(1) as f64;
+        Self { conditions, freedom, scale: stream(seed, Purpose::NoiseScale, 0) }
     }
 
     /// Whitened errors of the means of all conditions.
     pub(crate) fn draw(&mut self) -> DVector<f64> {
         let mut all = Vec::new();
+        let scale = 1.0 / mean_square(self.freedom, normal(&mut self.scale)).sqrt();
         for (deviations, len, random) in &mut self.conditions {
             if deviations.is_empty() {
-                all.extend((0..*len).map(|_| normal(random)));
+                all.extend((0..*len).map(|_| scale * normal(random)));
             } else {
                 let factors = factors(deviations.len(), random);
                 let error = deviations.iter().zip(factors);
@@ -161,6 +174,13 @@ impl Resampled {
         }
         DVector::from_vec(all)
     }
+}
+
+/// The mean square of `freedom` normal numbers where a normal number is `z` (Wilson & Hilferty 1931,
+/// Proc. Natl. Acad. Sci. 17, 684): a noise that is known from few numbers may be larger than it seems.
+fn mean_square(freedom: f64, z: f64) -> f64 {
+    let spread = 2.0 / (9.0 * freedom);
+    (1.0 - spread + z * spread.sqrt()).max(0.1).powi(3)
 }
 
 /// Factors on the deviations of `runs` runs whose sum has the covariance of their mean: they are drawn

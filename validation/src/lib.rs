@@ -4,7 +4,14 @@
 //! runs them and prints what was measured beside what is right.
 //!
 //! A [`measurement::MeasurementSet`] is a folder in `validation/data`; a [`forward::Forward`] is a
-//! model that predicts it.
+//! model that predicts it. What the two have to do with each other is said in these steps:
+//!
+//! 1. [`observed`] makes vectors of the runs, one [`observable::Layout`] per condition;
+//! 2. [`sensitivity`], [`noise`] and [`weights`] learn from repeats how much they scatter;
+//! 3. [`mod@bench`] fits a model under that noise, by [`fit`];
+//! 4. [`compare::compare`] says how wrong each revision of a model is and where
+//!    ([`errors`], [`lack_of_fit`], [`force_error`], [`residual`]);
+//! 5. [`diagnose::diagnose`] says which effect is missing, as a [`verdict`].
 
 pub mod bench;
 pub mod case;
@@ -28,6 +35,7 @@ mod pair;
 mod projection;
 mod random;
 mod resampling;
+pub mod residual;
 pub mod rig;
 mod rounding;
 mod score;

@@ -10,6 +10,8 @@ pub(crate) enum Purpose {
     Family = 1,
     /// Resampled deviations of runs.
     Resampling = 2,
+    /// How far off a noise model is that was learned from few numbers.
+    NoiseScale = 3,
 }
 
 /// The random numbers of condition (or other thing) `index` for `purpose`.

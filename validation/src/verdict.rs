@@ -3,8 +3,10 @@
 use serde::Serialize;
 use serde_json::{Map, Value};
 
+use crate::bench::Fitted;
 use crate::held_out::HeldOut;
 use crate::rounding::{six_digits, six_digits_or_null};
+use crate::sensitivity::Point;
 
 /// The answer to "which effect is missing?".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -72,6 +74,12 @@ pub struct Diagnosis {
     /// Correlation of the two amplitudes of a pair.
     #[serde(serialize_with = "six_digits_or_null")]
     pub amplitude_correlation: Option<f64>,
+    /// The model as it is, fitted; none if nothing could be.
+    #[serde(skip)]
+    pub baseline: Option<Fitted>,
+    /// The model with what is named, fitted; the model as it is, where nothing is.
+    #[serde(skip)]
+    pub proposed: Option<Fitted>,
 }
 
 /// One effect in a ranking.
@@ -100,6 +108,9 @@ pub struct RankedEffect {
     pub detection_limit: Option<f64>,
     /// Why it cannot be tested, or what it takes to tell it from its twins.
     pub note: String,
+    /// The model with it, fitted.
+    #[serde(skip)]
+    pub point: Option<Point>,
 }
 
 /// The amplitude of an effect that is named.

@@ -54,6 +54,13 @@ impl Weight {
         self.factor.l() * white
     }
 
+    /// Standard error of each number of the mean.
+    #[must_use]
+    pub fn standard_errors(&self) -> DVector<f64> {
+        let factor = self.factor.l();
+        DVector::from_iterator(factor.nrows(), factor.row_iter().map(|row| row.norm()))
+    }
+
     /// What the mean of runs is expected to be at `point`.
     ///
     /// # Errors

@@ -1,7 +1,8 @@
 //! The verdicts.
 
-use validation::bench::Bench;
+use validation::bench::{Bench, DEFAULT_SEED};
 use validation::diagnose::diagnose;
+use validation::held_out::LeftOut;
 use validation::measurement::{Kind, MeasurementSet, StatedError};
 use validation::observed::Observed;
 use validation::verdict::{Diagnosis, RankedEffect, Strength, Verdict};
@@ -16,7 +17,8 @@ fn diagnosis(laboratory: &Laboratory, set: &MeasurementSet) -> Diagnosis {
 fn diagnosis_among(laboratory: &Laboratory, set: &MeasurementSet, effects: &[Effect]) -> Diagnosis {
     let observed = Observed::of(set);
     let forward = TwoTerm::new(&laboratory.settings, observed.layouts(), effects);
-    diagnose(&Bench { set, observed: &observed, forward: &forward }, 1).expect("spheres stop")
+    diagnose(&Bench { set, observed: &observed, forward: &forward }, DEFAULT_SEED)
+        .expect("spheres stop")
 }
 
 fn ranked(diagnosis: &Diagnosis, effect: Effect) -> &RankedEffect {
@@ -117,6 +119,18 @@ fn held_out_conditions_do_not_reach_the_ranking() {
 }
 
 #[test]
+fn without_held_out_conditions_each_is_left_out_in_turn() {
+    let laboratory = Laboratory { holdout: 0, ..Laboratory::hiding(Effect::Lift, 0.1) };
+    let found = diagnosis(&laboratory, &laboratory.measure(1));
+    assert_eq!((found.verdict, found.strength), (Verdict::Supported, Strength::Supported));
+    let held_out = found.holdout.expect("something was fitted");
+    assert_eq!(held_out.conditions, LeftOut::OneAtATime);
+    assert!(held_out.after < held_out.before, "{held_out:?}");
+    // Means of five with the right model miss by their noise, and by what the fit adds to it.
+    assert!(held_out.after < 1.5 * held_out.noise_floor, "{held_out:?}");
+}
+
+#[test]
 fn names_and_order_of_runs_change_no_byte() {
     let laboratory = Laboratory::hiding(Effect::Buoyancy, 3.0);
     let set = laboratory.measure(1);
@@ -137,7 +151,7 @@ fn an_effect_that_the_data_cannot_show_is_listed_and_not_ranked() {
     let mut forward = TwoTerm::new(&laboratory.settings, observed.layouts(), &Effect::LISTED);
     forward.forbid(3);
     let bench = Bench { set: &set, observed: &observed, forward: &forward };
-    let found = diagnose(&bench, 1).expect("spheres stop");
+    let found = diagnose(&bench, DEFAULT_SEED).expect("spheres stop");
     let last = found.ranking.last().expect("there are effects");
     assert_eq!((last.id.as_str(), last.testable), ("buoyancy", false));
     assert_eq!((last.q, last.delta, last.note.as_str()), (None, None, "only vertical runs"));

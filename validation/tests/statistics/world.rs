@@ -288,7 +288,7 @@ impl Forward for TwoTerm {
             sideways,
             reach: *reach,
         };
-        let path = impact.path(1e-3).map_err(|why| PredictError { condition, why })?;
+        let path = impact.path(5e-4).map_err(|why| PredictError { condition, why })?;
         Ok(observables(&self.layouts[condition], &path))
     }
 }

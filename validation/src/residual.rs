@@ -1,0 +1,58 @@
+//! What a model leaves over, number by number, for plots and tables.
+
+use crate::bench::{Bench, BenchError};
+use crate::noise::Noise;
+use crate::observable::Observable;
+use crate::sensitivity::Point;
+
+/// One number of a condition, measured and predicted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residual {
+    /// Index of the condition in the set.
+    pub condition: usize,
+    /// What it is.
+    pub observable: Observable,
+    /// When (s), for positions along the path.
+    pub time: Option<f64>,
+    /// Mean over the runs (in the unit of the observable).
+    pub measured: f64,
+    /// Of the mean run.
+    pub predicted: f64,
+    /// Standard error of the mean over the runs: two of them are the band of noise.
+    pub standard_error: f64,
+}
+
+/// All numbers of all conditions, held-out ones included, for the model at `point` under `noise`.
+///
+/// The differences between two points are what an effect does once the parameters have compensated.
+///
+/// # Errors
+/// If the model fails.
+pub fn residuals(
+    bench: &Bench<'_>,
+    point: &Point,
+    noise: &Noise,
+) -> Result<Vec<Residual>, BenchError> {
+    let mut conditions: Vec<usize> =
+        bench.observed.fit.iter().chain(&bench.observed.holdout).copied().collect();
+    conditions.sort_unstable();
+    let weights = bench.weights(point, noise, &conditions)?;
+    let mut all = Vec::new();
+    for (&condition, weight) in conditions.iter().zip(&weights) {
+        let observed = &bench.observed.conditions[condition];
+        let predicted = weight.predict(point, bench.forward, condition)?;
+        let errors = weight.standard_errors();
+        let times = &observed.layout.times;
+        for (at, observable) in observed.layout.kinds().into_iter().enumerate() {
+            all.push(Residual {
+                condition,
+                observable,
+                time: (!observable.is_scalar()).then(|| times[at % times.len()]),
+                measured: observed.mean[at],
+                predicted: predicted[at],
+                standard_error: errors[at],
+            });
+        }
+    }
+    Ok(all)
+}
