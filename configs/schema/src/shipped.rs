@@ -33,6 +33,11 @@ pub static SHIPPED: &[Shipped] = &[
         summary: "The vertical impact with rolling resistance between the grains.",
         text: include_str!("../../rolling-2d.toml"),
     },
+    Shipped {
+        name: "two-term-vector",
+        summary: "A steel sphere into glass beads, by a force law: drag and friction along the velocity.",
+        text: include_str!("../../two-term-vector.toml"),
+    },
 ];
 
 /// The one called `name`, with or without `.toml`.

@@ -205,7 +205,7 @@ fn number_toml(value: f64, dimension: Dimension) -> String {
 }
 
 /// Something plausible to write for a parameter.
-fn example(spec: &ParamSpec) -> String {
+pub(super) fn example(spec: &ParamSpec) -> String {
     let Range { min, max, .. } = spec.plausible;
     let middle = match min > 0.0 && max.is_finite() {
         true => (min * max).sqrt(),
