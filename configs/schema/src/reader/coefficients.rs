@@ -3,7 +3,6 @@
 use contact_laws::Expression;
 use engine::params::ParamSpec;
 
-use super::numbers::example;
 use super::{Found, TableReader};
 use crate::diagnostics::Diagnostic;
 use crate::document::Value;
@@ -57,7 +56,7 @@ impl TableReader<'_> {
                     .at(self.header(), "a list of each is wanted")
                     .help(format!(
                         "write {{ angle = [\"30 deg\", \"90 deg\"], value = [{0}, {0}] }}",
-                        example(spec)
+                        self.example(spec)
                     )),
             );
             return None;
