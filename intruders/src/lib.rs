@@ -1,13 +1,18 @@
 //! The shapes that plunge drops into sand, each in a file of its own and one line of [`SHAPES`].
 
+mod cone;
+mod cylinder;
+mod hemisphere;
 mod parry_surface;
 mod registry;
+mod specs;
 mod sphere;
 
 pub use registry::{Body, Casting, Launchable, ShapeEntry};
 
 /// Every shape, in the order of the docs.
-pub static SHAPES: &[&ShapeEntry] = &[&sphere::DISC, &sphere::SPHERE];
+pub static SHAPES: &[&ShapeEntry] =
+    &[&sphere::DISC, &sphere::SPHERE, &cylinder::CYLINDER, &hemisphere::HEMISPHERE, &cone::CONE];
 
 /// The shape called `name`.
 #[must_use]

@@ -12,7 +12,8 @@ use crate::specs;
 
 pub(super) fn intruder(table: TableReader<'_>, places: &mut Places) -> Option<Intruder> {
     let name = table.slug("name", Some("intruder"), "the intruder's name in logs and reports");
-    let names: Vec<&'static str> = intruders::SHAPES.iter().map(|shape| shape.name).collect();
+    let for_grains = intruders::SHAPES.iter().filter(|shape| shape.build.is_some());
+    let names: Vec<&'static str> = for_grains.map(|shape| shape.name).collect();
     let later = ["cylinder", "hemisphere", "cone", "link", "two-link-chain"];
     let later: Vec<&str> = later.into_iter().filter(|name| !names.contains(name)).collect();
     let shape = table.choice("shape", &names, &later, "the shape of the intruder")?;
