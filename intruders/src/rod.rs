@@ -120,7 +120,8 @@ impl Rod {
                 volume: end * portion.length,
                 section: end * portion.growth,
                 mass: self.mass,
-                effective_depth: depth,
+                // Powers of it are taken, and a step that ends at the surface looks beyond it.
+                effective_depth: depth.max(0.0),
                 // What can be seen of the portion from below: it does not depend on the motion, as a
                 // friction that can hold a body at rest must not.
                 loaded_area: side * axis.x.abs() + end * axis.z.abs(),
