@@ -49,6 +49,24 @@ fn a_link_stops_at_every_angle_and_speed_without_chatter() {
 }
 
 #[test]
+fn a_chain_stops_at_every_pair_of_angles_without_chatter() {
+    let pairs =
+        [[32.0, -32.0], [32.0, -20.0], [50.0, 10.0], [32.0, 32.0], [0.0, 0.0], [20.0, 40.0]];
+    for angles in pairs {
+        for speed in [0.5, 1.0, 2.0, 3.0, 5.0] {
+            let launchable = chain(angles.map(f64::to_radians), down(speed));
+            let ending = run(&into_sand(launchable, vec![resistance()]));
+            assert!(ending.stopped && ending.time < 0.2, "{angles:?} {speed}");
+            let stops = ending.parts.map(|part| (part.contact, part.vertical));
+            let in_order = |(contact, stop)| contact < stop;
+            assert!(stops.into_iter().all(in_order), "{angles:?} {speed}: {stops:?}");
+            // Between 11 and 61.
+            assert!(ending.steps < 400, "{angles:?} {speed}: {} steps", ending.steps);
+        }
+    }
+}
+
+#[test]
 fn a_link_that_is_thrown_sideways_reverses_and_sticks_without_chatter() {
     for (angle, x, spin) in
         [(0.5, 1.0, 0.0), (0.5, -1.0, 0.0), (-0.2, 0.05, 20.0), (0.0, 0.0, -30.0)]
@@ -57,6 +75,27 @@ fn a_link_that_is_thrown_sideways_reverses_and_sticks_without_chatter() {
         let ending = run(&into_sand(launchable, vec![resistance()]));
         assert!(ending.stopped && ending.steps < 400, "{angle} {x} {spin}: {}", ending.steps);
     }
+}
+
+#[test]
+fn a_chain_of_which_friction_holds_everything_is_at_rest() {
+    let launchable = chain([50.0, 10.0].map(f64::to_radians), down(1.0));
+    let ending = run(&into_sand(launchable, vec![resistance()]));
+    assert!(ending.stopped);
+    assert!(ending.state.rate.iter().all(|rate| rate.abs() < f64::MIN_POSITIVE));
+    let last =
+        ending.parts.map(|part| part.vertical).into_iter().max_by(|a, b| a.partial_cmp(b).unwrap());
+    assert_eq!(last.flatten(), Some(ending.time));
+}
+
+#[test]
+fn where_a_tip_stops_friction_is_still_against_the_motion_of_the_middle() {
+    let impact = into_sand(link(32_f64.to_radians(), down(2.0), 0.0), vec![resistance()]);
+    let (samples, ..) = record(&impact);
+    let last = samples.last().expect("there is a sample at the end")[0];
+    assert!(last.part.tip_velocity.z.abs() < 1e-9, "the tip has stopped");
+    assert!(last.part.velocity.z < -0.1, "the middle has not");
+    assert!(last.friction.z > 0.0, "{:?}", last.friction);
 }
 
 #[test]
