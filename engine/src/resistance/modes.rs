@@ -155,7 +155,9 @@ impl Modes {
 
     fn is_consistent(&self, system: &System<'_>, state: &State, free: &[(usize, usize)]) -> bool {
         let (acceleration, holds) = accelerate(system, state, self);
-        let within = holds.iter().all(|hold| self.slack(system, state, hold) >= 0.0);
+        // Without the room for round-off that a component in hold has: one that has just used it up
+        // must be let go.
+        let within = holds.iter().all(|hold| self.reserve(system, state, hold) >= 0.0);
         within
             && free.iter().all(|&(part, component)| {
                 let sense = self.sense[part][component];
@@ -167,10 +169,14 @@ impl Modes {
     /// How far the force of `hold` is from the limits of its friction (N), with room for round-off;
     /// negative beyond.
     pub(super) fn slack(&self, system: &System<'_>, state: &State, hold: &Hold) -> f64 {
-        let loaded = system.loaded(hold.part, state, self);
-        let grip = loaded.load.grip[hold.component];
-        let room = ROUND_OFF * loaded.part.immersion.mass * system.bed.gravity;
-        room + (grip.positive + hold.force).min(grip.negative - hold.force)
+        let mass = system.assembly.part(hold.part, state).immersion.mass;
+        self.reserve(system, state, hold) + ROUND_OFF * mass * system.bed.gravity
+    }
+
+    /// The same without that room.
+    fn reserve(&self, system: &System<'_>, state: &State, hold: &Hold) -> f64 {
+        let grip = system.loaded(hold.part, state, self).load.grip[hold.component];
+        (grip.positive + hold.force).min(grip.negative - hold.force)
     }
 
     /// The line on which a compact body moves as long as nothing pushes it off.

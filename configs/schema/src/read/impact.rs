@@ -14,8 +14,12 @@ use crate::specs;
 
 /// The intruder of a planar bed of grains.
 pub(super) fn in_grains(table: TableReader<'_>, places: &mut Places) -> Option<Intruder> {
-    let fits: fn(&ShapeEntry) -> bool = |shape| shape.planar && shape.build.is_some();
-    intruder(table, ("a planar bed of grains", fits), Space::Planar, places)
+    intruder(table, Space::Planar, places, |table| {
+        let fits = |shape: &&&ShapeEntry| shape.planar && shape.build.is_some();
+        let (here, later): (Vec<&ShapeEntry>, Vec<_>) = intruders::SHAPES.iter().partition(fits);
+        let [here, later] = [here, later].map(|shapes| names(&shapes));
+        intruders::find(table.choice("shape", &here, &later, "the shape of the intruder")?)
+    })
 }
 
 /// The intruder of a resistive medium.
@@ -24,22 +28,39 @@ pub(super) fn in_resistance(
     space: Space,
     places: &mut Places,
 ) -> Option<Intruder> {
-    let medium: (_, fn(&ShapeEntry) -> bool) = match space {
-        Space::Planar => ("a planar medium", |shape| shape.planar),
-        Space::Spatial => ("a medium of dimension 3", |shape| shape.spatial),
-    };
-    intruder(table, medium, space, places)
+    intruder(table, space, places, |table| {
+        let (medium, fits): (_, fn(&ShapeEntry) -> bool) = match space {
+            Space::Planar => ("a planar medium", |shape| shape.planar),
+            Space::Spatial => ("a medium of dimension 3", |shape| shape.spatial),
+        };
+        let fitting = intruders::SHAPES.iter().filter(|shape| fits(shape));
+        let here = names(&fitting.copied().collect::<Vec<_>>());
+        let named = table.peek_text("shape").and_then(intruders::find);
+        if let Some(shape) = named.filter(|shape| !fits(shape)) {
+            table.reader.report(
+                Diagnostic::error(format!("the shape `{}` cannot act in {medium}", shape.name))
+                    .at(table.span_of("shape"), "a shape of another dimension")
+                    .help(format!("shapes here: {}", here.join(", "))),
+            );
+            return None;
+        }
+        intruders::find(table.choice("shape", &here, &[], "the shape of the intruder")?)
+    })
 }
 
-/// The intruder of a medium, given by its name in messages and by the shapes that fit it.
+fn names(shapes: &[&ShapeEntry]) -> Vec<&'static str> {
+    shapes.iter().map(|shape| shape.name).collect()
+}
+
+/// The intruder of a medium whose shapes `choose` knows.
 fn intruder(
     table: TableReader<'_>,
-    (medium, fits): (&str, fn(&ShapeEntry) -> bool),
     space: Space,
     places: &mut Places,
+    choose: impl Fn(&TableReader<'_>) -> Option<&'static ShapeEntry>,
 ) -> Option<Intruder> {
     let name = table.slug("name", Some("intruder"), "the intruder's name in logs and reports");
-    let shape = shape(&table, medium, fits)?;
+    let shape = choose(&table)?;
     let params = table.params(shape.params);
     places.intruder = BodyPlaces {
         count: None,
@@ -54,29 +75,6 @@ fn intruder(
     let mass = mass(&table, &specs::INTRUDER_MASS, density, size);
     table.finish();
     Some(Intruder { name: name?.value, shape, params: params?, mass: mass? })
-}
-
-/// The shape that `shape` says, if it fits the medium.
-fn shape(
-    table: &TableReader<'_>,
-    medium: &str,
-    fits: fn(&ShapeEntry) -> bool,
-) -> Option<&'static ShapeEntry> {
-    let fitting = intruders::SHAPES.iter().filter(|shape| fits(shape));
-    let names: Vec<&'static str> = fitting.map(|shape| shape.name).collect();
-    let named = table.peek_text("shape").and_then(intruders::find);
-    if let Some(shape) = named.filter(|shape| !fits(shape)) {
-        table.reader.report(
-            Diagnostic::error(format!("the shape `{}` cannot act in {medium}", shape.name))
-                .at(table.span_of("shape"), "a shape of another medium")
-                .help(format!("shapes here: {}", names.join(", "))),
-        );
-        return None;
-    }
-    let later = ["cylinder", "hemisphere", "cone", "link", "two-link-chain"];
-    let later: Vec<&str> =
-        later.into_iter().filter(|name| intruders::find(name).is_none()).collect();
-    intruders::find(table.choice("shape", &names, &later, "the shape of the intruder")?)
 }
 
 /// How the intruder comes in; the table is not finished.
