@@ -125,7 +125,7 @@ fn gravity(table: TableReader<'_>, places: &mut Places) -> Option<f64> {
     if let Some(Found { value: 3, span }) = dimension {
         table.reader.report(
             Diagnostic::error("dimension = 3 comes with a later version")
-                .at(span, "not available yet for grains")
+                .at(span, "not available yet")
                 .help("available now: 2"),
         );
     }

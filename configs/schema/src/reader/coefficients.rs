@@ -22,9 +22,22 @@ impl TableReader<'_> {
             return self.number(spec).map(|found| Coefficient::Number(found.value));
         }
         let table = self.table(spec.key, None);
-        let read = match table.has("expression") {
-            true => table.expression(variables).map(Coefficient::Expression),
-            false => table.angle_table(spec).map(Coefficient::Table),
+        let [formula, angle, value] = ["expression", "angle", "value"].map(|key| table.has(key));
+        let read = match (formula, angle || value) {
+            (true, true) => {
+                self.reader.report(
+                    Diagnostic::error(format!(
+                        "`{}` is both an expression and a table over the impact angle",
+                        spec.key
+                    ))
+                    .at(table.span_of("expression"), "the expression")
+                    .with(table.span_of("angle").or_else(|| table.span_of("value")), "the table")
+                    .help("keep one of the two; an expression may use `angle`"),
+                );
+                None
+            }
+            (true, false) => table.expression(variables).map(Coefficient::Expression),
+            (false, _) => table.angle_table(spec).map(Coefficient::Table),
         };
         table.finish();
         read
