@@ -63,7 +63,7 @@ fn an_expression_sees_density_and_angle_of_the_impact() {
     );
     let drag = medium(&model).coefficients_at(0.5).get("drag");
     // Two roundings of numbers of order one.
-    assert!((drag - (1.52 + 0.5_f64.sin())).abs() < 1e-15);
+    assert!((drag - (1.52 + libm::sin(0.5))).abs() < 1e-15);
     assert_eq!(paths(medium(&model)), ["resistance.friction"]);
 }
 

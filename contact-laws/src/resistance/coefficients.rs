@@ -1,5 +1,7 @@
 //! The coefficients of a law: numbers, or expressions of what an impact is made with.
 
+use std::sync::Arc;
+
 use engine::params::ParamTable;
 use exmex::{Express, FlatEx};
 use thiserror::Error;
@@ -65,7 +67,7 @@ impl OfDepth {
 #[derive(Clone, Debug)]
 pub struct Expression {
     text: String,
-    parsed: FlatEx<f64>,
+    parsed: Arc<FlatEx<f64>>,
     bound: Vec<(&'static str, f64)>,
 }
 
@@ -99,7 +101,7 @@ impl Expression {
                 unknown: unknown.clone(),
                 known: variables.iter().map(|&name| name.to_owned()).collect(),
             }),
-            None => Ok(Self { text: text.to_owned(), parsed, bound: Vec::new() }),
+            None => Ok(Self { text: text.to_owned(), parsed: Arc::new(parsed), bound: Vec::new() }),
         }
     }
 

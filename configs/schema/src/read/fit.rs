@@ -39,20 +39,20 @@ fn expanded(
     let mut free: Vec<String> = Vec::new();
     let mut sound = true;
     for path in given {
-        let found = paths(&path.value, resistance, effects);
-        let fault = match &found {
-            Err(fault) => Some(fault.clone()),
-            Ok(found) => found.iter().find(|one| free.contains(one)).map(|one| {
-                Diagnostic::error(format!("`{one}` is listed twice")).help("keep it once")
-            }),
+        let fault = match paths(&path.value, resistance, effects) {
+            Err(fault) => *fault,
+            Ok(found) => match found.iter().find(|one| free.contains(one)) {
+                Some(again) => {
+                    Diagnostic::error(format!("`{again}` is listed twice")).help("keep it once")
+                }
+                None => {
+                    free.extend(found);
+                    continue;
+                }
+            },
         };
-        match fault {
-            Some(fault) => {
-                table.reader.report(fault.at(path.span, ""));
-                sound = false;
-            }
-            None => free.extend(found.unwrap_or_default()),
-        }
+        table.reader.report(fault.at(path.span, ""));
+        sound = false;
     }
     sound.then_some(free)
 }
@@ -62,17 +62,18 @@ fn paths(
     path: &str,
     resistance: &ResistanceChoice,
     effects: &[EffectChoice],
-) -> Result<Vec<String>, Diagnostic> {
+) -> Result<Vec<String>, Box<Diagnostic>> {
     let mut known: Vec<String> = Vec::new();
     for (spec, coefficient) in resistance.iter() {
         let whole = format!("resistance.{}", spec.key);
         let nodes = resistance.paths_of(spec.key);
         if path == whole {
             return match coefficient {
-                Coefficient::Expression(_) => Err(Diagnostic::error(format!(
-                    "`{whole}` is an expression, which a fit cannot change"
-                ))
-                .help("give it a number, or take it out of `free`")),
+                Coefficient::Expression(_) => {
+                    let what = format!("`{whole}` is an expression, which a fit cannot change");
+                    let advice = "give it a number, or take it out of `free`";
+                    Err(Diagnostic::error(what).help(advice).into())
+                }
                 _ => Ok(nodes),
             };
         }
@@ -84,8 +85,9 @@ fn paths(
         return Ok(vec![path.to_owned()]);
     }
     let fault = Diagnostic::error(format!("there is no number `{}` in this model", shorten(path)));
-    Err(match nearest(path, known.iter().map(String::as_str)) {
-        Some(near) => fault.help(format!("did you mean `{near}`?")),
-        None => fault.help("write it as \"resistance.KEY\" or \"effect.NAME.q\""),
-    })
+    let advice = match nearest(path, known.iter().map(String::as_str)) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => "write it as \"resistance.KEY\" or \"effect.NAME.q\"".to_owned(),
+    };
+    Err(fault.help(advice).into())
 }

@@ -336,7 +336,7 @@ struct Task<'a> {
 
 /// What the impacts of a model share.
 enum Ground {
-    Bed { bed: PreparedBed, summary: BedSummary },
+    Bed(Box<(PreparedBed, BedSummary)>),
     Law,
 }
 
@@ -354,7 +354,7 @@ impl Ground {
         for warning in &summary.warnings {
             control.warn(warning);
         }
-        Ok(Some(Self::Bed { bed, summary }))
+        Ok(Some(Self::Bed(Box::new((bed, summary)))))
     }
 
     /// Runs one impact. Nothing if `control` wanted to stop.
@@ -366,9 +366,10 @@ impl Ground {
         control: &mut dyn Control,
     ) -> Result<Option<Summary>, RunError> {
         match (self, &task.model.medium) {
-            (Self::Bed { bed, summary }, Medium::Grains(medium)) => {
+            (Self::Bed(shared), Medium::Grains(medium)) => {
+                let (bed, bed_summary) = &**shared;
                 let grains = GrainModel { model: task.model, medium };
-                let setting = grains::Setting { grains, task, bed, bed_summary: summary };
+                let setting = grains::Setting { grains, task, bed, bed_summary };
                 setting.run(folder, condition, control)
             }
             (_, Medium::Resistive(medium)) => {
