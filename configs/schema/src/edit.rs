@@ -221,6 +221,9 @@ fn set_number(document: &mut DocumentMut, path: &str, si: f64) -> Option<()> {
         let (name, key) = key.split_once('.')?;
         return replace(effect_mut(document, name)?.get_mut(key)?.as_value_mut()?, None, si);
     }
+    if table != "resistance" {
+        return None;
+    }
     let baseline = text_at(document.as_item(), &[table, "name"]).map(str::to_owned)?;
     let (key, node) = match key.split_once('@') {
         Some((key, node)) => (key, Some(node)),
@@ -228,7 +231,13 @@ fn set_number(document: &mut DocumentMut, path: &str, si: f64) -> Option<()> {
     };
     let entry = contact_laws::find_resistance(&baseline)?;
     let dimension = entry.params.iter().find(|spec| spec.key == key)?.dimension;
-    let item = document.get_mut(table)?.get_mut(key)?;
+    let resistance = document.get_mut(table)?.as_table_like_mut()?;
+    if node.is_none() && !resistance.contains_key(key) {
+        // What was a default is written out once it is fitted.
+        resistance.insert(key, toml_edit::value(in_si(si, dimension)));
+        return Some(());
+    }
+    let item = resistance.get_mut(key)?;
     let Some(node) = node else {
         return replace(item.as_value_mut()?, Some(dimension), si);
     };
@@ -279,6 +288,14 @@ fn replace(value: &mut Value, dimension: Option<Dimension>, si: f64) -> Option<(
     Some(())
 }
 
+/// `si` as a model file says it.
+fn in_si(si: f64, dimension: Dimension) -> Value {
+    match dimension == Dimension::NONE {
+        true => Value::from(tidy(si)),
+        false => Value::from(units::format_si(tidy(si), dimension)),
+    }
+}
+
 /// The unit behind what may be left of a number such as `1e4 1/s`.
 fn exponent_free(rest: &str) -> &str {
     let digits = rest
@@ -327,6 +344,14 @@ mod tests {
         let text = add_effects(MODEL, &Addition { effects: Vec::new(), fitted }).unwrap();
         let expected = MODEL.replace("1.6 g/cm", "2.5 g/cm").replace("\"4 N/m\"", "\"3.5 N/m\"");
         assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn a_default_that_is_fitted_is_written_out() {
+        let link = "[resistance]\nname = \"link\"\ndrag = 3.0 # eta_d\n\n[run]\n";
+        let fitted = vec![("resistance.plunging".to_owned(), 12.5)];
+        let text = add_effects(link, &Addition { effects: Vec::new(), fitted }).unwrap();
+        assert_eq!(text, link.replace("# eta_d\n", "# eta_d\nplunging = 12.5\n"));
     }
 
     #[test]

@@ -156,3 +156,14 @@ fn an_effect_added_to_the_text_of_a_model_is_in_the_model() {
     let added = "\n[[effect]]\nname = \"rolling-resistance\"\nrolling_friction = 0.05\n";
     assert_eq!(edited.replace(added, ""), text, "all else is as it was");
 }
+
+#[test]
+fn a_fitted_node_of_a_shipped_table_changes_in_its_place_alone() {
+    let text = find_shipped("two-term-components").expect("a shipped model").text;
+    let fitted = vec![("resistance.drag_x@45".to_owned(), 0.2)];
+    let edited = add_effects(text, &Addition { effects: Vec::new(), fitted }).expect("a number");
+    assert_eq!(edited, text.replace("0.16064 kg/m", "0.2 kg/m"));
+    let model = load(&edited, &[]).unwrap_or_else(|error| panic!("{error}")).model;
+    let drag = medium(&model).coefficients_at(45_f64.to_radians()).get("drag_x");
+    assert!((drag - 0.2).abs() < 1e-15);
+}

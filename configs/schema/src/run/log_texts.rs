@@ -11,9 +11,10 @@ use crate::model::{Condition, Model};
 /// A force of this many weights of the intruder is drawn as long as the intruder is wide.
 const WEIGHTS_PER_ARROW: f64 = 10.0;
 
-/// Length of a drawn force (m/N) on an intruder `wide` (m) with `weight` (N).
+/// Length of a drawn force (m/N) on an intruder `wide` (m) with `weight` (N); without a weight there is
+/// nothing to measure it by, and none is drawn.
 pub(super) fn arrow_m_per_newton(wide: f64, weight: f64) -> f64 {
-    wide / (WEIGHTS_PER_ARROW * weight)
+    if weight > 0.0 { wide / (WEIGHTS_PER_ARROW * weight) } else { 0.0 }
 }
 
 /// The first event of a log.

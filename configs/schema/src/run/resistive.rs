@@ -67,7 +67,7 @@ pub(super) fn run(
     if closure > limit {
         return Err(writer.give_up(RunError::OpenBudget { closure, limit }));
     }
-    control.progress(&progress(task, &ending, condition));
+    control.progress(&progress(task, &ending, &impact));
     writer.conclude(&ending)?;
     let cost = CostSummary {
         steps: ending.steps,
@@ -99,7 +99,7 @@ fn energy_scale(impact: &Impact) -> f64 {
         .sum()
 }
 
-fn progress(task: Task<'_>, ending: &Ending, condition: &Condition) -> Progress {
+fn progress(task: Task<'_>, ending: &Ending, impact: &Impact) -> Progress {
     Progress::Impact {
         index: task.of.0,
         of: task.of.1,
@@ -107,7 +107,7 @@ fn progress(task: Task<'_>, ending: &Ending, condition: &Condition) -> Progress 
         last_step: ending.steps,
         time: ending.time,
         depth: ending.parts[0].depth,
-        speed: if ending.stopped { 0.0 } else { condition.speed },
+        speed: impact.assembly().part(0, &ending.state).velocity.norm(),
     }
 }
 
