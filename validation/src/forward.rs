@@ -20,6 +20,10 @@ pub trait Forward: Sync {
     /// The observables of condition `condition` of the set, in the order of the layout of
     /// that condition.
     ///
+    /// They must be smooth in everything that is asked for, down to the steps of derivatives: the end
+    /// of an impact is interpolated, not taken from the nearest step. Times before contact are of the
+    /// free flight, times after the stop have the resting point.
+    ///
     /// # Errors
     /// If the model cannot be integrated with these values.
     fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError>;

@@ -6,11 +6,13 @@ use annotate_snippets::{
     AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet, renderer::DecorStyle,
 };
 
+use crate::limits;
+
 /// Which text a [`Span`] points into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SourceId(usize);
 
-/// A stretch of bytes of one of the texts that a model was read from.
+/// A stretch of bytes of one of the texts that were read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
     /// The text.
@@ -21,23 +23,40 @@ pub struct Span {
     pub end: usize,
 }
 
-/// The texts that a model was read from: its file, each `--set`, `--seed`.
+/// The texts that were read: the file, each `--set`, `--seed`, lines of a table.
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
-    texts: Vec<(String, String)>,
+    texts: Vec<SourceText>,
+}
+
+#[derive(Clone, Debug)]
+struct SourceText {
+    name: String,
+    text: String,
+    first_line: usize,
 }
 
 impl Sources {
     /// Adds a text under the name that messages show for it.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> SourceId {
-        self.texts.push((name.into(), text.into()));
+        self.add_excerpt(name, text, 1)
+    }
+
+    /// Adds a part of a text that is too large to keep; it begins on line `first_line`.
+    pub fn add_excerpt(
+        &mut self,
+        name: impl Into<String>,
+        text: impl Into<String>,
+        first_line: usize,
+    ) -> SourceId {
+        self.texts.push(SourceText { name: name.into(), text: text.into(), first_line });
         SourceId(self.texts.len() - 1)
     }
 
     /// The whole of a text.
     #[must_use]
     pub fn text(&self, source: SourceId) -> &str {
-        &self.texts[source.0].1
+        &self.texts[source.0].text
     }
 
     /// What stands at `span`, shortened for use inside a message.
@@ -150,7 +169,7 @@ impl Diagnostic {
     /// One snippet per text that is pointed into, the primary one first.
     fn snippets<'a>(&'a self, sources: &'a Sources) -> Vec<Element<'a>> {
         let Some((primary, _)) = &self.primary else {
-            let name = sources.texts.first().map(|(name, _)| Origin::path(printable(name)));
+            let name = sources.texts.first().map(|text| Origin::path(printable(&text.name)));
             return name.map(Element::from).into_iter().collect();
         };
         let mut ids = vec![primary.source];
@@ -171,7 +190,7 @@ impl Diagnostic {
         let secondary = self.secondary.iter().map(|label| (AnnotationKind::Context, label));
         let labels: Vec<_> =
             primary.chain(secondary).filter(|(_, (span, _))| span.source == id).collect();
-        let (name, text) = &sources.texts[id.0];
+        let SourceText { name, text, first_line } = &sources.texts[id.0];
         let window = Window::around(text, labels.iter().map(|(_, (span, _))| *span));
         let annotations = labels.into_iter().map(|(kind, (span, label))| {
             let label = (!label.is_empty()).then(|| printable(label));
@@ -179,9 +198,24 @@ impl Diagnostic {
         });
         Snippet::source(window.text.clone())
             .path(printable(name))
-            .line_start(window.first_line)
+            .line_start(first_line - 1 + window.first_line)
             .annotations(annotations)
     }
+}
+
+/// Messages one after another as shown to the user.
+#[must_use]
+pub fn render_all(diagnostics: &[Diagnostic], sources: &Sources, color: Color) -> String {
+    let mut text = String::new();
+    for diagnostic in diagnostics {
+        text.push_str(&diagnostic.render(sources, color));
+        text.push('\n');
+    }
+    let errors = diagnostics.iter().filter(|one| one.severity == Severity::Error).count();
+    if errors >= limits::DIAGNOSTICS {
+        text.push_str("error: there may be more; only the first are shown\n");
+    }
+    text
 }
 
 /// The lines of a text that a message needs, so that a large file costs no more than a small one.
@@ -244,7 +278,7 @@ pub fn printable(text: &str) -> String {
 
 /// `text` on one line and of bounded length, for use inside a message.
 #[must_use]
-pub(crate) fn shorten(text: &str) -> String {
+pub fn shorten(text: &str) -> String {
     let line = text.replace(['\n', '\r'], " ");
     match line.char_indices().nth(60) {
         Some((cut, _)) => format!("{}…", &line[..cut]),

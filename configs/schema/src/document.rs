@@ -39,7 +39,7 @@ impl Value {
 
 /// Keys and values in the order of the text.
 #[derive(Clone, Debug)]
-pub(crate) struct Table {
+pub struct Table {
     /// `[run]`, or what stands for it in an inline table.
     pub(crate) header: Span,
     pub(crate) entries: Vec<Entry>,
@@ -60,7 +60,10 @@ impl Table {
 }
 
 /// Reads a TOML text.
-pub(crate) fn parse(sources: &Sources, id: SourceId) -> Result<Table, Box<Diagnostic>> {
+///
+/// # Errors
+/// When it is not TOML, with the place.
+pub fn parse(sources: &Sources, id: SourceId) -> Result<Table, Box<Diagnostic>> {
     let text = sources.text(id);
     let document = Document::parse(text).map_err(|error| {
         let span = error.span().unwrap_or(0..0);

@@ -9,15 +9,15 @@
 mod build;
 mod checks;
 mod diagnostics;
-mod document;
+pub mod document;
 pub mod estimate;
 pub mod grains_csv;
 pub mod limits;
 mod load;
 mod model;
-mod paths;
+pub mod paths;
 mod read;
-mod reader;
+pub mod reader;
 mod resolved;
 pub mod run;
 mod set;
@@ -26,7 +26,9 @@ mod specs;
 pub mod stability;
 
 pub use build::BuildError;
-pub use diagnostics::{Color, Diagnostic, Severity, SourceId, Sources, Span, nearest, printable};
+pub use diagnostics::{
+    Color, Diagnostic, Severity, SourceId, Sources, Span, nearest, printable, render_all, shorten,
+};
 pub use load::{ConfigError, LoadOptions, Loaded, ModelSource};
 pub use model::{
     Bed, BedSource, Condition, ConditionLists, Container, CsvBed, EnergySettings, GrainKind,
@@ -34,5 +36,6 @@ pub use model::{
 };
 pub use paths::PathError;
 pub use reader::interval as describe_range;
+pub use resolved::quoted as toml_string;
 pub use shipped::{SHIPPED, Shipped, find as find_shipped};
 pub use {contact_laws, engine, intruders};

@@ -5,11 +5,13 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::diagnostics::{Color, Diagnostic, Severity, Sources, nearest, printable, shorten};
+use crate::diagnostics::{
+    Color, Diagnostic, Severity, Sources, nearest, printable, render_all, shorten,
+};
 use crate::document;
 use crate::model::Model;
 use crate::read::DataFolder;
-use crate::reader::Reader;
+use crate::reader::{FileKind, Reader};
 use crate::shipped::{self, SHIPPED, Shipped};
 use crate::{checks, limits, paths, read, set};
 
@@ -111,19 +113,6 @@ impl ConfigError {
     }
 }
 
-fn render_all(diagnostics: &[Diagnostic], sources: &Sources, color: Color) -> String {
-    let mut text = String::new();
-    for diagnostic in diagnostics {
-        text.push_str(&diagnostic.render(sources, color));
-        text.push('\n');
-    }
-    let errors = diagnostics.iter().filter(|one| one.severity == Severity::Error).count();
-    if errors >= limits::DIAGNOSTICS {
-        text.push_str("error: there may be more; only the first are shown\n");
-    }
-    text
-}
-
 impl Model {
     /// Reads and checks a model, with what the command line changes in it.
     ///
@@ -151,7 +140,7 @@ impl Model {
             let set = format!("run.seed={seed}");
             diagnostics.extend(set::apply_set(&mut root, &mut sources, "--seed", &set).err());
         }
-        let reader = Reader::new(&sources);
+        let reader = Reader::new(&sources, FileKind::Model);
         diagnostics.into_iter().for_each(|one: Box<Diagnostic>| reader.report(*one));
         let data = DataFolder { folder: &folder, allow_paths: &options.allow_paths };
         let read = read::model(reader.root(&root), &data);

@@ -20,11 +20,14 @@ pub enum PathError {
         source: io::Error,
     },
     /// `~` is not expanded.
-    #[error("`{0}`: ~ is not expanded; write a path relative to the model file")]
+    #[error("`{0}`: ~ is not expanded; write a path relative to this file")]
     Home(String),
     /// It lies outside of the project and of the allowed folders.
     #[error("`{0}` lies outside of the model's project; --allow-path DIR allows its folder")]
     Outside(String),
+    /// It lies outside of the folder of the file that names it.
+    #[error("`{0}` lies outside of the folder of this file")]
+    OutsideFolder(String),
     /// A folder, device, pipe or socket.
     #[error("`{0}` is not a regular file")]
     NotRegular(String),
@@ -77,23 +80,50 @@ pub(crate) fn resolve(
     }
 }
 
+/// The file that a file in `folder` names `named`, without symbolic links, if it lies in `folder`
+/// or below.
+///
+/// # Errors
+/// When it does not exist or lies elsewhere.
+pub fn resolve_below(named: &str, folder: &Path) -> Result<PathBuf, PathError> {
+    if named.starts_with('~') {
+        return Err(PathError::Home(named.to_owned()));
+    }
+    let io = |source| PathError::Io { path: named.to_owned(), source };
+    let folder = fs::canonicalize(folder).map_err(io)?;
+    let path = fs::canonicalize(folder.join(named)).map_err(io)?;
+    match path.starts_with(&folder) {
+        true => Ok(path),
+        false => Err(PathError::OutsideFolder(named.to_owned())),
+    }
+}
+
+/// A regular file of any size, to be streamed; messages call it `named`.
+///
+/// # Errors
+/// When it is anything else.
+pub fn open_regular(path: &Path, named: &str) -> Result<File, PathError> {
+    let io = |source| PathError::Io { path: named.to_owned(), source };
+    // Asked before opening: opening a pipe would wait for its writer.
+    match fs::metadata(path).map_err(io)?.is_file() {
+        true => File::open(path).map_err(io),
+        false => Err(PathError::NotRegular(named.to_owned())),
+    }
+}
+
 /// The content of a regular file of at most `limit` bytes; messages call it `named`.
 ///
 /// # Errors
 /// When it is anything else.
-pub(crate) fn read_bounded(path: &Path, named: &str, limit: u64) -> Result<Vec<u8>, PathError> {
+pub fn read_bounded(path: &Path, named: &str, limit: u64) -> Result<Vec<u8>, PathError> {
     let io = |source| PathError::Io { path: named.to_owned(), source };
-    // Asked before opening: opening a pipe would wait for its writer.
-    let metadata = fs::metadata(path).map_err(io)?;
-    if !metadata.is_file() {
-        return Err(PathError::NotRegular(named.to_owned()));
-    }
+    let file = open_regular(path, named)?;
     let too_large = |size| PathError::TooLarge { path: named.to_owned(), size, limit };
-    if metadata.len() > limit {
-        return Err(too_large(metadata.len()));
+    let size = file.metadata().map_err(io)?.len();
+    if size > limit {
+        return Err(too_large(size));
     }
     let mut bytes = Vec::new();
-    let file = File::open(path).map_err(io)?;
     file.take(limit + 1).read_to_end(&mut bytes).map_err(io)?;
     match bytes.len() as u64 > limit {
         true => Err(too_large(bytes.len() as u64)),

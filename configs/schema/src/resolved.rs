@@ -77,6 +77,7 @@ impl Resolved {
 }
 
 /// `text` as a TOML string.
-pub(crate) fn quoted(text: &str) -> String {
+#[must_use]
+pub fn quoted(text: &str) -> String {
     Value::from(text).to_string().trim().to_owned()
 }

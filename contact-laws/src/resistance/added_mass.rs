@@ -40,7 +40,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     signature: "lower deceleration, longer and deeper path; a jerk at entry",
     source: "Aguilar & Goldman, Nature Phys. 12, 278 (2016)",
     params: &[amplitude(
-        Range::closed(-0.5, 50.0),
+        Range::closed(0.0, 50.0),
         Range::closed(0.0, 5.0),
         "moving grains in units of the displaced bed",
     )],

@@ -33,7 +33,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     signature: "like a constant force once immersed; light intruders float",
     source: "Archimedes; Kang, Feng, Liu & Blumenfeld, Nature Commun. 9, 1101 (2018)",
     params: &[amplitude(
-        Range::closed(-20.0, 200.0),
+        Range::closed(0.0, 200.0),
         Range::closed(0.0, 50.0),
         "force in units of the weight of the displaced bed",
     )],

@@ -29,7 +29,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     signature: "depth and stopping time grow, most at high speed",
     source: "Janssen, Z. Ver. Dt. Ing. 39, 1045 (1895)",
     params: &[amplitude(
-        Range::closed(-1.0, 20.0),
+        Range::closed(0.0, 20.0),
         Range::closed(0.0, 5.0),
         "intruder diameter over saturation depth lambda",
     )],

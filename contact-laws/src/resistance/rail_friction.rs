@@ -33,7 +33,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     signature: "impact speed below that of free fall; in the bed like a constant force",
     source: "dry friction of a guide",
     params: &[amplitude(
-        Range::closed(-100.0, 1000.0),
+        Range::closed(0.0, 1000.0),
         Range::closed(0.0, 10.0),
         "friction in newtons",
     )],

@@ -32,7 +32,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     signature: "largest at low speed: the intruder stops sooner and less deep, hardly at high speed",
     source: "constant term of the resistance law; bearing factor times cohesion",
     params: &[amplitude(
-        Range::closed(-50.0, 200.0),
+        Range::closed(0.0, 200.0),
         Range::closed(0.0, 50.0),
         "resistance in units of rho g A D",
     )],

@@ -39,9 +39,9 @@ pub struct Tolerance {
 }
 
 impl Default for Tolerance {
-    /// Errors of a whole impact stay near 1e-10 m.
+    /// Errors of a whole impact stay near 1e-10 of its depth.
     fn default() -> Self {
-        Self { relative: 1e-10, absolute: 1e-12 }
+        Self { relative: 1e-11, absolute: 1e-13 }
     }
 }
 

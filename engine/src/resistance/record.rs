@@ -5,7 +5,7 @@ use super::modes::{AXES, Modes, accelerate};
 use super::motion::System;
 use super::observe::{Observer, Stretch};
 use super::{Flow, Impact, Load, Motion};
-use crate::ledger::{Ledger, Term, TermKind};
+use crate::ledger::{ChannelKind, Ledger, Term, TermKind};
 use crate::math::Vec3;
 
 /// Nodes and weights of Gauss's quadrature on five points, exact to order nine: finer than the
@@ -65,7 +65,7 @@ pub struct Recorder<'a, F> {
     interval: f64,
     entries: Vec<Entry>,
     ledger: Ledger,
-    /// Work since the last sample, by entry (J).
+    /// Work by entry (J): of what is lost since the last sample, of what is held since the start.
     work: Vec<f64>,
     given: [f64; PARTS],
     number: u64,
@@ -202,8 +202,13 @@ impl<'a, F: FnMut(&Sample<'_>)> Recorder<'a, F> {
 
     fn sample(&mut self, system: &System<'_>, time: f64, state: &State, modes: &Modes) {
         let mut values = self.held(system, state, modes);
-        for (value, work) in values.iter_mut().zip(&mut self.work) {
-            *value += std::mem::take(work);
+        for ((value, work), term) in values.iter_mut().zip(&mut self.work).zip(self.ledger.terms())
+        {
+            *value += *work;
+            // The ledger adds up what is lost; what is held it takes as it is.
+            if term.kind != TermKind::Channel(ChannelKind::Stored) {
+                *work = 0.0;
+            }
         }
         self.ledger.close(&values);
         self.hand_on(system, time, state, modes);

@@ -1,5 +1,35 @@
 //! Measurement sets: conditions, runs and instrument of one campaign, as `measurement.toml` with its
 //! tables says them.
+//!
+//! [`MeasurementSet::load`] reads a set, [`MeasurementSet::write`] writes one. `document` knows
+//! `measurement.toml` and `conditions` its conditions; `lines`, `dialect`, `columns`, `header`, `row`,
+//! `cells` and `table` read a table, `runs` and `trajectories` know the two tables there are; `checks`, `signs`
+//! and `magnitudes` look at the whole.
+
+mod cells;
+mod checks;
+mod columns;
+mod conditions;
+mod describe;
+mod dialect;
+mod document;
+mod findings;
+mod header;
+mod keys;
+mod lines;
+mod load;
+mod magnitudes;
+mod order;
+mod row;
+mod runs;
+mod signs;
+mod table;
+mod trajectories;
+mod unstated;
+mod write;
+
+pub use load::{Loaded, SetError};
+pub use write::WriteError;
 
 /// Measurements of impacts under one or more conditions.
 #[derive(Clone, Debug, PartialEq)]

@@ -14,16 +14,38 @@ use crate::resolved::Resolved;
 pub use numbers::interval;
 use unknown::Unknown;
 
+/// What a file is, and so how it writes quantities.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileKind {
+    /// A model: quantities are strings with their unit.
+    Model,
+    /// A measurement set: quantities are bare SI numbers.
+    MeasurementSet,
+}
+
+impl FileKind {
+    /// What messages call it, with its article.
+    fn noun(self) -> &'static str {
+        match self {
+            Self::Model => "a model",
+            Self::MeasurementSet => "a measurement set",
+        }
+    }
+}
+
 /// A value that was read, and where; a default stands nowhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Found<T> {
-    pub(crate) value: T,
-    pub(crate) span: Option<Span>,
+pub struct Found<T> {
+    /// The value.
+    pub value: T,
+    /// Its place in the text.
+    pub span: Option<Span>,
 }
 
 /// What all tables of one file share.
-pub(crate) struct Reader<'a> {
+pub struct Reader<'a> {
     pub(crate) sources: &'a Sources,
+    kind: FileKind,
     diagnostics: RefCell<Vec<Diagnostic>>,
     resolved: RefCell<Resolved>,
     homes: RefCell<Vec<(String, Vec<&'static str>)>>,
@@ -31,9 +53,12 @@ pub(crate) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    pub(crate) fn new(sources: &'a Sources) -> Self {
+    /// Nothing read yet.
+    #[must_use]
+    pub fn new(sources: &'a Sources, kind: FileKind) -> Self {
         Self {
             sources,
+            kind,
             diagnostics: RefCell::default(),
             resolved: RefCell::default(),
             homes: RefCell::default(),
@@ -42,7 +67,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Takes note of an error or a warning.
-    pub(crate) fn report(&self, diagnostic: Diagnostic) {
+    pub fn report(&self, diagnostic: Diagnostic) {
         let mut all = self.diagnostics.borrow_mut();
         if all.len() < limits::DIAGNOSTICS {
             all.push(diagnostic);
@@ -55,7 +80,8 @@ impl<'a> Reader<'a> {
     }
 
     /// The root: only tables may stand there.
-    pub(crate) fn root(&'a self, table: &'a Table) -> TableReader<'a> {
+    #[must_use]
+    pub fn root(&'a self, table: &'a Table) -> TableReader<'a> {
         TableReader::new(self, "the file", String::new(), Some(table))
     }
 
@@ -64,18 +90,25 @@ impl<'a> Reader<'a> {
         let homes = self.homes.into_inner();
         let mut diagnostics = self.diagnostics.into_inner();
         for unknown in self.unknown.into_inner().into_iter().take(limits::DIAGNOSTICS) {
-            diagnostics.push(unknown.explain(&homes));
+            diagnostics.push(unknown.explain(self.kind, &homes));
         }
         diagnostics
             .sort_by_key(|one| one.primary.as_ref().map(|(span, _)| (span.source, span.start)));
         diagnostics.truncate(limits::DIAGNOSTICS);
         (diagnostics, self.resolved.into_inner())
     }
+
+    /// Everything that was reported, in the order of the text.
+    #[must_use]
+    pub fn into_diagnostics(self) -> Vec<Diagnostic> {
+        self.finish().0
+    }
 }
 
 /// Reads one table.
-pub(crate) struct TableReader<'a> {
-    pub(crate) reader: &'a Reader<'a>,
+pub struct TableReader<'a> {
+    /// What it shares with the other tables of the file.
+    pub reader: &'a Reader<'a>,
     name: String,
     table: Option<&'a Table>,
     section: usize,
@@ -97,12 +130,14 @@ impl<'a> TableReader<'a> {
     }
 
     /// The header of the table, when the file has it.
-    pub(crate) fn header(&self) -> Option<Span> {
+    #[must_use]
+    pub fn header(&self) -> Option<Span> {
         self.table.map(|table| table.header)
     }
 
     /// Whether `key` is given; it counts as known from now on.
-    pub(crate) fn has(&self, key: &'static str) -> bool {
+    #[must_use]
+    pub fn has(&self, key: &'static str) -> bool {
         self.entry(key).is_some()
     }
 
@@ -141,7 +176,8 @@ impl<'a> TableReader<'a> {
 
     /// A table below this one. When it is required and missing, that is reported once, with
     /// `example` as what to write.
-    pub(crate) fn table(&self, key: &'static str, example: Option<&str>) -> TableReader<'a> {
+    #[must_use]
+    pub fn table(&self, key: &'static str, example: Option<&str>) -> TableReader<'a> {
         let name = self.child(key);
         let table = match self.entry(key) {
             Some(Entry { node: Node { value: Value::Table(table), .. }, .. }) => Some(table),
@@ -159,9 +195,10 @@ impl<'a> TableReader<'a> {
             }
             None => {
                 if let Some(example) = example {
+                    let noun = self.reader.kind.noun();
                     self.reader.report(
                         Diagnostic::error(format!("the table [{name}] is missing"))
-                            .help(format!("a model needs it:\n[{name}]\n{example}")),
+                            .help(format!("{noun} needs it:\n[{name}]\n{example}")),
                     );
                 }
                 None
@@ -171,7 +208,8 @@ impl<'a> TableReader<'a> {
     }
 
     /// The elements of an array of tables below this one.
-    pub(crate) fn tables(&self, key: &'static str, at_most: usize) -> Vec<TableReader<'a>> {
+    #[must_use]
+    pub fn tables(&self, key: &'static str, at_most: usize) -> Vec<TableReader<'a>> {
         let name = self.child(key);
         let Some(entry) = self.entry(key) else {
             return Vec::new();
@@ -218,7 +256,8 @@ impl<'a> TableReader<'a> {
     }
 
     /// Where the value of `key` stands, if the file gives it.
-    pub(crate) fn span_of(&self, key: &str) -> Option<Span> {
+    #[must_use]
+    pub fn span_of(&self, key: &str) -> Option<Span> {
         self.table.and_then(|table| table.get(key)).map(|entry| entry.node.span)
     }
 
@@ -236,7 +275,7 @@ impl<'a> TableReader<'a> {
     }
 
     /// Refuses the keys that nobody asked for.
-    pub(crate) fn finish(self) {
+    pub fn finish(self) {
         let asked = self.asked.into_inner();
         let mut unknown = self.reader.unknown.borrow_mut();
         for entry in self.table.into_iter().flat_map(|table| &table.entries) {

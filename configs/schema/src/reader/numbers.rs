@@ -3,7 +3,7 @@
 use engine::params::{Default as ParamDefault, ParamSpec, ParamTable, Range};
 use engine::units::{self, Dimension};
 
-use super::{Found, TableReader};
+use super::{FileKind, Found, TableReader};
 use crate::diagnostics::{Diagnostic, Span, shorten};
 use crate::document::{Node, Value};
 use crate::limits;
@@ -11,12 +11,12 @@ use crate::resolved::quoted;
 
 impl TableReader<'_> {
     /// A number or quantity as its specification says.
-    pub(crate) fn number(&self, spec: &ParamSpec) -> Option<Found<f64>> {
+    pub fn number(&self, spec: &ParamSpec) -> Option<Found<f64>> {
         let found = match self.entry(spec.key) {
             Some(entry) => self.number_at(&entry.node, spec),
             None => match spec.default {
                 ParamDefault::Required => {
-                    self.missing(spec.key, &example(spec), spec.meaning);
+                    self.missing(spec.key, &self.example(spec), spec.meaning);
                     None
                 }
                 ParamDefault::Value(value) => Some(Found { value, span: None }),
@@ -35,7 +35,7 @@ impl TableReader<'_> {
     }
 
     /// A number that may be left out; the outer `None` is an error that was reported.
-    pub(crate) fn optional_number(&self, spec: &ParamSpec) -> Option<Option<Found<f64>>> {
+    pub fn optional_number(&self, spec: &ParamSpec) -> Option<Option<Found<f64>>> {
         match self.has(spec.key) {
             true => self.number(spec).map(Some),
             false => Some(None),
@@ -63,7 +63,7 @@ impl TableReader<'_> {
         let Value::Array(nodes) = &entry.node.value else {
             let item = match &entry.node.value {
                 Value::Text(text) => quoted(&shorten(text)),
-                _ => example(spec),
+                _ => self.example(spec),
             };
             self.wrong_kind(entry, "a list", &format!("[{item}]"));
             return None;
@@ -85,7 +85,7 @@ impl TableReader<'_> {
     }
 
     pub(crate) fn number_at(&self, node: &Node, spec: &ParamSpec) -> Option<Found<f64>> {
-        let value = match (spec.dimension == Dimension::NONE, &node.value) {
+        let value = match (self.is_bare(spec), &node.value) {
             (true, Value::Float(value)) => *value,
             (true, Value::Integer(value)) => *value as f64,
             (false, Value::Text(text)) => match units::parse(text, spec.dimension) {
@@ -100,13 +100,7 @@ impl TableReader<'_> {
                 }
             },
             (true, Value::Text(text)) => {
-                let bare = text.trim().parse::<f64>().is_ok_and(f64::is_finite);
-                let example = if bare { text.trim().to_owned() } else { example(spec) };
-                self.reader.report(
-                    Diagnostic::error(format!("`{}` is a string; it is a pure number", spec.key))
-                        .at(node.span, "a bare number is wanted, without unit and quotes")
-                        .help(format!("write {} = {example}", spec.key)),
-                );
+                self.report_quoted(text, node.span, spec);
                 return None;
             }
             (false, Value::Float(_) | Value::Integer(_)) => {
@@ -132,12 +126,59 @@ impl TableReader<'_> {
                         other.kind()
                     ))
                     .at(node.span, format!("{wanted} is wanted"))
-                    .help(format!("write {} = {}", spec.key, example(spec))),
+                    .help(format!(
+                        "write {} = {}",
+                        spec.key,
+                        self.example(spec)
+                    )),
                 );
                 return None;
             }
         };
         self.in_range(value, node.span, spec)
+    }
+
+    /// Whether a number without a unit is wanted.
+    fn is_bare(&self, spec: &ParamSpec) -> bool {
+        spec.dimension == Dimension::NONE || self.reader.kind == FileKind::MeasurementSet
+    }
+
+    /// Something plausible to write for a parameter.
+    fn example(&self, spec: &ParamSpec) -> String {
+        let Range { min, max, .. } = spec.plausible;
+        let middle = match min > 0.0 && max.is_finite() {
+            true => (min * max).sqrt(),
+            false if max < f64::MAX => max / 5.0,
+            false => 1.0,
+        };
+        let middle = match spec.default {
+            ParamDefault::Value(value) => value,
+            _ => format!("{middle:.0e}").parse().unwrap_or(middle),
+        };
+        match spec.dimension {
+            _ if self.is_bare(spec) => format!("{middle:?}"),
+            Dimension::ANGLE => "\"45 deg\"".to_owned(),
+            dimension => quoted(&units::format_si(middle, dimension)),
+        }
+    }
+
+    /// Reports a string where a bare number is wanted; a quantity is shown in SI.
+    fn report_quoted(&self, text: &str, span: Span, spec: &ParamSpec) {
+        let bare = text.trim().parse::<f64>().is_ok_and(f64::is_finite);
+        let value = match (bare, units::parse(text, spec.dimension)) {
+            (true, _) => text.trim().to_owned(),
+            (false, Ok(value)) => format!("{value:?}"),
+            (false, Err(_)) => self.example(spec),
+        };
+        let what = match spec.dimension {
+            Dimension::NONE => "it is a pure number".to_owned(),
+            dimension => format!("it is a number in {}", dimension.si_unit()),
+        };
+        self.reader.report(
+            Diagnostic::error(format!("`{}` is a string; {what}", spec.key))
+                .at(span, "a bare number is wanted, without unit and quotes")
+                .help(format!("write {} = {value}", spec.key)),
+        );
     }
 
     fn unit_help(&self, spec: &ParamSpec, error: &units::UnitError) -> String {
@@ -201,25 +242,6 @@ fn number_toml(value: f64, dimension: Dimension) -> String {
     match dimension == Dimension::NONE {
         true => format!("{value:?}"),
         false => quoted(&units::format_si(value, dimension)),
-    }
-}
-
-/// Something plausible to write for a parameter.
-fn example(spec: &ParamSpec) -> String {
-    let Range { min, max, .. } = spec.plausible;
-    let middle = match min > 0.0 && max.is_finite() {
-        true => (min * max).sqrt(),
-        false if max < f64::MAX => max / 5.0,
-        false => 1.0,
-    };
-    let middle = match spec.default {
-        ParamDefault::Value(value) => value,
-        _ => format!("{middle:.0e}").parse().unwrap_or(middle),
-    };
-    match spec.dimension {
-        Dimension::NONE => format!("{middle:?}"),
-        Dimension::ANGLE => "\"45 deg\"".to_owned(),
-        dimension => quoted(&units::format_si(middle, dimension)),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Keys that nobody asked for, and where they may belong.
 
+use super::FileKind;
 use crate::diagnostics::{Diagnostic, Span, nearest, shorten};
 
 /// A key that nobody asked for.
@@ -12,10 +13,14 @@ pub(super) struct Unknown {
 
 impl Unknown {
     /// What to say about it, given the keys of every table.
-    pub(super) fn explain(&self, homes: &[(String, Vec<&'static str>)]) -> Diagnostic {
+    pub(super) fn explain(
+        &self,
+        kind: FileKind,
+        homes: &[(String, Vec<&'static str>)],
+    ) -> Diagnostic {
         let key = shorten(&self.key);
         let place = match self.table.as_str() {
-            "the file" => "a model file".to_owned(),
+            "the file" => format!("{} file", kind.noun()),
             table => format!("[{table}]"),
         };
         let diagnostic = Diagnostic::error(format!("`{key}` is not a key of {place}"));
@@ -32,17 +37,10 @@ impl Unknown {
                 table => format!("[{table}]"),
             })
             .collect();
-        let mut laws: Vec<String> = contact_laws::LAWS
-            .iter()
-            .filter(|law| law.params.iter().any(|spec| spec.key == self.key))
-            .map(|law| format!("the law `{}`", law.name))
-            .collect();
-        laws.extend(
-            intruders::SHAPES
-                .iter()
-                .filter(|shape| shape.params.iter().any(|spec| spec.key == self.key))
-                .map(|shape| format!("the shape `{}`", shape.name)),
-        );
+        let laws = match kind {
+            FileKind::Model => self.laws(),
+            FileKind::MeasurementSet => Vec::new(),
+        };
         match (exact.as_slice(), laws.as_slice()) {
             ([], []) => {}
             ([], laws) => help.push_str(&format!("`{key}` belongs to {}\n", laws.join(" and "))),
@@ -57,5 +55,18 @@ impl Unknown {
             false => "this key belongs elsewhere".to_owned(),
         };
         diagnostic.at(self.span, label).help(help)
+    }
+
+    /// The laws and shapes that have this key.
+    fn laws(&self) -> Vec<String> {
+        let laws = contact_laws::LAWS
+            .iter()
+            .filter(|law| law.params.iter().any(|spec| spec.key == self.key))
+            .map(|law| format!("the law `{}`", law.name));
+        let shapes = intruders::SHAPES
+            .iter()
+            .filter(|shape| shape.params.iter().any(|spec| spec.key == self.key))
+            .map(|shape| format!("the shape `{}`", shape.name));
+        laws.chain(shapes).collect()
     }
 }

@@ -2,13 +2,13 @@
 
 use super::{Found, TableReader};
 use crate::diagnostics::{Diagnostic, nearest, shorten};
-use crate::document::Value;
+use crate::document::{Node, Value};
 use crate::limits;
 use crate::resolved::quoted;
 
 impl TableReader<'_> {
     /// A whole number; `default` stands in when the file does not give it.
-    pub(crate) fn integer(
+    pub fn integer(
         &self,
         key: &'static str,
         default: Option<u64>,
@@ -102,7 +102,7 @@ impl TableReader<'_> {
     }
 
     /// A string.
-    pub(crate) fn text(
+    pub fn text(
         &self,
         key: &'static str,
         default: Option<&str>,
@@ -114,8 +114,26 @@ impl TableReader<'_> {
         Some(found)
     }
 
+    /// A list of strings; `None` when the file does not give it or it is something else, which is
+    /// reported.
+    pub fn texts(&self, key: &'static str) -> Option<Vec<String>> {
+        let entry = self.entry(key)?;
+        let text = |node: &Node| match &node.value {
+            Value::Text(text) if text.len() <= limits::STRING_BYTES => Some(text.clone()),
+            _ => None,
+        };
+        let found = match &entry.node.value {
+            Value::Array(nodes) => nodes.iter().map(text).collect(),
+            _ => None,
+        };
+        if found.is_none() {
+            self.wrong_kind(entry, "a list of strings", "[\"…\"]");
+        }
+        found
+    }
+
     /// A name used for files: lower-case letters, digits, `-` and `_`.
-    pub(crate) fn slug(
+    pub fn slug(
         &self,
         key: &'static str,
         default: Option<&str>,
@@ -146,7 +164,7 @@ impl TableReader<'_> {
     }
 
     /// One of the names in `known`; those in `later` are named as coming.
-    pub(crate) fn choice(
+    pub fn choice(
         &self,
         key: &'static str,
         known: &[&'static str],

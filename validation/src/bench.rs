@@ -1,0 +1,180 @@
+//! A model on the bench: fitted to measurements, under the noise that its own trajectories give.
+
+use thiserror::Error;
+
+use crate::fit::{Data, Fit};
+use crate::forward::{Forward, PredictError};
+use crate::measurement::MeasurementSet;
+use crate::noise::Noise;
+use crate::observed::Observed;
+use crate::sensitivity::{Point, Sensitivity};
+use crate::weights::Weight;
+
+/// How often noise and fit are taken in turn: the scatter of trajectories is propagated along the
+/// model, and the first guess of a model is wrong by construction.
+const ROUNDS: usize = 3;
+
+/// Measurements and the model that they are compared with.
+#[derive(Clone, Copy)]
+pub struct Bench<'a> {
+    /// The set.
+    pub set: &'a MeasurementSet,
+    /// Its observables.
+    pub observed: &'a Observed,
+    /// The model.
+    pub forward: &'a dyn Forward,
+}
+
+/// A model fitted under its own noise.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// The fit.
+    pub fit: Fit,
+    /// One per condition that was fitted to.
+    pub weights: Vec<Weight>,
+    /// What the weights are from.
+    pub noise: Noise,
+}
+
+/// Why measurements cannot be compared with a model.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum BenchError {
+    /// The model fails.
+    #[error(transparent)]
+    Predict(#[from] PredictError),
+    /// A prediction does not have the layout of its condition.
+    #[error("condition {condition}: the model predicts {found} numbers; {expected} were measured")]
+    Layout {
+        /// Index of the condition.
+        condition: usize,
+        /// Length of the prediction.
+        found: usize,
+        /// Length of the layout.
+        expected: usize,
+    },
+    /// Neither repeats nor stated errors.
+    #[error(
+        "there are neither repeats nor stated errors: repeat at least one condition, or state `[noise]`"
+    )]
+    NoErrors,
+    /// Less is measured than is free.
+    #[error("{measured} numbers were measured to fit {free} unknowns to")]
+    TooFew {
+        /// Numbers in conditions with the role `fit`.
+        measured: usize,
+        /// Free parameters and amplitudes.
+        free: usize,
+    },
+    /// The noise of a condition has no inverse.
+    #[error("condition {condition}: the errors of its numbers are not finite")]
+    Singular {
+        /// Index of the condition.
+        condition: usize,
+    },
+}
+
+impl Bench<'_> {
+    /// Fits the model with the effects of `start`, noise and fit in turn.
+    ///
+    /// # Errors
+    /// If there is too little to fit to, or the model fails.
+    pub fn fit(&self, start: &Point) -> Result<Fitted, BenchError> {
+        let measured =
+            self.observed.fit.iter().map(|&c| self.observed.conditions[c].layout.len()).sum();
+        let free = start.parameters.len() + start.effects.len();
+        if measured <= free {
+            return Err(BenchError::TooFew { measured, free });
+        }
+        self.fit_from(start, &self.first_noise()?)
+    }
+
+    /// Likewise, with the noise searched from `noise`.
+    ///
+    /// # Errors
+    /// If the model fails.
+    pub fn fit_from(&self, start: &Point, noise: &Noise) -> Result<Fitted, BenchError> {
+        let mut fitted = self.fit_once(start, noise)?;
+        for _ in 1..ROUNDS {
+            fitted = self.fit_once(&fitted.fit.point, &fitted.noise)?;
+        }
+        Ok(fitted)
+    }
+
+    /// One round from `start`, with the noise searched from `noise`.
+    ///
+    /// # Errors
+    /// If the model fails.
+    pub fn fit_once(&self, start: &Point, noise: &Noise) -> Result<Fitted, BenchError> {
+        let (weights, noise) = self.weigh(start, noise)?;
+        let fit = self.data(&weights).fit(start)?;
+        Ok(Fitted { fit, weights, noise })
+    }
+
+    /// The measurements under `weights`.
+    #[must_use]
+    pub fn data<'a>(&'a self, weights: &'a [Weight]) -> Data<'a> {
+        let conditions = &self.observed.fit;
+        Data { forward: self.forward, observed: self.observed, conditions, weights }
+    }
+
+    /// The sensitivity of `condition` at `point`.
+    ///
+    /// # Errors
+    /// If the model fails, or predicts something else than was measured.
+    pub fn sensitivity(&self, point: &Point, condition: usize) -> Result<Sensitivity, BenchError> {
+        let observed = &self.observed.conditions[condition];
+        let sensitivity = Sensitivity::at(point, self.forward, condition, observed.reach)?;
+        let (found, expected) = (sensitivity.mean.len(), observed.layout.len());
+        match found == expected {
+            true => Ok(sensitivity),
+            false => Err(BenchError::Layout { condition, found, expected }),
+        }
+    }
+
+    /// The weights of `conditions` under `noise`, along the paths at `point`.
+    ///
+    /// # Errors
+    /// If the model fails.
+    pub fn weights(
+        &self,
+        point: &Point,
+        noise: &Noise,
+        conditions: &[usize],
+    ) -> Result<Vec<Weight>, BenchError> {
+        let weight = |&condition: &usize| {
+            let sensitivity = self.sensitivity(point, condition)?;
+            self.weight(condition, &sensitivity, noise)
+        };
+        conditions.iter().map(weight).collect()
+    }
+
+    fn weight(
+        &self,
+        condition: usize,
+        sensitivity: &Sensitivity,
+        noise: &Noise,
+    ) -> Result<Weight, BenchError> {
+        Weight::new(&self.observed.conditions[condition], sensitivity, noise)
+            .ok_or(BenchError::Singular { condition })
+    }
+
+    fn weigh(&self, point: &Point, noise: &Noise) -> Result<(Vec<Weight>, Noise), BenchError> {
+        let fit = &self.observed.fit;
+        let sensitivities =
+            fit.iter().map(|&c| self.sensitivity(point, c)).collect::<Result<Vec<_>, _>>()?;
+        let noise = noise.estimate(self.observed, &sensitivities, &self.set.instrument);
+        let weights = fit.iter().zip(&sensitivities);
+        let weights = weights.map(|(&c, sensitivity)| self.weight(c, sensitivity, &noise));
+        Ok((weights.collect::<Result<_, _>>()?, noise))
+    }
+
+    fn first_noise(&self) -> Result<Noise, BenchError> {
+        if self.observed.has_repeats() {
+            Ok(Noise::guess(&self.set.instrument))
+        } else if self.observed.has_stated_errors() {
+            Ok(Noise::stated())
+        } else {
+            Err(BenchError::NoErrors)
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! One or more revisions of a model against a measurement set: how wrong, and where.
+
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use thiserror::Error;
+
+use crate::bench::{Bench, BenchError, Fitted};
+use crate::errors::Errors;
+use crate::force_error::{ForceCell, ForceError, ForceErrors};
+use crate::forward::Forward;
+use crate::lack_of_fit::lack_of_fit;
+use crate::measurement::MeasurementSet;
+use crate::noise::{Noise, NoiseSource};
+use crate::observed::Observed;
+use crate::rounding::{rounded, six_digits, six_digits_or_null};
+use crate::sensitivity::Point;
+
+/// A model under the name that a report gives it.
+#[derive(Clone, Copy)]
+pub struct Revision<'a> {
+    /// Name or path.
+    pub name: &'a str,
+    /// The model.
+    pub forward: &'a dyn Forward,
+}
+
+/// Every model of a comparison, in the order asked for.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// Name of the set.
+    pub set: String,
+    /// One per revision, so that the fall of the error is a column.
+    pub models: Vec<ModelComparison>,
+    /// Noise under the model that fits best.
+    pub noise: Value,
+    /// What was left aside or assumed, in sentences.
+    #[serde(skip)]
+    pub notes: Vec<String>,
+}
+
+/// One model against the set.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelComparison {
+    /// Name or path.
+    pub model: String,
+    /// Refitted: value, standard error and unit of each.
+    pub parameters: Map<String, Value>,
+    /// Weighted sum of squares per number that was fitted to; about 1 for a model that is right.
+    #[serde(serialize_with = "six_digits")]
+    pub chi2_per_n: f64,
+    /// Probability of a lack of fit as large, if the model were right; none where no error is known.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub p_lof: Option<f64>,
+    /// Root mean square errors by kind of number.
+    pub rms: Rms,
+    /// Where the force is wrong.
+    pub fails: Vec<ForceError>,
+    /// The map of it by condition and depth.
+    #[serde(skip)]
+    pub cells: Vec<ForceCell>,
+    /// The fit behind it.
+    #[serde(skip)]
+    pub fitted: Fitted,
+}
+
+/// Root mean square errors.
+#[derive(Clone, Debug, Serialize)]
+pub struct Rms {
+    /// Where the model was fitted to.
+    pub fit: Value,
+    /// Where it was not; null if the set holds out nothing.
+    pub holdout: Value,
+}
+
+/// A model that cannot be compared.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{model}: {error}")]
+pub struct CompareError {
+    /// Name of the model.
+    pub model: String,
+    /// Why not.
+    #[source]
+    pub error: BenchError,
+}
+
+/// Compares every one of `revisions` with `set`, whose observables are `observed`.
+///
+/// Without repeats and stated errors every number counts as known to 5 %, and no test is made.
+///
+/// # Errors
+/// If there is too little to fit to, or a model fails.
+pub fn compare(
+    set: &MeasurementSet,
+    observed: &Observed,
+    revisions: &[Revision<'_>],
+    seed: u64,
+) -> Result<Comparison, CompareError> {
+    let mut models = Vec::with_capacity(revisions.len());
+    for revision in revisions {
+        let bench = Bench { set, observed, forward: revision.forward };
+        let model = compare_one(&bench, revision.name, seed)
+            .map_err(|error| CompareError { model: revision.name.to_owned(), error })?;
+        models.push(model);
+    }
+    let best = models.iter().min_by(|a, b| a.chi2_per_n.total_cmp(&b.chi2_per_n));
+    let noise = best.map_or(Value::Null, |best| best.fitted.noise.to_json(&set.instrument));
+    let mut notes: Vec<String> = set.notes.iter().chain(&observed.notes).cloned().collect();
+    if observed.holdout.is_empty() {
+        notes.push("the set holds out no condition: nothing here was predicted unseen".to_owned());
+    }
+    if models.iter().any(|model| model.fitted.noise.source == NoiseSource::Assumed) {
+        notes.push("neither repeats nor stated errors: 5 % of every number is assumed".to_owned());
+    }
+    Ok(Comparison { set: set.id.clone(), models, noise, notes })
+}
+
+fn compare_one(bench: &Bench<'_>, name: &str, seed: u64) -> Result<ModelComparison, BenchError> {
+    let start = Point::start(bench.forward);
+    let fitted = match bench.fit(&start) {
+        Err(BenchError::NoErrors) => bench.fit_from(&start, &Noise::assumed()),
+        other => other,
+    }?;
+    let p_lof = match fitted.noise.source {
+        NoiseSource::Assumed => None,
+        NoiseSource::Repeats | NoiseSource::Stated => Some(lack_of_fit(bench, &fitted, seed)?),
+    };
+    let errors = |conditions: &[usize]| {
+        let errors = Errors::at(bench, &fitted.fit.point, conditions)?;
+        Ok::<_, BenchError>(errors.map_or(Value::Null, |errors| errors.to_json()))
+    };
+    let rms = Rms { fit: errors(&bench.observed.fit)?, holdout: errors(&bench.observed.holdout)? };
+    let ForceErrors { cells, fails } = ForceErrors::of(bench, &fitted)?;
+    Ok(ModelComparison {
+        model: name.to_owned(),
+        parameters: parameters(bench.forward, &fitted),
+        chi2_per_n: fitted.fit.chi2 / fitted.fit.residual.len() as f64,
+        p_lof,
+        rms,
+        fails,
+        cells,
+        fitted,
+    })
+}
+
+/// Value, standard error and unit of every free parameter.
+#[must_use]
+pub fn parameters(forward: &dyn Forward, fitted: &Fitted) -> Map<String, Value> {
+    let values = forward.parameters().iter().zip(&fitted.fit.point.parameters).enumerate();
+    values
+        .map(|(at, (parameter, value))| {
+            let se = rounded(fitted.fit.standard_error(at));
+            let entry = json!({ "value": rounded(*value), "se": se, "unit": parameter.unit });
+            (parameter.name.clone(), entry)
+        })
+        .collect()
+}

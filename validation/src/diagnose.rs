@@ -1,0 +1,263 @@
+//! Which physical effect a model lacks.
+//!
+//! The model is refitted with every effect in turn, and the fall of χ² is held against what noise does
+//! to the best of so many (`p1`). What the data cannot tell apart is named together. Whatever is named
+//! must leave no lack of fit and must predict conditions that were not fitted to.
+
+use serde_json::Map;
+
+use crate::bench::{Bench, BenchError, Fitted};
+use crate::compare::parameters;
+use crate::force_error::ForceErrors;
+use crate::held_out::HeldOut;
+use crate::lack_of_fit::lack_of_fit;
+use crate::noise::NoiseSource;
+use crate::pair::{Pair, best_pair};
+use crate::score::Ranking;
+use crate::sensitivity::Point;
+use crate::verdict::{Amplitude, Diagnosis, RankedEffect, Strength, Unexplained, Verdict};
+
+/// Probability of error at which something counts as found, or a model as rejected.
+pub const ALPHA: f64 = 0.01;
+
+/// How often weights and ranking are taken in turn: the weights are those along the best model.
+const ROUNDS: usize = 2;
+
+/// Fewest deviations of repeats from their means that make more than a suggestion: a standard deviation
+/// from eight is known to a quarter.
+const CONTRASTS: usize = 8;
+
+/// Diagnoses the model on `bench`; equal `seed` and measurements give equal bytes.
+///
+/// # Errors
+/// If the model fails.
+pub fn diagnose(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
+    let baseline = match bench.fit(&Point::start(bench.forward)) {
+        Ok(fitted) => fitted,
+        Err(why @ (BenchError::NoErrors | BenchError::TooFew { .. })) => {
+            return Ok(cannot_tell(bench, why.to_string()));
+        }
+        Err(other) => return Err(other),
+    };
+    let candidates: Vec<usize> = (0..bench.forward.candidates().len())
+        .filter(|&index| bench.forward.candidates()[index].not_testable.is_none())
+        .collect();
+    let mut weighed = baseline.clone();
+    let mut ranking = Ranking::of(bench, &weighed, &candidates, seed)?;
+    for _ in 1..ROUNDS {
+        let Some(best) = ranking.scores.first() else { break };
+        let leader = bench.fit_once(&best.point, &weighed.noise)?;
+        let fit = bench.data(&leader.weights).fit(&baseline.fit.point)?;
+        weighed = Fitted { fit, ..leader };
+        ranking = Ranking::of(bench, &weighed, &candidates, seed)?;
+    }
+    let Some(best) = ranking.scores.first() else {
+        return Ok(cannot_tell(bench, "no effect can be tested with these data".to_owned()));
+    };
+    let leader = bench.fit_once(&best.point, &weighed.noise)?;
+    Judge { bench, seed, baseline, weighed, ranking, leader }.verdict()
+}
+
+/// All that a verdict is made of.
+struct Judge<'a> {
+    bench: &'a Bench<'a>,
+    seed: u64,
+    /// The model as it is, under its own noise.
+    baseline: Fitted,
+    /// The model as it is, under the noise of the best model.
+    weighed: Fitted,
+    ranking: Ranking,
+    /// The model with the best effect, under its own noise.
+    leader: Fitted,
+}
+
+impl Judge<'_> {
+    fn verdict(self) -> Result<Diagnosis, BenchError> {
+        let p_lof = lack_of_fit(self.bench, &self.baseline, self.seed)?;
+        if self.ranking.p > ALPHA {
+            return if p_lof > ALPHA {
+                let baseline = &self.baseline;
+                self.diagnosis(Verdict::NothingDetected, baseline, (p_lof, None), String::new())
+            } else {
+                let hint = "the model is rejected, and no listed effect helps".to_owned();
+                self.refuse((p_lof, None), hint)
+            };
+        }
+        let p_leader = lack_of_fit(self.bench, &self.leader, self.seed)?;
+        if p_leader > ALPHA {
+            let held_out = HeldOut::of(self.bench, &self.weighed, &self.leader)?;
+            if held_out.refutes() {
+                let hint = format!(
+                    "{} explains what was fitted, but predicts what was left out worse than without it",
+                    self.name(self.ranking.scores[0].candidate())
+                );
+                return self.refuse((p_lof, Some(p_leader)), hint);
+            }
+            let verdict = match self.ranking.not_separable().len() {
+                1 => Verdict::Supported,
+                _ => Verdict::NotSeparable,
+            };
+            return self.diagnosis(verdict, &self.leader, (p_lof, Some(p_leader)), String::new());
+        }
+        let pair = best_pair(self.bench, &self.weighed, &self.ranking, self.seed)?;
+        if let Some(Pair { fitted, p }) = pair.filter(|pair| pair.p <= ALPHA) {
+            let p_pair = lack_of_fit(self.bench, &fitted, self.seed)?;
+            let held_out = HeldOut::of(self.bench, &self.weighed, &fitted)?;
+            if p_pair > ALPHA && !held_out.refutes() {
+                let hint = format!(
+                    "both are needed (each by chance: {p:.1e} at most), or one effect outside the list"
+                );
+                return self.diagnosis(Verdict::Pair, &fitted, (p_lof, Some(p_pair)), hint);
+            }
+        }
+        let hint = format!(
+            "no one or two listed effects explain the data; {} explains a part",
+            self.name(self.ranking.scores[0].candidate())
+        );
+        self.refuse((p_lof, Some(p_leader)), hint)
+    }
+
+    fn refuse(&self, p: (f64, Option<f64>), hint: String) -> Result<Diagnosis, BenchError> {
+        self.diagnosis(Verdict::NoneOfTheCandidates, &self.baseline, p, hint)
+    }
+
+    fn diagnosis(
+        &self,
+        verdict: Verdict,
+        proposed: &Fitted,
+        (p_lof, p_lof_with): (f64, Option<f64>),
+        hint: String,
+    ) -> Result<Diagnosis, BenchError> {
+        let Self { bench, ranking, .. } = self;
+        let not_separable = match verdict {
+            Verdict::NotSeparable => ranking
+                .not_separable()
+                .into_iter()
+                .map(|place| self.name(ranking.scores[place].candidate()))
+                .collect(),
+            _ => Vec::new(),
+        };
+        let depends_on = match verdict {
+            Verdict::NoneOfTheCandidates => ForceErrors::of(bench, &self.baseline)?.depends_on(),
+            Verdict::Pair => ForceErrors::of(bench, proposed)?.depends_on(),
+            _ => Vec::new(),
+        };
+        let before = if proposed.fit.point.effects.is_empty() { proposed } else { &self.weighed };
+        let amplitudes: Vec<Amplitude> = proposed
+            .fit
+            .point
+            .effects
+            .iter()
+            .enumerate()
+            .map(|(at, &(index, q))| {
+                let se = proposed.fit.standard_error(proposed.fit.point.parameters.len() + at);
+                Amplitude { id: self.name(index), q, se }
+            })
+            .collect();
+        let held_out = HeldOut::of(bench, before, proposed)?;
+        let confirmed = bench.observed.contrasts() >= CONTRASTS
+            && (amplitudes.is_empty() || held_out.confirms());
+        Ok(Diagnosis {
+            verdict,
+            strength: match proposed.noise.source {
+                NoiseSource::Repeats if confirmed => Strength::Supported,
+                _ => Strength::Suggested,
+            },
+            effects: amplitudes.iter().map(|amplitude| amplitude.id.clone()).collect(),
+            not_separable,
+            ranking: ranked(bench, Some(ranking)),
+            p1: Some(ranking.p),
+            p_lof: Some(p_lof),
+            p_lof_with,
+            noise: proposed.noise.to_json(&bench.set.instrument),
+            holdout: Some(held_out),
+            unexplained: Unexplained { depends_on, hint },
+            next: Vec::new(),
+            parameters: parameters(bench.forward, proposed),
+            amplitudes,
+            amplitude_correlation: correlation(proposed),
+        })
+    }
+
+    fn name(&self, candidate: usize) -> String {
+        self.bench.forward.candidates()[candidate].id.to_owned()
+    }
+}
+
+/// Of the amplitudes of a pair.
+fn correlation(fitted: &Fitted) -> Option<f64> {
+    let first = fitted.fit.point.parameters.len();
+    if fitted.fit.point.effects.len() != 2 {
+        return None;
+    }
+    let (a, b) = (fitted.fit.standard_error(first), fitted.fit.standard_error(first + 1));
+    Some(fitted.fit.covariance[(first, first + 1)] / (a * b)).filter(|c| c.is_finite())
+}
+
+fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {
+    Diagnosis {
+        verdict: Verdict::CannotTell,
+        strength: Strength::Suggested,
+        effects: Vec::new(),
+        not_separable: Vec::new(),
+        ranking: ranked(bench, None),
+        p1: None,
+        p_lof: None,
+        p_lof_with: None,
+        noise: serde_json::Value::Null,
+        holdout: None,
+        unexplained: Unexplained { depends_on: Vec::new(), hint: why },
+        next: Vec::new(),
+        parameters: Map::new(),
+        amplitudes: Vec::new(),
+        amplitude_correlation: None,
+    }
+}
+
+/// The ranked effects, best first, then those that were not ranked.
+fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
+    let candidates = bench.forward.candidates();
+    let scores = ranking.map_or(&[][..], |ranking| &ranking.scores);
+    let mut list: Vec<RankedEffect> = scores
+        .iter()
+        .map(|score| {
+            let candidate = &candidates[score.candidate()];
+            RankedEffect {
+                id: candidate.id.to_owned(),
+                q: Some(score.amplitude()),
+                se: Some(score.standard_error),
+                unit: "1",
+                delta: Some(score.delta),
+                predicted_top1: Some(score.ranked_first),
+                testable: true,
+                detection_limit: Some(score.signature.detection_limit()),
+                note: candidate.separable_from.to_owned(),
+            }
+        })
+        .collect();
+    let not_ranked = (0..candidates.len())
+        .filter(|index| scores.iter().all(|score| score.candidate() != *index))
+        .map(|index| RankedEffect {
+            id: candidates[index].id.to_owned(),
+            q: None,
+            se: None,
+            unit: "1",
+            delta: None,
+            predicted_top1: None,
+            testable: false,
+            detection_limit: None,
+            note: candidates[index].not_testable.clone().unwrap_or_else(|| why_not(ranking, index)),
+        });
+    list.extend(not_ranked);
+    list
+}
+
+/// Why candidate `index`, which the data could show, was not ranked.
+fn why_not(ranking: Option<&Ranking>, index: usize) -> String {
+    let Some(ranking) = ranking else { return "not tested".to_owned() };
+    let failed = ranking.failed.iter().find(|(candidate, _)| *candidate == index);
+    failed.map_or_else(
+        || "in these data the parameters of the model do the same".to_owned(),
+        |(_, error)| error.to_string(),
+    )
+}

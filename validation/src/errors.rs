@@ -1,0 +1,97 @@
+//! Errors of a model by kind of number: what a person compares first.
+
+use nalgebra::DVector;
+use serde_json::{Map, Value};
+
+use crate::bench::{Bench, BenchError};
+use crate::observable::Observable;
+use crate::rounding::rounded;
+use crate::sensitivity::Point;
+
+/// Root mean square of measured less predicted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// By kind, in its own unit; kinds that were not measured are absent.
+    pub by_kind: Vec<(Observable, f64)>,
+    /// Of the scalars, relative to what was measured (1 = 100 %), if there are any.
+    pub relative: Option<f64>,
+    /// Of all positions together (m), if there are any.
+    pub position: Option<f64>,
+}
+
+impl Errors {
+    /// Errors of `point` under `conditions` (indices in the set); `None` if there are none.
+    ///
+    /// # Errors
+    /// If the model fails.
+    pub fn at(
+        bench: &Bench<'_>,
+        point: &Point,
+        conditions: &[usize],
+    ) -> Result<Option<Self>, BenchError> {
+        let mut sums = Sums::default();
+        for &condition in conditions {
+            let observed = &bench.observed.conditions[condition];
+            let predicted = point.predict(bench.forward, condition)?;
+            if predicted.len() != observed.mean.len() {
+                let (found, expected) = (predicted.len(), observed.mean.len());
+                return Err(BenchError::Layout { condition, found, expected });
+            }
+            sums.add(&observed.layout.kinds(), &observed.mean, &(&observed.mean - predicted));
+        }
+        Ok((!conditions.is_empty()).then(|| sums.errors()))
+    }
+
+    /// As JSON, under the keys of the kinds.
+    #[must_use]
+    pub fn to_json(&self) -> Value {
+        let mut map: Map<String, Value> = self
+            .by_kind
+            .iter()
+            .map(|(kind, error)| (kind.key().to_owned(), rounded(*error)))
+            .collect();
+        if let Some(relative) = self.relative {
+            map.insert("rms_relative".to_owned(), rounded(relative));
+        }
+        Value::Object(map)
+    }
+}
+
+/// Sums of squares by kind.
+#[derive(Default)]
+pub(crate) struct Sums {
+    by_kind: [(f64, usize); Observable::ALL.len()],
+    relative: (f64, usize),
+}
+
+impl Sums {
+    /// Adds the `errors` of numbers of these `kinds`, of which `values` were measured.
+    pub(crate) fn add(
+        &mut self,
+        kinds: &[Observable],
+        values: &DVector<f64>,
+        errors: &DVector<f64>,
+    ) {
+        for (kind, (value, error)) in kinds.iter().zip(values.iter().zip(errors.iter())) {
+            let slot = &mut self.by_kind[*kind as usize];
+            *slot = (slot.0 + error * error, slot.1 + 1);
+            if kind.is_scalar() && *value != 0.0 {
+                self.relative = (self.relative.0 + (error / value).powi(2), self.relative.1 + 1);
+            }
+        }
+    }
+
+    pub(crate) fn errors(&self) -> Errors {
+        let rms = |(sum, n): (f64, usize)| (n > 0).then(|| (sum / n as f64).sqrt());
+        let kinds = Observable::ALL.iter().zip(self.by_kind);
+        let position = kinds
+            .clone()
+            .filter(|(kind, _)| **kind != Observable::StopTime)
+            .fold((0.0, 0), |sum, (_, part)| (sum.0 + part.0, sum.1 + part.1));
+        Errors {
+            by_kind: kinds.filter_map(|(kind, sum)| Some((*kind, rms(sum)?))).collect(),
+            relative: rms(self.relative),
+            position: rms(position),
+        }
+    }
+}

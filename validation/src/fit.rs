@@ -1,0 +1,296 @@
+//! Weighted least squares: the free parameters of a model, and the amplitudes of effects added to it.
+//!
+//! A parameter that cannot be negative is fitted in its logarithm, the others and all amplitudes as
+//! they are. One that ends outside its range is held at the bound while the rest is fitted again.
+
+use std::cell::RefCell;
+
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use nalgebra::storage::Owned;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use crate::forward::{Forward, PredictError};
+use crate::observed::Observed;
+use crate::sensitivity::Point;
+use crate::weights::Weight;
+
+/// Where the search ends: relative change of χ² and of the unknowns.
+const TOLERANCE: f64 = 1e-6;
+
+/// Share of a parameter by which it is moved for a derivative.
+const STEP: f64 = 1e-3;
+
+/// What is fitted to.
+#[derive(Clone, Copy)]
+pub struct Data<'a> {
+    /// The model.
+    pub forward: &'a dyn Forward,
+    /// The measurements.
+    pub observed: &'a Observed,
+    /// Indices of the conditions that are fitted to, or judged by.
+    pub conditions: &'a [usize],
+    /// One per condition of `conditions`, in that order.
+    pub weights: &'a [Weight],
+}
+
+/// The result of a fit.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// Parameters and amplitudes.
+    pub point: Point,
+    /// Covariance of the parameters, then of the amplitudes; zero for what is held at a bound.
+    pub covariance: DMatrix<f64>,
+    /// Weighted sum of squares.
+    pub chi2: f64,
+    /// Whitened measured less predicted, condition after condition.
+    pub residual: DVector<f64>,
+    /// Whitened derivative of the prediction by what is not held at a bound.
+    pub jacobian: DMatrix<f64>,
+    /// Unknowns that are not held at a bound, parameters first.
+    free: Vec<usize>,
+}
+
+impl Fit {
+    /// Number of unknowns that are not held at a bound.
+    #[must_use]
+    pub fn n_free(&self) -> usize {
+        self.free.len()
+    }
+
+    /// Covariance of the unknowns that are not held at a bound.
+    #[must_use]
+    pub fn free_covariance(&self) -> DMatrix<f64> {
+        self.covariance.select_rows(&self.free).select_columns(&self.free)
+    }
+
+    /// Standard error of unknown `index`, parameters first; 0 when it is held at a bound.
+    #[must_use]
+    pub fn standard_error(&self, index: usize) -> f64 {
+        self.covariance[(index, index)].max(0.0).sqrt()
+    }
+}
+
+impl Data<'_> {
+    /// Fits the parameters and the amplitudes of the effects of `start`, from there.
+    ///
+    /// # Errors
+    /// If the model cannot be integrated at the start or at the end.
+    pub fn fit(&self, start: &Point) -> Result<Fit, PredictError> {
+        let scales = self.scales(start);
+        self.residual(start)?;
+        let mut point = start.clone();
+        let mut held = vec![false; scales.len()];
+        while held.contains(&false) {
+            let unknowns = unknowns(&point, &scales);
+            let best = RefCell::new((f64::INFINITY, unknowns.clone()));
+            let search =
+                Search { data: self, scales: &scales, held: &held, like: start, unknowns, best };
+            let solver = LevenbergMarquardt::new().with_ftol(TOLERANCE).with_xtol(TOLERANCE);
+            // The best that was tried, since the search may end where the model cannot be integrated.
+            let (_, unknowns) = solver.minimize(search).0.best.into_inner();
+            point = point_of(&unknowns, &scales, start);
+            let mut outside = false;
+            for (at, scale) in scales.iter().enumerate() {
+                let beyond = !held[at] && !scale.contains(unknowns[at]);
+                held[at] |= beyond;
+                outside |= beyond;
+            }
+            if !outside {
+                break;
+            }
+        }
+        self.result(point, &scales, &held)
+    }
+
+    /// Whitened measured less predicted at `point`, condition after condition.
+    ///
+    /// # Errors
+    /// If the model cannot be integrated there.
+    pub fn residual(&self, point: &Point) -> Result<DVector<f64>, PredictError> {
+        let mut residual = Vec::new();
+        for (&condition, weight) in self.conditions.iter().zip(self.weights) {
+            let mean = &self.observed.conditions[condition].mean;
+            let difference = mean - weight.predict(point, self.forward, condition)?;
+            residual.extend(weight.whiten(&difference).iter());
+        }
+        Ok(DVector::from_vec(residual))
+    }
+
+    /// Whitened derivative of the prediction at `point` by the unknowns of `fit` that are not held at
+    /// a bound.
+    ///
+    /// # Errors
+    /// If the model cannot be integrated there.
+    pub fn jacobian(&self, fit: &Fit) -> Result<DMatrix<f64>, PredictError> {
+        self.derivative(&fit.point, &self.scales(&fit.point), &fit.free)
+    }
+
+    fn derivative(
+        &self,
+        point: &Point,
+        scales: &[Scale],
+        free: &[usize],
+    ) -> Result<DMatrix<f64>, PredictError> {
+        let rows = self.weights.iter().map(|weight| weight.shift.len()).sum();
+        let mut jacobian = DMatrix::zeros(rows, free.len());
+        for (column, &at) in free.iter().enumerate() {
+            let step = scales[at].physical_step(value(point, at));
+            let moved = |by: f64| {
+                let mut point = point.clone();
+                *value_mut(&mut point, at) += by;
+                self.residual(&point)
+            };
+            jacobian.set_column(column, &((moved(-step)? - moved(step)?) / (2.0 * step)));
+        }
+        Ok(jacobian)
+    }
+
+    fn result(&self, point: Point, scales: &[Scale], held: &[bool]) -> Result<Fit, PredictError> {
+        let free: Vec<usize> = (0..scales.len()).filter(|&at| !held[at]).collect();
+        let jacobian = self.derivative(&point, scales, &free)?;
+        let residual = self.residual(&point)?;
+        let mut covariance = DMatrix::zeros(scales.len(), scales.len());
+        if let Some(factor) = Cholesky::new(jacobian.tr_mul(&jacobian)) {
+            let inverse = factor.inverse();
+            for (i, &row) in free.iter().enumerate() {
+                for (j, &column) in free.iter().enumerate() {
+                    covariance[(row, column)] = inverse[(i, j)];
+                }
+            }
+        }
+        Ok(Fit { point, covariance, chi2: residual.norm_squared(), residual, jacobian, free })
+    }
+
+    fn scales(&self, start: &Point) -> Vec<Scale> {
+        let parameters = self.forward.parameters().iter();
+        let parameters = parameters.map(|parameter| Scale {
+            logarithmic: parameter.min >= 0.0 && parameter.start > 0.0,
+            min: parameter.min,
+            max: parameter.max,
+            step: STEP * parameter.start.abs().max(1e-3 * (parameter.max - parameter.min)),
+        });
+        let candidates = self.forward.candidates();
+        let amplitudes = start.effects.iter().map(|&(index, _)| Scale {
+            logarithmic: false,
+            min: candidates[index].min,
+            max: candidates[index].max,
+            step: 0.1 * candidates[index].step,
+        });
+        parameters.chain(amplitudes).collect()
+    }
+}
+
+/// How an unknown is searched.
+struct Scale {
+    logarithmic: bool,
+    min: f64,
+    max: f64,
+    step: f64,
+}
+
+impl Scale {
+    fn unknown(&self, value: f64) -> f64 {
+        if self.logarithmic { libm::log(value.max(f64::MIN_POSITIVE)) } else { value }
+    }
+
+    /// The value, brought into its range.
+    fn value(&self, unknown: f64) -> f64 {
+        let value = if self.logarithmic { libm::exp(unknown) } else { unknown };
+        value.clamp(self.min, self.max)
+    }
+
+    fn contains(&self, unknown: f64) -> bool {
+        (self.unknown(self.min)..=self.unknown(self.max)).contains(&unknown)
+    }
+
+    fn unknown_step(&self) -> f64 {
+        if self.logarithmic { STEP } else { self.step }
+    }
+
+    fn physical_step(&self, value: f64) -> f64 {
+        if self.logarithmic { STEP * value } else { self.step }
+    }
+}
+
+fn value(point: &Point, at: usize) -> f64 {
+    let n = point.parameters.len();
+    if at < n { point.parameters[at] } else { point.effects[at - n].1 }
+}
+
+fn value_mut(point: &mut Point, at: usize) -> &mut f64 {
+    let n = point.parameters.len();
+    if at < n { &mut point.parameters[at] } else { &mut point.effects[at - n].1 }
+}
+
+fn unknowns(point: &Point, scales: &[Scale]) -> Vec<f64> {
+    scales.iter().enumerate().map(|(at, scale)| scale.unknown(value(point, at))).collect()
+}
+
+fn point_of(unknowns: &[f64], scales: &[Scale], like: &Point) -> Point {
+    let mut point = like.clone();
+    for (at, (unknown, scale)) in unknowns.iter().zip(scales).enumerate() {
+        *value_mut(&mut point, at) = scale.value(*unknown);
+    }
+    point
+}
+
+/// The search of the unknowns that are not held.
+struct Search<'a> {
+    data: &'a Data<'a>,
+    scales: &'a [Scale],
+    held: &'a [bool],
+    like: &'a Point,
+    unknowns: Vec<f64>,
+    /// χ² and unknowns of the best that was tried.
+    best: RefCell<(f64, Vec<f64>)>,
+}
+
+impl Search<'_> {
+    fn free(&self) -> Vec<usize> {
+        (0..self.held.len()).filter(|&at| !self.held[at]).collect()
+    }
+
+    fn residual_at(&self, unknowns: &[f64]) -> Option<DVector<f64>> {
+        let residual = self.data.residual(&point_of(unknowns, self.scales, self.like)).ok()?;
+        residual.iter().all(|r| r.is_finite()).then_some(residual)
+    }
+}
+
+impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, Dyn>;
+    type ParameterStorage = Owned<f64, Dyn>;
+
+    fn set_params(&mut self, free: &DVector<f64>) {
+        for (at, unknown) in self.free().into_iter().zip(free.iter()) {
+            self.unknowns[at] = *unknown;
+        }
+    }
+
+    fn params(&self) -> DVector<f64> {
+        let free = self.free();
+        DVector::from_iterator(free.len(), free.iter().map(|&at| self.unknowns[at]))
+    }
+
+    fn residuals(&self) -> Option<DVector<f64>> {
+        let residual = self.residual_at(&self.unknowns)?;
+        let chi2 = residual.norm_squared();
+        let mut best = self.best.borrow_mut();
+        if chi2 < best.0 {
+            *best = (chi2, self.unknowns.clone());
+        }
+        Some(residual)
+    }
+
+    fn jacobian(&self) -> Option<DMatrix<f64>> {
+        let here = self.residual_at(&self.unknowns)?;
+        let column = |at: usize| {
+            let mut unknowns = self.unknowns.clone();
+            let step = self.scales[at].unknown_step();
+            unknowns[at] += step;
+            Some((self.residual_at(&unknowns)? - &here) / step)
+        };
+        let columns: Option<Vec<_>> = self.free().into_iter().map(column).collect();
+        columns.map(|columns| DMatrix::from_columns(&columns))
+    }
+}

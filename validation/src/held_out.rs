@@ -1,0 +1,196 @@
+//! Errors on conditions that were not fitted to.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+use serde::Serialize;
+
+use crate::bench::{Bench, BenchError, Fitted};
+use crate::errors::{Errors, Sums};
+use crate::fit::Data;
+use crate::measurement::Kind;
+use crate::noise::log_determinant;
+use crate::rounding::six_digits;
+
+/// Errors on held-out conditions without and with what is proposed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HeldOut {
+    /// Of the model as it is.
+    #[serde(serialize_with = "six_digits")]
+    pub before: f64,
+    /// With what is proposed; as before, if nothing is.
+    #[serde(serialize_with = "six_digits")]
+    pub after: f64,
+    /// What means of so many runs would miss the truth by.
+    #[serde(serialize_with = "six_digits")]
+    pub noise_floor: f64,
+    /// What the three are root mean squares of.
+    pub unit: Unit,
+    /// Which conditions were left out.
+    pub conditions: LeftOut,
+    /// How much the logarithm of the predictive density rises by what is proposed.
+    #[serde(serialize_with = "six_digits")]
+    pub log_density_gain: f64,
+}
+
+/// Unit of an error over several kinds of numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Unit {
+    /// Positions (m).
+    #[serde(rename = "m")]
+    Position,
+    /// Scalars, relative (1 = 100 %).
+    #[serde(rename = "1")]
+    Relative,
+}
+
+/// Which conditions were left out of a fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LeftOut {
+    /// Those that the set holds out.
+    Holdout,
+    /// Each in turn, since the set holds out none.
+    OneAtATime,
+}
+
+/// A loss of predictive density beyond this (odds 20 to 1) refutes what is proposed; smaller ones are
+/// within what few held-out conditions say by chance.
+const REFUTED: f64 = 3.0;
+
+impl HeldOut {
+    /// Of `before` and `after`.
+    ///
+    /// # Errors
+    /// If the model fails.
+    pub fn of(bench: &Bench<'_>, before: &Fitted, after: &Fitted) -> Result<Self, BenchError> {
+        let unit = match bench.set.kind {
+            Kind::Trajectory => Unit::Position,
+            Kind::Scalar => Unit::Relative,
+        };
+        let pick = |errors: &Errors| match unit {
+            Unit::Position => errors.position,
+            Unit::Relative => errors.relative,
+        };
+        let (conditions, judged) = match bench.observed.holdout.is_empty() {
+            true => (LeftOut::OneAtATime, &bench.observed.fit),
+            false => (LeftOut::Holdout, &bench.observed.holdout),
+        };
+        let predict = |fitted: &Fitted| match conditions {
+            LeftOut::Holdout => Predicted::unseen(bench, after, fitted, judged),
+            LeftOut::OneAtATime => Predicted::left_out(bench, after, fitted),
+        };
+        let (before, after) = (predict(before)?, predict(after)?);
+        Ok(Self {
+            before: pick(&before.errors).unwrap_or(0.0),
+            after: pick(&after.errors).unwrap_or(0.0),
+            noise_floor: pick(&noise_floor(bench, judged)).unwrap_or(0.0),
+            unit,
+            conditions,
+            log_density_gain: after.log_density - before.log_density,
+        })
+    }
+
+    /// Whether what is proposed predicts better what it has not seen, errors weighed by their noise.
+    #[must_use]
+    pub fn confirms(&self) -> bool {
+        self.log_density_gain > 0.0
+    }
+
+    /// Whether it predicts that so much worse that chance is no excuse.
+    #[must_use]
+    pub fn refutes(&self) -> bool {
+        self.log_density_gain < -REFUTED
+    }
+}
+
+/// Conditions predicted by fits that have not seen them.
+struct Predicted {
+    errors: Errors,
+    /// Logarithm of the predictive density, up to a constant of the measurements.
+    log_density: f64,
+}
+
+impl Predicted {
+    /// `conditions` that were held out, by `fitted`, under the noise of `noisy`.
+    fn unseen(
+        bench: &Bench<'_>,
+        noisy: &Fitted,
+        fitted: &Fitted,
+        conditions: &[usize],
+    ) -> Result<Self, BenchError> {
+        let weights = bench.weights(&noisy.fit.point, &noisy.noise, conditions)?;
+        let data = Data { conditions, ..bench.data(&weights) };
+        let residual = data.residual(&fitted.fit.point)?;
+        let jacobian = data.jacobian(&fitted.fit)?;
+        let parameters = fitted.fit.free_covariance();
+        let mut sums = Sums::default();
+        let mut log_density = 0.0;
+        let mut start = 0;
+        for (&condition, weight) in conditions.iter().zip(&weights) {
+            let observed = &bench.observed.conditions[condition];
+            let rows = observed.mean.len();
+            let residual = residual.rows(start, rows).into_owned();
+            let jacobian = jacobian.rows(start, rows).into_owned();
+            start += rows;
+            log_density += density(&residual, &(&jacobian * &parameters * jacobian.transpose()));
+            sums.add(&observed.layout.kinds(), &observed.mean, &weight.colour(&residual));
+        }
+        Ok(Self { errors: sums.errors(), log_density })
+    }
+
+    /// Every condition that was fitted to, by one Gauss-Newton step without it from the fit of
+    /// `fitted`, under the noise of `noisy`.
+    fn left_out(bench: &Bench<'_>, noisy: &Fitted, fitted: &Fitted) -> Result<Self, BenchError> {
+        let fit = bench.data(&noisy.weights).fit(&fitted.fit.point)?;
+        let all = fit.jacobian.tr_mul(&fit.jacobian);
+        let mut sums = Sums::default();
+        let mut log_density = 0.0;
+        let mut start = 0;
+        for (&condition, weight) in bench.observed.fit.iter().zip(&noisy.weights) {
+            let observed = &bench.observed.conditions[condition];
+            let rows = observed.mean.len();
+            let residual = fit.residual.rows(start, rows).into_owned();
+            let jacobian = fit.jacobian.rows(start, rows).into_owned();
+            start += rows;
+            // A condition that alone fixes a parameter cannot be predicted without it.
+            let Some(others) = Cholesky::new(&all - jacobian.tr_mul(&jacobian)) else { continue };
+            let residual = &residual + &jacobian * others.solve(&jacobian.tr_mul(&residual));
+            log_density += density(&residual, &(&jacobian * others.solve(&jacobian.transpose())));
+            sums.add(&observed.layout.kinds(), &observed.mean, &weight.colour(&residual));
+        }
+        Ok(Self { errors: sums.errors(), log_density })
+    }
+}
+
+/// Logarithm of the normal density of a whitened `residual`, whose prediction has covariance
+/// `predicted` beside the noise, up to a constant.
+fn density(residual: &DVector<f64>, predicted: &DMatrix<f64>) -> f64 {
+    let covariance = DMatrix::identity(residual.len(), residual.len()) + predicted;
+    // One plus a square is always positive definite; if not finite, nothing is known.
+    Cholesky::new(covariance).map_or(f64::NEG_INFINITY, |factor| {
+        -0.5 * (residual.dot(&factor.solve(residual)) + log_determinant(&factor))
+    })
+}
+
+/// Standard error of the means of runs, from their scatter; of readings, where there is one run.
+fn noise_floor(bench: &Bench<'_>, conditions: &[usize]) -> Errors {
+    let mut sums = Sums::default();
+    for &condition in conditions {
+        let observed = &bench.observed.conditions[condition];
+        let runs = observed.runs.len();
+        let error = if runs > 1 {
+            let squares = (0..runs).map(|run| observed.deviation(run).map(|d| d * d));
+            let total = squares.fold(observed.mean.clone() * 0.0, |sum, square| sum + square);
+            (total / (runs * (runs - 1)) as f64).map(f64::sqrt)
+        } else {
+            let stated = observed.stated.iter().zip(observed.mean.iter());
+            let stated = stated.map(|(error, value)| error.unwrap_or(0.0) * value);
+            let mut error = observed.reading.clone();
+            for (error, stated) in error.iter_mut().zip(stated) {
+                *error = libm::hypot(*error, stated);
+            }
+            error
+        };
+        sums.add(&observed.layout.kinds(), &observed.mean, &error);
+    }
+    sums.errors()
+}

@@ -1,0 +1,200 @@
+//! Whether a fitted model leaves something behind that is not noise.
+//!
+//! The residual is held against changes of the force around each depth (against the motion, and, on
+//! half as many depths, normal to it), once coherent over conditions
+//! (the same change, and one that grows with speed or angle), once free in every condition. How large
+//! noise alone makes the two is learned by resampling the deviations of runs within conditions; a
+//! theoretical distribution with one pooled scale rejects too many true models.
+
+use nalgebra::{DMatrix, DVector};
+use rand::RngExt;
+use rand_pcg::Pcg64;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use crate::bench::{Bench, BenchError, Fitted};
+use crate::noise::NoiseSource;
+use crate::projection::Basis;
+use crate::random::{Purpose, normal, stream};
+use crate::sensitivity::{Direction, force_response};
+
+/// Fewest runs of a condition that are resampled. The deviations of two have one direction and one
+/// size, whatever their sign, so that draws from them hardly differ; fewer are drawn from the noise
+/// model, which is learned from all conditions together.
+const ENOUGH_RUNS: usize = 4;
+
+/// Resampled sets of means.
+const DRAWS: usize = 999;
+
+/// Bounds of the number of nodes of depth: fewer let a layer slip through, more find nothing new.
+const NODES: (usize, usize) = (10, 24);
+
+/// Spacing of the nodes where the path is long enough (m), if the grains are finer.
+const SPACING: f64 = 3e-3;
+
+/// Spacing in grains.
+const GRAINS: f64 = 4.0;
+
+/// Probability of a lack of fit at least as large, if `fitted` were true.
+///
+/// # Errors
+/// If the model fails.
+pub fn lack_of_fit(bench: &Bench<'_>, fitted: &Fitted, seed: u64) -> Result<f64, BenchError> {
+    let observed = bench.observed;
+    let residual = &fitted.fit.residual;
+    if fitted.noise.source != NoiseSource::Repeats {
+        let freedom = (residual.len() - fitted.fit.n_free()) as f64;
+        return Ok(ChiSquared::new(freedom).map_or(1.0, |chi2| chi2.sf(fitted.fit.chi2)));
+    }
+    let reach = observed.fit.iter().fold(0.0_f64, |r, &c| r.max(observed.conditions[c].reach));
+    let grain = bench.set.bed.grain_diameter.unwrap_or(0.0);
+    let (least, most) = NODES;
+    let nodes = ((reach / SPACING.max(GRAINS * grain)).ceil() as usize + 1).clamp(least, most);
+
+    let mut responses = Vec::with_capacity(observed.fit.len());
+    for (&condition, weight) in observed.fit.iter().zip(&fitted.weights) {
+        let response = |direction, nodes| {
+            let point = &fitted.fit.point;
+            force_response(point, bench.forward, condition, direction, (nodes, reach))
+        };
+        let along = response(Direction::Along, nodes)?;
+        let sideways = response(Direction::Sideways, nodes.div_ceil(2))?;
+        let columns: Vec<_> = along.column_iter().chain(sideways.column_iter()).collect();
+        responses.push(weight.whiten_columns(&DMatrix::from_columns(&columns)));
+    }
+    let statistics = Statistics::new(bench, fitted, &responses);
+    let measured = statistics.of(residual);
+    let mut noise = Resampled::new(bench, fitted, seed);
+    let mut reached = [1_usize; 2];
+    for _ in 0..DRAWS {
+        let drawn = statistics.of(&noise.draw());
+        for (count, (drawn, measured)) in reached.iter_mut().zip(drawn.iter().zip(&measured)) {
+            *count += usize::from(drawn >= measured);
+        }
+    }
+    let least = reached[0].min(reached[1]) as f64 / (DRAWS + 1) as f64;
+    Ok((2.0 * least).min(1.0))
+}
+
+/// The two squared lengths that a residual is judged by.
+struct Statistics {
+    parameters: Basis,
+    coherent: Basis,
+    /// Per condition: its first row, and a basis of the changes of its own forces.
+    own: Vec<(usize, usize, Basis)>,
+}
+
+impl Statistics {
+    fn new(bench: &Bench<'_>, fitted: &Fitted, responses: &[DMatrix<f64>]) -> Self {
+        let parameters = Basis::of(&fitted.fit.jacobian);
+        let conditions: Vec<_> =
+            bench.observed.fit.iter().map(|&index| &bench.set.conditions[index]).collect();
+        let speeds = standardised(conditions.iter().map(|condition| condition.speed).collect());
+        let angles = standardised(conditions.iter().map(|condition| condition.angle_deg).collect());
+        let nodes = responses.first().map_or(0, DMatrix::ncols);
+        let mut coherent = DMatrix::zeros(fitted.fit.residual.len(), 3 * nodes);
+        let mut own = Vec::with_capacity(responses.len());
+        let mut start = 0;
+        for (at, response) in responses.iter().enumerate() {
+            let rows = response.nrows();
+            for (block, factor) in [1.0, speeds[at], angles[at]].into_iter().enumerate() {
+                let mut part = coherent.view_mut((start, block * nodes), (rows, nodes));
+                part.copy_from(&(response * factor));
+            }
+            own.push((start, rows, Basis::of(response)));
+            start += rows;
+        }
+        Self { coherent: Basis::beside(&coherent, &parameters), parameters, own }
+    }
+
+    fn of(&self, residual: &DVector<f64>) -> [f64; 2] {
+        let rest = self.parameters.rest(residual);
+        let own = self
+            .own
+            .iter()
+            .map(|(start, rows, basis)| basis.energy(&rest.rows(*start, *rows).into_owned()));
+        [self.coherent.energy(&rest), own.sum()]
+    }
+}
+
+/// Values less their mean, over their standard deviation; zero if they are all the same.
+fn standardised(values: Vec<f64>) -> Vec<f64> {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let sd = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n).sqrt();
+    values
+        .iter()
+        .map(|value| if sd > 1e-9 * mean.abs() { (value - mean) / sd } else { 0.0 })
+        .collect()
+}
+
+/// Errors of means, drawn from the deviations of runs.
+pub(crate) struct Resampled {
+    /// Per condition: whitened deviations of its runs (none of too few), and how many numbers.
+    conditions: Vec<(Vec<DVector<f64>>, usize, Pcg64)>,
+}
+
+impl Resampled {
+    pub(crate) fn new(bench: &Bench<'_>, fitted: &Fitted, seed: u64) -> Self {
+        let fit = bench.observed.fit.iter();
+        let conditions = fit.zip(&fitted.weights).map(|(&condition, weight)| {
+            let observed = &bench.observed.conditions[condition];
+            let runs = if observed.runs.len() >= ENOUGH_RUNS { observed.runs.len() } else { 0 };
+            let deviations = (0..runs).map(|run| weight.whiten(&observed.deviation(run))).collect();
+            (deviations, observed.mean.len(), stream(seed, Purpose::Resampling, condition))
+        });
+        Self { conditions: conditions.collect() }
+    }
+
+    /// Whitened errors of the means of all conditions.
+    pub(crate) fn draw(&mut self) -> DVector<f64> {
+        let mut all = Vec::new();
+        for (deviations, len, random) in &mut self.conditions {
+            if deviations.is_empty() {
+                all.extend((0..*len).map(|_| normal(random)));
+            } else {
+                let factors = factors(deviations.len(), random);
+                let error = deviations.iter().zip(factors);
+                all.extend(
+                    error.fold(DVector::zeros(*len), |sum, (d, factor)| sum + d * factor).iter(),
+                );
+            }
+        }
+        DVector::from_vec(all)
+    }
+}
+
+/// Factors on the deviations of `runs` runs whose sum has the covariance of their mean: they are drawn
+/// with replacement, and enlarged by √(r/(r−1)) since deviations from a mean are too small by that.
+fn factors(runs: usize, random: &mut Pcg64) -> Vec<f64> {
+    let r = runs as f64;
+    let mut counts = vec![0.0; runs];
+    for _ in 0..runs {
+        counts[random.random_range(0..runs)] += 1.0;
+    }
+    let scale = (r / (r - 1.0)).sqrt() / r;
+    counts.iter().map(|count| count * scale).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn resampled_means_scatter_as_much_as_means_do() {
+        for runs in [4, 5, 10] {
+            let mut random = stream(1, Purpose::Resampling, 0);
+            let values: Vec<f64> = (0..runs).map(|_| normal(&mut random)).collect();
+            let mean = values.iter().sum::<f64>() / runs as f64;
+            let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+            let expected = squares / ((runs - 1) * runs) as f64;
+            let draws = 20_000;
+            let drawn = (0..draws).map(|_| {
+                let factors = factors(runs, &mut random);
+                factors.iter().zip(&values).map(|(f, v)| f * (v - mean)).sum::<f64>().powi(2)
+            });
+            let variance = drawn.sum::<f64>() / f64::from(draws);
+            // The variance of a variance over so many draws is about 1 %; four of those.
+            assert!((variance / expected - 1.0).abs() < 0.04, "{runs}: {variance} {expected}");
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! What only the whole set shows: signs, magnitudes, whether its errors can be known.
+
+use super::document::Document;
+use super::findings::Findings;
+use super::{Kind, MeasurementSet, Run, magnitudes, signs};
+
+/// Checks a set whose tables were read; faults are reported.
+pub(super) fn check(set: &MeasurementSet, document: &Document, findings: &mut Findings) {
+    signs::check(set, &document.places, findings);
+    magnitudes::check(set, &document.places, findings);
+    if !document.is_exported {
+        note_errors(set, findings);
+        note_late_starts(set, findings);
+    }
+}
+
+/// Without repeats and stated errors there is nothing to weigh a difference with.
+fn note_errors(set: &MeasurementSet, findings: &mut Findings) {
+    // Every condition has a run.
+    let repeated = set.runs.len() > set.conditions.len();
+    let stated = match set.kind {
+        Kind::Scalar => {
+            let stated = &set.stated;
+            [stated.stop_time, stated.final_z, stated.final_x].iter().any(Option::is_some)
+        }
+        Kind::Trajectory => {
+            let mut frames = set.runs.iter().flat_map(|run| &run.frames);
+            set.instrument.position_sigma.is_some() || frames.any(|frame| frame.sigma.is_some())
+        }
+    };
+    if !repeated && !stated {
+        findings.note(
+            "No stated errors and no repeats: chi-squared is not possible, differences can be \
+             given as rms only."
+                .to_owned(),
+        );
+    }
+}
+
+fn note_late_starts(set: &MeasurementSet, findings: &mut Findings) {
+    let starts = set.runs.iter().filter_map(|run| run.frames.first()).map(|frame| frame.t);
+    let late: Vec<f64> = starts.filter(|t| *t > 0.0).collect();
+    if let Some(latest) = late.iter().copied().reduce(f64::max) {
+        findings.note(format!(
+            "{} of {} runs begin after first contact, the last of them at {latest} s.",
+            late.len(),
+            set.runs.len()
+        ));
+    }
+}
+
+/// The way of a run over a few readings around first contact.
+pub(super) struct Start {
+    /// Forward (m).
+    pub(super) dx: f64,
+    /// Down (m).
+    pub(super) dz: f64,
+    /// Time (s).
+    pub(super) dt: f64,
+}
+
+impl Start {
+    /// From the last reading before first contact, or the first of all, to the third after it.
+    pub(super) fn of(run: &Run) -> Option<Self> {
+        let frames = &run.frames;
+        let from = frames.iter().rposition(|frame| frame.t <= 0.0).unwrap_or(0);
+        let to = (from + 3).min(frames.len().checked_sub(1)?);
+        let (a, b) = (frames[from], frames[to]);
+        (to > from).then_some(Self { dx: b.x - a.x, dz: b.z - a.z, dt: b.t - a.t })
+    }
+}

@@ -1,0 +1,132 @@
+//! The columns of the tables, and `[columns]`, which says how a file names and counts them.
+
+use configs::reader::TableReader;
+use configs::{Diagnostic, Span};
+use engine::units::{self, Dimension};
+
+use super::keys;
+
+/// What stands in a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Content {
+    /// A name.
+    Name,
+    /// A whole number.
+    Count,
+    /// A number with a unit.
+    Quantity(Dimension),
+}
+
+/// A column that is understood.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ColumnSpec {
+    pub(super) key: &'static str,
+    pub(super) content: Content,
+    pub(super) required: bool,
+}
+
+const fn column(key: &'static str, content: Content, required: bool) -> ColumnSpec {
+    ColumnSpec { key, content, required }
+}
+
+const LENGTH: Content = Content::Quantity(Dimension::LENGTH);
+const TIME: Content = Content::Quantity(Dimension::TIME);
+
+/// The columns of `runs.csv`.
+pub(super) const RUNS: [ColumnSpec; 7] = [
+    column("run", Content::Name, true),
+    column("condition", Content::Name, true),
+    column("repeat", Content::Count, false),
+    column("order", Content::Count, false),
+    column("stop_time", TIME, false),
+    column("final_z", LENGTH, false),
+    column("final_x", LENGTH, false),
+];
+
+/// The columns of `trajectories.csv`.
+pub(super) const TRAJECTORIES: [ColumnSpec; 5] = [
+    column("run", Content::Name, true),
+    column("t", TIME, true),
+    column("z", LENGTH, true),
+    column("x", LENGTH, true),
+    column("sigma_z", LENGTH, false),
+];
+
+/// How a file names and counts one column.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Renamed {
+    key: &'static str,
+    pub(super) name: String,
+    /// `None` for names and whole numbers.
+    pub(super) unit: Option<String>,
+    /// 1, or -1 where the file counts the other way.
+    pub(super) sign: f64,
+}
+
+/// The table `[columns]`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct ColumnNames(Vec<Renamed>);
+
+impl ColumnNames {
+    /// What the file says of the column `key`.
+    pub(super) fn of(&self, key: &str) -> Option<&Renamed> {
+        self.0.iter().find(|renamed| renamed.key == key)
+    }
+
+    /// Reads `[columns]`; faults are reported.
+    pub(super) fn read(table: TableReader<'_>) -> Self {
+        let mut columns: Vec<Renamed> = Vec::new();
+        for spec in RUNS.iter().chain(&TRAJECTORIES[1..]) {
+            if !table.has(spec.key) {
+                continue;
+            }
+            let span = table.span_of(spec.key);
+            if let Some(renamed) = renamed(table.table(spec.key, None), spec) {
+                if let Some(other) = columns.iter().find(|other| other.name == renamed.name) {
+                    let message = format!(
+                        "`{}` and `{}` are the same column, `{}`",
+                        other.key, spec.key, other.name
+                    );
+                    table.reader.report(Diagnostic::error(message).at(span, "here again"));
+                }
+                columns.push(renamed);
+            }
+        }
+        table.finish();
+        Self(columns)
+    }
+}
+
+fn renamed(table: TableReader<'_>, spec: &ColumnSpec) -> Option<Renamed> {
+    table.header()?;
+    let name = table.text("name", Some(spec.key), spec.key, "the column's name in the file");
+    let (unit, sign) = match spec.content {
+        Content::Name | Content::Count => (None, 1.0),
+        Content::Quantity(dimension) => {
+            let example = dimension.si_unit();
+            let unit = table.text("unit", None, &example, "the unit of the column")?;
+            check_unit(&table, &unit.value, unit.span, dimension);
+            let sign = table.number(&keys::SIGN)?;
+            if sign.value.abs() < 1.0 {
+                table.reader.report(
+                    Diagnostic::error("`sign` is neither 1 nor -1")
+                        .at(sign.span, "1 or -1 is wanted")
+                        .help("the unit is the place for a factor"),
+                );
+            }
+            (Some(unit.value), sign.value)
+        }
+    };
+    table.finish();
+    Some(Renamed { key: spec.key, name: name?.value, unit, sign })
+}
+
+fn check_unit(table: &TableReader<'_>, unit: &str, span: Option<Span>, dimension: Dimension) {
+    if let Err(error) = units::parse(&format!("1 {unit}"), dimension) {
+        table.reader.report(
+            Diagnostic::error(format!("`unit`: {}", error.reason()))
+                .at(span, format!("the unit of {} is wanted", dimension.name()))
+                .help(format!("write unit = \"{}\", or another unit of it", dimension.si_unit())),
+        );
+    }
+}

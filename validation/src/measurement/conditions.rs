@@ -1,0 +1,131 @@
+//! `[[condition]]`.
+
+use configs::reader::{Found, TableReader};
+use configs::{Diagnostic, Span, shorten};
+
+use super::document::optional;
+use super::unstated::Unstated;
+use super::{Condition, Role, keys};
+
+/// Where a condition says what its runs are held against.
+#[derive(Clone, Copy, Default)]
+pub(super) struct ConditionPlaces {
+    pub(super) id: Option<Span>,
+    pub(super) speed: Option<Span>,
+    pub(super) angle: Option<Span>,
+}
+
+/// Shapes that a set may name, each with the keys that it should have besides the diameter.
+const SHAPES: [(&str, &[&str]); 7] = [
+    ("sphere", &[]),
+    ("disc", &[]),
+    ("cylinder", &["height"]),
+    ("hemisphere", &[]),
+    ("cone", &["height", "apex_deg"]),
+    ("link", &["length", "link_angle_deg"]),
+    ("two-link-chain", &["length", "link_angle_deg"]),
+];
+
+/// Reads all conditions that can be read; the others are reported.
+pub(super) fn read(
+    tables: Vec<TableReader<'_>>,
+    unstated: &mut Unstated,
+) -> (Vec<Condition>, Vec<ConditionPlaces>) {
+    let (mut conditions, mut places) = (Vec::<Condition>::new(), Vec::<ConditionPlaces>::new());
+    let mut absent = Absent::default();
+    for table in tables {
+        let reader = table.reader;
+        let Some((condition, place)) = condition(table, &mut absent) else {
+            continue;
+        };
+        if let Some(first) = conditions.iter().position(|other| other.id == condition.id) {
+            let id = shorten(&condition.id);
+            reader.report(
+                Diagnostic::error(format!("the condition `{id}` stands twice"))
+                    .at(place.id, "again here")
+                    .with(places[first].id, "first here"),
+            );
+        }
+        conditions.push(condition);
+        places.push(place);
+    }
+    absent.tell(conditions.len(), unstated);
+    (conditions, places)
+}
+
+fn condition(table: TableReader<'_>, absent: &mut Absent) -> Option<(Condition, ConditionPlaces)> {
+    let id = table.text("id", None, "c01", "the name of the condition");
+    let role = table.choice("role", &["fit", "holdout"], &[], "whether it may be fitted to");
+    let speed = table.number(&keys::SPEED);
+    let angle = table.number(&keys::ANGLE);
+    let shape =
+        table.choice("shape", &SHAPES.map(|(name, _)| name), &[], "the shape of the intruder");
+    let diameter = table.number(&keys::DIAMETER);
+    let mass = table.number(&keys::MASS);
+    let spin = table.number(&keys::SPIN);
+    let [packing, bed_depth, length, height, apex, link_angle] = [
+        &keys::PACKING,
+        &keys::BED_DEPTH,
+        &keys::LENGTH_OF_LINK,
+        &keys::HEIGHT,
+        &keys::APEX,
+        &keys::LINK_ANGLE,
+    ]
+    .map(|spec| optional(&table, spec));
+    // Cells of the tables are without blanks around them too.
+    let id = id.map(|id| Found { value: id.value.trim().to_owned(), ..id });
+    if let Some(id) = id.as_ref().filter(|id| id.value.is_empty()) {
+        let diagnostic = Diagnostic::error("`id` is empty").at(id.span, "a name is wanted");
+        table.reader.report(diagnostic);
+    }
+    let places = ConditionPlaces {
+        id: id.as_ref().and_then(|id| id.span),
+        speed: table.span_of("speed"),
+        angle: table.span_of("angle_deg"),
+    };
+    let wanted = SHAPES.iter().find(|(name, _)| Some(*name) == shape).map_or(&[][..], |row| row.1);
+    for key in ["packing", "bed_depth"].iter().chain(wanted) {
+        absent.count(key, !table.has(key));
+    }
+    table.finish();
+    let condition = Condition {
+        id: id?.value,
+        role: match role? {
+            "fit" => Role::Fit,
+            _ => Role::Holdout,
+        },
+        speed: speed?.value,
+        angle_deg: angle?.value,
+        shape: shape?.to_owned(),
+        diameter: diameter?.value,
+        mass: mass?.value,
+        spin: spin?.value,
+        packing,
+        bed_depth,
+        length,
+        height,
+        apex_deg: apex,
+        link_angle_deg: link_angle,
+    };
+    Some((condition, places))
+}
+
+/// How many conditions do without a key.
+#[derive(Default)]
+struct Absent(Vec<(&'static str, usize)>);
+
+impl Absent {
+    fn count(&mut self, key: &'static str, absent: bool) {
+        match self.0.iter_mut().find(|(other, _)| *other == key) {
+            Some((_, n)) => *n += usize::from(absent),
+            None => self.0.push((key, usize::from(absent))),
+        }
+    }
+
+    fn tell(self, conditions: usize, unstated: &mut Unstated) {
+        for (key, n) in self.0 {
+            let some = if n < conditions { " (of some)" } else { "" };
+            unstated.absent_if(n > 0, &format!("condition.{key}{some}"));
+        }
+    }
+}

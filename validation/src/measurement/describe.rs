@@ -1,0 +1,125 @@
+//! A set in a few lines of plain text.
+
+use super::{Condition, Geometry, Kind, Loaded, MeasurementSet, Role, Run};
+
+impl Loaded {
+    /// [`MeasurementSet::describe`] with the columns that were understood.
+    #[must_use]
+    pub fn describe(&self) -> String {
+        self.set.describe_with(&self.tables)
+    }
+}
+
+impl MeasurementSet {
+    /// What the set holds, for a reader at a terminal: conditions, roles, runs, units and notes.
+    #[must_use]
+    pub fn describe(&self) -> String {
+        self.describe_with(&[])
+    }
+
+    /// The same with a line for each table.
+    fn describe_with(&self, tables: &[String]) -> String {
+        let kind = match self.kind {
+            Kind::Trajectory => "trajectories",
+            Kind::Scalar => "scalars",
+        };
+        let (conditions, runs) = (self.conditions.len(), self.runs.len());
+        let holdout = self.conditions.iter().filter(|one| one.role == Role::Holdout).count();
+        let mut text = format!(
+            "{}: {kind}, {conditions} conditions ({holdout} held out), {runs} runs\n",
+            self.id
+        );
+        text.push_str(&self.describe_bed());
+        if let Some(baseline) = &self.baseline {
+            text.push_str(&format!("baseline {baseline}\n"));
+        }
+        text.push('\n');
+        text.push_str(&aligned(&self.rows()));
+        text.push('\n');
+        for table in tables {
+            text.push_str(&format!("{table}\n"));
+        }
+        if let Some(source) = &self.source {
+            text.push_str(&format!("source: {}\n", source.trim()));
+        }
+        for note in &self.notes {
+            text.push_str(&format!("note: {note}\n"));
+        }
+        text
+    }
+
+    fn describe_bed(&self) -> String {
+        let (name, unit) = match self.bed.geometry {
+            Geometry::Planar => ("planar", "kg/m^2"),
+            Geometry::Spatial => ("three-dimensional", "kg/m^3"),
+        };
+        let mut parts = vec![format!("{name} bed")];
+        parts.extend(self.bed.bulk_density.map(|density| format!("{density} {unit}")));
+        parts.extend(self.bed.grain_diameter.map(|diameter| format!("grains of {diameter} m")));
+        parts.push(format!("gravity {} m/s^2", self.bed.gravity));
+        format!("{}\n", parts.join(", "))
+    }
+
+    fn rows(&self) -> Vec<Vec<String>> {
+        let heads = [
+            "condition",
+            "role",
+            "speed (m/s)",
+            "angle (deg)",
+            "shape",
+            "diameter (m)",
+            "mass (kg)",
+            "runs",
+            "readings",
+            "measured",
+        ];
+        let mut rows = vec![heads.map(str::to_owned).to_vec()];
+        for (index, condition) in self.conditions.iter().enumerate() {
+            let runs: Vec<&Run> = self.runs.iter().filter(|run| run.condition == index).collect();
+            rows.push(row(condition, &runs));
+        }
+        rows
+    }
+}
+
+fn row(condition: &Condition, runs: &[&Run]) -> Vec<String> {
+    let any = |has: fn(&Run) -> bool| runs.iter().any(|run| has(run));
+    let measured = [
+        ("stop_time", any(|run| run.stop_time.is_some())),
+        ("final_z", any(|run| run.final_z.is_some())),
+        ("final_x", any(|run| run.final_x.is_some())),
+        ("z(t), x(t)", any(|run| !run.frames.is_empty())),
+    ];
+    let measured: Vec<&str> =
+        measured.iter().filter(|(_, is_there)| *is_there).map(|(name, _)| *name).collect();
+    vec![
+        condition.id.clone(),
+        match condition.role {
+            Role::Fit => "fit".to_owned(),
+            Role::Holdout => "holdout".to_owned(),
+        },
+        condition.speed.to_string(),
+        condition.angle_deg.to_string(),
+        condition.shape.clone(),
+        condition.diameter.to_string(),
+        condition.mass.to_string(),
+        runs.len().to_string(),
+        runs.iter().map(|run| run.frames.len()).sum::<usize>().to_string(),
+        measured.join(", "),
+    ]
+}
+
+/// Rows with their columns below each other.
+fn aligned(rows: &[Vec<String>]) -> String {
+    let width = |column: usize| {
+        rows.iter().map(|row| row[column].chars().count()).max().unwrap_or_default()
+    };
+    let widths: Vec<usize> = (0..rows.first().map_or(0, Vec::len)).map(width).collect();
+    let mut text = String::new();
+    for row in rows {
+        let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
+        text.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,269 @@
+//! `measurement.toml`: everything of a set but its tables.
+
+use configs::reader::TableReader;
+use configs::{Diagnostic, Span, limits};
+use engine::params::ParamSpec;
+
+use super::columns::ColumnNames;
+use super::conditions::{self, ConditionPlaces};
+use super::dialect::{Decimal, Delimiter};
+use super::keys;
+use super::table::Format;
+use super::unstated::Unstated;
+use super::{
+    Bed, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, StatedError, StopDefinition,
+};
+
+/// What `measurement.toml` says.
+pub(super) struct Document {
+    /// Without runs.
+    pub(super) set: MeasurementSet,
+    /// Free text on the frame of reference.
+    pub(super) frame: Option<String>,
+    /// Free text on the part of the motion that is analysed.
+    pub(super) phase: Option<String>,
+    pub(super) files: Files,
+    pub(super) places: Vec<ConditionPlaces>,
+    /// Whether the notes are those of an exported set, which already say what was assumed.
+    pub(super) is_exported: bool,
+}
+
+/// `[files]` and `[columns]`.
+pub(super) struct Files {
+    pub(super) runs: FileName,
+    pub(super) trajectories: Option<FileName>,
+    pub(super) missing: Missing,
+    pub(super) format: Format,
+}
+
+/// A table as the set names it.
+pub(super) struct FileName {
+    pub(super) name: String,
+    pub(super) span: Option<Span>,
+}
+
+/// What to do about cells without a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Missing {
+    /// Refuse the table.
+    Error,
+    /// Go on without them.
+    Drop,
+}
+
+/// Reads everything. `None` when something required could not be read; that is reported then.
+pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
+    let mut unstated = Unstated::default();
+    root.number(&keys::SCHEMA);
+    let head = head(root.table("measurement", Some(MEASUREMENT_EXAMPLE)), &mut unstated);
+    let instrument = instrument(root.table("instrument", None), &mut unstated);
+    let files =
+        files(root.table("files", Some(FILES_EXAMPLE)), head.as_ref().map(|head| head.kind));
+    let columns = ColumnNames::read(root.table("columns", None));
+    let stated = stated(root.table("noise", None), &mut unstated);
+    let bed_table = root.table("bed", None);
+    let model = root.table("model", None);
+    let baseline = optional_text(&model, "baseline", "two-term-vector", "the model to start from");
+    model.finish();
+    let tables = root.tables("condition", limits::CONDITIONS);
+    if tables.is_empty() && !root.has("condition") {
+        root.reader.report(
+            Diagnostic::error("there is no [[condition]]")
+                .help("one table per setting of the experiment, in double brackets"),
+        );
+    }
+    let (conditions, places) = conditions::read(tables, &mut unstated);
+    let is_disc = |shape: &str| shape == "disc";
+    let planar = conditions.iter().any(|condition| is_disc(&condition.shape));
+    let bed = bed(bed_table, planar, &mut unstated);
+    unstated.absent_if(baseline.is_none(), "model.baseline");
+    root.finish();
+
+    let head = head?;
+    let is_exported = head.notes.is_some();
+    let notes = head.notes.unwrap_or_else(|| unstated.sentences());
+    let mut files = files?;
+    files.format.columns = columns;
+    let set = MeasurementSet {
+        id: head.id,
+        source: head.source,
+        kind: head.kind,
+        instrument,
+        bed,
+        baseline,
+        stated,
+        stop: head.stop,
+        last: head.last,
+        conditions,
+        runs: Vec::new(),
+        notes,
+    };
+    Some(Document { set, frame: head.frame, phase: head.phase, files, places, is_exported })
+}
+
+const MEASUREMENT_EXAMPLE: &str = "id = \"lab-2024-03\"\nkind = \"trajectory\"";
+const FILES_EXAMPLE: &str = "runs = \"runs.csv\"\ntrajectories = \"trajectories.csv\"";
+
+/// `[measurement]`.
+struct Head {
+    id: String,
+    kind: Kind,
+    source: Option<String>,
+    frame: Option<String>,
+    phase: Option<String>,
+    stop: StopDefinition,
+    last: FinalDefinition,
+    notes: Option<Vec<String>>,
+}
+
+fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
+    let id = table.slug("id", None, "the name of the set");
+    let kind = table.choice("kind", &["trajectory", "scalar"], &[], "what was measured");
+    let kind = kind.map(|kind| match kind {
+        "scalar" => Kind::Scalar,
+        _ => Kind::Trajectory,
+    });
+    let source = optional_text(&table, "source", "…", "where the numbers are from");
+    let frame = optional_text(&table, "frame", "…", "the frame of reference in words");
+    let phase = optional_text(&table, "phase", "…", "the part of the motion in words");
+    let words = ["component-zero", "speed-5-percent"];
+    let stop = optional_choice(&table, "stop_definition", &words).map(|word| match word {
+        "component-zero" => StopDefinition::ComponentZero,
+        _ => StopDefinition::SpeedFivePercent,
+    });
+    let last = optional_choice(&table, "final", &["deepest", "resting"]).map(|word| match word {
+        "deepest" => FinalDefinition::Deepest,
+        _ => FinalDefinition::Resting,
+    });
+    let notes = table.texts("notes");
+    table.finish();
+    unstated.absent_if(source.is_none(), "measurement.source");
+    let stop = stop.or_else(|| {
+        let (stop, word) = match kind? {
+            Kind::Scalar => (StopDefinition::ComponentZero, words[0]),
+            Kind::Trajectory => (StopDefinition::SpeedFivePercent, words[1]),
+        };
+        unstated.assume(format!("measurement.stop_definition = \"{word}\""));
+        Some(stop)
+    });
+    let last = last.unwrap_or_else(|| {
+        unstated.assume("measurement.final = \"resting\"".to_owned());
+        FinalDefinition::Resting
+    });
+    Some(Head { id: id?.value, kind: kind?, source, frame, phase, stop: stop?, last, notes })
+}
+
+fn instrument(table: TableReader<'_>, unstated: &mut Unstated) -> Instrument {
+    let mut number = |spec: &ParamSpec, path: &'static str| {
+        let value = optional(&table, spec);
+        unstated.absent_if(value.is_none(), path);
+        unstated.positive(value, path)
+    };
+    let instrument = Instrument {
+        rate: number(&keys::RATE, "instrument.rate_hz"),
+        position_sigma: number(&keys::POSITION_SIGMA, "instrument.position_sigma_m"),
+        speed_sigma_rel: number(&keys::SPEED_SIGMA, "instrument.speed_sigma_rel"),
+        level_sigma: number(&keys::LEVEL_SIGMA, "instrument.level_sigma_m"),
+    };
+    table.finish();
+    instrument
+}
+
+fn stated(table: TableReader<'_>, unstated: &mut Unstated) -> StatedError {
+    let mut number = |spec: &ParamSpec, path: &'static str| {
+        let value = optional(&table, spec);
+        unstated.absent_if(value.is_none(), path);
+        unstated.positive(value, path)
+    };
+    let stated = StatedError {
+        stop_time: number(&keys::STOP_TIME_ERROR, "noise.stop_time_rel"),
+        final_z: number(&keys::FINAL_Z_ERROR, "noise.final_z_rel"),
+        final_x: number(&keys::FINAL_X_ERROR, "noise.final_x_rel"),
+    };
+    table.finish();
+    stated
+}
+
+fn bed(table: TableReader<'_>, planar: bool, unstated: &mut Unstated) -> Bed {
+    let geometry = match optional_choice(&table, "geometry", &["3d", "2d"]) {
+        Some("2d") => Geometry::Planar,
+        Some(_) => Geometry::Spatial,
+        None => {
+            let word = if planar { "2d" } else { "3d" };
+            unstated.assume(format!("bed.geometry = \"{word}\""));
+            if planar { Geometry::Planar } else { Geometry::Spatial }
+        }
+    };
+    let density = match geometry {
+        Geometry::Planar => optional(&table, &keys::AREA_DENSITY),
+        Geometry::Spatial => optional(&table, &keys::BULK_DENSITY),
+    };
+    let gravity = table.number(&keys::GRAVITY).map_or(9.81, |found| {
+        if found.span.is_none() {
+            unstated.assume(format!("bed.gravity = {:?}", found.value));
+        }
+        found.value
+    });
+    let grain_diameter = optional(&table, &keys::GRAIN_DIAMETER);
+    unstated.absent_if(density.is_none(), "bed.bulk_density");
+    unstated.absent_if(grain_diameter.is_none(), "bed.grain_diameter");
+    table.finish();
+    Bed { geometry, bulk_density: density, gravity, grain_diameter }
+}
+
+fn files(table: TableReader<'_>, kind: Option<Kind>) -> Option<Files> {
+    table.header()?;
+    let name = |key, meaning| {
+        let found = table.text(key, None, &format!("{key}.csv"), meaning)?;
+        Some(FileName { name: found.value, span: found.span })
+    };
+    let runs = name("runs", "the table of runs");
+    let trajectories = match (kind, table.has("trajectories")) {
+        (Some(Kind::Scalar), true) => {
+            table.reader.report(
+                Diagnostic::error("a set of scalars has no trajectories")
+                    .at(table.span_of("trajectories"), "a table of trajectories")
+                    .help("write kind = \"trajectory\" above, or remove this line"),
+            );
+            None
+        }
+        (Some(Kind::Trajectory), _) => Some(name("trajectories", "the table of trajectories")?),
+        _ => None,
+    };
+    let missing = match optional_choice(&table, "missing", &["error", "drop"]) {
+        Some("drop") => Missing::Drop,
+        _ => Missing::Error,
+    };
+    let delimiter = optional_choice(&table, "delimiter", &Delimiter::ALL.map(Delimiter::word))
+        .and_then(|word| Delimiter::ALL.into_iter().find(|one| one.word() == word));
+    let decimal = optional_choice(&table, "decimal", &[".", ","]).map(|word| match word {
+        "." => Decimal::Point,
+        _ => Decimal::Comma,
+    });
+    table.finish();
+    let format = Format { delimiter, decimal, columns: ColumnNames::default() };
+    Some(Files { runs: runs?, trajectories, missing, format })
+}
+
+/// A number that may be left out; what is wrong with it is reported.
+pub(super) fn optional(table: &TableReader<'_>, spec: &ParamSpec) -> Option<f64> {
+    table.optional_number(spec).flatten().map(|found| found.value)
+}
+
+fn optional_text(
+    table: &TableReader<'_>,
+    key: &'static str,
+    example: &str,
+    meaning: &str,
+) -> Option<String> {
+    let found = table.has(key).then(|| table.text(key, None, example, meaning));
+    found.flatten().map(|found| found.value)
+}
+
+fn optional_choice(
+    table: &TableReader<'_>,
+    key: &'static str,
+    known: &[&'static str],
+) -> Option<&'static str> {
+    table.has(key).then(|| table.choice(key, known, &[], "")).flatten()
+}

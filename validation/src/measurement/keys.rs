@@ -1,0 +1,118 @@
+//! The numeric keys of `measurement.toml`, specified like the parameters of a law.
+
+use engine::params::{Default, ParamSpec, Range};
+use engine::units::Dimension;
+
+const fn key(
+    key: &'static str,
+    dimension: Dimension,
+    allowed: Range,
+    plausible: (f64, f64),
+    meaning: &'static str,
+) -> ParamSpec {
+    let plausible = Range::closed(plausible.0, plausible.1);
+    ParamSpec { key, dimension, default: Default::Required, allowed, plausible, meaning }
+}
+
+const POSITIVE: Range = Range::POSITIVE;
+const NOT_NEGATIVE: Range = Range::NOT_NEGATIVE;
+const ANY: Range = Range::closed(-f64::MAX, f64::MAX);
+const NUMBER: Dimension = Dimension::NONE;
+const LENGTH: Dimension = Dimension::LENGTH;
+
+pub(super) const SCHEMA: ParamSpec =
+    key("schema", NUMBER, Range::closed(1.0, 1.0), (1.0, 1.0), "the version of the format");
+
+pub(super) const RATE: ParamSpec =
+    key("rate_hz", Dimension::RATE, POSITIVE, (1.0, 1e7), "the number of frames per second");
+pub(super) const POSITION_SIGMA: ParamSpec = key(
+    "position_sigma_m",
+    LENGTH,
+    NOT_NEGATIVE,
+    (0.0, 0.01),
+    "the root mean square error of one reading of a position",
+);
+pub(super) const SPEED_SIGMA: ParamSpec = key(
+    "speed_sigma_rel",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 0.5),
+    "the relative error of the set impact speed",
+);
+pub(super) const LEVEL_SIGMA: ParamSpec = key(
+    "level_sigma_m",
+    LENGTH,
+    NOT_NEGATIVE,
+    (0.0, 0.01),
+    "the error of the level of the surface",
+);
+
+/// A planar bed has a density per area; its unit is told by the geometry.
+pub(super) const BULK_DENSITY: ParamSpec =
+    key("bulk_density", Dimension::DENSITY, POSITIVE, (0.1, 2e4), "the bulk density of the bed");
+pub(super) const AREA_DENSITY: ParamSpec =
+    ParamSpec { dimension: Dimension::AREA_DENSITY, ..BULK_DENSITY };
+pub(super) const GRAVITY: ParamSpec = ParamSpec {
+    default: Default::Value(9.81),
+    ..key("gravity", Dimension::ACCELERATION, NOT_NEGATIVE, (0.0, 100.0), "gravity")
+};
+pub(super) const GRAIN_DIAMETER: ParamSpec =
+    key("grain_diameter", LENGTH, POSITIVE, (1e-6, 0.1), "the mean diameter of the grains");
+
+pub(super) const STOP_TIME_ERROR: ParamSpec =
+    key("stop_time_rel", NUMBER, NOT_NEGATIVE, (0.0, 1.0), "the relative error of a stopping time");
+pub(super) const FINAL_Z_ERROR: ParamSpec =
+    key("final_z_rel", NUMBER, NOT_NEGATIVE, (0.0, 1.0), "the relative error of a final depth");
+pub(super) const FINAL_X_ERROR: ParamSpec =
+    key("final_x_rel", NUMBER, NOT_NEGATIVE, (0.0, 1.0), "the relative error of a final range");
+
+pub(super) const SPEED: ParamSpec =
+    key("speed", Dimension::SPEED, NOT_NEGATIVE, (0.0, 500.0), "the speed at first contact");
+pub(super) const ANGLE: ParamSpec = key(
+    "angle_deg",
+    NUMBER,
+    Range { min: 0.0, max: 90.0, includes_min: false },
+    (0.0, 90.0),
+    "the angle of the velocity below the horizontal in degrees; 90 is straight down",
+);
+pub(super) const DIAMETER: ParamSpec =
+    key("diameter", LENGTH, POSITIVE, (1e-4, 10.0), "the diameter of the intruder");
+pub(super) const MASS: ParamSpec =
+    key("mass", Dimension::MASS, POSITIVE, (1e-7, 1e5), "the mass of the intruder");
+pub(super) const SPIN: ParamSpec = ParamSpec {
+    default: Default::Value(0.0),
+    ..key("spin", Dimension::SPIN, ANY, (-1e4, 1e4), "the spin, positive when it rolls forward")
+};
+pub(super) const PACKING: ParamSpec = key(
+    "packing",
+    NUMBER,
+    Range { min: 0.0, max: 1.0, includes_min: false },
+    (0.1, 0.95),
+    "the packing fraction of the bed",
+);
+pub(super) const BED_DEPTH: ParamSpec =
+    key("bed_depth", LENGTH, POSITIVE, (1e-3, 100.0), "the depth of the bed");
+pub(super) const LENGTH_OF_LINK: ParamSpec =
+    key("length", LENGTH, POSITIVE, (1e-3, 10.0), "the length of a link");
+pub(super) const HEIGHT: ParamSpec =
+    key("height", LENGTH, POSITIVE, (1e-4, 10.0), "the height of a cylinder or cone");
+pub(super) const APEX: ParamSpec = key(
+    "apex_deg",
+    NUMBER,
+    Range { min: 0.0, max: 180.0, includes_min: false },
+    (1.0, 180.0),
+    "the full apex angle of a cone in degrees",
+);
+pub(super) const LINK_ANGLE: ParamSpec = key(
+    "link_angle_deg",
+    NUMBER,
+    Range::closed(-90.0, 90.0),
+    (-90.0, 90.0),
+    "the angle of a link's axis to the vertical in degrees",
+);
+
+/// +1 or -1: whether a column counts the other way.
+pub(super) const SIGN: ParamSpec = ParamSpec {
+    default: Default::Value(1.0),
+    ..key("sign", NUMBER, Range::closed(-1.0, 1.0), (-1.0, 1.0), "1, or -1 to turn a column round")
+};

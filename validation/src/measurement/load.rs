@@ -1,0 +1,233 @@
+//! From a folder to a checked [`MeasurementSet`].
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use configs::paths::{self, PathError};
+use configs::reader::{FileKind, Reader};
+use configs::{Color, Diagnostic, Sources, document as toml, limits, render_all, shorten};
+use thiserror::Error;
+
+use super::document::{self, Document, FileName, Missing};
+use super::findings::Findings;
+use super::table::file_name;
+use super::{MeasurementSet, checks, order, runs, trajectories};
+
+/// A set and what came with it.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The set.
+    pub set: MeasurementSet,
+    /// The frame of reference in the words of the set; nothing is done with them.
+    pub frame: Option<String>,
+    /// The part of the motion that was analysed, in the words of the set.
+    pub phase: Option<String>,
+    /// The columns that were understood, one line for each table.
+    pub tables: Vec<String>,
+    /// What its author should look at; it stands in [`MeasurementSet::notes`] too.
+    pub warnings: Vec<Diagnostic>,
+    /// The texts that diagnostics point into.
+    pub sources: Sources,
+}
+
+impl Loaded {
+    /// All warnings as shown to the user.
+    #[must_use]
+    pub fn render_warnings(&self, color: Color) -> String {
+        render_all(&self.warnings, &self.sources, color)
+    }
+}
+
+/// Why there is no set: everything that is wrong with it, at once.
+#[derive(Clone, Debug, Error)]
+#[error("{}", self.render(Color::Off))]
+pub struct SetError {
+    /// Every error, and the warnings.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The texts that they point into.
+    pub sources: Sources,
+}
+
+impl SetError {
+    /// The error as shown to the user.
+    #[must_use]
+    pub fn render(&self, color: Color) -> String {
+        render_all(&self.diagnostics, &self.sources, color)
+    }
+}
+
+impl From<Findings> for SetError {
+    fn from(findings: Findings) -> Self {
+        Self { diagnostics: findings.diagnostics, sources: findings.sources }
+    }
+}
+
+impl MeasurementSet {
+    /// Reads and checks the set in the folder `path`, or whose `measurement.toml` is `path`.
+    ///
+    /// # Errors
+    /// Everything that is wrong with `measurement.toml`; if nothing is, everything that is wrong
+    /// with its tables.
+    pub fn load(path: &Path) -> Result<Loaded, SetError> {
+        let mut findings = Findings::default();
+        let file = match path.is_dir() {
+            true => path.join("measurement.toml"),
+            false => path.to_owned(),
+        };
+        let document = match read_document(&file, &mut findings) {
+            Some(document) if findings.errors() == 0 => document,
+            _ => return Err(findings.into()),
+        };
+        let folder = match file.parent() {
+            Some(folder) if folder != Path::new("") => folder,
+            _ => Path::new("."),
+        };
+        let mut set = document.set.clone();
+        let warnings: Vec<String> =
+            findings.diagnostics.iter().map(|one| format!("{}.", one.message)).collect();
+        std::mem::take(&mut set.notes)
+            .into_iter()
+            .chain(warnings)
+            .for_each(|one| findings.note(one));
+        let tables = read_tables(&mut set, &document, folder, &mut findings);
+        if findings.errors() == 0 {
+            checks::check(&set, &document, &mut findings);
+        }
+        if findings.errors() > 0 {
+            return Err(findings.into());
+        }
+        order::sort(&mut set.runs);
+        set.notes = findings.notes;
+        Ok(Loaded {
+            set,
+            frame: document.frame,
+            phase: document.phase,
+            tables,
+            warnings: findings.diagnostics,
+            sources: findings.sources,
+        })
+    }
+}
+
+fn read_document(file: &Path, findings: &mut Findings) -> Option<Document> {
+    let name = file.display().to_string();
+    let bytes = paths::read_bounded(file, &name, limits::FILE_BYTES)
+        .map_err(|error| findings.report(Diagnostic::error(error.to_string())))
+        .ok()?;
+    let text = String::from_utf8(bytes)
+        .map_err(|error| {
+            let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+            let line = 1 + valid.iter().filter(|byte| **byte == b'\n').count();
+            let what = format!("{name}: line {line} is not UTF-8; save the file as UTF-8");
+            findings.report(Diagnostic::error(what));
+        })
+        .ok()?;
+    let id = findings.sources.add(name, text);
+    let root = match toml::parse(&findings.sources, id) {
+        Ok(root) => root,
+        Err(diagnostic) => {
+            findings.report(*diagnostic);
+            return None;
+        }
+    };
+    let reader = Reader::new(&findings.sources, FileKind::MeasurementSet);
+    let document = document::read(reader.root(&root));
+    findings.diagnostics = reader.into_diagnostics();
+    document
+}
+
+/// Reads the tables into `set`, and gives what is understood of each.
+fn read_tables(
+    set: &mut MeasurementSet,
+    document: &Document,
+    folder: &Path,
+    findings: &mut Findings,
+) -> Vec<String> {
+    let files = &document.files;
+    let mut tables = Vec::new();
+    let Some((name, file)) = open(&files.runs, folder, findings) else { return tables };
+    let (format, missing) = (&files.format, files.missing);
+    let read = runs::read((&name, file), &set.conditions, format, missing, findings);
+    findings.point_at(files.runs.span, "this table");
+    let Some(read) = read else { return tables };
+    set.runs = read.runs;
+    tables.push(format!("{}: {}", file_name(&name), read.columns));
+    if findings.errors() == 0
+        && let Some(named) = &files.trajectories
+        && let Some((name, file)) = open(named, folder, findings)
+    {
+        let columns = trajectories::read((&name, file), &mut set.runs, format, missing, findings);
+        tables.extend(columns.map(|columns| format!("{}: {columns}", file_name(&name))));
+        if findings.errors() == 0 {
+            settle_empty_runs(set, missing, findings);
+        }
+        findings.point_at(named.span, "this table");
+    }
+    if findings.errors() == 0 {
+        find_empty_conditions(set, document, findings);
+    }
+    tables
+}
+
+/// A table of the set, and what messages call it.
+fn open(
+    named: &FileName,
+    folder: &Path,
+    findings: &mut Findings,
+) -> Option<(String, BufReader<File>)> {
+    let open = || -> Result<_, PathError> {
+        let path = paths::resolve_below(&named.name, folder)?;
+        paths::open_regular(&path, &named.name)
+    };
+    match open() {
+        Ok(file) => {
+            let name = folder.join(&named.name).display().to_string();
+            Some((name, BufReader::with_capacity(1 << 16, file)))
+        }
+        Err(error) => {
+            let diagnostic = Diagnostic::error(error.to_string()).at(named.span, "cannot be read");
+            findings.report(diagnostic);
+            None
+        }
+    }
+}
+
+/// Refuses or drops runs that the trajectories do not have.
+fn settle_empty_runs(set: &mut MeasurementSet, missing: Missing, findings: &mut Findings) {
+    let empty = || set.runs.iter().filter(|run| run.frames.is_empty());
+    let n = empty().count();
+    if n == 0 {
+        return;
+    }
+    let names: Vec<String> =
+        empty().take(10).map(|run| format!("`{}`", shorten(&run.name))).collect();
+    let more = if n > names.len() { ", …" } else { "" };
+    let names = format!("{}{more}", names.join(", "));
+    match missing {
+        Missing::Error => findings.report(
+            Diagnostic::error(format!("there is no trajectory of the runs {names}"))
+                .help("remove them from the table of runs, or write missing = \"drop\""),
+        ),
+        Missing::Drop => {
+            findings.note(format!("Runs without a trajectory were dropped: {names}."));
+            set.runs.retain(|run| !run.frames.is_empty());
+        }
+    }
+}
+
+/// Refuses conditions without a run.
+fn find_empty_conditions(set: &MeasurementSet, document: &Document, findings: &mut Findings) {
+    let mut measured = vec![false; set.conditions.len()];
+    set.runs.iter().for_each(|run| measured[run.condition] = true);
+    for (index, condition) in set.conditions.iter().enumerate() {
+        if !measured[index] && !findings.full() {
+            let id = shorten(&condition.id);
+            findings.report(
+                Diagnostic::error(format!("the condition `{id}` has no run"))
+                    .at(document.places[index].id, "nothing was measured under it")
+                    .help("add its runs to the table, or remove the condition"),
+            );
+        }
+    }
+}

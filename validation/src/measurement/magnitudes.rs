@@ -1,0 +1,175 @@
+//! Magnitudes that no impact has, and the factor that they look like.
+
+use configs::Diagnostic;
+
+use super::checks::Start;
+use super::conditions::ConditionPlaces;
+use super::findings::Findings;
+use super::{Condition, MeasurementSet, Run};
+
+/// Measured over stated impact speed beyond which a unit is wrong: no bed makes an intruder faster.
+const FASTEST: f64 = 5.0;
+/// The same downwards; a slow camera that sees the intruder brake stays above it.
+const SLOWEST: f64 = 0.02;
+/// How many times its natural scale a depth, range or stopping time may be.
+const LARGEST: f64 = 10.0;
+/// How far from its rate the frames of a camera may be.
+const RATE: f64 = 3.0;
+
+/// Factors between units of length that are taken for each other.
+const LENGTHS: &[(f64, &str)] = &[
+    (10.0, "×10 (mm for cm)"),
+    (25.4, "×25.4 (mm for inches)"),
+    (39.37, "×39.37 (inches for m)"),
+    (100.0, "×100 (cm for m)"),
+    (1e3, "×1000 (mm for m)"),
+    (1e6, "×1e6 (µm for m)"),
+];
+
+/// Factors between units of time that are taken for each other.
+const TIMES: &[(f64, &str)] =
+    &[(10.0, "×10"), (100.0, "×100"), (1e3, "×1000 (ms for s)"), (1e6, "×1e6 (µs for s)")];
+
+/// Warns of magnitudes that look like another unit.
+pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+    // One wrong unit is told once.
+    if !check_speeds(set, places, findings) {
+        check_ways(set, places, findings);
+        check_rate(set, findings);
+    }
+}
+
+/// Warns when the trajectories do not start with the stated speeds; whether it did.
+fn check_speeds(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) -> bool {
+    let ratio = |run: &Run| {
+        let (start, stated) = (Start::of(run)?, set.conditions[run.condition].speed);
+        let measured = libm::hypot(start.dx, start.dz) / start.dt;
+        (stated > 0.0).then_some((measured / stated, run.condition))
+    };
+    let mut ratios: Vec<(f64, usize)> = set.runs.iter().filter_map(ratio).collect();
+    ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((ratio, condition)) = ratios.get(ratios.len() / 2).copied() else { return false };
+    if (SLOWEST..=FASTEST).contains(&ratio) {
+        return false;
+    }
+    let message = format!(
+        "the trajectories start with {} the stated impact speed",
+        match ratio > 1.0 {
+            true => format!("about {ratio:.0} times"),
+            false => format!("a share of {ratio:.1e} of"),
+        }
+    );
+    let (what, factor) = match ratio > 1.0 {
+        true => ("positions", nearest(ratio, LENGTHS)),
+        false => ("times", nearest(1.0 / ratio, TIMES)),
+    };
+    let help = format!("the {what} look like {factor}; [columns] gives the units of a table");
+    let speed = places[condition].speed;
+    findings.warn(Diagnostic::warning(message).at(speed, "the stated speed").help(help));
+    true
+}
+
+/// Warns of depths, ranges and stopping times that no impact at these speeds has.
+fn check_ways(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+    let gravity = set.bed.gravity;
+    if gravity <= 0.0 {
+        return;
+    }
+    // A fall from as high as the speed needs, and a few diameters of resistance.
+    let fall = |condition: &Condition| {
+        condition.speed.powi(2) / (2.0 * gravity) + 5.0 * condition.diameter
+    };
+    let depth = |condition: &Condition| condition.bed_depth.unwrap_or_else(|| fall(condition));
+    let range = |condition: &Condition| 2.0 * fall(condition);
+    let time = |condition: &Condition| {
+        condition.speed / gravity + 10.0 * (condition.diameter / gravity).sqrt()
+    };
+    let deepest = |run: &Run| farthest(run, run.final_z, |frame| frame.z);
+    let widest = |run: &Run| farthest(run, run.final_x, |frame| frame.x);
+    let all = [
+        (DEPTH, worst(set, deepest, depth)),
+        (RANGE, worst(set, widest, range)),
+        (STOPPING_TIME, worst(set, |run| run.stop_time, time)),
+    ];
+    for (observable, worst) in all {
+        let Some(Worst { value, scale, condition }) = worst else { continue };
+        let Observable { name, unit, factors } = observable;
+        // Typical values are a third to a fifth of the scale.
+        let factor = nearest(4.0 * value / scale, factors);
+        findings.warn(
+            Diagnostic::warning(format!("a {name} of {value} {unit} is implausible"))
+                .at(places[condition].speed, "at this impact speed")
+                .help(format!("it looks like {factor}; [columns] gives the units of a table")),
+        );
+    }
+}
+
+/// What is measured of a run, in words.
+struct Observable {
+    name: &'static str,
+    unit: &'static str,
+    factors: &'static [(f64, &'static str)],
+}
+
+const DEPTH: Observable = Observable { name: "depth", unit: "m", factors: LENGTHS };
+const RANGE: Observable = Observable { name: "range", unit: "m", factors: LENGTHS };
+const STOPPING_TIME: Observable = Observable { name: "stopping time", unit: "s", factors: TIMES };
+
+/// A value far beyond its natural scale.
+struct Worst {
+    value: f64,
+    scale: f64,
+    condition: usize,
+}
+
+/// The value farthest beyond its scale.
+fn worst(
+    set: &MeasurementSet,
+    value: impl Fn(&Run) -> Option<f64>,
+    scale: impl Fn(&Condition) -> f64,
+) -> Option<Worst> {
+    let of = |run: &Run| {
+        let (condition, value) = (run.condition, value(run)?);
+        Some(Worst { value, scale: scale(&set.conditions[condition]), condition })
+    };
+    let all = set.runs.iter().filter_map(of);
+    all.filter(|one| one.value > LARGEST * one.scale)
+        .max_by(|a, b| (a.value / a.scale).total_cmp(&(b.value / b.scale)))
+}
+
+/// The largest size of a coordinate in a run (m).
+fn farthest(
+    run: &Run,
+    last: Option<f64>,
+    coordinate: impl Fn(&super::Frame) -> f64,
+) -> Option<f64> {
+    let frames = run.frames.iter().filter(|frame| frame.t >= 0.0).map(coordinate);
+    frames.chain(last).map(f64::abs).max_by(f64::total_cmp)
+}
+
+/// Warns when the steps between frames are not those of the camera.
+fn check_rate(set: &MeasurementSet, findings: &mut Findings) {
+    let Some(rate) = set.instrument.rate else { return };
+    let steps = |run: &Run| {
+        let pairs = run.frames.windows(2).map(|pair| pair[1].t - pair[0].t);
+        pairs.collect::<Vec<f64>>()
+    };
+    let mut steps: Vec<f64> = set.runs.iter().flat_map(steps).collect();
+    steps.sort_by(f64::total_cmp);
+    let Some(step) = steps.get(steps.len() / 2) else { return };
+    let ratio = step * rate;
+    if !(1.0 / RATE..=RATE).contains(&ratio) {
+        let factor = nearest(ratio.max(1.0 / ratio), TIMES);
+        findings.warn(
+            Diagnostic::warning(format!("a step of {step} s between readings is not 1/rate_hz"))
+                .help(format!("rate_hz = {rate}; it looks like {factor}")),
+        );
+    }
+}
+
+/// The name of the factor nearest to `ratio`, which is at least 1.
+fn nearest(ratio: f64, factors: &[(f64, &'static str)]) -> &'static str {
+    let distance = |factor: f64| libm::log(ratio / factor).abs();
+    let by_distance = |a: &&(f64, &str), b: &&(f64, &str)| distance(a.0).total_cmp(&distance(b.0));
+    factors.iter().min_by(by_distance).map_or("another unit", |(_, name)| name)
+}

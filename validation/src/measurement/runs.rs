@@ -1,0 +1,145 @@
+//! `runs.csv`: one row for each run.
+
+use std::collections::BTreeMap;
+use std::io::BufRead;
+
+use configs::{Diagnostic, shorten};
+
+use super::cells::Cell;
+use super::columns::RUNS;
+use super::document::Missing;
+use super::findings::{Findings, lines_in_words, nearest_name};
+use super::row::Row;
+use super::table::{Format, Table, file_name};
+use super::{Condition, Run};
+
+/// Most runs of a set.
+const MOST: usize = 100_000;
+
+// The places of the columns in [`RUNS`].
+const RUN: usize = 0;
+const CONDITION: usize = 1;
+const REPEAT: usize = 2;
+const ORDER: usize = 3;
+const STOP_TIME: usize = 4;
+const FINAL_Z: usize = 5;
+const FINAL_X: usize = 6;
+
+/// Runs, and what is understood of their table.
+pub(super) struct Runs {
+    /// In the order of the file, without frames.
+    pub(super) runs: Vec<Run>,
+    /// The columns.
+    pub(super) columns: String,
+}
+
+/// Reads the table of runs; faults are reported. `None` if nothing of it can be read.
+pub(super) fn read(
+    (name, reader): (&str, impl BufRead),
+    conditions: &[Condition],
+    format: &Format,
+    missing: Missing,
+    findings: &mut Findings,
+) -> Option<Runs> {
+    let mut row = Row::default();
+    let mut table = Table::open((name, reader), &RUNS, format, &mut row, findings)?;
+    let index: BTreeMap<&str, usize> =
+        conditions.iter().enumerate().map(|(index, one)| (one.id.as_str(), index)).collect();
+    let mut lines = BTreeMap::<String, u64>::new();
+    let mut runs = Vec::new();
+    let mut marks = Vec::new();
+    while table.next(&mut row, findings) {
+        if runs.len() == MOST {
+            findings.report(Diagnostic::error(format!(
+                "{} has more than {MOST} rows",
+                file_name(name)
+            )));
+            break;
+        }
+        let run = table.text(&row, RUN).to_owned();
+        let condition = condition(&table, &row, &index, findings);
+        let repeat = table.count(&row, REPEAT, findings);
+        let order = table.count(&row, ORDER, findings);
+        let mut number = |key| match table.quantity(&row, key, findings) {
+            Cell::Value(value) => Some(value),
+            Cell::Missing => {
+                marks.push((row.line, key));
+                None
+            }
+            Cell::Empty | Cell::Wrong => None,
+        };
+        let [stop_time, final_z, final_x] = [STOP_TIME, FINAL_Z, FINAL_X].map(&mut number);
+        if let Some(first) = lines.get(&run) {
+            let span = table.place(&row, RUN, findings);
+            findings.report(
+                Diagnostic::error(format!("the run `{}` stands twice", shorten(&run)))
+                    .at(span, format!("it stands on line {first} too")),
+            );
+        }
+        if run.is_empty() {
+            let span = table.place(&row, RUN, findings);
+            findings.report(Diagnostic::error("a run without a name").at(span, "a name is wanted"));
+        }
+        if let Some(value) = stop_time.filter(|value| *value < 0.0) {
+            let span = table.place(&row, STOP_TIME, findings);
+            findings.report(
+                Diagnostic::error(format!("a stopping time of {value} s"))
+                    .at(span, "0 s or more is wanted, counted from first contact"),
+            );
+        }
+        lines.insert(run.clone(), row.line);
+        let Some(condition) = condition else { continue };
+        let frames = Vec::new();
+        runs.push(Run { name: run, condition, repeat, order, stop_time, final_z, final_x, frames });
+    }
+    if lines.is_empty() && findings.errors() == 0 {
+        findings
+            .report(Diagnostic::error(format!("{} has no row below its header", file_name(name))));
+    }
+    tell_marks(&marks, name, missing, findings);
+    Some(Runs { runs, columns: table.describe() })
+}
+
+/// The index of the condition of a row; an unknown one is reported.
+fn condition(
+    table: &Table<impl BufRead>,
+    row: &Row,
+    index: &BTreeMap<&str, usize>,
+    findings: &mut Findings,
+) -> Option<usize> {
+    let name = table.text(row, CONDITION);
+    let found = index.get(name).copied();
+    if found.is_none() {
+        let label = match nearest_name(name, index.keys().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "not the id of a [[condition]]".to_owned(),
+        };
+        let span = table.place(row, CONDITION, findings);
+        let known: Vec<&str> = index.keys().take(20).copied().collect();
+        findings.report(
+            Diagnostic::error(format!("there is no condition `{}`", shorten(name)))
+                .at(span, label)
+                .help(format!("conditions of the set: {}", known.join(", "))),
+        );
+    }
+    found
+}
+
+/// Refuses or notes marks such as NaN, which leave open whether something was measured.
+fn tell_marks(marks: &[(u64, usize)], name: &str, missing: Missing, findings: &mut Findings) {
+    if marks.is_empty() {
+        return;
+    }
+    let lines: Vec<u64> = marks.iter().map(|(line, _)| *line).collect();
+    let (n, lines, name) = (marks.len(), lines_in_words(&lines), file_name(name));
+    match missing {
+        Missing::Drop => findings
+            .note(format!("{n} cells of {name} without a number count as not measured: {lines}.")),
+        Missing::Error => findings.report(
+            Diagnostic::error(format!("{name}: {n} cells hold no number: {lines}")).help(
+                "leave a cell empty when it was not measured, \
+                 or write missing = \"drop\" below [files]",
+            ),
+        ),
+    }
+}

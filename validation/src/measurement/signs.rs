@@ -1,0 +1,130 @@
+//! Whether depth, range and angle count the way that the impact velocities say.
+
+use configs::Diagnostic;
+
+use super::checks::Start;
+use super::conditions::ConditionPlaces;
+use super::findings::Findings;
+use super::{Condition, Frame, MeasurementSet, Run};
+
+/// A way shorter than this share of the diameter says nothing about a direction.
+const SHORTEST: f64 = 0.05;
+
+/// Refuses a set that goes against its own impact velocities; which of the two is wrong is asked.
+pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+    let depth = against(set, |run, condition| {
+        let downward = condition.speed * sine(condition) > 0.0;
+        let ways = [travel(run, |frame| frame.z), run.final_z];
+        downward.then(|| least(ways, condition)).flatten()
+    });
+    if let Some(Against { condition, contrary, told }) = depth {
+        let angle = set.conditions[condition].angle_deg;
+        findings.report(
+            Diagnostic::error(format!("the depth falls in {contrary} of {told} runs"))
+                .at(
+                    places[condition].angle,
+                    format!("{angle} deg below the horizontal: the intruder goes down"),
+                )
+                .help(
+                    "is z counted upwards? then say below [columns]: \
+                     z = { name = \"z\", unit = \"m\", sign = -1 }, and so for final_z",
+                ),
+        );
+    }
+    let range = against(set, |run, condition| {
+        let forward = condition.speed * cosine(condition) > 0.05 * condition.speed;
+        let ways = [travel(run, |frame| frame.x), run.final_x];
+        forward.then(|| least(ways, condition)).flatten()
+    });
+    if let Some(Against { condition, contrary, told }) = range {
+        findings.report(
+            Diagnostic::error(format!("the intruder goes backwards in {contrary} of {told} runs"))
+                .at(places[condition].angle, "an oblique impact: x counts along its motion")
+                .help(
+                    "does x count the other way? then say below [columns]: \
+                     x = { name = \"x\", unit = \"m\", sign = -1 }, and so for final_x",
+                ),
+        );
+    }
+    check_angles(set, places, findings);
+}
+
+/// Refuses angles that the trajectories have to the vertical.
+fn check_angles(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+    // Near 45 deg the two conventions cannot be told apart, and 90 deg is vertical in both when
+    // only the others were converted.
+    let told = |condition: &Condition| {
+        (condition.angle_deg - 45.0).abs() > 10.0 && condition.angle_deg < 89.0
+    };
+    let measured = |run: &Run| {
+        let start = Start::of(run)?;
+        Some(libm::atan2(start.dz, start.dx).to_degrees())
+    };
+    let swapped = against(set, |run, condition| {
+        let angle = measured(run).filter(|_| told(condition))?;
+        let (right, other) = (condition.angle_deg, 90.0 - condition.angle_deg);
+        match ((angle - right).abs() < 15.0, (angle - other).abs() < 10.0) {
+            (true, _) => Some(1.0),
+            (false, true) => Some(-1.0),
+            (false, false) => None,
+        }
+    });
+    if let Some(Against { condition, contrary, told }) = swapped {
+        findings.report(
+            Diagnostic::error(format!(
+                "{contrary} of {told} runs start at the stated angle to the vertical"
+            ))
+            .at(places[condition].angle, "is this the angle to the vertical?")
+            .help("angle_deg is counted from the horizontal: 90 is straight down"),
+        );
+    }
+}
+
+/// Runs that go against what their condition says.
+struct Against {
+    /// The condition of the first of them.
+    condition: usize,
+    contrary: usize,
+    /// How many runs say anything.
+    told: usize,
+}
+
+/// Whether `direction` is negative for most runs that it says anything about.
+fn against(
+    set: &MeasurementSet,
+    direction: impl Fn(&Run, &Condition) -> Option<f64>,
+) -> Option<Against> {
+    let mut found = Against { condition: 0, contrary: 0, told: 0 };
+    for run in &set.runs {
+        let Some(way) = direction(run, &set.conditions[run.condition]) else { continue };
+        found.told += 1;
+        if way < 0.0 {
+            if found.contrary == 0 {
+                found.condition = run.condition;
+            }
+            found.contrary += 1;
+        }
+    }
+    (2 * found.contrary > found.told).then_some(found)
+}
+
+/// How far the frames of a run go along one coordinate (m).
+fn travel(run: &Run, coordinate: impl Fn(&Frame) -> f64) -> Option<f64> {
+    let start = coordinate(run.frames.first()?);
+    let ways = run.frames.iter().map(|frame| coordinate(frame) - start);
+    ways.max_by(|a, b| a.abs().total_cmp(&b.abs()))
+}
+
+/// The way that goes back farthest, of those (m) that are long enough to tell a direction.
+fn least(ways: [Option<f64>; 2], condition: &Condition) -> Option<f64> {
+    let far = |way: &f64| way.abs() >= SHORTEST * condition.diameter;
+    ways.into_iter().flatten().filter(far).min_by(f64::total_cmp)
+}
+
+fn sine(condition: &Condition) -> f64 {
+    libm::sin(condition.angle_deg.to_radians())
+}
+
+fn cosine(condition: &Condition) -> f64 {
+    libm::cos(condition.angle_deg.to_radians())
+}

@@ -1,0 +1,188 @@
+//! `trajectories.csv`: one row for each reading, in long form.
+
+use std::collections::BTreeMap;
+use std::io::BufRead;
+
+use configs::{Diagnostic, shorten};
+
+use super::cells::Cell;
+use super::columns::TRAJECTORIES;
+use super::document::Missing;
+use super::findings::{Findings, lines_in_words, nearest_name};
+use super::row::Row;
+use super::table::{Format, Table, file_name};
+use super::{Frame, Run};
+
+/// Most readings of a set: at 40 bytes each, and twice that while a list grows, they stay below
+/// 200 MB.
+pub(super) const MOST: usize = 2_000_000;
+
+// The places of the columns in [`TRAJECTORIES`].
+const RUN: usize = 0;
+const T: usize = 1;
+const Z: usize = 2;
+const X: usize = 3;
+const SIGMA: usize = 4;
+
+/// Reads the readings into their runs; faults are reported. Gives what is understood of the table,
+/// `None` if nothing of it can be read.
+pub(super) fn read(
+    (name, reader): (&str, impl BufRead),
+    runs: &mut [Run],
+    format: &Format,
+    missing: Missing,
+    findings: &mut Findings,
+) -> Option<String> {
+    let mut row = Row::default();
+    let mut table = Table::open((name, reader), &TRAJECTORIES, format, &mut row, findings)?;
+    let index: BTreeMap<String, usize> =
+        runs.iter().enumerate().map(|(index, run)| (run.name.clone(), index)).collect();
+    // The time and the line of the last reading of every run.
+    let mut last: Vec<Option<(f64, u64)>> = vec![None; runs.len()];
+    let (mut rows, mut zeros, mut holes) = (0, 0, Vec::new());
+    while table.next(&mut row, findings) {
+        rows += 1;
+        if rows > MOST {
+            findings.report(
+                Diagnostic::error(format!("{} has more than {MOST} rows", file_name(name)))
+                    .help("keep every second or tenth row: neighbouring readings say the same"),
+            );
+            break;
+        }
+        let run = run(&table, &row, &index, findings);
+        let mut hole = false;
+        let mut number = |key, required: bool| match table.quantity(&row, key, findings) {
+            Cell::Value(value) => Some(value),
+            Cell::Empty if !required => None,
+            Cell::Empty | Cell::Missing => {
+                hole = true;
+                None
+            }
+            Cell::Wrong => None,
+        };
+        let [t, z, x] = [T, Z, X].map(|key| number(key, true));
+        let sigma = number(SIGMA, false);
+        if hole {
+            holes.push(row.line);
+            continue;
+        }
+        let (Some(run), Some(t), Some(z), Some(x)) = (run, t, z, x) else { continue };
+        if sigma.is_some_and(|sigma| sigma < 0.0) {
+            let span = table.place(&row, SIGMA, findings);
+            let wanted = "above 0 is wanted; leave it empty when it is not known";
+            findings.report(Diagnostic::error("a negative error").at(span, wanted));
+        }
+        zeros += usize::from(sigma == Some(0.0));
+        if let Some((before, line)) = last[run].filter(|(before, _)| *before >= t) {
+            let what = match before > t {
+                true => format!("the time runs back in the run `{}`", shorten(&runs[run].name)),
+                false => format!("a time stands twice in the run `{}`", shorten(&runs[run].name)),
+            };
+            let span = table.place(&row, T, findings);
+            findings
+                .report(Diagnostic::error(what).at(span, format!("line {line} has {before} s")));
+        }
+        last[run] = Some((t, row.line));
+        runs[run].frames.push(Frame { t, z, x, sigma: sigma.filter(|sigma| *sigma > 0.0) });
+    }
+    if zeros > 0 {
+        let table = file_name(name);
+        findings.note(format!("An error of zero is taken as not stated: {zeros} rows of {table}."));
+    }
+    if rows == 0 && findings.errors() == 0 {
+        findings
+            .report(Diagnostic::error(format!("{} has no row below its header", file_name(name))));
+    }
+    tell_holes(&holes, name, missing, findings);
+    Some(table.describe())
+}
+
+/// The index of the run of a row; an unknown one is reported.
+fn run(
+    table: &Table<impl BufRead>,
+    row: &Row,
+    index: &BTreeMap<String, usize>,
+    findings: &mut Findings,
+) -> Option<usize> {
+    let name = table.text(row, RUN);
+    let found = index.get(name).copied();
+    if found.is_none() {
+        let label = match nearest_name(name, index.keys().map(String::as_str)) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "not in the table of runs".to_owned(),
+        };
+        let span = table.place(row, RUN, findings);
+        findings.report(
+            Diagnostic::error(format!("there is no run `{}`", shorten(name))).at(span, label),
+        );
+    }
+    found
+}
+
+/// Refuses or notes rows without a time or a position.
+fn tell_holes(holes: &[u64], name: &str, missing: Missing, findings: &mut Findings) {
+    if holes.is_empty() {
+        return;
+    }
+    let (n, lines, name) = (holes.len(), lines_in_words(holes), file_name(name));
+    let rows = if n == 1 { "row" } else { "rows" };
+    match missing {
+        Missing::Drop => {
+            findings.note(format!("{n} {rows} of {name} without a number were dropped: {lines}."));
+        }
+        Missing::Error => findings.report(
+            Diagnostic::error(format!("{name}: {n} {rows} without a number: {lines}"))
+                .help("write missing = \"drop\" below [files] to go on without these rows"),
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{self, BufReader, Read};
+
+    use super::*;
+
+    /// A table without an end.
+    struct Endless {
+        row: u64,
+        rest: Vec<u8>,
+    }
+
+    impl Read for Endless {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            while self.rest.len() < buffer.len() {
+                self.row += 1;
+                self.rest.extend_from_slice(format!("r1,{}e-6,0.01,0\n", self.row).as_bytes());
+            }
+            let taken = buffer.len();
+            buffer.copy_from_slice(&self.rest[..taken]);
+            self.rest.drain(..taken);
+            Ok(taken)
+        }
+    }
+
+    #[test]
+    fn a_table_of_too_many_rows_is_refused_before_it_fills_the_memory() {
+        let table = Endless { row: 0, rest: b"run,t,z,x\n".to_vec() };
+        let run = |name: &str| Run {
+            name: name.to_owned(),
+            condition: 0,
+            repeat: None,
+            order: None,
+            stop_time: None,
+            final_z: None,
+            final_x: None,
+            frames: Vec::new(),
+        };
+        let (mut runs, mut findings) = ([run("r1")], Findings::default());
+        let source = ("trajectories.csv", BufReader::new(table));
+        read(source, &mut runs, &Format::default(), Missing::Error, &mut findings);
+        let messages: Vec<&str> =
+            findings.diagnostics.iter().map(|one| one.message.as_str()).collect();
+        assert_eq!(messages, ["trajectories.csv has more than 2000000 rows"]);
+        let held = runs[0].frames.capacity() * size_of::<Frame>();
+        // While the list grows, half of it again is held.
+        assert!(held + held / 2 < 200_000_000, "{held} bytes");
+    }
+}

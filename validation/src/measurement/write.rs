@@ -1,0 +1,209 @@
+//! A set as a folder that reads back to the same set.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use configs::toml_string as quoted;
+use thiserror::Error;
+
+use super::{
+    Condition, FinalDefinition, Geometry, Kind, MeasurementSet, Role, Run, StopDefinition,
+};
+
+/// Why a set cannot be written.
+#[derive(Debug, Error)]
+pub enum WriteError {
+    /// The file system refuses.
+    #[error("{path}: {source}", path = path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A name that a cell cannot hold.
+    #[error("the run `{0}` cannot be written: blanks at its ends, a line break, or nothing at all")]
+    Name(String),
+}
+
+impl MeasurementSet {
+    /// Writes `measurement.toml` and its tables into `folder`, which is made where it is missing.
+    /// [`MeasurementSet::load`] gives the same set again, down to the bit.
+    ///
+    /// # Errors
+    /// When a file cannot be written, or the name of a run does not fit into a cell.
+    pub fn write(&self, folder: &Path) -> Result<(), WriteError> {
+        let fits =
+            |name: &str| name.trim() == name && !name.is_empty() && !name.contains(['\n', '\r']);
+        if let Some(run) = self.runs.iter().find(|run| !fits(&run.name)) {
+            return Err(WriteError::Name(run.name.clone()));
+        }
+        fs::create_dir_all(folder)
+            .map_err(|source| WriteError::Io { path: folder.to_owned(), source })?;
+        put(&folder.join("runs.csv"), self.runs_table())?;
+        if self.kind == Kind::Trajectory {
+            put(&folder.join("trajectories.csv"), self.trajectory_table())?;
+        }
+        put(&folder.join("measurement.toml"), Ok(self.toml().into_bytes()))
+    }
+
+    fn toml(&self) -> String {
+        let mut file = Toml(String::from("schema = 1\n"));
+        file.table("[measurement]");
+        file.word("id", &self.id);
+        let scalar = self.kind == Kind::Scalar;
+        file.word("kind", if scalar { "scalar" } else { "trajectory" });
+        file.text("source", self.source.as_deref());
+        file.word(
+            "stop_definition",
+            match self.stop {
+                StopDefinition::ComponentZero => "component-zero",
+                StopDefinition::SpeedFivePercent => "speed-5-percent",
+            },
+        );
+        file.word(
+            "final",
+            match self.last {
+                FinalDefinition::Deepest => "deepest",
+                FinalDefinition::Resting => "resting",
+            },
+        );
+        let notes: Vec<String> = self.notes.iter().map(|note| quoted(note)).collect();
+        file.line("notes", &format!("[{}]", notes.join(", ")));
+        file.table("[instrument]");
+        file.number("rate_hz", self.instrument.rate);
+        file.number("position_sigma_m", self.instrument.position_sigma);
+        file.number("speed_sigma_rel", self.instrument.speed_sigma_rel);
+        file.number("level_sigma_m", self.instrument.level_sigma);
+        file.table("[bed]");
+        let planar = self.bed.geometry == Geometry::Planar;
+        file.word("geometry", if planar { "2d" } else { "3d" });
+        file.number("bulk_density", self.bed.bulk_density);
+        file.number("gravity", Some(self.bed.gravity));
+        file.number("grain_diameter", self.bed.grain_diameter);
+        file.table("[model]");
+        file.text("baseline", self.baseline.as_deref());
+        file.table("[noise]");
+        file.number("stop_time_rel", self.stated.stop_time);
+        file.number("final_z_rel", self.stated.final_z);
+        file.number("final_x_rel", self.stated.final_x);
+        file.table("[files]");
+        file.word("runs", "runs.csv");
+        file.text("trajectories", (!scalar).then_some("trajectories.csv"));
+        // The names of conditions and runs may hold what would look like a separator.
+        file.word("delimiter", ",");
+        file.word("decimal", ".");
+        for condition in &self.conditions {
+            file.condition(condition);
+        }
+        file.0
+    }
+
+    fn runs_table(&self) -> io::Result<Vec<u8>> {
+        let count = |value: Option<i64>| value.map_or(String::new(), |value| value.to_string());
+        let mut table = csv_writer();
+        let header = ["run", "condition", "repeat", "order", "stop_time", "final_z", "final_x"];
+        table.write_record(header)?;
+        for run in &self.runs {
+            table.write_record([
+                run.name.as_str(),
+                &self.conditions[run.condition].id,
+                &count(run.repeat),
+                &count(run.order),
+                &cell(run.stop_time),
+                &cell(run.final_z),
+                &cell(run.final_x),
+            ])?;
+        }
+        table.into_inner().map_err(|error| error.into_error())
+    }
+
+    fn trajectory_table(&self) -> io::Result<Vec<u8>> {
+        let has_sigma = |run: &Run| run.frames.iter().any(|frame| frame.sigma.is_some());
+        let columns = if self.runs.iter().any(has_sigma) { 5 } else { 4 };
+        let mut table = csv_writer();
+        table.write_record(&["run", "t", "z", "x", "sigma_z"][..columns])?;
+        for run in &self.runs {
+            for frame in &run.frames {
+                let [t, z, x] = [frame.t, frame.z, frame.x].map(|value| cell(Some(value)));
+                let cells = [run.name.as_str(), &t, &z, &x, &cell(frame.sigma)];
+                table.write_record(&cells[..columns])?;
+            }
+        }
+        table.into_inner().map_err(|error| error.into_error())
+    }
+}
+
+fn csv_writer() -> csv::Writer<Vec<u8>> {
+    // A name that begins like a comment is quoted.
+    csv::WriterBuilder::new().comment(Some(b'#')).from_writer(Vec::new())
+}
+
+/// The shortest text that reads back to the same bits.
+fn cell(value: Option<f64>) -> String {
+    value.map_or(String::new(), |value| format!("{value:?}"))
+}
+
+/// Writes under another name first: a name that is there is a whole file.
+fn put(path: &Path, content: io::Result<Vec<u8>>) -> Result<(), WriteError> {
+    let partial = path.with_extension("part");
+    content
+        .and_then(|content| fs::write(&partial, content))
+        .and_then(|()| fs::rename(&partial, path))
+        .map_err(|source| WriteError::Io { path: path.to_owned(), source })
+}
+
+/// `measurement.toml` under construction.
+struct Toml(String);
+
+impl Toml {
+    fn table(&mut self, header: &str) {
+        let _ = writeln!(self.0, "\n{header}");
+    }
+
+    fn line(&mut self, key: &str, value: &str) {
+        let _ = writeln!(self.0, "{key} = {value}");
+    }
+
+    fn word(&mut self, key: &str, value: &str) {
+        self.line(key, &quoted(value));
+    }
+
+    fn text(&mut self, key: &str, value: Option<&str>) {
+        if let Some(value) = value {
+            self.word(key, value);
+        }
+    }
+
+    fn number(&mut self, key: &str, value: Option<f64>) {
+        if let Some(value) = value {
+            self.line(key, &format!("{value:?}"));
+        }
+    }
+
+    fn condition(&mut self, condition: &Condition) {
+        self.table("[[condition]]");
+        self.word("id", &condition.id);
+        self.word(
+            "role",
+            match condition.role {
+                Role::Fit => "fit",
+                Role::Holdout => "holdout",
+            },
+        );
+        self.number("speed", Some(condition.speed));
+        self.number("angle_deg", Some(condition.angle_deg));
+        self.word("shape", &condition.shape);
+        self.number("diameter", Some(condition.diameter));
+        self.number("mass", Some(condition.mass));
+        self.number("spin", Some(condition.spin));
+        self.number("packing", condition.packing);
+        self.number("bed_depth", condition.bed_depth);
+        self.number("length", condition.length);
+        self.number("height", condition.height);
+        self.number("apex_deg", condition.apex_deg);
+        self.number("link_angle_deg", condition.link_angle_deg);
+    }
+}

@@ -1,0 +1,247 @@
+//! How much the runs of one condition scatter, learned from the deviations from their own mean.
+//!
+//! The deviations hold no error of a model, so a missing effect is not taken for noise, nor noise for
+//! an effect. Their likelihood is the restricted one (Patterson & Thompson 1971, Biometrika 58, 545):
+//! the mean of each condition is projected out before anything is estimated.
+
+use argmin::core::{CostFunction, Executor, State};
+use argmin::solver::neldermead::NelderMead;
+use nalgebra::{Cholesky, DMatrix, DVector};
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use crate::measurement::Instrument;
+use crate::observed::{Observed, ObservedCondition, POSITION_FLOOR};
+use crate::rounding::rounded;
+use crate::sensitivity::{Sensitivity, Spread};
+
+/// Bounds of a relative scatter: below, it is nothing; above, a bed is no longer one condition.
+const SPREAD_BOUNDS: (f64, f64) = (1e-4, 1.0);
+
+/// Most that readings may be worse than stated.
+const READING_MOST: f64 = 30.0;
+
+/// Iterations after which the likelihood is taken as it is; a fraction of it is common.
+const ITERATIONS: u64 = 300;
+
+/// How much the numbers of one run scatter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// Where it is from.
+    pub source: NoiseSource,
+    /// Error of readings over what the instrument states.
+    pub reading: f64,
+    /// Scatter of what differs from run to run.
+    pub spread: Spread,
+}
+
+/// Where a noise is from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NoiseSource {
+    /// The scatter of repeats.
+    Repeats,
+    /// Errors that the set states.
+    Stated,
+    /// Nothing: 5 % of every number, so that a fit has weights. No test is made on it.
+    Assumed,
+}
+
+/// Relative error of numbers about whose error nothing is known.
+const ASSUMED: f64 = 0.05;
+
+impl Noise {
+    /// What the set states: nothing is known about the run-to-run scatter.
+    #[must_use]
+    pub fn stated() -> Self {
+        let spread = Spread { coefficient: 0.0, path: 0.0, speed: 0.0, level: 0.0 };
+        Self { source: NoiseSource::Stated, reading: 1.0, spread }
+    }
+
+    /// For comparing where nothing is known.
+    #[must_use]
+    pub fn assumed() -> Self {
+        Self { source: NoiseSource::Assumed, ..Self::stated() }
+    }
+
+    /// A first guess where there are repeats: coefficients to 5 %, the path to 12 %.
+    #[must_use]
+    pub fn guess(instrument: &Instrument) -> Self {
+        let spread = Spread::new(0.05, 0.12, instrument);
+        Self { source: NoiseSource::Repeats, reading: 1.0, spread }
+    }
+
+    /// The most likely noise of the runs of the conditions `fit`, whose observables follow the
+    /// run-to-run inputs by `sensitivities` (in the same order), searched from `self`.
+    #[must_use]
+    pub fn estimate(
+        &self,
+        observed: &Observed,
+        sensitivities: &[Sensitivity],
+        instrument: &Instrument,
+    ) -> Self {
+        if self.source != NoiseSource::Repeats {
+            return *self;
+        }
+        let conditions = observed.fit.iter().map(|&index| &observed.conditions[index]);
+        let terms: Vec<Term> = conditions
+            .zip(sensitivities)
+            .filter(|(condition, _)| condition.runs.len() > 1)
+            .map(|(condition, sensitivity)| Term::new(condition, sensitivity))
+            .collect();
+        let likelihood = Likelihood { terms, instrument: *instrument };
+        let start = [self.reading, self.spread.coefficient, self.spread.path].map(libm::log);
+        let mut simplex = vec![start.to_vec()];
+        for axis in 0..start.len() {
+            let mut corner = start.to_vec();
+            corner[axis] += 0.4;
+            simplex.push(corner);
+        }
+        // In the logarithms, so 1e-4 is a hundredth of a percent of a standard deviation.
+        let best = NelderMead::new(simplex)
+            .with_sd_tolerance(1e-4)
+            .and_then(|solver| {
+                let run = Executor::new(likelihood, solver);
+                run.configure(|state| state.max_iters(ITERATIONS)).run()
+            })
+            .ok()
+            .and_then(|result| result.state().get_best_param().cloned());
+        best.map_or(*self, |at| from_logarithms(&at, instrument))
+    }
+
+    /// As JSON for a report.
+    #[must_use]
+    pub fn to_json(&self, instrument: &Instrument) -> Value {
+        let position = instrument.position_sigma.unwrap_or(0.0).max(POSITION_FLOOR);
+        json!({
+            "source": self.source,
+            "position_sigma_m": rounded(self.reading * position),
+            "coefficient_sd": rounded(self.spread.coefficient),
+            "path_force_sd": rounded(self.spread.path),
+            "speed_sd": rounded(self.spread.speed),
+            "level_sd_m": rounded(self.spread.level),
+        })
+    }
+
+    /// Covariance of the numbers of one run.
+    #[must_use]
+    pub fn covariance(
+        &self,
+        condition: &ObservedCondition,
+        sensitivity: &Sensitivity,
+    ) -> DMatrix<f64> {
+        match self.source {
+            NoiseSource::Repeats => {
+                let scatter = scaled_columns(&sensitivity.slope, &sensitivity.spread(&self.spread));
+                let readings = condition.reading.map(|sd| (self.reading * sd).powi(2));
+                DMatrix::from_diagonal(&readings) + &scatter * scatter.transpose()
+            }
+            NoiseSource::Stated => stated_covariance(condition, 0.0),
+            NoiseSource::Assumed => stated_covariance(condition, ASSUMED),
+        }
+    }
+}
+
+/// A stated relative error is one factor on all numbers of a kind, beside the error of readings.
+fn stated_covariance(condition: &ObservedCondition, otherwise: f64) -> DMatrix<f64> {
+    let kinds = condition.layout.kinds();
+    let error = |at: usize| condition.stated[at].unwrap_or(otherwise) * condition.mean[at];
+    DMatrix::from_fn(kinds.len(), kinds.len(), |i, j| {
+        let together = if kinds[i] == kinds[j] { error(i) * error(j) } else { 0.0 };
+        together + if i == j { condition.reading[i].powi(2) } else { 0.0 }
+    })
+}
+
+fn scaled_columns(matrix: &DMatrix<f64>, scale: &DVector<f64>) -> DMatrix<f64> {
+    let mut scaled = matrix.clone();
+    for (mut column, factor) in scaled.column_iter_mut().zip(scale.iter()) {
+        column *= *factor;
+    }
+    scaled
+}
+
+fn from_logarithms(at: &[f64], instrument: &Instrument) -> Noise {
+    let (low, high) = SPREAD_BOUNDS;
+    let position = instrument.position_sigma.unwrap_or(0.0).max(POSITION_FLOOR);
+    let reading = libm::exp(at[0]).clamp(POSITION_FLOOR / position, READING_MOST);
+    let [coefficient, path] = [at[1], at[2]].map(|log| libm::exp(log).clamp(low, high));
+    let spread = Spread::new(coefficient, path, instrument);
+    Noise { source: NoiseSource::Repeats, reading, spread }
+}
+
+/// What the likelihood needs of one condition, in units of the stated error of its readings.
+struct Term {
+    sensitivity: Sensitivity,
+    /// Number of observables.
+    n: f64,
+    /// Number of independent deviations.
+    contrasts: f64,
+    /// JᵀJ of the sensitivities.
+    gram: DMatrix<f64>,
+    /// JᵀSJ, with S the sum of squares of the deviations.
+    projected: DMatrix<f64>,
+    /// Trace of S.
+    trace: f64,
+}
+
+impl Term {
+    fn new(condition: &ObservedCondition, sensitivity: &Sensitivity) -> Self {
+        let mut slope = sensitivity.slope.clone();
+        for (mut row, sd) in slope.row_iter_mut().zip(condition.reading.iter()) {
+            row /= *sd;
+        }
+        let deviations = (0..condition.runs.len())
+            .map(|run| condition.deviation(run).component_div(&condition.reading));
+        let mut projected = DMatrix::zeros(slope.ncols(), slope.ncols());
+        let mut trace = 0.0;
+        for deviation in deviations {
+            let onto = slope.tr_mul(&deviation);
+            projected += &onto * onto.transpose();
+            trace += deviation.norm_squared();
+        }
+        Self {
+            n: condition.reading.len() as f64,
+            contrasts: condition.runs.len() as f64 - 1.0,
+            gram: slope.tr_mul(&slope),
+            projected,
+            trace,
+            sensitivity: sensitivity.clone(),
+        }
+    }
+
+    /// Twice the negative logarithm of the likelihood, by Woodbury's identity: the covariance is
+    /// diagonal plus one dimension per random input.
+    fn cost(&self, noise: &Noise) -> Option<f64> {
+        let f2 = noise.reading.powi(2);
+        let sd = self.sensitivity.spread(&noise.spread);
+        let both = |matrix: &DMatrix<f64>| {
+            DMatrix::from_fn(sd.len(), sd.len(), |i, j| sd[i] * matrix[(i, j)] * sd[j] / f2)
+        };
+        let inner = DMatrix::identity(sd.len(), sd.len()) + both(&self.gram);
+        let inner = Cholesky::new(inner)?;
+        let explained = inner.solve(&both(&self.projected)).trace();
+        let determinant = self.n * libm::log(f2) + log_determinant(&inner);
+        Some(self.contrasts * determinant + (self.trace - explained) / f2)
+    }
+}
+
+/// Logarithm of the determinant of a matrix from its factor.
+pub(crate) fn log_determinant(factor: &Cholesky<f64, nalgebra::Dyn>) -> f64 {
+    2.0 * factor.l_dirty().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>()
+}
+
+struct Likelihood {
+    terms: Vec<Term>,
+    instrument: Instrument,
+}
+
+impl CostFunction for Likelihood {
+    type Param = Vec<f64>;
+    type Output = f64;
+
+    fn cost(&self, at: &Self::Param) -> Result<f64, argmin::core::Error> {
+        let noise = from_logarithms(at, &self.instrument);
+        let total = self.terms.iter().map(|term| term.cost(&noise)).sum::<Option<f64>>();
+        Ok(total.unwrap_or(f64::INFINITY))
+    }
+}

@@ -1,0 +1,355 @@
+//! What a measurement set says about the observables: the vectors of its runs, condition by condition.
+
+use nalgebra::DVector;
+
+use crate::measurement::{Condition, Frame, Kind, MeasurementSet, Role, Run, StatedError};
+use crate::observable::{Layout, Observable};
+use crate::resampling::{STOPPED, common_grid, depth_and_range, stopped_at};
+
+/// Least error that a reading of a position is credited with (m): below it the error of models and
+/// of their integration shows, and better cameras do not help.
+pub const POSITION_FLOOR: f64 = 1e-4;
+
+/// Most frames of the penetration that are compared; neighbours in time tell the same.
+const PENETRATION_FRAMES: usize = 24;
+
+/// Most frames before first contact that are compared: they carry speed and friction of a guide.
+const FLIGHT_FRAMES: usize = 6;
+
+/// Share of the time to the stop whose frames are compared where the resting point is measured too:
+/// later, some runs have stopped and others not, and a prediction has a kink in every parameter.
+const BEFORE_STOP: f64 = 0.9;
+
+/// The observables of all conditions, in the order of the set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Observed {
+    /// One entry per condition of the set; one without usable runs has an empty layout.
+    pub conditions: Vec<ObservedCondition>,
+    /// Indices of the conditions that may be fitted to and have something to fit to.
+    pub fit: Vec<usize>,
+    /// Indices of the conditions that judge alone.
+    pub holdout: Vec<usize>,
+    /// What was left aside, in sentences for the report.
+    pub notes: Vec<String>,
+}
+
+/// The observables of one condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObservedCondition {
+    /// What the numbers are.
+    pub layout: Layout,
+    /// One vector per run, in an order that their values alone decide.
+    pub runs: Vec<DVector<f64>>,
+    /// Mean over the runs.
+    pub mean: DVector<f64>,
+    /// Standard deviation of one reading of each number (in its own unit).
+    pub reading: DVector<f64>,
+    /// Stated relative error of each number (1 = 100 %).
+    pub stated: Vec<Option<f64>>,
+    /// Greatest mean depth (m): how far the path goes that forces scatter along.
+    pub reach: f64,
+}
+
+impl Observed {
+    /// The observables of `set`.
+    ///
+    /// Trajectories are brought to common times (interpolated where the frames of runs differ) and
+    /// thinned; the analysed part ends when the speed of the mean run first falls below 5 % of the
+    /// impact speed (a tenth earlier, where the resting point is measured), so the creep of shallow
+    /// slow shots is left out. Scalars count where every run
+    /// of the condition has them.
+    #[must_use]
+    pub fn of(set: &MeasurementSet) -> Self {
+        let mut notes = Vec::new();
+        let conditions: Vec<_> = (0..set.conditions.len())
+            .map(|index| ObservedCondition::of(set, index, &mut notes))
+            .collect();
+        let with_role = |role: Role| {
+            let usable = conditions.iter().zip(&set.conditions).enumerate();
+            usable
+                .filter(|(_, (observed, condition))| {
+                    condition.role == role && !observed.layout.is_empty()
+                })
+                .map(|(index, _)| index)
+                .collect::<Vec<_>>()
+        };
+        let (fit, holdout) = (with_role(Role::Fit), with_role(Role::Holdout));
+        Self { conditions, fit, holdout, notes }
+    }
+
+    /// Whether any condition that may be fitted to was repeated.
+    #[must_use]
+    pub fn has_repeats(&self) -> bool {
+        self.contrasts() > 0
+    }
+
+    /// How many independent deviations from the means of conditions the repeats give.
+    #[must_use]
+    pub fn contrasts(&self) -> usize {
+        self.fit.iter().map(|&index| self.conditions[index].runs.len() - 1).sum()
+    }
+
+    /// Whether every number of every condition to fit has a stated error.
+    #[must_use]
+    pub fn has_stated_errors(&self) -> bool {
+        !self.fit.is_empty()
+            && self.fit.iter().all(|&c| self.conditions[c].stated.iter().all(Option::is_some))
+    }
+
+    /// The layouts, in the order of the conditions: what a model is asked to predict.
+    #[must_use]
+    pub fn layouts(&self) -> Vec<Layout> {
+        self.conditions.iter().map(|condition| condition.layout.clone()).collect()
+    }
+}
+
+impl ObservedCondition {
+    fn of(set: &MeasurementSet, index: usize, notes: &mut Vec<String>) -> Self {
+        let condition = &set.conditions[index];
+        let mut runs: Vec<&Run> = set.runs.iter().filter(|run| run.condition == index).collect();
+        let has_frames = |run: &&Run| run.frames.len() > 2;
+        if set.kind == Kind::Trajectory && runs.iter().any(has_frames) {
+            let all = runs.len();
+            runs.retain(has_frames);
+            if runs.len() < all {
+                let missing = all - runs.len();
+                notes.push(format!(
+                    "condition {}: {missing} of {all} runs have no trajectory and are left out",
+                    condition.id
+                ));
+            }
+        }
+        let common = |of: fn(&Run) -> Option<f64>| {
+            !runs.is_empty()
+                && runs.iter().all(|run| of(run).is_some())
+                && runs.iter().any(|run| of(run) != Some(0.0))
+        };
+        let share = if common(|run| run.final_z) { BEFORE_STOP } else { 1.0 };
+        let frames = match set.kind {
+            Kind::Trajectory => frames_of(&runs, condition, share),
+            Kind::Scalar => CommonFrames::default(),
+        };
+        let layout = Layout {
+            along_x: frames.range.iter().flatten().any(|x| *x != 0.0),
+            times: frames.times,
+            stop_time: common(|run| run.stop_time),
+            final_z: common(|run| run.final_z),
+            final_x: common(|run| run.final_x),
+        };
+        let mut vectors: Vec<DVector<f64>> = (0..runs.len())
+            .map(|at| vector(&layout, runs[at], frames.depth.get(at), frames.range.get(at)))
+            .collect();
+        vectors.sort_by(|a, b| {
+            let pairs = a.iter().zip(b.iter());
+            pairs
+                .map(|(a, b)| a.total_cmp(b))
+                .find(|order| order.is_ne())
+                .unwrap_or(a.len().cmp(&b.len()))
+        });
+        if layout.is_empty() {
+            vectors.clear();
+            notes.push(format!("condition {} has nothing to compare", condition.id));
+        }
+        let mean = mean(&vectors, layout.len());
+        let kinds = layout.kinds();
+        let depths = kinds.iter().zip(mean.iter());
+        let deepest = depths
+            .filter(|(kind, _)| matches!(kind, Observable::Depth | Observable::FinalDepth))
+            .fold(0.0_f64, |deepest, (_, z)| deepest.max(*z));
+        Self {
+            reading: reading(set, &layout, condition, &frames.sigma),
+            stated: kinds.iter().map(|kind| stated(&set.stated, *kind)).collect(),
+            reach: if deepest > 0.0 { deepest } else { condition.diameter },
+            layout,
+            runs: vectors,
+            mean,
+        }
+    }
+
+    /// The numbers of run `run` less the mean of the condition.
+    #[must_use]
+    pub fn deviation(&self, run: usize) -> DVector<f64> {
+        &self.runs[run] - &self.mean
+    }
+}
+
+/// Readings of all runs of a condition at the same times.
+#[derive(Default)]
+struct CommonFrames {
+    times: Vec<f64>,
+    /// Per run, per time (m).
+    depth: Vec<Vec<f64>>,
+    range: Vec<Vec<f64>>,
+    /// Stated standard deviation per time (m).
+    sigma: Vec<Option<f64>>,
+}
+
+/// Frames of `runs` up to `share` of the time to the stop.
+fn frames_of(runs: &[&Run], condition: &Condition, share: f64) -> CommonFrames {
+    let tracks: Vec<&[Frame]> = runs.iter().map(|run| run.frames.as_slice()).collect();
+    let grid = common_grid(&tracks);
+    let readings: Vec<_> = tracks.iter().map(|track| depth_and_range(track, &grid)).collect();
+    let at = |time: usize, part: fn(&(f64, f64)) -> f64| {
+        readings.iter().map(|run| part(&run[time])).sum::<f64>() / readings.len() as f64
+    };
+    let mean: Vec<(f64, f64)> =
+        (0..grid.len()).map(|time| (at(time, |r| r.0), at(time, |r| r.1))).collect();
+    let flight = grid.iter().take_while(|t| **t < 0.0).count();
+    let stop = stopped_at(&grid, &mean, condition.speed);
+    let end = flight + (share * stop.saturating_sub(flight) as f64).ceil() as usize;
+    let kept: Vec<usize> = thinned(0..flight, FLIGHT_FRAMES)
+        .into_iter()
+        .chain(thinned(flight..end, PENETRATION_FRAMES))
+        .collect();
+    let part = |of: fn(&(f64, f64)) -> f64| {
+        readings.iter().map(|run| kept.iter().map(|&time| of(&run[time])).collect()).collect()
+    };
+    CommonFrames {
+        times: kept.iter().map(|&time| grid[time]).collect(),
+        depth: part(|r| r.0),
+        range: part(|r| r.1),
+        sigma: kept.iter().map(|&time| stated_sigma(&tracks, grid[time])).collect(),
+    }
+}
+
+/// `count` of `all`, evenly spaced, first and last among them.
+fn thinned(all: std::ops::Range<usize>, count: usize) -> Vec<usize> {
+    let n = all.len();
+    if n <= count {
+        return all.collect();
+    }
+    (0..count).map(|k| all.start + (k * (n - 1) + (count - 1) / 2) / (count - 1)).collect()
+}
+
+/// Root mean square of what the runs state for the reading nearest to `time`, if all state it.
+fn stated_sigma(tracks: &[&[Frame]], time: f64) -> Option<f64> {
+    let mut sum = 0.0;
+    for track in tracks {
+        let near = |frame: &&Frame| (frame.t - time).abs();
+        sum += track.iter().min_by(|a, b| near(a).total_cmp(&near(b)))?.sigma?.powi(2);
+    }
+    Some((sum / tracks.len() as f64).sqrt())
+}
+
+fn vector(
+    layout: &Layout,
+    run: &Run,
+    depth: Option<&Vec<f64>>,
+    range: Option<&Vec<f64>>,
+) -> DVector<f64> {
+    let mut numbers: Vec<f64> = depth.cloned().unwrap_or_default();
+    if layout.along_x {
+        numbers.extend(range.into_iter().flatten());
+    }
+    let scalars = [
+        (layout.stop_time, run.stop_time),
+        (layout.final_z, run.final_z),
+        (layout.final_x, run.final_x),
+    ];
+    numbers.extend(scalars.iter().filter(|(there, _)| *there).filter_map(|(_, value)| *value));
+    DVector::from_vec(numbers)
+}
+
+fn mean(vectors: &[DVector<f64>], len: usize) -> DVector<f64> {
+    let sum = vectors.iter().fold(DVector::zeros(len), |sum, vector| sum + vector);
+    sum / vectors.len().max(1) as f64
+}
+
+fn reading(
+    set: &MeasurementSet,
+    layout: &Layout,
+    condition: &Condition,
+    frames: &[Option<f64>],
+) -> DVector<f64> {
+    let position = set.instrument.position_sigma.unwrap_or(0.0).max(POSITION_FLOOR);
+    // A stop is seen to a frame; without a rate, to the time in which the intruder, at the speed that
+    // counts as stopped, moves by the error of a reading.
+    let own_speed = (set.bed.gravity * condition.diameter).sqrt();
+    let time =
+        set.instrument.rate.map_or(position / (STOPPED * condition.speed.max(own_speed)), |rate| {
+            1.0 / (rate * 12.0_f64.sqrt())
+        });
+    let frame = |at: usize| frames[at].map_or(position, |sigma| sigma.max(POSITION_FLOOR));
+    let n = layout.times.len();
+    let kinds = layout.kinds();
+    DVector::from_iterator(
+        kinds.len(),
+        kinds.iter().enumerate().map(|(at, kind)| match kind {
+            Observable::Depth | Observable::Range => frame(at % n),
+            Observable::StopTime => time,
+            Observable::FinalDepth | Observable::FinalRange => position,
+        }),
+    )
+}
+
+fn stated(stated: &StatedError, kind: Observable) -> Option<f64> {
+    match kind {
+        Observable::StopTime => stated.stop_time,
+        Observable::Depth | Observable::FinalDepth => stated.final_z,
+        Observable::Range | Observable::FinalRange => stated.final_x,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_sets::{condition, scalar_run, set, trajectory_run};
+
+    #[test]
+    fn creep_behind_the_stop_is_left_out_and_the_flight_is_kept() {
+        // 1 m/s that decays at 20 /s: 5 % is reached after 0.15 s.
+        let fall = |t: f64| if t < 0.0 { t } else { (1.0 - libm::exp(-20.0 * t)) / 20.0 };
+        let runs = [1.0, 1.02].map(|scale| trajectory_run(0, |t| (scale * fall(t), 0.0)));
+        let observed =
+            Observed::of(&set(Kind::Trajectory, vec![condition(1.0, 90.0)], runs.into()));
+        let times = &observed.conditions[0].layout.times;
+        assert_eq!(times.iter().filter(|t| **t < 0.0).count(), FLIGHT_FRAMES);
+        assert_eq!(times.len(), FLIGHT_FRAMES + PENETRATION_FRAMES);
+        // One smoothing window of seven frames at 500 Hz wide.
+        assert!((times[times.len() - 1] - 0.15).abs() < 0.008, "{times:?}");
+        assert!(!observed.conditions[0].layout.along_x);
+    }
+
+    #[test]
+    fn runs_with_other_frames_are_interpolated_to_common_times() {
+        let mut shifted = trajectory_run(0, |t| (t, 0.5 * t));
+        for frame in &mut shifted.frames {
+            *frame =
+                Frame { t: frame.t + 0.0007, z: frame.z + 0.0007, x: frame.x + 0.00035, ..*frame };
+        }
+        let runs = vec![shifted, trajectory_run(0, |t| (t, 0.5 * t))];
+        let observed = Observed::of(&set(Kind::Trajectory, vec![condition(1.0, 60.0)], runs));
+        let condition = &observed.conditions[0];
+        // A straight line is interpolated without error.
+        assert!((&condition.runs[0] - &condition.runs[1]).amax() < 1e-14);
+    }
+
+    #[test]
+    fn a_scalar_counts_where_every_run_has_it() {
+        let runs = vec![
+            scalar_run(0, [Some(0.1), Some(0.05), None]),
+            scalar_run(0, [Some(0.11), None, None]),
+            scalar_run(1, [Some(0.1), Some(0.05), Some(0.02)]),
+        ];
+        let conditions = vec![condition(1.0, 90.0), condition(1.0, 45.0)];
+        let observed = Observed::of(&set(Kind::Scalar, conditions, runs));
+        use Observable::{FinalDepth, FinalRange, StopTime};
+        assert_eq!(observed.conditions[0].layout.kinds(), [StopTime]);
+        assert_eq!(observed.conditions[1].layout.kinds(), [StopTime, FinalDepth, FinalRange]);
+    }
+
+    #[test]
+    fn the_order_of_runs_changes_nothing() {
+        let mut runs = vec![
+            scalar_run(0, [Some(0.1), Some(0.05), None]),
+            scalar_run(0, [Some(0.1), Some(0.04), None]),
+            scalar_run(0, [Some(0.09), Some(0.05), None]),
+        ];
+        let of = |runs: &[Run]| {
+            Observed::of(&set(Kind::Scalar, vec![condition(1.0, 90.0)], runs.to_vec()))
+        };
+        let before = of(&runs);
+        runs.reverse();
+        assert_eq!(before, of(&runs));
+    }
+}

@@ -1,0 +1,24 @@
+//! Random numbers that depend on what they are for, not on when they are drawn.
+
+use rand::RngExt;
+use rand_pcg::Pcg64;
+
+/// What random numbers are for; each purpose has its own.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Purpose {
+    /// Scores of effects under noise alone.
+    Family = 1,
+    /// Resampled deviations of runs.
+    Resampling = 2,
+}
+
+/// The random numbers of condition (or other thing) `index` for `purpose`.
+pub(crate) fn stream(seed: u64, purpose: Purpose, index: usize) -> Pcg64 {
+    Pcg64::new(u128::from(seed), ((purpose as u128) << 64) | index as u128)
+}
+
+/// A normal number with mean 0 and variance 1 (Box & Muller 1958, Ann. Math. Stat. 29, 610).
+pub(crate) fn normal(random: &mut Pcg64) -> f64 {
+    let radius = (-2.0 * libm::log(1.0 - random.random::<f64>())).sqrt();
+    radius * libm::cos(std::f64::consts::TAU * random.random::<f64>())
+}

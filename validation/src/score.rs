@@ -1,0 +1,184 @@
+//! Refits of a model with one more effect, and which of them the measurements tell apart.
+
+use crate::bench::{Bench, BenchError, Fitted};
+use crate::forward::PredictError;
+use crate::sensitivity::Point;
+use crate::signature::{Signature, collinearity, signature, variance_along};
+use crate::significance::NullScores;
+
+/// Effects whose χ² falls by less than this behind the best are not told apart: odds 20 to 1.
+const SEPARATE: f64 = 6.0;
+
+/// Nor are those that would be mistaken for one another more often than once in twenty.
+const CONFUSED: f64 = 0.95;
+
+/// How many effects are refitted.
+const REFITTED: usize = 8;
+
+/// A model with one more effect.
+#[derive(Clone, Debug)]
+pub(crate) struct Score {
+    pub(crate) signature: Signature,
+    /// Parameters and amplitudes, that of the effect last.
+    pub(crate) point: Point,
+    /// Standard error of its amplitude, enlarged like the fall of χ² is reduced; 0 at a bound.
+    pub(crate) standard_error: f64,
+    /// Fall of χ², over the variance that the repeats show along the signature where that is larger.
+    pub(crate) delta: f64,
+    /// Predicted probability that it is ranked first, if it is there as fitted.
+    pub(crate) ranked_first: f64,
+}
+
+impl Score {
+    /// Index of the candidate.
+    pub(crate) fn candidate(&self) -> usize {
+        self.signature.candidate
+    }
+
+    /// Fitted amplitude.
+    pub(crate) fn amplitude(&self) -> f64 {
+        self.point.effects.last().map_or(0.0, |(_, q)| *q)
+    }
+
+    fn strength(&self) -> f64 {
+        self.amplitude().abs() * self.signature.norm
+    }
+}
+
+/// All effects that could be added, best first.
+pub(crate) struct Ranking {
+    pub(crate) scores: Vec<Score>,
+    /// Probability that the best falls so far by chance.
+    pub(crate) p: f64,
+    /// Places in `scores` by rows of the null scores.
+    rows: Vec<usize>,
+    null: NullScores,
+    /// Candidates with which the model cannot be integrated, and why.
+    pub(crate) failed: Vec<(usize, PredictError)>,
+}
+
+impl Ranking {
+    /// Adds each of `candidates` (indices) to `fitted`, under its weights. Those with the largest
+    /// scores are refitted; the others are taken to first order, which is exact for small effects.
+    pub(crate) fn of(
+        bench: &Bench<'_>,
+        fitted: &Fitted,
+        candidates: &[usize],
+        seed: u64,
+    ) -> Result<Self, BenchError> {
+        let (signatures, failed) = signatures(bench, fitted, candidates);
+        let null = NullScores::new(collinearity(&signatures), seed);
+        let mut scores = signatures
+            .into_iter()
+            .map(|signature| first_order(bench, fitted, signature))
+            .collect::<Vec<_>>();
+        let mut by_score: Vec<usize> = (0..scores.len()).collect();
+        by_score.sort_by(|&a, &b| scores[b].delta.total_cmp(&scores[a].delta));
+        for &row in by_score.iter().take(REFITTED) {
+            scores[row] = refit(bench, fitted, scores[row].signature.clone())?;
+        }
+        for (row, score) in scores.iter_mut().enumerate() {
+            score.ranked_first = null.ranked_first(row, score.strength());
+        }
+        let mut rows = by_score;
+        rows.sort_by(|&a, &b| scores[b].delta.total_cmp(&scores[a].delta));
+        let mut scores: Vec<Option<Score>> = scores.into_iter().map(Some).collect();
+        let scores: Vec<Score> = rows.iter().filter_map(|&row| scores[row].take()).collect();
+        let p = scores.first().map_or(1.0, |best| null.family_wise_p(best.delta));
+        Ok(Self { scores, p, rows, null, failed })
+    }
+
+    /// The best few of `candidates`, judged to first order, refitted.
+    pub(crate) fn best_of(
+        bench: &Bench<'_>,
+        fitted: &Fitted,
+        candidates: &[usize],
+        count: usize,
+    ) -> Result<Vec<Score>, BenchError> {
+        let (signatures, _) = signatures(bench, fitted, candidates);
+        let mut scores: Vec<Score> =
+            signatures.into_iter().map(|s| first_order(bench, fitted, s)).collect();
+        scores.sort_by(|a, b| b.delta.total_cmp(&a.delta));
+        scores.truncate(count);
+        scores.into_iter().map(|score| refit(bench, fitted, score.signature)).collect()
+    }
+
+    /// Places of the effects that cannot be told from the best, itself included.
+    pub(crate) fn not_separable(&self) -> Vec<usize> {
+        let Some(best) = self.scores.first() else { return Vec::new() };
+        let confused = |place: usize| {
+            best.delta - self.scores[place].delta < SEPARATE
+                || self.null.beats(self.rows[0], self.rows[place], best.strength()) < CONFUSED
+        };
+        (0..self.scores.len()).filter(|&place| place == 0 || confused(place)).collect()
+    }
+}
+
+/// Probability that the best of `candidates` lowers the χ² of `fitted` by `fall` or more by chance,
+/// where `candidate` is the one that does; 1 if the parameters do the same as it.
+pub(crate) fn by_chance(
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+    candidates: &[usize],
+    (candidate, fall): (usize, f64),
+    seed: u64,
+) -> f64 {
+    let (signatures, _) = signatures(bench, fitted, candidates);
+    let Some(own) = signatures.iter().find(|signature| signature.candidate == candidate) else {
+        return 1.0;
+    };
+    let scale = variance_along(bench, fitted, &own.unit).max(1.0);
+    NullScores::new(collinearity(&signatures), seed).family_wise_p(fall / scale)
+}
+
+/// The signatures that exist, and the candidates whose failed.
+fn signatures(
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+    candidates: &[usize],
+) -> (Vec<Signature>, Vec<(usize, PredictError)>) {
+    let (mut found, mut failed) = (Vec::new(), Vec::new());
+    for &candidate in candidates {
+        match signature(bench, fitted, candidate) {
+            Ok(signature) => found.extend(signature),
+            Err(error) => failed.push((candidate, error)),
+        }
+    }
+    (found, failed)
+}
+
+/// The fall of χ² that the score promises, within the range of the amplitude.
+fn first_order(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Score {
+    let amplitude = signature.first_guess(&bench.forward.candidates()[signature.candidate]);
+    let along = amplitude * signature.norm;
+    let delta = (2.0 * signature.score - along) * along;
+    let mut point = fitted.fit.point.clone();
+    point.effects.push((signature.candidate, amplitude));
+    let held = (amplitude - signature.score / signature.norm).abs() > 0.0;
+    let scale = variance_along(bench, fitted, &signature.unit).max(1.0);
+    let standard_error = if held { 0.0 } else { scale.sqrt() / signature.norm };
+    let delta = delta.max(0.0) / scale;
+    Score { signature, point, standard_error, delta, ranked_first: 0.0 }
+}
+
+/// The fall of χ² by a refit.
+fn refit(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Result<Score, BenchError> {
+    let first = first_order(bench, fitted, signature);
+    let data = bench.data(&fitted.weights);
+    let mut start = first.point.clone();
+    let guessed = data.fit(&start).ok().filter(|fit| fit.chi2 <= fitted.fit.chi2);
+    let fit = match guessed {
+        Some(fit) => fit,
+        // A first guess beyond what the effect is linear in; absent, it is no worse than before.
+        None => {
+            if let Some(last) = start.effects.last_mut() {
+                last.1 = 0.0;
+            }
+            data.fit(&start)?
+        }
+    };
+    let scale = variance_along(bench, fitted, &first.signature.unit).max(1.0);
+    let delta = (fitted.fit.chi2 - fit.chi2).max(0.0) / scale;
+    let standard_error = fit.standard_error(fit.covariance.nrows() - 1) * scale.sqrt();
+    Ok(Score { point: fit.point, standard_error, delta, ..first })
+}

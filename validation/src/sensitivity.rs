@@ -1,0 +1,225 @@
+//! How the observables of a condition answer to what differs from run to run.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::forward::{Forward, PredictError, Request, Scatter};
+use crate::measurement::Instrument;
+
+/// Nodes of the force multiplier along the path.
+const ALONG: usize = 6;
+
+/// Nodes of the sideways force.
+const SIDEWAYS: usize = 3;
+
+/// A model with values for everything that it leaves free.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// β, in the order of [`Forward::parameters`].
+    pub parameters: Vec<f64>,
+    /// Amplitudes of the effects that are there, as (index in [`Forward::candidates`], q).
+    pub effects: Vec<(usize, f64)>,
+}
+
+impl Point {
+    /// Where the parameters of `forward` start, without effects.
+    #[must_use]
+    pub fn start(forward: &dyn Forward) -> Self {
+        let parameters = forward.parameters().iter().map(|parameter| parameter.start).collect();
+        Self { parameters, effects: Vec::new() }
+    }
+
+    /// The run of the mean bed.
+    ///
+    /// # Errors
+    /// If the model cannot be integrated there.
+    pub fn predict(
+        &self,
+        forward: &dyn Forward,
+        condition: usize,
+    ) -> Result<DVector<f64>, PredictError> {
+        let coefficients = vec![0.0; forward.n_scattering_coefficients()];
+        self.predict_run(forward, condition, &Scatter { coefficients, ..Scatter::default() })
+    }
+
+    /// A run with `scatter`.
+    ///
+    /// # Errors
+    /// If the model cannot be integrated there.
+    pub fn predict_run(
+        &self,
+        forward: &dyn Forward,
+        condition: usize,
+        scatter: &Scatter,
+    ) -> Result<DVector<f64>, PredictError> {
+        let request = Request { parameters: &self.parameters, effects: &self.effects, scatter };
+        forward.predict(condition, &request).map(DVector::from_vec)
+    }
+}
+
+/// Standard deviations of the random inputs of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    /// Of the logarithm of each coefficient, τ_c.
+    pub coefficient: f64,
+    /// Of the resistance along the path, relative, τ_p; sideways it is half of that.
+    pub path: f64,
+    /// Of the impact speed, relative.
+    pub speed: f64,
+    /// Of the level of the surface (m).
+    pub level: f64,
+}
+
+impl Spread {
+    /// With what the instrument states about speed and level.
+    #[must_use]
+    pub fn new(coefficient: f64, path: f64, instrument: &Instrument) -> Self {
+        let speed = instrument.speed_sigma_rel.unwrap_or(0.0);
+        Self { coefficient, path, speed, level: instrument.level_sigma.unwrap_or(0.0) }
+    }
+}
+
+/// One random input of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Input {
+    Coefficient(usize),
+    Speed,
+    Level,
+    Along(usize),
+    Sideways(usize),
+}
+
+/// What differs from run to run under one condition, and how the observables follow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensitivity {
+    inputs: Vec<Input>,
+    /// Observables of the run of the mean bed.
+    pub mean: DVector<f64>,
+    /// Their derivative by each input, J_b.
+    pub slope: DMatrix<f64>,
+    /// Their second derivative by each input.
+    pub curvature: DMatrix<f64>,
+}
+
+impl Sensitivity {
+    /// By central differences around the run of the mean bed at `point`; a path goes to `reach` (m).
+    ///
+    /// # Errors
+    /// If the model cannot be integrated there.
+    pub fn at(
+        point: &Point,
+        forward: &dyn Forward,
+        condition: usize,
+        reach: f64,
+    ) -> Result<Self, PredictError> {
+        let coefficients = forward.n_scattering_coefficients();
+        let inputs: Vec<Input> = (0..coefficients)
+            .map(Input::Coefficient)
+            .chain([Input::Speed, Input::Level])
+            .chain((0..ALONG).map(Input::Along))
+            .chain((0..SIDEWAYS).map(Input::Sideways))
+            .collect();
+        let mean = point.predict(forward, condition)?;
+        let mut slope = DMatrix::zeros(mean.len(), inputs.len());
+        let mut curvature = slope.clone();
+        for (column, input) in inputs.iter().enumerate() {
+            let step = input.step();
+            let run = |by: f64| {
+                point.predict_run(forward, condition, &input.scatter(by, coefficients, reach))
+            };
+            let (more, less) = (run(step)?, run(-step)?);
+            slope.set_column(column, &((&more - &less) / (2.0 * step)));
+            curvature.set_column(column, &((more + less - 2.0 * &mean) / (step * step)));
+        }
+        Ok(Self { inputs, mean, slope, curvature })
+    }
+
+    /// Standard deviation of each input.
+    #[must_use]
+    pub fn spread(&self, spread: &Spread) -> DVector<f64> {
+        DVector::from_iterator(
+            self.inputs.len(),
+            self.inputs.iter().map(|input| match input {
+                Input::Coefficient(_) => spread.coefficient,
+                Input::Speed => spread.speed,
+                Input::Level => spread.level,
+                Input::Along(_) => spread.path,
+                Input::Sideways(_) => 0.5 * spread.path,
+            }),
+        )
+    }
+
+    /// What the mean of runs differs by from the run of the mean bed, to second order in the scatter.
+    #[must_use]
+    pub fn shift_of_mean(&self, spread: &Spread) -> DVector<f64> {
+        0.5 * &self.curvature * self.spread(spread).map(|sd| sd * sd)
+    }
+}
+
+impl Input {
+    /// About one standard deviation of a common bed, so that the curvature is that of its scatter.
+    fn step(self) -> f64 {
+        match self {
+            Self::Coefficient(_) => 0.05,
+            Self::Speed => 0.01,
+            Self::Level => 2e-4,
+            Self::Along(_) => 0.1,
+            Self::Sideways(_) => 0.05,
+        }
+    }
+
+    fn scatter(self, value: f64, coefficients: usize, reach: f64) -> Scatter {
+        let only = |n: usize, index: usize| {
+            (0..n).map(|k| if k == index { value } else { 0.0 }).collect::<Vec<_>>()
+        };
+        let mut scatter =
+            Scatter { coefficients: vec![0.0; coefficients], reach, ..Scatter::default() };
+        match self {
+            Self::Coefficient(index) => scatter.coefficients[index] = value,
+            Self::Speed => scatter.speed = value,
+            Self::Level => scatter.level = value,
+            Self::Along(index) => scatter.along = only(ALONG, index),
+            Self::Sideways(index) => scatter.sideways = only(SIDEWAYS, index),
+        }
+        scatter
+    }
+}
+
+/// Which way a force acts on a moving body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Against the motion.
+    Along,
+    /// Normal to it, out of the bed.
+    Sideways,
+}
+
+/// Change of the observables by a force around each of `nodes` equally spaced depths from the surface
+/// to `reach` (m), in units of the resistance; one column per node.
+///
+/// # Errors
+/// If the model cannot be integrated there.
+pub fn force_response(
+    point: &Point,
+    forward: &dyn Forward,
+    condition: usize,
+    direction: Direction,
+    (nodes, reach): (usize, f64),
+) -> Result<DMatrix<f64>, PredictError> {
+    const STEP: f64 = 0.05;
+    let coefficients = forward.n_scattering_coefficients();
+    let mut columns = Vec::with_capacity(nodes);
+    for node in 0..nodes {
+        let run = |by: f64| {
+            let force = (0..nodes).map(|k| if k == node { by } else { 0.0 }).collect();
+            let none =
+                Scatter { coefficients: vec![0.0; coefficients], reach, ..Scatter::default() };
+            let scatter = match direction {
+                Direction::Along => Scatter { along: force, ..none },
+                Direction::Sideways => Scatter { sideways: force, ..none },
+            };
+            point.predict_run(forward, condition, &scatter)
+        };
+        columns.push((run(STEP)? - run(-STEP)?) / (2.0 * STEP));
+    }
+    Ok(DMatrix::from_columns(&columns))
+}

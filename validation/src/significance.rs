@@ -1,0 +1,98 @@
+//! How large a score the best of many effects reaches by chance, and how often the right one wins.
+
+use nalgebra::{Cholesky, DMatrix};
+
+use crate::random::{Purpose, normal, stream};
+
+/// Draws of the scores of all effects.
+const DRAWS: usize = 10_000;
+
+/// Keeps the collinearity of exact twins positive definite; their scores then differ by 1e-4.
+const JITTER: f64 = 1e-8;
+
+/// Scores of all effects under noise alone, drawn with their collinearity.
+pub(crate) struct NullScores {
+    collinearity: DMatrix<f64>,
+    draws: Vec<Vec<f64>>,
+}
+
+impl NullScores {
+    pub(crate) fn new(collinearity: DMatrix<f64>, seed: u64) -> Self {
+        let n = collinearity.nrows();
+        let jittered = &collinearity + DMatrix::identity(n, n) * JITTER;
+        // Without a factor (which rounding alone could cause) effects count as independent: cautious.
+        let factor =
+            Cholesky::new(jittered).map_or_else(|| DMatrix::identity(n, n), |factor| factor.l());
+        let mut random = stream(seed, Purpose::Family, 0);
+        let draw = |_| {
+            let white: Vec<f64> = (0..n).map(|_| normal(&mut random)).collect();
+            (0..n).map(|i| (0..=i).map(|j| factor[(i, j)] * white[j]).sum()).collect()
+        };
+        Self { draws: (0..DRAWS).map(draw).collect(), collinearity }
+    }
+
+    /// Probability that the largest squared score reaches `delta` by chance: the error of naming any
+    /// effect of the family when none is there.
+    pub(crate) fn family_wise_p(&self, delta: f64) -> f64 {
+        let reaches = |draw: &&Vec<f64>| draw.iter().any(|score| score * score >= delta);
+        (1 + self.draws.iter().filter(reaches).count()) as f64 / (1 + DRAWS) as f64
+    }
+
+    /// Probability that effect `index` has the largest score if it is there at `strength` standard
+    /// errors.
+    pub(crate) fn ranked_first(&self, index: usize, strength: f64) -> f64 {
+        let wins = |draw: &&Vec<f64>| {
+            let size = |k: usize| (draw[k] + strength * self.collinearity[(index, k)]).abs();
+            let own = size(index);
+            (0..draw.len()).all(|k| k == index || size(k) < own)
+        };
+        self.draws.iter().filter(wins).count() as f64 / DRAWS as f64
+    }
+
+    /// Probability that effect `index`, there at `strength`, has a larger score than `other`.
+    ///
+    /// The score of one exceeds that of the other in size where their sum and their difference have
+    /// one sign, and those two are independent.
+    pub(crate) fn beats(&self, index: usize, other: usize, strength: f64) -> f64 {
+        let cosine = self.collinearity[(index, other)].clamp(-1.0, 1.0);
+        let difference = phi(strength * (0.5 * (1.0 - cosine)).sqrt());
+        let sum = phi(strength * (0.5 * (1.0 + cosine)).sqrt());
+        difference * sum + (1.0 - difference) * (1.0 - sum)
+    }
+}
+
+/// The normal distribution function.
+fn phi(x: f64) -> f64 {
+    0.5 * libm::erfc(-x / std::f64::consts::SQRT_2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pair(cosine: f64) -> NullScores {
+        NullScores::new(DMatrix::from_row_slice(2, 2, &[1.0, cosine, cosine, 1.0]), 1)
+    }
+
+    #[test]
+    fn two_independent_effects_have_twice_the_chance_of_one() {
+        // P(χ²₁ ≥ 6.635) = 0.01; the draws know 0.02 to ± 0.0014, here three of those.
+        let p = pair(0.0).family_wise_p(6.635);
+        assert!((p - 0.0199).abs() < 0.0042, "{p}");
+        // Twins are one effect.
+        let p = pair(1.0).family_wise_p(6.635);
+        assert!((p - 0.01).abs() < 0.003, "{p}");
+    }
+
+    #[test]
+    fn drawn_and_computed_chances_of_winning_agree() {
+        for (cosine, strength) in [(0.0, 2.0), (0.9, 5.0), (-0.8, 3.0)] {
+            let scores = pair(cosine);
+            let (drawn, computed) =
+                (scores.ranked_first(0, strength), scores.beats(0, 1, strength));
+            // Three standard errors of 10⁴ draws at a half.
+            assert!((drawn - computed).abs() < 0.015, "{cosine}: {drawn} {computed}");
+        }
+        assert!((pair(1.0).beats(0, 1, 50.0) - 0.5).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,135 @@
+//! What a diagnosis says, and how it is written.
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use crate::held_out::HeldOut;
+use crate::rounding::{six_digits, six_digits_or_null};
+
+/// The answer to "which effect is missing?".
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// The data are explained as they are.
+    NothingDetected,
+    /// One effect, told apart from all others.
+    Supported,
+    /// One of several effects that these data do not tell apart.
+    NotSeparable,
+    /// Two effects, or one that is not listed.
+    Pair,
+    /// Something is missing that no listed effect explains.
+    NoneOfTheCandidates,
+    /// The data cannot answer.
+    CannotTell,
+}
+
+/// What a verdict rests on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Strength {
+    /// The scatter of repeats, and better predictions of what was not fitted to.
+    Supported,
+    /// Stated errors, or predictions that did not become better by more than chance.
+    Suggested,
+}
+
+/// A diagnosis of one model by one measurement set.
+#[derive(Clone, Debug, Serialize)]
+pub struct Diagnosis {
+    /// The answer.
+    pub verdict: Verdict,
+    /// What it rests on.
+    pub strength: Strength,
+    /// The one effect (of a pair, the two) that the verdict names.
+    pub effects: Vec<String>,
+    /// All that cannot be told apart, the leader first; empty under other verdicts.
+    pub not_separable: Vec<String>,
+    /// Every effect, best first, those that the data cannot show last.
+    pub ranking: Vec<RankedEffect>,
+    /// Probability that the best of all effects explains so much by chance; none if nothing was
+    /// ranked.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub p1: Option<f64>,
+    /// Probability of a lack of fit as large as that of the model as it is, if it were right.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub p_lof: Option<f64>,
+    /// The same for the model with the best effect, or with the pair that is named.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub p_lof_with: Option<f64>,
+    /// How much measurements scatter.
+    pub noise: Value,
+    /// Errors where nothing was fitted; none if nothing could be fitted at all.
+    pub holdout: Option<HeldOut>,
+    /// What no listed effect explains.
+    pub unexplained: Unexplained,
+    /// Experiments that would tell more, best first.
+    pub next: Vec<Value>,
+    /// Parameters with what is named added (without, where nothing is), with standard error and unit.
+    pub parameters: Map<String, Value>,
+    /// Amplitudes of what is named, fitted together.
+    pub amplitudes: Vec<Amplitude>,
+    /// Correlation of the two amplitudes of a pair.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub amplitude_correlation: Option<f64>,
+}
+
+/// One effect in a ranking.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RankedEffect {
+    /// kebab-case.
+    pub id: String,
+    /// Fitted amplitude.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub q: Option<f64>,
+    /// Its standard error; 0 where the amplitude is held at a bound.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub se: Option<f64>,
+    /// Unit of the amplitude; 1 where it has none.
+    pub unit: &'static str,
+    /// Fall of χ² by adding it.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub delta: Option<f64>,
+    /// Probability that it would be ranked first, were it there with this amplitude.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub predicted_top1: Option<f64>,
+    /// Whether the data can show it at all.
+    pub testable: bool,
+    /// The smallest amplitude that the data would show.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub detection_limit: Option<f64>,
+    /// Why it cannot be tested, or what it takes to tell it from its twins.
+    pub note: String,
+}
+
+/// The amplitude of an effect that is named.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Amplitude {
+    /// kebab-case.
+    pub id: String,
+    /// Amplitude.
+    #[serde(serialize_with = "six_digits")]
+    pub q: f64,
+    /// Its standard error; 0 where the amplitude is held at a bound.
+    #[serde(serialize_with = "six_digits")]
+    pub se: f64,
+}
+
+/// What remains.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Unexplained {
+    /// What the remaining force error depends on, clearest first.
+    pub depends_on: Vec<&'static str>,
+    /// One sentence; empty if nothing remains.
+    pub hint: String,
+}
+
+impl Diagnosis {
+    /// As one JSON object.
+    ///
+    /// # Errors
+    /// Never for a diagnosis that this crate made.
+    pub fn to_json(&self) -> serde_json::Result<Value> {
+        serde_json::to_value(self)
+    }
+}

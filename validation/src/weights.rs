@@ -1,0 +1,69 @@
+//! What the means of runs are weighted with, and what they are compared to.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use crate::forward::{Forward, PredictError};
+use crate::noise::Noise;
+use crate::observed::ObservedCondition;
+use crate::sensitivity::{Point, Sensitivity};
+
+/// The weight of one condition, and the shift between its mean run and the run of the mean bed.
+#[derive(Clone, Debug)]
+pub struct Weight {
+    /// Cholesky factor of the covariance of the mean.
+    factor: Cholesky<f64, Dyn>,
+    /// What is added to the run of the mean bed (in the units of the observables).
+    pub shift: DVector<f64>,
+}
+
+impl Weight {
+    /// For the mean over the runs of `condition` under `noise`; `None` if the covariance is singular.
+    #[must_use]
+    pub fn new(
+        condition: &ObservedCondition,
+        sensitivity: &Sensitivity,
+        noise: &Noise,
+    ) -> Option<Self> {
+        let runs = condition.runs.len().max(1) as f64;
+        let covariance = noise.covariance(condition, sensitivity) / runs;
+        let factor = Cholesky::new(covariance)?;
+        let shift = sensitivity.shift_of_mean(&noise.spread);
+        Some(Self { shift, factor })
+    }
+
+    /// `vector` in units of its standard deviation, freed of correlation.
+    #[must_use]
+    pub fn whiten(&self, vector: &DVector<f64>) -> DVector<f64> {
+        let mut white = vector.clone();
+        // The diagonal of a Cholesky factor is positive, so there is a solution.
+        self.factor.l_dirty().solve_lower_triangular_mut(&mut white);
+        white
+    }
+
+    /// Every column of `matrix` likewise.
+    #[must_use]
+    pub fn whiten_columns(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut white = matrix.clone();
+        self.factor.l_dirty().solve_lower_triangular_mut(&mut white);
+        white
+    }
+
+    /// The vector that [`Weight::whiten`] makes `white` of.
+    #[must_use]
+    pub fn colour(&self, white: &DVector<f64>) -> DVector<f64> {
+        self.factor.l() * white
+    }
+
+    /// What the mean of runs is expected to be at `point`.
+    ///
+    /// # Errors
+    /// If the model cannot be integrated there.
+    pub fn predict(
+        &self,
+        point: &Point,
+        forward: &dyn Forward,
+        condition: usize,
+    ) -> Result<DVector<f64>, PredictError> {
+        Ok(point.predict(forward, condition)? + &self.shift)
+    }
+}

@@ -1,0 +1,56 @@
+//! Friction that is set-valued: bodies come to rest, stay there, and move again only when pulled.
+
+use super::rig::{BED, MASS, law, sphere};
+
+#[test]
+fn an_oblique_impact_under_vector_friction_comes_to_rest_and_stays() {
+    for angle in [15.0, 45.0, 75.0, 89.0] {
+        let laws = vec![law("two-term-vector", &[("drag", 1.0), ("friction", 15.0)])];
+        let ending = sphere(laws, 2.0, angle).run(10.0, &mut ()).unwrap();
+        assert!(ending.stopped && ending.time < 1.0, "{angle} deg: {} s", ending.time);
+        assert!(ending.state.rate.iter().all(|&rate| rate == 0.0));
+        assert!(ending.steps < 200, "{angle} deg: {} steps", ending.steps);
+    }
+}
+
+#[test]
+fn each_component_stops_by_itself_under_component_frictions() {
+    // The published law at 60 deg; horizontal and vertical motion do not feel each other but through
+    // the depth in the horizontal friction.
+    let laws = vec![law(
+        "two-term-components",
+        &[("drag_x", 0.29973), ("friction_x", 1.5175), ("drag_z", 0.2184), ("friction_z", 4.02227)],
+    )];
+    let ending = sphere(laws, 2.0, 60.0).run(10.0, &mut ()).unwrap();
+    let part = ending.parts[0];
+    assert!(ending.stopped);
+    assert!(part.vertical.unwrap() < ending.time + 1e-12);
+    assert!(part.horizontal.unwrap() <= ending.time);
+    assert!((part.time().unwrap() - ending.time).abs() < 1e-9);
+}
+
+#[test]
+fn a_body_in_a_weak_medium_turns_round_where_friction_cannot_hold_it() {
+    // Buoyancy of ten times the displaced bed throws the sphere back out of a bed without friction.
+    let laws = vec![
+        law("two-term-vector", &[("drag", 1.0), ("friction", 0.0)]),
+        law("buoyancy", &[("q", 30.0)]),
+    ];
+    let ending = sphere(laws, 1.0, 90.0).run(0.5, &mut ()).unwrap();
+    assert!(!ending.stopped);
+    assert!(ending.parts[0].vertical.is_some(), "it stopped sinking");
+    let deepest = ending.parts[0].depth;
+    assert!(deepest > 0.0 && -ending.state.position[1] < deepest);
+}
+
+#[test]
+fn a_sphere_let_go_at_the_surface_sinks_to_twice_its_static_depth() {
+    // Without drag: m g z = k z²/2 at the stop, and friction holds k z = 2 m g there.
+    let laws = vec![law("two-term-vector", &[("drag", 0.0), ("friction", 15.0)])];
+    let ending = sphere(laws, 0.0, 90.0).run(10.0, &mut ()).unwrap();
+    let area = std::f64::consts::PI * 0.0127 * 0.0127;
+    let k = 15.0 * BED.bulk_density * BED.gravity * area;
+    let expected = 2.0 * MASS * BED.gravity / k;
+    assert!(ending.stopped);
+    assert!((ending.parts[0].depth / expected - 1.0).abs() < 1e-8);
+}

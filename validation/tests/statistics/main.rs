@@ -1,0 +1,7 @@
+//! What the statistics of the workbench promise, on worlds whose truth is known.
+
+mod comparison;
+mod diagnosis;
+mod laboratory;
+mod noise;
+mod world;
