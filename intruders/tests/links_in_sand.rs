@@ -114,6 +114,14 @@ fn the_energy_that_the_links_give_to_the_bed_is_what_they_lose() {
 }
 
 #[test]
+fn a_link_that_drifted_before_its_contact_enters_as_it_moves() {
+    // The second tip starts without horizontal velocity and has 0.1 m/s when it meets the surface.
+    let laws = vec![resistance(), law("added-mass", &[("q", 1.0)])];
+    let ending = run(&into_sand(chain([0.3, -0.5], down(3.0)), laws));
+    assert!(ending.stopped && ending.steps < 400, "{} steps", ending.steps);
+}
+
+#[test]
 fn grains_that_move_with_a_link_that_turns_are_accounted_for() {
     for angle in [0.3, 0.8] {
         let launchable = link(angle, down(3.0), 0.0);

@@ -123,10 +123,12 @@ impl Modes {
         modes
     }
 
-    /// Which components are held.
+    /// Which components are held; above the surface nothing is.
     pub(super) fn held(&self) -> [[bool; 2]; PARTS] {
-        let gripping = self.gripping;
-        self.sense.map(|part| part.map(|sense| gripping && sense == Sense::Held))
+        std::array::from_fn(|part| {
+            let gripped = self.gripping && self.in_bed[part];
+            self.sense[part].map(|sense| gripped && sense == Sense::Held)
+        })
     }
 
     /// Lets those held components go that friction cannot hold: the first combination of held,
