@@ -122,6 +122,21 @@ fn a_link_that_drifted_before_its_contact_enters_as_it_moves() {
 }
 
 #[test]
+fn friction_against_the_direction_of_motion_follows_a_link_that_turns() {
+    let laws = vec![law("two-term-vector", &[("drag", 1.0), ("friction", 15.0)])];
+    let (samples, _, closure) = record(&into_sand(link(0.8, down(3.0), 0.0), laws));
+    let sideways = |sample: &&Vec<PartSample>| sample[0].part.velocity.x.abs() > 0.1;
+    assert!(samples.iter().filter(sideways).count() > 3, "it goes sideways");
+    for part in samples.iter().skip(1).map(|sample| sample[0]) {
+        let along = part.friction.cross(&part.part.velocity).norm();
+        // Parallel but for round-off.
+        let most = 1e-12 * part.friction.norm() * part.part.velocity.norm();
+        assert!(along <= most && part.friction.dot(&part.part.velocity) <= 0.0, "{part:?}");
+    }
+    assert!(closure < 1e-9, "{closure:e}");
+}
+
+#[test]
 fn grains_that_move_with_a_link_that_turns_are_accounted_for() {
     for angle in [0.3, 0.8] {
         let launchable = link(angle, down(3.0), 0.0);

@@ -181,13 +181,18 @@ impl Modes {
         (grip.positive + hold.force).min(grip.negative - hold.force)
     }
 
-    /// The line on which a compact body moves as long as nothing pushes it off.
+    /// The line on which a single body moves as long as nothing pushes it off.
     fn straight_line(&self, system: &System<'_>, state: &State) -> Option<Vec3> {
         if system.laws.iter().any(|law| law.deflects()) {
             return None;
         }
-        let velocity = system.assembly.part(0, state).velocity;
-        if velocity.x != 0.0 {
+        let part = system.assembly.part(0, state);
+        let (centre, _) = system.assembly.placement(0, state);
+        // A force on the centre turns nothing; a link that leans or spins leaves the line.
+        let turns = system.assembly.ends_with_its_tips()
+            && (centre.x - part.tip.x != 0.0 || part.spin != 0.0);
+        let velocity = part.velocity;
+        if turns || velocity.x != 0.0 {
             return None;
         }
         let sense = if velocity.z != 0.0 {
