@@ -105,10 +105,10 @@ impl Modes {
             gripping: false,
             creeping: false,
         };
-        for part in 0..n_parts {
+        for (part, still) in still.iter().enumerate().take(n_parts) {
             let velocity = system.assembly.part(part, state).velocity;
             for (component, axis) in AXES.into_iter().enumerate() {
-                if !still[part][component] {
+                if !still[component] {
                     modes.sense[part][component] = Sense::of(velocity[axis]);
                 }
             }
@@ -288,9 +288,9 @@ fn change(
 ) -> Vec3 {
     let at = |time: f64| {
         let mut moved = *state;
-        for index in 0..COORDINATES {
+        for (index, acceleration) in acceleration.iter().enumerate() {
             moved.position[index] += time * state.rate[index];
-            moved.rate[index] += time * acceleration[index];
+            moved.rate[index] += time * acceleration;
         }
         assembly.part(part, &moved).velocity
     };
