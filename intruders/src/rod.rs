@@ -63,7 +63,9 @@ struct Portion {
     length: f64,
     /// From the tip of the rod to its middle (m).
     middle: f64,
-    /// Rate of the latter (m/s).
+    /// Rate at which the surface takes in the axis, which makes the portion longer (m/s).
+    intake: f64,
+    /// Rate at which the middle moves away from the tip (m/s).
     drift: f64,
     /// Change of the length with depth (1).
     growth: f64,
@@ -119,6 +121,7 @@ impl Rod {
                 end_area: end * along,
                 volume: end * portion.length,
                 section: end * portion.growth,
+                volume_rate: end * portion.intake,
                 mass: self.mass,
                 // Powers of it are taken, and a step that ends at the surface looks beyond it.
                 effective_depth: depth.max(0.0),
@@ -184,20 +187,22 @@ impl Rod {
     fn portion(&self, pose: &Pose) -> Portion {
         let depth = |from_tip| -self.position(pose, from_tip).z;
         let (tip, top, slope) = (depth(0.0), depth(self.length), pose.axis().z);
-        // Rate at which the surface takes in the axis at a point of it (m/s).
         let intake = |from_tip| -self.velocity(pose, from_tip).z / slope.abs();
         if tip >= 0.0 && top >= 0.0 {
-            Portion { length: self.length, middle: 0.5 * self.length, drift: 0.0, growth: 0.0 }
+            let middle = 0.5 * self.length;
+            Portion { length: self.length, middle, intake: 0.0, drift: 0.0, growth: 0.0 }
         } else if tip >= 0.0 {
             let length = (tip / slope).min(self.length);
-            let drift = 0.5 * intake(length);
-            Portion { length, middle: 0.5 * length, drift, growth: 1.0 / slope }
+            let intake = intake(length);
+            let growth = 1.0 / slope;
+            Portion { length, middle: 0.5 * length, intake, drift: 0.5 * intake, growth }
         } else if top >= 0.0 {
             let length = (-top / slope).min(self.length);
-            let drift = -0.5 * intake(self.length - length);
-            Portion { length, middle: self.length - 0.5 * length, drift, growth: -1.0 / slope }
+            let intake = intake(self.length - length);
+            let middle = self.length - 0.5 * length;
+            Portion { length, middle, intake, drift: -0.5 * intake, growth: -1.0 / slope }
         } else {
-            Portion { length: 0.0, middle: 0.0, drift: 0.0, growth: 0.0 }
+            Portion { length: 0.0, middle: 0.0, intake: 0.0, drift: 0.0, growth: 0.0 }
         }
     }
 }

@@ -19,8 +19,7 @@ fn flight(gravity: f64, start: State) -> Impact {
     Impact::new(launchable.assembly, vec![common::resistance()], bed, start).with_tolerance(FINE)
 }
 
-/// The states at `times` (s) in free flight, each where a run ends: between its steps the solver is an
-/// order less accurate.
+/// The states at `times` (s) in free flight, each where a run ends and the solver is most accurate.
 fn states(impact: &Impact, times: &[f64]) -> Vec<State> {
     let end = |time: &f64| impact.run(*time, &mut ()).expect("the flight can be followed").state;
     times.iter().map(end).collect()

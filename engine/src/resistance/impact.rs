@@ -486,7 +486,7 @@ impl Impact {
     ) {
         let (acceleration, _) = accelerate(system, state, &progress.modes);
         let [vx, vz, ..] = state.rate;
-        let speed = vx.hypot(vz);
+        let speed = libm::hypot(vx, vz);
         let deceleration = -(acceleration[0] * vx + acceleration[1] * vz) / speed;
         if speed > 0.0 && deceleration > 0.0 {
             let left = speed / deceleration;
