@@ -120,7 +120,7 @@ fn the_force_at_the_stop_is_the_static_part_and_it_overtakes_later_at_higher_spe
             number(&summary, "/forces/force_at_stop_N"),
             number(&summary, "/forces/static_at_stop_N"),
         );
-        // A sample before the stop, the sphere still has up to 0.1 ms × 50 m/s² and its square of drag.
+        // A two-thousandth before the stop, the sphere has as little of its speed, and drag its square.
         assert!((whole / friction - 1.0).abs() < 1e-4, "{whole} N, {friction} N");
         let overtakes = number(&summary, "/forces/static_overtakes_s");
         assert!(overtakes > before, "{overtakes} s at {speed}");
@@ -212,6 +212,25 @@ fn a_body_let_go_at_the_surface_sinks_and_its_closure_counts_in_its_fall() {
     let summary = run("two-term-vector", out.path(), &["impact.speed=0 m/s"]).json();
     assert!(number(&summary, "/stop/depth_m") > 0.01, "{summary}");
     assert!(number(&summary, "/energy/closure") < 1e-8);
+}
+
+#[test]
+fn what_is_said_of_forces_and_stops_does_not_hang_on_the_interval_of_the_log() {
+    let [fine, coarse] = ["0.05 ms", "20 ms"].map(|interval| {
+        let out = folder();
+        run("two-term-vector", out.path(), &[&format!("log.interval={interval}")]).json()
+    });
+    assert_eq!(fine["forces"], coarse["forces"]);
+    assert_eq!(fine["stop"], coarse["stop"]);
+}
+
+#[test]
+fn a_sphere_that_comes_to_rest_spinning_keeps_its_energy_of_rotation() {
+    let out = folder();
+    let set = ["impact.angle=45 deg", "impact.spin=100 rad/s"];
+    let summary = run("two-term-vector", out.path(), &set).json();
+    assert_eq!(summary["stop"]["stopped"], true);
+    assert!(number(&summary, "/energy/closure") < 1e-8, "{summary}");
 }
 
 #[test]

@@ -495,7 +495,9 @@ impl Impact {
                 state.position[index] += 0.5 * left * state.rate[index];
             }
         }
-        state.rate = [0.0; COORDINATES];
+        // A compact body may go on turning in its place: no friction acts on its spin.
+        let n_held = if self.assembly.ends_with_its_tips() { COORDINATES } else { 2 };
+        state.rate[..n_held].fill(0.0);
         progress.held = true;
         self.close(*time, state, progress);
     }

@@ -20,6 +20,9 @@ use crate::model::{Condition, ResistiveModel};
 /// Origins of force in the log: of the terms that vary smoothly with the velocity, of the frictions.
 const ORIGINS: [&str; 3] = ["dynamic", "static", "gravity"];
 
+/// Samples of an impact on which its forces are compared.
+const SAMPLES_OF_FORCE: f64 = 2000.0;
+
 /// Runs the impact `condition`. Nothing if `control` wanted to stop before.
 pub(super) fn run(
     resistive: ResistiveModel<'_>,
@@ -44,10 +47,8 @@ pub(super) fn run(
     let frames_per_s = resistive.model.log.frames_per_s;
     let samples_per_frame = (1.0 / (frames_per_s * interval)).round().max(1.0) as u64;
     let mut writer = Writer { impact: &impact, log, samples_per_frame, scale, last: start };
-    let mut watched = Watched::default();
     let mut failed = None;
     let mut recorder = Recorder::new(&impact, interval, |sample| {
-        watched.see(sample);
         if failed.is_none() {
             failed = writer.write(sample).err();
         }
@@ -67,6 +68,7 @@ pub(super) fn run(
     if closure > limit {
         return Err(writer.give_up(RunError::OpenBudget { closure, limit }));
     }
+    let watched = watch(&impact, &ending)?;
     control.progress(&progress(task, &ending, &impact));
     writer.conclude(&ending)?;
     let cost = CostSummary {
@@ -81,6 +83,18 @@ pub(super) fn run(
     folder.write_json("summary.json", &summary)?;
     folder.tidy()?;
     Ok(Some(summary))
+}
+
+/// The forces of an impact that ends as `ending` says, on samples of its own: what the summary says does
+/// not hang on the interval of the log.
+fn watch(impact: &Impact, ending: &Ending) -> Result<Watched, RunError> {
+    let mut watched = Watched::default();
+    // A body that is held where it starts has no time to divide.
+    let interval = if ending.time > 0.0 { ending.time / SAMPLES_OF_FORCE } else { 1.0 };
+    let mut recorder = Recorder::new(impact, interval, |sample| watched.see(sample));
+    impact.run(ending.time, &mut recorder)?;
+    drop(recorder);
+    Ok(watched)
 }
 
 /// Energy of the impact (J); of a body let go from rest, what it gains in falling its own size.
