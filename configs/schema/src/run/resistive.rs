@@ -97,20 +97,19 @@ fn watch(impact: &Impact, ending: &Ending) -> Result<Watched, RunError> {
     Ok(watched)
 }
 
-/// Energy of the impact (J); of a body let go from rest, what it gains in falling its own size.
+/// Energy of the impact (J); of a body let go from rest, what it gains in falling its own size, and
+/// without gravity, where nothing moves, one joule.
 fn energy_scale(impact: &Impact) -> f64 {
     let (assembly, start) = (impact.assembly(), impact.start());
     let parts = 0..assembly.n_parts();
     let kinetic: f64 = parts.clone().flat_map(|part| assembly.kinetic_energy(part, start)).sum();
-    if kinetic > 0.0 {
-        return kinetic;
-    }
-    parts
+    let fall: f64 = parts
         .map(|part| {
             let (_, mass) = assembly.weight_at(part, start);
             mass * impact.bed().gravity * assembly.part(part, start).immersion.diameter
         })
-        .sum()
+        .sum();
+    [kinetic, fall].into_iter().find(|energy| *energy > 0.0).unwrap_or(1.0)
 }
 
 fn progress(task: Task<'_>, ending: &Ending, impact: &Impact) -> Progress {
