@@ -22,16 +22,20 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> CommandResult {
     let common = &args.common;
     let model = common.load(&args.model)?.model;
+    let grains = model.grains().ok_or_else(|| {
+        let kind = model.medium.kind();
+        CommandError::bad_input(format!("a medium of the kind \"{kind}\" has no bed to prepare"))
+    })?;
     common.refuse_too_large(&model)?;
     let mut terminal = Terminal::new(common.quiet)?;
     let cache = common.cache_folder();
-    let prepared = common.on_threads(|| prepare(&model, &cache, &mut terminal))?;
+    let prepared = common.on_threads(|| prepare(grains, &cache, &mut terminal))?;
     terminal.clear();
     let Some(bed) = prepared.map_err(CommandError::from)? else {
         return Err(terminal.interrupted("the same command goes on from here"));
     };
-    let report = BedReport::of(&model.bed(&bed.resting));
-    let summary = BedSummary::new(&report, bed.cache, &model);
+    let report = BedReport::of(&grains.bed(&bed.resting));
+    let summary = BedSummary::new(&report, bed.cache, grains);
     for warning in &summary.warnings {
         terminal.warn(warning);
     }

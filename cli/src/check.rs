@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use configs::engine::resistance::Space;
 use configs::estimate::Estimate;
-use configs::{Color, Model, stability};
-use serde_json::{Value, json};
+use configs::{Color, GrainModel, Medium, Model, ResistiveModel, stability};
+use serde_json::{Map, Value, json};
 
 use crate::common::Common;
 use crate::output::{self, CommandResult};
@@ -21,68 +22,137 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> CommandResult {
     let loaded = args.common.load(&args.model)?;
     let model = &loaded.model;
-    let estimate = Estimate::of(model);
     args.common.refuse_too_large(model)?;
+    let facts = match &model.medium {
+        Medium::Grains(medium) => of_grains(GrainModel { model, medium }),
+        Medium::Resistive(medium) => of_resistance(ResistiveModel { model, medium }),
+    };
     match args.common.json {
         true => {
-            let mut object = as_json(model, &estimate);
             let warnings: Vec<String> =
                 loaded.warnings.iter().map(|one| one.render(&loaded.sources, Color::Off)).collect();
-            object["warnings"] = json!(warnings);
-            output::json_to_stdout(&object)
+            output::json_to_stdout(&as_json(model, facts, &warnings))
         }
-        false => output::to_stdout(&as_text(model, &estimate)),
+        false => output::to_stdout(&as_text(model, &facts)),
     }
 }
 
-fn as_text(model: &Model, estimate: &Estimate) -> String {
-    let mut text = format!("{}: a valid model\n\n", model.run.name);
-    let mut line = |name: &str, value: String| text.push_str(&format!("  {name:<12}{value}\n"));
-    line("hash", model.hash());
-    line("grains", estimate.n_grains.to_string());
-    line("impacts", estimate.n_conditions.to_string());
-    match (stability::time_step(model), estimate.steps) {
+/// What there is to say of a model by its medium.
+struct Facts {
+    /// Names and values, as shown.
+    lines: Vec<(&'static str, String)>,
+    /// The same as keys of the JSON object.
+    json: Map<String, Value>,
+}
+
+fn of_grains(grains: GrainModel<'_>) -> Facts {
+    let estimate = Estimate::of(grains);
+    let collision = stability::shortest_collision_time(grains);
+    let step = stability::time_step(grains);
+    let mut lines = vec![
+        ("grains", estimate.n_grains.to_string()),
+        ("impacts", estimate.n_conditions.to_string()),
+    ];
+    match (step, estimate.steps) {
         (Some(step), Some(steps)) => {
-            let collision = stability::shortest_collision_time(model)
-                .map(|time| format!(", {:.1} per shortest collision", time / step));
-            line("time step", format!("{step:e} s{}", collision.unwrap_or_default()));
-            line("steps", format!("{steps} at most, per impact"));
+            let per_collision = collision.map_or(String::new(), |time| {
+                format!(", {:.1} per shortest collision", time / step)
+            });
+            lines.push(("time step", format!("{step:e} s{per_collision}")));
+            lines.push(("steps", format!("{steps} at most, per impact")));
         }
-        _ => line("time step", "known when the laws are built".to_owned()),
+        _ => lines.push(("time step", "known when the laws are built".to_owned())),
     }
-    line("memory", format!("about {}", output::bytes(estimate.memory_bytes)));
+    lines.push(("memory", format!("about {}", output::bytes(estimate.memory_bytes))));
     if let Some(time) = estimate.run_time_s {
         let note = "at most, per impact, without preparing the bed";
-        line("run time", format!("about {} {note}", duration(time)));
+        lines.push(("run time", format!("about {} {note}", duration(time))));
+    }
+    let json = [
+        ("bed", json!({ "grains": estimate.n_grains })),
+        (
+            "time",
+            json!({
+                "duration_s": grains.model.run.duration,
+                "dt_s": step,
+                "steps": estimate.steps,
+                "shortest_collision_s": collision,
+            }),
+        ),
+        (
+            "cost",
+            json!({
+                "memory_bytes": estimate.memory_bytes,
+                "run_time_s": estimate.run_time_s,
+            }),
+        ),
+    ];
+    Facts { lines, json: json.map(|(key, value)| (key.to_owned(), value)).into_iter().collect() }
+}
+
+fn of_resistance(resistive: ResistiveModel<'_>) -> Facts {
+    let ResistiveModel { model, medium } = resistive;
+    let law = medium.resistance.entry;
+    let effects: Vec<&str> = medium.effects.iter().map(|effect| effect.entry.name).collect();
+    let integrated = match effects.as_slice() {
+        [] => law.name.to_owned(),
+        effects => format!("{} with {}", law.name, effects.join(", ")),
+    };
+    let dimension = match medium.space {
+        Space::Planar => 2,
+        Space::Spatial => 3,
+    };
+    let free = medium.free_parameters();
+    let shown: Vec<&str> = free.iter().map(|one| one.path.as_str()).collect();
+    let lines = vec![
+        ("law", integrated),
+        ("", law.formula.to_owned()),
+        ("body", format!("{}, in {dimension} dimensions", model.intruder.shape.name)),
+        ("impacts", model.conditions().len().to_string()),
+        ("solver", "steps of its own, to about 1e-10 m".to_owned()),
+        ("samples", format!("every {:e} s in the log", medium.log_interval)),
+        ("free", if shown.is_empty() { "nothing".to_owned() } else { shown.join(", ") }),
+    ];
+    let parameters: Vec<Value> = free
+        .iter()
+        .map(|one| json!({ "path": one.path, "value": one.value, "unit": one.unit }))
+        .collect();
+    let json = [
+        ("law", json!({ "name": law.name, "effects": effects })),
+        ("free", json!(parameters)),
+        ("time", json!({ "duration_s": model.run.duration, "interval_s": medium.log_interval })),
+    ];
+    Facts { lines, json: json.map(|(key, value)| (key.to_owned(), value)).into_iter().collect() }
+}
+
+fn as_text(model: &Model, facts: &Facts) -> String {
+    let mut text = format!("{}: a valid model\n\n", model.run.name);
+    let hash = ("hash", model.hash());
+    for (name, value) in std::iter::once(&hash).chain(&facts.lines) {
+        text.push_str(&format!("  {name:<12}{value}\n"));
     }
     format!("{text}\nIn SI, with every default:\n\n{}", model.resolved_toml())
 }
 
-fn as_json(model: &Model, estimate: &Estimate) -> Value {
-    json!({
+fn as_json(model: &Model, facts: Facts, warnings: &[String]) -> Value {
+    let mut object = json!({
         "name": model.run.name,
         "version": env!("CARGO_PKG_VERSION"),
         "valid": true,
         "model_hash": model.hash(),
-        "medium": "grains",
-        "bed": { "grains": estimate.n_grains },
+        "medium": model.medium.kind(),
         "impacts": model.conditions().iter().map(|condition| json!({
             "speed_m_per_s": condition.speed,
             "angle_deg": condition.angle_deg(),
             "position_index": condition.position_index,
         })).collect::<Vec<_>>(),
-        "time": {
-            "duration_s": model.run.duration,
-            "dt_s": stability::time_step(model),
-            "steps": estimate.steps,
-            "shortest_collision_s": stability::shortest_collision_time(model),
-        },
-        "resolved_toml": model.resolved_toml(),
-        "cost": {
-            "memory_bytes": estimate.memory_bytes,
-            "run_time_s": estimate.run_time_s,
-        },
-    })
+    });
+    for (key, value) in facts.json {
+        object[key] = value;
+    }
+    object["resolved_toml"] = json!(model.resolved_toml());
+    object["warnings"] = json!(warnings);
+    object
 }
 
 /// A duration in the unit that one would say.

@@ -67,8 +67,10 @@ impl Common {
     /// # Errors
     /// If it needs more than the share that a run may take.
     pub(crate) fn refuse_too_large(&self, model: &Model) -> Result<(), CommandError> {
-        let Some(available) = available_memory_bytes() else { return Ok(()) };
-        let estimate = Estimate::of(model);
+        let (Some(available), Some(grains)) = (available_memory_bytes(), model.grains()) else {
+            return Ok(());
+        };
+        let estimate = Estimate::of(grains);
         if self.force || estimate.memory_bytes as f64 <= MEMORY_SHARE * available as f64 {
             return Ok(());
         }

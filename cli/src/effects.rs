@@ -1,7 +1,9 @@
 //! `plunge effects`: the library of laws and effects.
 
-use configs::contact_laws::{ActsOn, LAWS, LawEntry, find};
-use configs::engine::ledger::ChannelKind;
+use configs::contact_laws::{
+    ActsOn, LAWS, LawEntry, Needs, RESISTANCE_LAWS, ResistanceEntry, Role,
+};
+use configs::engine::ledger::{Channel, ChannelKind};
 use configs::engine::params::{Default, ParamSpec, Range};
 use configs::engine::units::format_si;
 use configs::{describe_range, nearest};
@@ -19,19 +21,96 @@ pub(crate) struct Args {
     json: bool,
 }
 
+/// A law or effect of either medium, as it is described.
+struct Described {
+    name: &'static str,
+    /// The kind of medium that it acts in.
+    medium: &'static str,
+    acts_on: &'static str,
+    /// The table of a model file that it is written in.
+    table: &'static str,
+    summary: &'static str,
+    formula: &'static str,
+    signature: &'static str,
+    source: &'static str,
+    params: &'static [ParamSpec],
+    channels: Vec<Channel>,
+    /// What an expression in place of a parameter may depend on.
+    variables: &'static [&'static str],
+    /// What data must have to show an effect, and what it takes to tell it from its twins.
+    diagnosis: Option<(&'static [Needs], &'static str)>,
+}
+
+impl From<&LawEntry> for Described {
+    fn from(law: &LawEntry) -> Self {
+        let (acts_on, table) = match law.acts_on {
+            ActsOn::ContactBase => ("contact-base", "[contact_law]"),
+            ActsOn::ContactEffect => ("contact-effect", "[[effect]]"),
+        };
+        Self {
+            name: law.name,
+            medium: "grains",
+            acts_on,
+            table,
+            summary: law.summary,
+            formula: law.formula,
+            signature: law.signature,
+            source: law.source,
+            params: law.params,
+            channels: law.channels.to_vec(),
+            variables: &[],
+            diagnosis: None,
+        }
+    }
+}
+
+impl From<&ResistanceEntry> for Described {
+    fn from(law: &ResistanceEntry) -> Self {
+        let (acts_on, table, diagnosis) = match law.role {
+            Role::Baseline => ("resistance-base", "[resistance]", None),
+            Role::Effect(facts) => {
+                let diagnosis = (facts.visible, facts.separable_from);
+                ("resistance-effect", "[[effect]]", Some(diagnosis))
+            }
+        };
+        Self {
+            name: law.name,
+            medium: "resistive-force",
+            acts_on,
+            table,
+            summary: law.summary,
+            formula: law.formula,
+            signature: law.signature,
+            source: law.source,
+            params: law.params,
+            channels: law.accounts.iter().map(|account| account.channel).collect(),
+            variables: law.variables,
+            diagnosis,
+        }
+    }
+}
+
+/// Everything there is, by medium.
+fn library() -> Vec<Described> {
+    let grains = LAWS.iter().map(|law| Described::from(*law));
+    grains.chain(RESISTANCE_LAWS.iter().map(|law| Described::from(*law))).collect()
+}
+
 pub(crate) fn run(args: &Args) -> CommandResult {
+    let library = library();
     let Some(name) = &args.name else {
-        return list(args.json);
+        return list(&library, args.json);
     };
-    let law = find(name).ok_or_else(|| unknown(name))?;
+    let found = library.iter().find(|law| law.name == name);
+    let law = found.ok_or_else(|| unknown(name, &library))?;
     match args.json {
         true => output::json_to_stdout(&as_json(law)),
         false => output::to_stdout(&as_text(law)),
     }
 }
 
-fn unknown(name: &str) -> CommandError {
-    let names: Vec<&str> = LAWS.iter().map(|law| law.name).collect();
+fn unknown(name: &str, library: &[Described]) -> CommandError {
+    let names: Vec<&str> = library.iter().map(|law| law.name).collect();
     let hint = match nearest(name, names.iter().copied()) {
         Some(near) => format!("did you mean `{near}`? "),
         None => String::new(),
@@ -42,35 +121,31 @@ fn unknown(name: &str) -> CommandError {
     ))
 }
 
-fn list(as_object: bool) -> CommandResult {
+fn list(library: &[Described], as_object: bool) -> CommandResult {
     if as_object {
-        let laws: Vec<Value> = LAWS.iter().map(|law| as_json(law)).collect();
+        let laws: Vec<Value> = library.iter().map(as_json).collect();
         return output::json_to_stdout(&json!({ "effects": laws }));
     }
-    let width = LAWS.iter().map(|law| law.name.len()).max().unwrap_or(0) + 2;
+    let width = library.iter().map(|law| law.name.len()).max().unwrap_or(0) + 2;
     let mut text = String::new();
-    for law in LAWS {
-        text.push_str(&format!(
-            "{:<width$}{:<14}{}\n",
-            law.name,
-            table_of(law.acts_on),
-            law.summary
-        ));
+    let mut medium = "";
+    for law in library {
+        if law.medium != medium {
+            let gap = if medium.is_empty() { "" } else { "\n" };
+            medium = law.medium;
+            text.push_str(&format!("{gap}medium of the kind \"{medium}\"\n"));
+        }
+        text.push_str(&format!("  {:<width$}{:<15}{}\n", law.name, law.table, law.summary));
     }
     text.push_str("\n`plunge effects NAME` gives law, parameters, ranges and source.\n");
     output::to_stdout(&text)
 }
 
-/// The table of a model file that a law is written in.
-fn table_of(acts_on: ActsOn) -> &'static str {
-    match acts_on {
-        ActsOn::ContactBase => "[contact_law]",
-        ActsOn::ContactEffect => "[[effect]]",
-    }
-}
-
-fn as_text(law: &LawEntry) -> String {
-    let mut text = format!("{}  {}\n\n{}\n\n", law.name, table_of(law.acts_on), law.summary);
+fn as_text(law: &Described) -> String {
+    let mut text = format!(
+        "{}  {}, in a medium of the kind \"{}\"\n\n{}\n\n",
+        law.name, law.table, law.medium, law.summary
+    );
     let mut line = |name: &str, value: &str| text.push_str(&format!("{name:<11}{value}\n"));
     line("law", law.formula);
     line("signature", law.signature);
@@ -80,7 +155,17 @@ fn as_text(law: &LawEntry) -> String {
         .iter()
         .map(|channel| format!("{} ({})", channel.name, kind_name(channel.kind)))
         .collect();
-    line("energy", &channels.join(", "));
+    match channels.as_slice() {
+        [] => line("energy", "in the channels of the law that it changes"),
+        channels => line("energy", &channels.join(", ")),
+    }
+    if let Some((needs, separable_from)) = law.diagnosis {
+        let needs: Vec<&str> = needs.iter().map(|needs| needs_text(*needs)).collect();
+        if !needs.is_empty() {
+            line("shows with", &needs.join(", "));
+        }
+        line("told apart", &format!("by {separable_from}"));
+    }
     text.push_str("\nparameters\n");
     let width = law.params.iter().map(|spec| spec.key.len()).max().unwrap_or(0) + 2;
     for spec in law.params {
@@ -93,7 +178,24 @@ fn as_text(law: &LawEntry) -> String {
             describe_range(spec.plausible, spec.dimension)
         ));
     }
+    if !law.variables.is_empty() {
+        text.push_str(&format!(
+            "\nA parameter may be a table over the impact angle, {{ angle = […], value = […] }}, or\n\
+             {{ expression = \"…\" }} of {}, in SI.\n",
+            law.variables.join(", ")
+        ));
+    }
     text
+}
+
+fn needs_text(needs: Needs) -> &'static str {
+    match needs {
+        Needs::Oblique => "oblique impacts",
+        Needs::Spin => "spin",
+        Needs::Packings => "two packing fractions",
+        Needs::BedDepth => "a known depth of the bed",
+        Needs::BulkDensity => "a known bulk density",
+    }
 }
 
 fn default_text(spec: &ParamSpec) -> String {
@@ -115,35 +217,46 @@ fn kind_name(kind: ChannelKind) -> &'static str {
     }
 }
 
-fn as_json(law: &LawEntry) -> Value {
-    json!({
+fn as_json(law: &Described) -> Value {
+    let mut object = json!({
         "name": law.name,
-        "acts_on": match law.acts_on {
-            ActsOn::ContactBase => "contact-base",
-            ActsOn::ContactEffect => "contact-effect",
-        },
-        "table": table_of(law.acts_on),
+        "medium": law.medium,
+        "acts_on": law.acts_on,
+        "table": law.table,
         "summary": law.summary,
         "law": law.formula,
         "signature": law.signature,
         "source": law.source,
-        "parameters": law.params.iter().map(|spec| json!({
-            "key": spec.key,
-            "meaning": spec.meaning,
-            "unit": spec.dimension.si_unit(),
-            "required": spec.default == Default::Required,
-            "default": match spec.default {
-                Default::Value(value) => json!(value),
-                Default::SameAs(key) => json!(key),
-                Default::Required => Value::Null,
-            },
-            "allowed": range_json(spec.allowed),
-            "plausible": range_json(spec.plausible),
-        })).collect::<Vec<_>>(),
+        "parameters": law.params.iter().map(parameter_json).collect::<Vec<_>>(),
         "energy": law.channels.iter().map(|channel| json!({
             "channel": channel.name,
             "kind": kind_name(channel.kind),
         })).collect::<Vec<_>>(),
+    });
+    if !law.variables.is_empty() {
+        object["variables"] = json!(law.variables);
+    }
+    if let Some((needs, separable_from)) = law.diagnosis {
+        let needs: Vec<&str> = needs.iter().map(|needs| needs_text(*needs)).collect();
+        object["shows_with"] = json!(needs);
+        object["told_apart_by"] = json!(separable_from);
+    }
+    object
+}
+
+fn parameter_json(spec: &ParamSpec) -> Value {
+    json!({
+        "key": spec.key,
+        "meaning": spec.meaning,
+        "unit": spec.dimension.si_unit(),
+        "required": spec.default == Default::Required,
+        "default": match spec.default {
+            Default::Value(value) => json!(value),
+            Default::SameAs(key) => json!(key),
+            Default::Required => Value::Null,
+        },
+        "allowed": range_json(spec.allowed),
+        "plausible": range_json(spec.plausible),
     })
 }
 

@@ -68,7 +68,7 @@ fn list(as_json: bool) -> CommandResult {
     }
     let lines: Vec<String> = SHIPPED
         .iter()
-        .map(|shipped| format!("{:<14}{}\n", shipped.name, shipped.summary))
+        .map(|shipped| format!("{:<21}{}\n", shipped.name, shipped.summary))
         .collect();
     output::to_stdout(&lines.concat())
 }
@@ -89,8 +89,14 @@ fn unknown(name: &str) -> CommandError {
 fn starter(shipped: &Shipped, name: &str) -> String {
     let old = format!("name = \"{}\"", shipped.name);
     let text = shipped.text.replacen(&old, &format!("name = \"{name}\""), 1);
-    format!(
-        "{text}
+    let more = match text.contains("kind = \"resistive-force\"") {
+        true => MORE_ON_RESISTANCE,
+        false => MORE_ON_GRAINS,
+    };
+    format!("{text}{more}")
+}
+
+const MORE_ON_GRAINS: &str = "
 # Several impacts in one run: the product of these lists replaces the values above.
 # [conditions]
 # speed = [\"1 m/s\", \"2 m/s\", \"3 m/s\"]
@@ -101,9 +107,23 @@ fn starter(shipped: &Shipped, name: &str) -> String {
 # [[effect]]
 # name = \"rolling-resistance\"
 # rolling_friction = 0.05
-"
-    )
-}
+";
+
+const MORE_ON_RESISTANCE: &str = "
+# Several impacts in one run: the product of these lists replaces the values above.
+# [conditions]
+# speed = [\"1 m/s\", \"2 m/s\", \"3 m/s\"]
+# angle = [\"90 deg\", \"45 deg\"]
+
+# A coefficient may be a number, a table over the impact angle or an expression in SI:
+# friction = { angle = [\"45 deg\", \"90 deg\"], value = [12.0, 9.5] }
+# friction = { expression = \"9.5 * (density / 1520)^0.5\" }
+
+# Effects are added to the resistance law, each with one amplitude; `plunge effects` describes them.
+# [[effect]]
+# name = \"janssen\"
+# q = 0.2
+";
 
 /// Writes a file that must not exist yet; it appears whole or not at all.
 fn write_new(file: &Path, text: &str) -> CommandResult {

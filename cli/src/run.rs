@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use configs::run::{Existing, ListSummary, Outcome, Places, Scatter, Summary};
+use configs::run::{
+    BedSummary, CostSummary, Existing, LinkSummary, ListSummary, Outcome, Places, Scatter, Summary,
+};
 
 use crate::common::Common;
 use crate::control::Terminal;
@@ -60,10 +62,14 @@ fn report<T: serde::Serialize>(
 }
 
 fn one_as_text(summary: &Summary, out: &Path) -> String {
-    let Summary { impact, stop, energy, bed, cost, .. } = summary;
+    let Summary { impact, stop, energy, cost, .. } = summary;
+    let ground = match &summary.bed {
+        Some(bed) => format!("onto {} grains", bed.grains),
+        None => "into a resistive medium".to_owned(),
+    };
     let mut text = format!(
-        "{}: {} m/s at {} deg onto {} grains\n\n",
-        summary.name, impact.speed_m_per_s, impact.angle_deg, bed.grains
+        "{}: {} m/s at {} deg {ground}\n\n",
+        summary.name, impact.speed_m_per_s, impact.angle_deg
     );
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:<22}{value}");
@@ -83,18 +89,19 @@ fn one_as_text(summary: &Summary, out: &Path) -> String {
     line("at rest after", time(stop.rest_time_s));
     line("depth", format!("{:.2} mm", 1e3 * stop.depth_m));
     line("range", format!("{:.2} mm", 1e3 * stop.range_m));
-    let origin = match bed.cache.as_str() {
-        "hit" => "from the cache",
-        "miss" => "prepared now",
-        _ => "from its table",
-    };
-    line(
-        "bed",
-        format!(
-            "packing fraction {:.4}, {:.4} m high, coordination {:.2} ({})",
-            bed.packing_fraction, bed.height_m, bed.coordination, origin
-        ),
-    );
+    if let Some(bed) = &summary.bed {
+        line("bed", bed_as_text(bed));
+    }
+    if let Some(forces) = &summary.forces {
+        line("friction overtakes", time(forces.static_overtakes_s));
+        let newton =
+            |force: Option<f64>| force.map_or("-".to_owned(), |force| format!("{force:.4} N"));
+        let (whole, friction) = (newton(forces.force_at_stop), newton(forces.static_at_stop));
+        line("force at the stop", format!("{whole}, of which {friction} is friction"));
+    }
+    for (index, link) in summary.links.iter().enumerate() {
+        line(&format!("link {}", index + 1), link_as_text(link));
+    }
     line("energy at impact", format!("{:.4e} J, of which in the end", energy.initial));
     let mut share = |name: &str, value: f64, note: &str| {
         // An intruder let go from rest has no energy of impact to take shares of.
@@ -107,26 +114,59 @@ fn one_as_text(summary: &Summary, out: &Path) -> String {
     for (name, value) in &energy.dissipated {
         share(&name.replace('_', "-"), *value, "lost");
     }
-    share("springs", energy.at_end.elastic, "more than before");
-    share("grains", energy.at_end.grains, "more than before, in motion and height");
+    if summary.bed.is_some() {
+        share("springs", energy.at_end.elastic, "more than before");
+        share("grains", energy.at_end.grains, "more than before, in motion and height");
+    } else if energy.at_end.elastic != 0.0 {
+        share("medium", energy.at_end.elastic, "held by it");
+    }
     share("intruder", energy.at_end.intruder, "in motion, less the height it has lost");
     for (name, value) in &energy.input {
         share(&name.replace('_', "-"), -value, "put in");
     }
     share("unaccounted for", -energy.unaccounted, "");
     line("closure", format!("{:.1e} of the energy at impact, at worst", energy.closure));
-    line(
-        "cost",
-        format!(
-            "{} steps of {:e} s in {:.1} s on {} threads, {:.1} million grain-steps/s",
+    line("cost", cost_as_text(cost));
+    format!("{text}\n-> {}\n", out.display())
+}
+
+fn bed_as_text(bed: &BedSummary) -> String {
+    let origin = match bed.cache.as_str() {
+        "hit" => "from the cache",
+        "miss" => "prepared now",
+        _ => "from its table",
+    };
+    format!(
+        "packing fraction {:.4}, {:.4} m high, coordination {:.2} ({origin})",
+        bed.packing_fraction, bed.height_m, bed.coordination
+    )
+}
+
+fn link_as_text(link: &LinkSummary) -> String {
+    let percent =
+        |share: Option<f64>| share.map_or("-".to_owned(), |x| format!("{:.1} %", 100.0 * x));
+    let stopped = link.stopping_time_s.map_or("does not stop".to_owned(), |time| {
+        format!("stops {time:.4} s after its contact, {:.2} mm deep", 1e3 * link.depth_m)
+    });
+    format!(
+        "{stopped}; gives {:.4e} J, {} of all; loses {} of its own in motion",
+        link.given,
+        percent(link.given_share),
+        percent(link.kinetic_share)
+    )
+}
+
+fn cost_as_text(cost: &CostSummary) -> String {
+    match (cost.dt_s, cost.grain_steps_per_s) {
+        (Some(dt), Some(rate)) => format!(
+            "{} steps of {dt:e} s in {:.1} s on {} threads, {:.1} million grain-steps/s",
             cost.steps,
-            cost.dt_s,
             cost.wall_s,
             cost.threads,
-            1e-6 * cost.grain_steps_per_s
+            1e-6 * rate
         ),
-    );
-    format!("{text}\n-> {}\n", out.display())
+        _ => format!("{} steps of the solver in {:.0} ms", cost.steps, 1e3 * cost.wall_s),
+    }
 }
 
 fn list_as_text(summary: &ListSummary, out: &Path) -> String {

@@ -6,6 +6,12 @@
 /// A vector in the world frame (or a body frame where a doc says so).
 pub type Vec3 = nalgebra::Vector3<f64>;
 
+/// A column of four, one for each coordinate of an assembly.
+pub type Vec4 = nalgebra::Vector4<f64>;
+
+/// A square matrix over four coordinates.
+pub type Mat4 = nalgebra::Matrix4<f64>;
+
 /// A rotation from a body frame to the world frame.
 pub type Quat = nalgebra::UnitQuaternion<f64>;
 

@@ -1,13 +1,29 @@
 //! The shapes that plunge drops into sand, each in a file of its own and one line of [`SHAPES`].
 
+mod cone;
+mod cylinder;
+mod equations;
+mod hemisphere;
+mod link;
 mod parry_surface;
 mod registry;
+mod rod;
+mod specs;
 mod sphere;
+mod two_link_chain;
 
 pub use registry::{Body, Casting, Launchable, ShapeEntry};
 
 /// Every shape, in the order of the docs.
-pub static SHAPES: &[&ShapeEntry] = &[&sphere::DISC, &sphere::SPHERE];
+pub static SHAPES: &[&ShapeEntry] = &[
+    &sphere::DISC,
+    &sphere::SPHERE,
+    &cylinder::CYLINDER,
+    &hemisphere::HEMISPHERE,
+    &cone::CONE,
+    &link::LINK,
+    &two_link_chain::TWO_LINK_CHAIN,
+];
 
 /// The shape called `name`.
 #[must_use]

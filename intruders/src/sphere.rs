@@ -5,22 +5,15 @@ use std::sync::Arc;
 
 use engine::grains::Space;
 use engine::math::Vec3;
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{ParamSpec, ParamTable};
 use engine::resistance::{Compact, Silhouette};
-use engine::units::Dimension;
 use parry3d_f64::shape::Ball;
 
 use crate::parry_surface::BallSurface;
 use crate::registry::{Body, Casting, Launchable, ShapeEntry};
+use crate::specs::{DIAMETER, section};
 
-const PARAMS: &[ParamSpec] = &[ParamSpec {
-    key: "diameter",
-    dimension: Dimension::LENGTH,
-    default: Default::Required,
-    allowed: Range::POSITIVE,
-    plausible: Range::closed(1e-3, 1.0),
-    meaning: "diameter",
-}];
+const PARAMS: &[ParamSpec] = &[DIAMETER];
 
 /// The registry's line for the disc.
 pub(crate) const DISC: ShapeEntry = ShapeEntry {
@@ -89,9 +82,9 @@ fn compact(casting: &Casting, body: fn(&ParamTable, Space) -> Body) -> Launchabl
 }
 
 /// A sphere or a disc, by how much of it is below the surface.
-struct Cap {
-    radius: f64,
-    space: Space,
+pub(crate) struct Cap {
+    pub(crate) radius: f64,
+    pub(crate) space: Space,
 }
 
 impl Cap {
@@ -112,10 +105,7 @@ impl Silhouette for Cap {
     }
 
     fn frontal_area(&self) -> f64 {
-        match self.space {
-            Space::Planar => 2.0 * self.radius,
-            Space::Spatial => PI * self.radius * self.radius,
-        }
+        section(self.radius, self.space)
     }
 
     fn immersed_area(&self, depth: f64) -> f64 {
@@ -123,11 +113,7 @@ impl Silhouette for Cap {
     }
 
     fn section(&self, depth: f64) -> f64 {
-        let half = self.half_chord(depth);
-        match self.space {
-            Space::Planar => 2.0 * half,
-            Space::Spatial => PI * half * half,
-        }
+        section(self.half_chord(depth), self.space)
     }
 
     fn volume(&self, depth: f64) -> f64 {
@@ -135,6 +121,14 @@ impl Silhouette for Cap {
         match self.space {
             Space::Planar => r * r * libm::acos(1.0 - z / r) - (r - z) * self.half_chord(z),
             Space::Spatial => PI * z * z * (r - z / 3.0),
+        }
+    }
+
+    fn contact_area(&self, depth: f64) -> f64 {
+        let (r, z) = (self.radius, depth.min(self.radius));
+        match self.space {
+            Space::Planar => 2.0 * r * libm::acos(1.0 - z / r),
+            Space::Spatial => 2.0 * PI * r * z,
         }
     }
 }

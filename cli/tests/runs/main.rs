@@ -9,5 +9,6 @@ mod folders;
 mod kill;
 mod log;
 mod recover;
+mod resistive;
 mod summary;
 mod threads;

@@ -1,7 +1,5 @@
 //! From a model to a bed and a simulation.
 
-use std::f64::consts::FRAC_PI_2;
-
 use engine::bed::{GrainKind, Settling, fill, random};
 use engine::body::{Mechanism, RigidBody};
 use engine::boundary::Container;
@@ -13,7 +11,7 @@ use engine::math::Vec3;
 use engine::simulation::{Settings, Simulation};
 use thiserror::Error;
 
-use crate::model::{BedSource, Condition, LawChoice, Model, Settle, StartX};
+use crate::model::{BedSource, Condition, GrainModel, LawChoice, Settle, StartX};
 use crate::stability;
 
 /// Why a model that reads well cannot be built.
@@ -44,11 +42,11 @@ pub enum BuildError {
     },
 }
 
-impl Model {
+impl GrainModel<'_> {
     /// The container.
     #[must_use]
     pub fn box_container(&self) -> Container {
-        Container { width: self.container.width, depth: 0.0 }
+        Container { width: self.medium.container.width, depth: 0.0 }
     }
 
     fn gravity(&self) -> Vec3 {
@@ -60,14 +58,17 @@ impl Model {
     /// # Errors
     /// If it is automatic and the law does not decide it.
     pub fn time_step(&self) -> Result<f64, BuildError> {
-        stability::time_step(self)
-            .ok_or(BuildError::NoTimeStep { law: self.contact_law.entry.name })
+        stability::time_step(*self)
+            .ok_or(BuildError::NoTimeStep { law: self.medium.contact_law.entry.name })
     }
 
     /// The contact law and the effects.
     #[must_use]
     pub fn stages(&self) -> Vec<Box<dyn ContactStage>> {
-        std::iter::once(&self.contact_law).chain(&self.effects).map(LawChoice::build).collect()
+        std::iter::once(&self.medium.contact_law)
+            .chain(&self.medium.effects)
+            .map(LawChoice::build)
+            .collect()
     }
 
     /// The recipe of a bed that has to settle, at its start; none for a bed that is read.
@@ -75,15 +76,15 @@ impl Model {
     /// # Errors
     /// If there are too many grains, or no time step.
     pub fn settling(&self) -> Result<Option<Settling>, BuildError> {
-        let BedSource::Settle(settle) = &self.bed.source else { return Ok(None) };
+        let BedSource::Settle(settle) = &self.medium.bed.source else { return Ok(None) };
         if self.medium.gravity <= 0.0 {
             return Err(BuildError::NoGravity);
         }
         if self.n_grains() > u64::from(u32::MAX) {
             return Err(BuildError::TooManyGrains { count: self.n_grains() });
         }
-        let dt = stability::preparation_time_step(self)
-            .ok_or(BuildError::NoTimeStep { law: self.contact_law.entry.name })?;
+        let dt = stability::preparation_time_step(*self)
+            .ok_or(BuildError::NoTimeStep { law: self.medium.contact_law.entry.name })?;
         let kinds: Vec<GrainKind> = settle
             .grains
             .iter()
@@ -94,7 +95,7 @@ impl Model {
             })
             .collect();
         let container = self.box_container();
-        let grains = fill(&kinds, &container, self.run.seed);
+        let grains = fill(&kinds, &container, self.model.run.seed);
         let stages = self.preparation_stages(settle);
         Ok(Some(Settling::new(&grains, container, self.gravity(), stages, dt)))
     }
@@ -102,7 +103,7 @@ impl Model {
     /// The laws while the bed settles: the contact law with the friction of the preparation between
     /// grains and at walls, and the effects of the bed, not those of the run.
     fn preparation_stages(&self, settle: &Settle) -> Vec<Box<dyn ContactStage>> {
-        let mut law = self.contact_law.clone();
+        let mut law = self.medium.contact_law.clone();
         if let Some(friction) = settle.preparation_friction {
             for key in ["friction", "wall_friction"] {
                 if law.entry.params.iter().any(|spec| spec.key == key) {
@@ -116,7 +117,7 @@ impl Model {
     /// The bed that a table of grains describes; none for one that has to settle.
     #[must_use]
     pub fn read_bed(&self) -> Option<RestingBed> {
-        let BedSource::Csv(csv) = &self.bed.source else { return None };
+        let BedSource::Csv(csv) = &self.medium.bed.source else { return None };
         let grains: Vec<Grain> = (0..)
             .zip(csv.grains.iter())
             .map(|(id, grain)| Grain {
@@ -150,8 +151,8 @@ impl Model {
         let intruder = self.launched_intruder(&bed, condition)?;
         let settings = Settings {
             dt: self.time_step()?,
-            duration: self.run.duration,
-            abort_above: self.energy.abort_above,
+            duration: self.model.run.duration,
+            abort_above: self.model.energy.abort_above,
         };
         Ok(Simulation::new(bed, intruder, settings))
     }
@@ -161,7 +162,7 @@ impl Model {
         bed: &GrainBed,
         condition: &Condition,
     ) -> Result<Box<dyn Mechanism>, BuildError> {
-        let intruder = &self.intruder;
+        let intruder = &self.model.intruder;
         let shape = (intruder.shape.build.expect("a model of grains has a shape for grains"))(
             &intruder.params,
             Space::Planar,
@@ -169,21 +170,14 @@ impl Model {
         let inertia = shape.inertia_per_mass * intruder.mass;
         let mut body = RigidBody::new(&intruder.name, shape.surface, intruder.mass, inertia);
         let x = self.start_x(condition);
-        let (width, reach) = (self.container.width, body.surface().bounding_radius());
+        let (width, reach) = (self.medium.container.width, body.surface().bounding_radius());
         if x < reach || x > width - reach {
             return Err(BuildError::StartTouchesSide { x, width });
         }
         let z = height_in_touch(&bed.grains, body.surface(), body.orientation, (x, 0.0));
-        // Straight down is exactly down: a cosine of round-off size is no horizontal speed.
-        let (sine, cosine) = if condition.angle_rad >= FRAC_PI_2 {
-            (1.0, 0.0)
-        } else {
-            (libm::sin(condition.angle_rad), libm::cos(condition.angle_rad))
-        };
-        let velocity = Vec3::new(cosine, 0.0, -sine) * condition.speed;
-        // Counter-clockwise in the x–z plane is a rotation about −y.
-        let spin = Vec3::new(0.0, -self.impact.spin, 0.0);
-        body.launch(Vec3::new(x, 0.0, z), velocity, spin);
+        let launch = self.model.launch(condition);
+        let spin = Vec3::new(0.0, launch.spin_about_y(), 0.0);
+        body.launch(Vec3::new(x, 0.0, z), launch.velocity(), spin);
         Ok(Box::new(body))
     }
 
@@ -194,9 +188,9 @@ impl Model {
             StartX::At(x) => x,
             StartX::Drawn => {
                 use rand::RngExt;
-                let (from, to) = self.impact.x_range;
+                let (from, to) = self.medium.start.x_range;
                 let purpose = format!("position {}", condition.position_index);
-                from + (to - from) * random(self.run.seed, &purpose).random::<f64>()
+                from + (to - from) * random(self.model.run.seed, &purpose).random::<f64>()
             }
         }
     }

@@ -1,8 +1,8 @@
-//! What a model will cost, before anything is run.
+//! What a model of grains will cost, before anything is run.
 
 use engine::clock::steps_in;
 
-use crate::model::Model;
+use crate::model::GrainModel;
 use crate::stability;
 
 /// Memory per grain (byte).
@@ -30,13 +30,14 @@ pub struct Estimate {
 impl Estimate {
     /// The estimate for `model`.
     #[must_use]
-    pub fn of(model: &Model) -> Self {
+    pub fn of(model: GrainModel<'_>) -> Self {
         let n_grains = model.n_grains();
         // At most `limits::STEPS`, so the cast is exact.
-        let steps = stability::time_step(model).map(|step| steps_in(model.run.duration, step));
+        let steps =
+            stability::time_step(model).map(|step| steps_in(model.model.run.duration, step));
         Self {
             n_grains,
-            n_conditions: model.conditions().len(),
+            n_conditions: model.model.conditions().len(),
             steps,
             memory_bytes: n_grains.saturating_mul(BYTES_PER_GRAIN).saturating_add(BYTES_FIXED),
             run_time_s: steps.map(|steps| steps as f64 * n_grains as f64 / GRAIN_STEPS_PER_S),

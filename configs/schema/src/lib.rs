@@ -10,6 +10,7 @@ mod build;
 mod checks;
 mod diagnostics;
 pub mod document;
+pub mod edit;
 pub mod estimate;
 pub mod grains_csv;
 pub mod limits;
@@ -31,8 +32,11 @@ pub use diagnostics::{
 };
 pub use load::{ConfigError, LoadOptions, Loaded, ModelSource};
 pub use model::{
-    Bed, BedSource, Condition, ConditionLists, Container, CsvBed, EnergySettings, GrainKind,
-    Impact, Intruder, LawChoice, LogSettings, Medium, Model, RunSettings, Settle, StartX, TimeStep,
+    AngleTable, Bed, BedSource, Coefficient, Condition, ConditionLists, Container, CsvBed,
+    EffectChoice, EnergySettings, FreeParameter, GrainKind, GrainLog, GrainMedium, GrainModel,
+    Impact, Intruder, Launch, LawChoice, LogSettings, Medium, Model, ParameterError,
+    ResistanceChoice, ResistiveMedium, ResistiveModel, RunSettings, Settle, StartPositions, StartX,
+    Stepping, TimeStep,
 };
 pub use paths::PathError;
 pub use reader::interval as describe_range;

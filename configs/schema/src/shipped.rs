@@ -33,6 +33,26 @@ pub static SHIPPED: &[Shipped] = &[
         summary: "The vertical impact with rolling resistance between the grains.",
         text: include_str!("../../rolling-2d.toml"),
     },
+    Shipped {
+        name: "two-term-vector",
+        summary: "A steel sphere into glass beads by a force law, along the velocity.",
+        text: include_str!("../../two-term-vector.toml"),
+    },
+    Shipped {
+        name: "two-term-components",
+        summary: "The disc at 45° by a force law, component by component.",
+        text: include_str!("../../two-term-components.toml"),
+    },
+    Shipped {
+        name: "poncelet",
+        summary: "A hemisphere by Poncelet's law, with example values.",
+        text: include_str!("../../poncelet.toml"),
+    },
+    Shipped {
+        name: "link",
+        summary: "A free link into sand by the resistive force on slender rods.",
+        text: include_str!("../../link.toml"),
+    },
 ];
 
 /// The one called `name`, with or without `.toml`.

@@ -128,6 +128,47 @@ pub(crate) const AREA_DENSITY: ParamSpec = required(
     "mass per area of the plane",
 );
 
+pub(crate) const DENSITY: ParamSpec =
+    required("density", Dimension::DENSITY, POSITIVE, Range::closed(10.0, 3e4), "mass per volume");
+
+pub(crate) const BULK_DENSITY: ParamSpec = required(
+    "bulk_density",
+    Dimension::DENSITY,
+    POSITIVE,
+    Range::closed(10.0, 1e4),
+    "the mass of the bed per volume, voids included",
+);
+
+pub(crate) const BULK_AREA_DENSITY: ParamSpec = required(
+    "bulk_density",
+    Dimension::AREA_DENSITY,
+    POSITIVE,
+    Range::closed(1e-2, 1e3),
+    "the mass of the bed per area of the plane, voids included",
+);
+
+pub(crate) const PACKING: ParamSpec = required(
+    "packing",
+    NUMBER,
+    Range { min: 0.0, max: 1.0, includes_min: false },
+    Range::closed(0.4, 0.92),
+    "the packing fraction of the bed",
+);
+
+pub(crate) const BED_DEPTH: ParamSpec =
+    required("bed_depth", LENGTH, POSITIVE, Range::closed(1e-3, 100.0), "the depth of the bed");
+
+pub(crate) const LOG_INTERVAL: ParamSpec = ParamSpec {
+    default: Default::Value(1e-4),
+    ..required(
+        "interval",
+        Dimension::TIME,
+        POSITIVE,
+        Range::closed(1e-6, 0.1),
+        "the time between two samples of the log",
+    )
+};
+
 pub(crate) const SPEED: ParamSpec = required(
     "speed",
     Dimension::SPEED,

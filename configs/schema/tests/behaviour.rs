@@ -24,6 +24,10 @@ fn good(sets: &[&str]) -> Model {
     with_sets(sets).unwrap_or_else(|error| panic!("{error}")).model
 }
 
+fn bed_key(model: &Model) -> &str {
+    model.grains().expect("a bed of grains").bed_key_text()
+}
+
 fn refusal(sets: &[&str]) -> String {
     with_sets(sets).map(|loaded| loaded.model.run.name).expect_err("a refused model")
 }
@@ -69,7 +73,7 @@ fn one_position_is_the_middle_and_several_are_drawn() {
 #[test]
 fn the_bed_key_changes_with_the_bed_alone() {
     let base = good(&[]);
-    let key = base.bed_key_text();
+    let key = bed_key(&base);
     for unrelated in [
         "run.name=other",
         "run.time_step=5 us",
@@ -81,11 +85,11 @@ fn the_bed_key_changes_with_the_bed_alone() {
         "conditions.positions=6",
     ] {
         let model = good(&[unrelated]);
-        assert_eq!(model.bed_key_text(), key, "{unrelated}");
+        assert_eq!(bed_key(&model), key, "{unrelated}");
         assert_ne!(model.hash(), base.hash(), "{unrelated}");
     }
     let rolling = Model::load(shipped("rolling-2d"), &LoadOptions::default());
-    assert_eq!(rolling.expect("a shipped model").model.bed_key_text(), key);
+    assert_eq!(bed_key(&rolling.expect("a shipped model").model), key);
     for related in [
         "run.seed=2",
         "medium.gravity=1.62 m/s^2",
@@ -95,7 +99,7 @@ fn the_bed_key_changes_with_the_bed_alone() {
         "contact_law.friction=0.3",
         "contact_law.normal_stiffness=4000 N/m",
     ] {
-        assert_ne!(good(&[related]).bed_key_text(), key, "{related}");
+        assert_ne!(bed_key(&good(&[related])), key, "{related}");
     }
 }
 
@@ -119,7 +123,8 @@ fn equal_spellings_of_a_quantity_give_the_same_model() {
 
 #[test]
 fn preparation_friction_is_that_of_the_law_unless_given() {
-    let friction = |model: &Model| match &model.bed.source {
+    let friction = |model: &Model| match &model.grains().expect("a bed of grains").medium.bed.source
+    {
         BedSource::Settle(settle) => settle.preparation_friction,
         BedSource::Csv(_) => None,
     };
@@ -184,7 +189,7 @@ fn data_files_are_regular_files_of_the_project() {
     let error = load(Vec::new()).expect_err("a link that leads out").to_string();
     assert!(error.contains("lies outside of the model's project"), "{error}");
     let loaded = load(vec![outside.path().to_owned()]).expect("an allowed folder");
-    assert_eq!(loaded.model.n_grains(), 1);
+    assert_eq!(loaded.model.grains().expect("a bed of grains").n_grains(), 1);
     fs::remove_file(&link).expect("a link");
     std::os::unix::fs::symlink("/dev/zero", &link).expect("a link");
     let error = load(vec!["/dev".into()]).expect_err("a device").to_string();
@@ -192,11 +197,11 @@ fn data_files_are_regular_files_of_the_project() {
     fs::remove_file(&link).expect("a link");
     fs::write(&link, CSV).expect("a file");
     let model = load(Vec::new()).expect("a file of the project").model;
-    assert!(!model.bed_key_text().contains("grains.csv"));
-    let key = model.bed_key_text().to_owned();
+    assert!(!bed_key(&model).contains("grains.csv"));
+    let key = bed_key(&model).to_owned();
     fs::write(&link, CSV.replace("0.5,", "0.6,")).expect("a file");
     let changed = load(Vec::new()).expect("a file of the project").model;
-    assert_ne!(changed.bed_key_text(), key, "the content is part of the key");
+    assert_ne!(bed_key(&changed), key, "the content is part of the key");
 }
 
 #[test]

@@ -54,10 +54,10 @@ impl ResistanceLaw for AddedMass {
         ACCOUNTS
     }
 
-    fn act(&self, at: &Immersion, motion: &Motion, bed: &Surroundings, load: &mut Load) {
+    fn act(&self, at: &Immersion, _: &Motion, bed: &Surroundings, load: &mut Load) {
         let density = self.q * bed.bulk_density;
         load.added_mass += density * at.volume;
-        load.recruitment -= density * at.section * motion.velocity.z;
+        load.recruitment += density * at.volume_rate;
     }
 }
 
@@ -71,7 +71,9 @@ mod tests {
         let bed = surroundings();
         let (mut here, mut deeper) = (Load::default(), Load::default());
         let law = AddedMass { q: 2.0 };
-        law.act(&SPHERE.at(0.01), &sinking(3.0), &bed, &mut here);
+        let at = SPHERE.at(0.01);
+        let at = Immersion { volume_rate: 3.0 * at.section, ..at };
+        law.act(&at, &sinking(3.0), &bed, &mut here);
         law.act(&SPHERE.at(0.01 + 3e-7), &sinking(3.0), &bed, &mut deeper);
         let rate = (deeper.added_mass - here.added_mass) / 1e-7;
         assert!((here.recruitment / rate - 1.0).abs() < 1e-4);

@@ -1,5 +1,7 @@
 //! The coefficients of a law: numbers, or expressions of what an impact is made with.
 
+use std::sync::Arc;
+
 use engine::params::ParamTable;
 use exmex::{Express, FlatEx};
 use thiserror::Error;
@@ -65,7 +67,8 @@ impl OfDepth {
 #[derive(Clone, Debug)]
 pub struct Expression {
     text: String,
-    parsed: FlatEx<f64>,
+    parsed: Arc<FlatEx<f64>>,
+    bound: Vec<(&'static str, f64)>,
 }
 
 /// Why a text is no expression.
@@ -98,7 +101,7 @@ impl Expression {
                 unknown: unknown.clone(),
                 known: variables.iter().map(|&name| name.to_owned()).collect(),
             }),
-            None => Ok(Self { text: text.to_owned(), parsed }),
+            None => Ok(Self { text: text.to_owned(), parsed: Arc::new(parsed), bound: Vec::new() }),
         }
     }
 
@@ -114,7 +117,16 @@ impl Expression {
         self.parsed.var_names().iter().any(|name| name == variable)
     }
 
-    /// Its value; `variables` hold at least those that it uses, and NaN stands for any other.
+    /// The same with a value for `variable` wherever it is not given one.
+    #[must_use]
+    pub fn bind(mut self, variable: &'static str, value: f64) -> Self {
+        self.bound.retain(|(name, _)| *name != variable);
+        self.bound.push((variable, value));
+        self
+    }
+
+    /// Its value; `variables` hold at least those that it uses and that are not bound, and NaN stands
+    /// for any other.
     #[must_use]
     pub fn eval(&self, variables: &[(&str, f64)]) -> f64 {
         let values: Vec<f64> = self
@@ -122,7 +134,7 @@ impl Expression {
             .var_names()
             .iter()
             .map(|name| {
-                let found = variables.iter().find(|(known, _)| known == name);
+                let found = variables.iter().chain(&self.bound).find(|(known, _)| known == name);
                 found.map_or(f64::NAN, |(_, value)| *value)
             })
             .collect();
@@ -139,6 +151,14 @@ mod tests {
         let expression = Expression::parse("2 * depth^1.5 + 1", &["depth"]).unwrap();
         assert!((expression.eval(&[("depth", 4.0)]) - 17.0).abs() < 1e-14);
         assert!(expression.uses("depth") && !expression.uses("angle"));
+    }
+
+    #[test]
+    fn a_bound_variable_need_not_be_given_and_may_be() {
+        let expression = Expression::parse("depth * density", &["depth", "density"]).unwrap();
+        let bound = expression.bind("density", 1.0).bind("density", 3.0);
+        assert!((bound.eval(&[("depth", 2.0)]) - 6.0).abs() < 1e-14);
+        assert!((bound.eval(&[("depth", 2.0), ("density", 5.0)]) - 10.0).abs() < 1e-14);
     }
 
     #[test]

@@ -31,6 +31,7 @@ impl Sphere {
             end_area: 0.0,
             volume: PI * z * z * (r - z / 3.0),
             section,
+            volume_rate: 0.0,
             mass: 0.0692,
             effective_depth: depth,
             loaded_area: self.frontal_area(),

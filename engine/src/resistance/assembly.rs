@@ -123,6 +123,7 @@ impl Assembly for Compact {
         let depth = -z;
         let below = depth.max(0.0);
         let velocity = Vec3::new(vx, 0.0, vz);
+        let section = shape.section(below);
         let tip = Vec3::new(x, 0.0, z);
         Part {
             immersion: Immersion {
@@ -133,7 +134,8 @@ impl Assembly for Compact {
                 reference_area: frontal_area,
                 end_area: 0.0,
                 volume: shape.volume(below),
-                section: shape.section(below),
+                section,
+                volume_rate: -section * vz,
                 mass: self.mass,
                 effective_depth: depth,
                 loaded_area: frontal_area,

@@ -17,6 +17,9 @@ const REST_SPEED: f64 = 0.05;
 /// holds it; what is left of its way, some 1e-10 m, is covered at constant deceleration.
 const ALMOST_REST: f64 = 1e-4;
 
+/// Below this share of √(gD) a component of the velocity is what the integration has left of zero.
+const STILL: f64 = 1e-6;
+
 /// More changes of mode than any impact has.
 const MOST_STRETCHES: usize = 10_000;
 
@@ -266,13 +269,17 @@ impl Impact {
         self.begin(&self.system()).modes
     }
 
-    /// The modes of a body that has come to `state` and stays there.
+    /// The modes of a body that has come to `state`, where its impact ends.
     pub(super) fn last_modes(&self, state: &State) -> Modes {
-        let in_bed = std::array::from_fn(|index| {
-            index < self.assembly.n_parts()
-                && self.assembly.part(index, state).immersion.depth > 0.0
-        });
-        Modes::at(&self.system(), state, in_bed, [[true; 2]; PARTS])
+        let (mut in_bed, mut still) = ([false; PARTS], [[true; 2]; PARTS]);
+        for index in 0..self.assembly.n_parts() {
+            let part = self.assembly.part(index, state);
+            in_bed[index] = part.immersion.depth > 0.0;
+            // Tips may stop while their links go on.
+            let scale = (self.bed.gravity * part.immersion.diameter).sqrt();
+            still[index] = AXES.map(|axis| part.velocity[axis].abs() < STILL * scale);
+        }
+        Modes::at(&self.system(), state, in_bed, still)
     }
 
     fn begin(&self, system: &System<'_>) -> Progress {
@@ -454,9 +461,17 @@ impl Impact {
         let modes = Modes::at(system, state, in_bed, still);
         progress.modes =
             Modes { creeping: stopping && modes.straight.is_none() && !creeping, ..modes };
-        let held = progress.modes.held()[0];
-        progress.held = !self.assembly.ends_with_its_tips() && held == [true; 2];
+        let held = progress.modes.held();
+        progress.held = if self.assembly.ends_with_its_tips() {
+            // As many components as coordinates: then nothing can move.
+            held.as_flattened().iter().filter(|held| **held).count() == COORDINATES
+        } else {
+            held[0] == [true; 2]
+        };
         if progress.held {
+            if self.assembly.ends_with_its_tips() {
+                state.rate = [0.0; COORDINATES];
+            }
             self.close(*time, state, progress);
         }
     }
@@ -471,7 +486,7 @@ impl Impact {
     ) {
         let (acceleration, _) = accelerate(system, state, &progress.modes);
         let [vx, vz, ..] = state.rate;
-        let speed = vx.hypot(vz);
+        let speed = libm::hypot(vx, vz);
         let deceleration = -(acceleration[0] * vx + acceleration[1] * vz) / speed;
         if speed > 0.0 && deceleration > 0.0 {
             let left = speed / deceleration;
@@ -480,20 +495,24 @@ impl Impact {
                 state.position[index] += 0.5 * left * state.rate[index];
             }
         }
-        state.rate = [0.0; COORDINATES];
+        // A compact body may go on turning in its place: no friction acts on its spin.
+        let n_held = if self.assembly.ends_with_its_tips() { COORDINATES } else { 2 };
+        state.rate[..n_held].fill(0.0);
         progress.held = true;
         self.close(*time, state, progress);
     }
 
     /// What comes to its end with the body itself.
     fn close(&self, time: f64, state: &State, progress: &mut Progress) {
-        let tip = self.assembly.part(0, state).tip;
-        let stop = &mut progress.parts[0];
-        stop.depth = stop.depth.max(if stop.time().is_none() { -tip.z } else { 0.0 });
-        stop.vertical = stop.vertical.or(Some(time));
-        if stop.horizontal.is_none() {
-            stop.horizontal = Some(time);
-            stop.range = (tip.x - progress.first_x[0]).abs();
+        for index in 0..self.assembly.n_parts() {
+            let tip = self.assembly.part(index, state).tip;
+            let stop = &mut progress.parts[index];
+            stop.depth = stop.depth.max(if stop.time().is_none() { -tip.z } else { 0.0 });
+            stop.vertical = stop.vertical.or(Some(time));
+            if stop.horizontal.is_none() {
+                stop.horizontal = Some(time);
+                stop.range = (tip.x - progress.first_x[index]).abs();
+            }
         }
         progress.rest = progress.rest.or(Some(time));
         progress.slow = progress.slow.or(Some(time));

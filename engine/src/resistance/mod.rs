@@ -59,6 +59,9 @@ pub struct Immersion {
     pub volume: f64,
     /// Rate of the immersed volume with depth (m², planar m).
     pub section: f64,
+    /// Rate at which the immersed volume grows now (m³/s, planar m²/s); of a body that turns, more or
+    /// less than the section times its speed.
+    pub volume_rate: f64,
     /// Mass of the body (kg).
     pub mass: f64,
 

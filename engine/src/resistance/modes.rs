@@ -105,10 +105,10 @@ impl Modes {
             gripping: false,
             creeping: false,
         };
-        for part in 0..n_parts {
+        for (part, still) in still.iter().enumerate().take(n_parts) {
             let velocity = system.assembly.part(part, state).velocity;
             for (component, axis) in AXES.into_iter().enumerate() {
-                if !still[part][component] {
+                if !still[component] {
                     modes.sense[part][component] = Sense::of(velocity[axis]);
                 }
             }
@@ -123,10 +123,12 @@ impl Modes {
         modes
     }
 
-    /// Which components are held.
+    /// Which components are held; above the surface nothing is.
     pub(super) fn held(&self) -> [[bool; 2]; PARTS] {
-        let gripping = self.gripping;
-        self.sense.map(|part| part.map(|sense| gripping && sense == Sense::Held))
+        std::array::from_fn(|part| {
+            let gripped = self.gripping && self.in_bed[part];
+            self.sense[part].map(|sense| gripped && sense == Sense::Held)
+        })
     }
 
     /// Lets those held components go that friction cannot hold: the first combination of held,
@@ -155,7 +157,9 @@ impl Modes {
 
     fn is_consistent(&self, system: &System<'_>, state: &State, free: &[(usize, usize)]) -> bool {
         let (acceleration, holds) = accelerate(system, state, self);
-        let within = holds.iter().all(|hold| self.slack(system, state, hold) >= 0.0);
+        // Without the room for round-off that a component in hold has: one that has just used it up
+        // must be let go.
+        let within = holds.iter().all(|hold| self.reserve(system, state, hold) >= 0.0);
         within
             && free.iter().all(|&(part, component)| {
                 let sense = self.sense[part][component];
@@ -167,19 +171,28 @@ impl Modes {
     /// How far the force of `hold` is from the limits of its friction (N), with room for round-off;
     /// negative beyond.
     pub(super) fn slack(&self, system: &System<'_>, state: &State, hold: &Hold) -> f64 {
-        let loaded = system.loaded(hold.part, state, self);
-        let grip = loaded.load.grip[hold.component];
-        let room = ROUND_OFF * loaded.part.immersion.mass * system.bed.gravity;
-        room + (grip.positive + hold.force).min(grip.negative - hold.force)
+        let mass = system.assembly.part(hold.part, state).immersion.mass;
+        self.reserve(system, state, hold) + ROUND_OFF * mass * system.bed.gravity
     }
 
-    /// The line on which a compact body moves as long as nothing pushes it off.
+    /// The same without that room.
+    fn reserve(&self, system: &System<'_>, state: &State, hold: &Hold) -> f64 {
+        let grip = system.loaded(hold.part, state, self).load.grip[hold.component];
+        (grip.positive + hold.force).min(grip.negative - hold.force)
+    }
+
+    /// The line on which a single body moves as long as nothing pushes it off.
     fn straight_line(&self, system: &System<'_>, state: &State) -> Option<Vec3> {
         if system.laws.iter().any(|law| law.deflects()) {
             return None;
         }
-        let velocity = system.assembly.part(0, state).velocity;
-        if velocity.x != 0.0 {
+        let part = system.assembly.part(0, state);
+        let (centre, _) = system.assembly.placement(0, state);
+        // A force on the centre turns nothing; a link that leans or spins leaves the line.
+        let turns = system.assembly.ends_with_its_tips()
+            && (centre.x - part.tip.x != 0.0 || part.spin != 0.0);
+        let velocity = part.velocity;
+        if turns || velocity.x != 0.0 {
             return None;
         }
         let sense = if velocity.z != 0.0 {
@@ -275,9 +288,9 @@ fn change(
 ) -> Vec3 {
     let at = |time: f64| {
         let mut moved = *state;
-        for index in 0..COORDINATES {
+        for (index, acceleration) in acceleration.iter().enumerate() {
             moved.position[index] += time * state.rate[index];
-            moved.rate[index] += time * acceleration[index];
+            moved.rate[index] += time * acceleration;
         }
         assembly.part(part, &moved).velocity
     };

@@ -23,4 +23,10 @@ pub trait Silhouette: Send + Sync {
 
     /// Volume below the surface.
     fn volume(&self, depth: f64) -> f64;
+    /// Area of the surface of the body that is below the bed's: the leading face and, of a cylinder,
+    /// the side, which touches grains but is not driven into them. The top does not count.
+    ///
+    /// Spatial: cap 2πRz up to its equator, cylinder πR² + 2πRz, cone πz² tan(a)/cos(a) with half its
+    /// apex angle a: the geometric contact areas of hemispheres, cylinders and cones in granular impact.
+    fn contact_area(&self, depth: f64) -> f64;
 }

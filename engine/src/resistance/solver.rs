@@ -110,7 +110,7 @@ impl<'a> Solver<'a> {
     /// out with the difference.
     pub(super) fn at(&mut self, time: f64) -> State {
         let (from, to) = (self.method.t_prev(), self.method.t());
-        if time == to {
+        if time - to == 0.0 {
             return (*self.method.y()).into();
         }
         let time = time.clamp(from.min(to), from.max(to));
@@ -144,7 +144,7 @@ impl<'a> Solver<'a> {
         debug_assert!(start >= 0.0 && end < 0.0);
         let eps = 4.0 * f64::EPSILON * (1.0 + to.abs());
         let mut convergence = SimpleConvergency { eps, max_iter: 200 };
-        let at = |time: f64| if time == from { start } else { value(&self.at(time)) };
+        let at = |time: f64| if time - from == 0.0 { start } else { value(&self.at(time)) };
         find_root_brent(from, to, at, &mut convergence).unwrap_or(to)
     }
 }

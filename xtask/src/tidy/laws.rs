@@ -1,10 +1,12 @@
-//! A law or effect that is registered has a test beside it and a model that uses it.
+//! A law or effect that is registered has a test beside it and a model that uses it. An effect of a
+//! resistive medium needs no model: it has one amplitude, and tests that all of them share build it.
 
 use std::path::{Path, PathBuf};
 
 use super::{Problem, TextFile, numbered};
 
-const REGISTRY: &str = "contact-laws/src/lib.rs";
+/// Files with tables of laws; the laws stand beside them.
+const REGISTRIES: [&str; 2] = ["contact-laws/src/lib.rs", "contact-laws/src/resistance/mod.rs"];
 
 /// A line of a registry table: `module::CONSTANT`.
 #[derive(Debug, PartialEq, Eq)]
@@ -14,21 +16,26 @@ struct Registered<'a> {
     line: usize,
 }
 
-/// Checks every entry of the tables in the registry's file.
+/// Checks every entry of the tables in the registries.
 pub(crate) fn check(files: &[TextFile]) -> Vec<Problem> {
+    REGISTRIES.iter().flat_map(|registry| check_registry(registry, files)).collect()
+}
+
+fn check_registry(registry: &str, files: &[TextFile]) -> Vec<Problem> {
     let text_of = |path: &Path| files.iter().find(|f| f.path == path).map(|f| f.text.as_str());
-    let Some(registry) = text_of(Path::new(REGISTRY)) else {
+    let folder = registry.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let Some(text) = text_of(Path::new(registry)) else {
         return vec![Problem {
-            file: REGISTRY.into(),
+            file: registry.into(),
             line: 1,
             what: "the registry of laws is not there".into(),
             right: "if it has moved, say so in xtask/src/tidy/laws.rs".into(),
         }];
     };
-    let entries = registered(registry);
+    let entries = registered(text);
     if entries.is_empty() {
         return vec![Problem {
-            file: REGISTRY.into(),
+            file: registry.into(),
             line: 1,
             what: "no table of laws is recognised".into(),
             right: "`static LAWS: &[…] = &[…]` with entries `&module::ENTRY`".into(),
@@ -38,12 +45,11 @@ pub(crate) fn check(files: &[TextFile]) -> Vec<Problem> {
     let mut problems = Vec::new();
     for entry in entries {
         let Registered { module, constant, line } = entry;
-        let candidates =
-            [format!("contact-laws/src/{module}.rs"), format!("contact-laws/src/{module}/mod.rs")];
+        let candidates = [format!("{folder}/{module}.rs"), format!("{folder}/{module}/mod.rs")];
         let file = candidates.iter().map(PathBuf::from).find(|path| text_of(path).is_some());
         let Some(file) = file else {
             problems.push(Problem {
-                file: REGISTRY.into(),
+                file: registry.into(),
                 line,
                 what: format!("`{module}::{constant}` has no file of its own"),
                 right: format!("put the law into {}", candidates[0]),
@@ -71,7 +77,8 @@ pub(crate) fn check(files: &[TextFile]) -> Vec<Problem> {
             let right = "add a case solved by hand at the bottom of the file".into();
             problem(format!("`{name}` has no test beside it"), right);
         }
-        if !files.iter().any(|f| is_model(&f.path) && model_names(&f.text, name)) {
+        let needs_model = !is_resistive_effect(text, constant);
+        if needs_model && !files.iter().any(|f| is_model(&f.path) && model_names(&f.text, name)) {
             let right = format!("add one that says `name = \"{name}\"` to its law or effect");
             problem(format!("no model in configs/*.toml uses `{name}`"), right);
         }
@@ -120,6 +127,15 @@ fn law_name<'a>(text: &'a str, constant: &str) -> Option<(usize, &'a str)> {
         })
 }
 
+/// Whether `constant` says that it is an effect of a resistive medium.
+fn is_resistive_effect(text: &str, constant: &str) -> bool {
+    let declaration = format!("const {constant}:");
+    numbered(text)
+        .skip_while(|(_, line)| !line.contains(&declaration))
+        .find_map(|(_, line)| line.trim_start().strip_prefix("role: Role::"))
+        .is_some_and(|role| role.starts_with("Effect"))
+}
+
 fn is_model(path: &Path) -> bool {
     path.parent() == Some(Path::new("configs")) && path.extension().is_some_and(|e| e == "toml")
 }
@@ -157,15 +173,21 @@ fn find() { LAWS.iter().find(|entry| entry.name == name).copied() }
     const LAW: &str =
         "const ENTRY: LawEntry = LawEntry {\n    name: \"rolling\",\n};\n#[test]\nfn f() {}\n";
 
+    /// What is wrong with the registry of contact laws.
     fn whats(files: &[(&str, &str)]) -> Vec<String> {
+        whats_of(REGISTRIES[0], files)
+    }
+
+    fn whats_of(registry: &str, files: &[(&str, &str)]) -> Vec<String> {
         let files = files
             .iter()
             .map(|(path, text)| TextFile { path: path.into(), text: (*text).to_owned() })
             .collect::<Vec<_>>();
-        check(&files).into_iter().map(|problem| problem.what).collect()
+        check_registry(registry, &files).into_iter().map(|problem| problem.what).collect()
     }
 
-    const ONE_LAW: (&str, &str) = (REGISTRY, "static LAWS: &[&LawEntry] = &[&rolling::ENTRY];");
+    const ONE_LAW: (&str, &str) =
+        (REGISTRIES[0], "static LAWS: &[&LawEntry] = &[&rolling::ENTRY];");
     const MODEL: (&str, &str) = ("configs/m.toml", "[[effect]]\nname = \"rolling\"\n");
 
     #[test]
@@ -206,6 +228,23 @@ fn find() { LAWS.iter().find(|entry| entry.name == name).copied() }
     }
 
     #[test]
+    fn of_the_resistive_laws_only_baselines_need_a_model() {
+        let registry = (REGISTRIES[1], "static RESISTANCE_LAWS: &[&E] = &[&drag::ENTRY];");
+        let law = |role: &str| {
+            format!(
+                "const ENTRY: E = E {{\n    name: \"drag\",\n    role: Role::{role},\n}};\n#[test]\n"
+            )
+        };
+        let found = |role: &str| {
+            let law = law(role);
+            let file = ("contact-laws/src/resistance/drag.rs", law.as_str());
+            whats_of(REGISTRIES[1], &[registry, file])
+        };
+        assert_eq!(found("Baseline"), ["no model in configs/*.toml uses `drag`"]);
+        assert!(found("Effect(Facts {").is_empty());
+    }
+
+    #[test]
     fn the_name_is_read_from_the_entry_or_from_the_trait() {
         assert_eq!(law_name(LAW, "ENTRY"), Some((2, "rolling")));
         let by_trait =
@@ -225,6 +264,6 @@ fn find() { LAWS.iter().find(|entry| entry.name == name).copied() }
     #[test]
     fn a_registry_that_is_not_understood_is_itself_a_problem() {
         assert_eq!(whats(&[]), ["the registry of laws is not there"]);
-        assert_eq!(whats(&[(REGISTRY, "mod a;")]), ["no table of laws is recognised"]);
+        assert_eq!(whats(&[(REGISTRIES[0], "mod a;")]), ["no table of laws is recognised"]);
     }
 }

@@ -3,8 +3,9 @@
 use engine::params::{Default as ParamDefault, ParamSpec};
 
 use super::bed_file::{DataFolder, csv_bed};
+use super::grains::time_step;
 use super::laws::effects;
-use super::{BodyPlaces, Places, disc_area, mass, time_step};
+use super::{BodyPlaces, Places, disc_area, mass};
 use crate::diagnostics::Diagnostic;
 use crate::limits;
 use crate::model::{Bed, BedSource, Container, GrainKind, LawChoice, Settle};
@@ -103,7 +104,7 @@ fn grain_kind(table: TableReader<'_>, places: &mut Places) -> Option<GrainKind> 
     );
     let diameter = table.number(&specs::GRAIN_DIAMETER);
     let area = diameter.map(|found| disc_area(found.value));
-    let mass = mass(&table, &specs::GRAIN_MASS, area);
+    let mass = mass(&table, &specs::GRAIN_MASS, &specs::AREA_DENSITY, area);
     places.grains.push(BodyPlaces {
         count: table.span_of("count"),
         diameter: table.span_of("diameter"),

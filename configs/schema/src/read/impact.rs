@@ -1,65 +1,104 @@
 //! `[intruder]`, `[impact]` and `[conditions]`.
 
+use engine::grains::Space;
 use engine::params::ParamSpec;
+use intruders::ShapeEntry;
 
-use super::{BodyPlaces, Places, disc_area, mass};
-use crate::diagnostics::Diagnostic;
+use super::{BodyPlaces, Places, mass};
+use crate::diagnostics::{Diagnostic, Span};
 use crate::document::{Node, Value};
 use crate::limits;
-use crate::model::{ConditionLists, Container, Impact, Intruder};
+use crate::model::{ConditionLists, Container, Impact, Intruder, StartPositions};
 use crate::reader::{Found, TableReader};
 use crate::specs;
 
-pub(super) fn intruder(table: TableReader<'_>, places: &mut Places) -> Option<Intruder> {
+/// The intruder of a planar bed of grains.
+pub(super) fn in_grains(table: TableReader<'_>, places: &mut Places) -> Option<Intruder> {
+    intruder(table, Space::Planar, places, |table| {
+        let fits = |shape: &&&ShapeEntry| shape.planar && shape.build.is_some();
+        let (here, later): (Vec<&ShapeEntry>, Vec<_>) = intruders::SHAPES.iter().partition(fits);
+        let [here, later] = [here, later].map(|shapes| names(&shapes));
+        intruders::find(table.choice("shape", &here, &later, "the shape of the intruder")?)
+    })
+}
+
+/// The intruder of a resistive medium.
+pub(super) fn in_resistance(
+    table: TableReader<'_>,
+    space: Space,
+    places: &mut Places,
+) -> Option<Intruder> {
+    intruder(table, space, places, |table| {
+        let (medium, fits): (_, fn(&ShapeEntry) -> bool) = match space {
+            Space::Planar => ("a planar medium", |shape| shape.planar),
+            Space::Spatial => ("a medium of dimension 3", |shape| shape.spatial),
+        };
+        let fitting = intruders::SHAPES.iter().filter(|shape| fits(shape));
+        let here = names(&fitting.copied().collect::<Vec<_>>());
+        let named = table.peek_text("shape").and_then(intruders::find);
+        if let Some(shape) = named.filter(|shape| !fits(shape)) {
+            table.reader.report(
+                Diagnostic::error(format!("the shape `{}` cannot act in {medium}", shape.name))
+                    .at(table.span_of("shape"), "a shape of another dimension")
+                    .help(format!("shapes here: {}", here.join(", "))),
+            );
+            return None;
+        }
+        intruders::find(table.choice("shape", &here, &[], "the shape of the intruder")?)
+    })
+}
+
+fn names(shapes: &[&ShapeEntry]) -> Vec<&'static str> {
+    shapes.iter().map(|shape| shape.name).collect()
+}
+
+/// The intruder of a medium whose shapes `choose` knows.
+fn intruder(
+    table: TableReader<'_>,
+    space: Space,
+    places: &mut Places,
+    choose: impl Fn(&TableReader<'_>) -> Option<&'static ShapeEntry>,
+) -> Option<Intruder> {
     let name = table.slug("name", Some("intruder"), "the intruder's name in logs and reports");
-    let names: Vec<&'static str> = intruders::SHAPES.iter().map(|shape| shape.name).collect();
-    let later = ["cylinder", "hemisphere", "cone", "link", "two-link-chain"];
-    let later: Vec<&str> = later.into_iter().filter(|name| !names.contains(name)).collect();
-    let shape = table.choice("shape", &names, &later, "the shape of the intruder")?;
-    let shape = intruders::find(shape)?;
-    if !shape.planar {
-        table.reader.report(
-            Diagnostic::error(format!("the shape `{}` cannot act in a planar bed", shape.name))
-                .at(table.span_of("shape"), "a shape of three dimensions"),
-        );
-        return None;
-    }
+    let shape = choose(&table)?;
     let params = table.params(shape.params);
-    let diameter = params.as_ref().and_then(|params| {
-        params.iter().find(|(key, _)| *key == "diameter").map(|(_, value)| value)
-    });
-    let mass = mass(&table, &specs::INTRUDER_MASS, diameter.map(disc_area));
     places.intruder = BodyPlaces {
         count: None,
         diameter: table.span_of("diameter"),
         mass: table.span_of("mass").or_else(|| table.span_of("density")),
     };
+    let density = match space {
+        Space::Planar => &specs::AREA_DENSITY,
+        Space::Spatial => &specs::DENSITY,
+    };
+    let size = params.as_ref().map(|params| (shape.volume)(params, space));
+    let mass = mass(&table, &specs::INTRUDER_MASS, density, size);
     table.finish();
     Some(Intruder { name: name?.value, shape, params: params?, mass: mass? })
 }
 
-pub(super) fn impact(
-    table: TableReader<'_>,
-    container: Option<&Container>,
-    places: &mut Places,
-) -> Option<Impact> {
+/// How the intruder comes in; the table is not finished.
+pub(super) fn impact(table: &TableReader<'_>, places: &mut Places) -> Option<Impact> {
     let speed = table.number(&specs::SPEED);
     let angle = table.number(&specs::ANGLE);
     let spin = table.number(&specs::SPIN);
-    let x = start_x(&table);
-    let x_range = x_range(&table, container);
     places.speed = table.span_of("speed");
+    places.angle = table.span_of("angle");
     places.spin = table.span_of("spin");
+    Some(Impact { speed: speed?.value, angle_rad: angle?.value, spin: spin?.value })
+}
+
+/// Where impacts on a bed of grains start.
+pub(super) fn start_positions(
+    table: &TableReader<'_>,
+    container: Option<&Container>,
+    places: &mut Places,
+) -> Option<StartPositions> {
+    let x = start_x(table);
+    let x_range = x_range(table, container);
     places.x = table.span_of("x").or_else(|| table.span_of("position"));
     places.x_range = table.span_of("x_range");
-    table.finish();
-    Some(Impact {
-        speed: speed?.value,
-        angle_rad: angle?.value,
-        spin: spin?.value,
-        x: x?,
-        x_range: x_range?,
-    })
+    Some(StartPositions { x: x?, x_range: x_range? })
 }
 
 /// `x`, or the first of `position = [x, y]`.
@@ -133,12 +172,12 @@ fn pair(table: &TableReader<'_>, spec: &ParamSpec) -> Option<(Found<f64>, Found<
     None
 }
 
-pub(super) fn conditions(
+/// `[conditions]` of a model of grains.
+pub(super) fn conditions_on_grains(
     table: TableReader<'_>,
     places: &mut Places,
 ) -> Option<Option<ConditionLists>> {
-    let speed = table.numbers(&specs::SPEED);
-    let angle = table.numbers(&specs::ANGLE);
+    let lists = conditions(&table, places);
     let x = table.numbers(&specs::X);
     let positions = match table.has("positions") {
         true => table
@@ -151,9 +190,7 @@ pub(super) fn conditions(
             .map(Some),
         false => Some(None),
     };
-    places.conditions = table.header();
     places.positions = table.span_of("positions");
-    let given = table.header().is_some();
     if table.has("x") && table.has("positions") {
         table.reader.report(
             Diagnostic::error("both `x` and `positions` are given")
@@ -163,19 +200,38 @@ pub(super) fn conditions(
         );
     }
     table.finish();
-    let (speed, angle, x, positions) = (speed?, angle?, x?, positions?);
-    let spans = |list: &Option<Vec<Found<f64>>>| {
-        list.iter().flatten().map(|found| found.span).collect::<Vec<_>>()
-    };
+    let (lists, x, positions) = (lists?, x?, positions?);
     places.condition_x = spans(&x);
-    places.condition_speed = spans(&speed);
-    let values = |list: Option<Vec<Found<f64>>>| {
-        list.map(|list| list.into_iter().map(|found| found.value).collect::<Vec<f64>>())
-    };
-    Some(given.then(|| ConditionLists {
-        speed: values(speed),
-        angle_rad: values(angle),
+    Some(lists.map(|lists| ConditionLists {
         x: values(x),
         positions: positions.map(|found| found.value),
+        ..lists
     }))
+}
+
+/// The lists of `[conditions]` that every medium knows; the table is not finished.
+pub(super) fn conditions(
+    table: &TableReader<'_>,
+    places: &mut Places,
+) -> Option<Option<ConditionLists>> {
+    let speed = table.numbers(&specs::SPEED);
+    let angle = table.numbers(&specs::ANGLE);
+    places.conditions = table.header();
+    let (speed, angle) = (speed?, angle?);
+    places.condition_speed = spans(&speed);
+    places.condition_angle = spans(&angle);
+    Some(table.header().map(|_| ConditionLists {
+        speed: values(speed),
+        angle_rad: values(angle),
+        x: None,
+        positions: None,
+    }))
+}
+
+fn spans(list: &Option<Vec<Found<f64>>>) -> Vec<Option<Span>> {
+    list.iter().flatten().map(|found| found.span).collect()
+}
+
+fn values(list: Option<Vec<Found<f64>>>) -> Option<Vec<f64>> {
+    list.map(|list| list.into_iter().map(|found| found.value).collect())
 }

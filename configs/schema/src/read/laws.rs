@@ -31,17 +31,20 @@ pub(super) fn effects(tables: Vec<TableReader<'_>>) -> Option<Vec<LawChoice>> {
             continue;
         };
         if let Some(first) = effects.iter().find(|other| other.entry.name == effect.entry.name) {
-            table.reader.report(
-                Diagnostic::error(format!("the effect `{}` is given twice", effect.entry.name))
-                    .at(effect.span, "again here")
-                    .with(first.span, "first here")
-                    .help("keep one of the two tables"),
-            );
+            table.reader.report(given_twice(effect.entry.name, effect.span, first.span));
         }
         effects.push(effect);
         table.finish();
     }
     (effects.len() == wanted).then_some(effects)
+}
+
+/// What to say about an effect that is there already.
+pub(super) fn given_twice(name: &str, again: Span, first: Span) -> Diagnostic {
+    Diagnostic::error(format!("the effect `{name}` is given twice"))
+        .at(again, "again here")
+        .with(first, "first here")
+        .help("keep one of the two tables")
 }
 
 /// The law that `name` says, with its parameters.
@@ -83,6 +86,11 @@ fn explain_law(name: &str, span: Span, slot: ActsOn, known: &[&LawEntry]) -> Dia
                 ActsOn::ContactBase => "contact law",
                 ActsOn::ContactEffect => "effect",
             };
+            if contact_laws::find_resistance(name).is_some() {
+                return Diagnostic::error(format!("`{shown}` acts in a resistive-force medium"))
+                    .at(span, "this medium is a bed of grains")
+                    .help(format!("{kind}s: {list}; `plunge effects` describes them"));
+            }
             let label = match nearest(name, known.iter().map(|law| law.name)) {
                 Some(near) => format!("did you mean \"{near}\"?"),
                 None => "not known".to_owned(),

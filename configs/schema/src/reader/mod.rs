@@ -1,5 +1,7 @@
 //! Reads tables key by key: collects every error, and writes what it read into the resolved model.
 
+mod coefficients;
+mod lists;
 mod numbers;
 mod unknown;
 mod words;

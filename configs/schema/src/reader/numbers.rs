@@ -144,7 +144,7 @@ impl TableReader<'_> {
     }
 
     /// Something plausible to write for a parameter.
-    fn example(&self, spec: &ParamSpec) -> String {
+    pub(super) fn example(&self, spec: &ParamSpec) -> String {
         let Range { min, max, .. } = spec.plausible;
         let middle = match min > 0.0 && max.is_finite() {
             true => (min * max).sqrt(),

@@ -10,7 +10,7 @@ use engine::checkpoint::{self, with_suffix};
 use engine::grain_bed::RestingBed;
 
 use super::{Control, Progress, RunError, result_key};
-use crate::model::{BedSource, Model};
+use crate::model::{BedSource, GrainModel};
 
 /// Steps between two looks at the control while a bed settles.
 const LOOK_EVERY: u64 = 100;
@@ -39,7 +39,7 @@ pub struct PreparedBed {
 
 /// The key of the bed of `model`.
 #[must_use]
-pub fn bed_key(model: &Model) -> [u8; 32] {
+pub fn bed_key(model: GrainModel<'_>) -> [u8; 32] {
     result_key(model.bed_key_text())
 }
 
@@ -49,7 +49,7 @@ pub fn bed_key(model: &Model) -> [u8; 32] {
 /// # Errors
 /// If it cannot be prepared or stored.
 pub fn prepare(
-    model: &Model,
+    model: GrainModel<'_>,
     folder: &Path,
     control: &mut dyn Control,
 ) -> Result<Option<PreparedBed>, RunError> {
@@ -91,8 +91,8 @@ pub fn prepare(
 }
 
 /// Refuses a table whose grains lie in each other: its first step would throw them apart.
-fn refuse_overlaps(model: &Model, resting: &RestingBed) -> Result<(), RunError> {
-    let BedSource::Csv(table) = &model.bed.source else { return Ok(()) };
+fn refuse_overlaps(model: GrainModel<'_>, resting: &RestingBed) -> Result<(), RunError> {
+    let BedSource::Csv(table) = &model.medium.bed.source else { return Ok(()) };
     let bed = model.bed(resting);
     match bed.pair_deeper_than(DEEPEST_IN_TABLE) {
         // The identity of a grain of a table is its place in it; line 1 is the header.
@@ -108,7 +108,7 @@ fn refuse_overlaps(model: &Model, resting: &RestingBed) -> Result<(), RunError> 
 /// The bed of `model`, settled now, from the checkpoint `unfinished` if there is one. Nothing if
 /// `control` wants to stop.
 fn settle(
-    model: &Model,
+    model: GrainModel<'_>,
     unfinished: &Path,
     key: &[u8; 32],
     control: &mut dyn Control,
@@ -145,7 +145,7 @@ fn settle(
     Ok(Some(settling.bed().resting()))
 }
 
-fn recipe(model: &Model) -> Result<Settling, RunError> {
+fn recipe(model: GrainModel<'_>) -> Result<Settling, RunError> {
     match model.settling()? {
         Some(settling) => Ok(settling),
         None => unreachable!("a bed is read from a table or settles"),

@@ -1,8 +1,12 @@
 //! Runs a model: bed, impacts, logs, checkpoints, summaries.
 
 mod bed_cache;
+mod drawing;
 mod folder;
-mod impact;
+mod grains;
+mod log_texts;
+mod model_file;
+mod resistive;
 mod summary;
 
 use std::io;
@@ -12,17 +16,18 @@ use engine::bed::BedReport;
 use engine::checkpoint::{CheckpointError, FORMAT};
 use engine::error::StepError;
 use engine::record::RecordError;
+use engine::resistance::ImpactError;
 use thiserror::Error;
 
 use crate::build::BuildError;
 use crate::load::ConfigError;
-use crate::model::Model;
+use crate::model::{Condition, GrainModel, Medium, Model, ResistiveModel};
 
 pub use bed_cache::{PreparedBed, bed_key, prepare};
 pub use folder::Existing;
 pub use summary::{
-    BedSummary, CostSummary, EnergySummary, FinalEnergy, Group, ImpactSummary, ListSummary,
-    Scatter, StopSummary, Summary,
+    BedSummary, CostSummary, EnergySummary, FinalEnergy, ForceSummary, Group, ImpactSummary,
+    LinkSummary, ListSummary, Scatter, StopSummary, Summary,
 };
 
 use folder::{Found, OutputFolder};
@@ -203,6 +208,20 @@ pub enum RunError {
     /// A step of the impact cannot be trusted.
     #[error(transparent)]
     Step(#[from] StepError),
+    /// The motion in a resistive medium cannot be integrated.
+    #[error(transparent)]
+    Impact(#[from] ImpactError),
+    /// The energies of an impact on a resistive medium do not add up.
+    #[error(
+        "{closure:.1e} of the energy of the impact is unaccounted for, more than energy.abort_above = \
+         {limit}"
+    )]
+    OpenBudget {
+        /// The closure.
+        closure: f64,
+        /// What is accepted.
+        limit: f64,
+    },
     /// The log cannot be written or continued.
     #[error(transparent)]
     Record(#[from] RecordError),
@@ -262,11 +281,11 @@ pub fn run(
     places: &Places,
     control: &mut dyn Control,
 ) -> Result<Outcome, RunError> {
-    let table = impact::table_of(model)?;
+    let table = model_file::table_of(model)?;
     let folder = OutputFolder::lock(&places.out)?;
     let conditions = model.conditions();
     let is_list = model.conditions.is_some();
-    let found = folder.claim(&impact::model_text(model), places.existing)?;
+    let found = folder.claim(&model_file::model_text(model), places.existing)?;
     if let Found::Finished = found {
         return Ok(if is_list {
             Outcome::List(Box::new(folder.read_json("summary.json")?))
@@ -274,19 +293,13 @@ pub fn run(
             Outcome::One(Box::new(folder.read_json("summary.json")?))
         });
     }
-    let Some(bed) = prepare(model, &places.cache, control)? else {
+    let Some(ground) = Ground::prepare(model, &places.cache, control)? else {
         return Ok(Outcome::Interrupted);
     };
-    let report = BedReport::of(&model.bed(&bed.resting));
-    let bed_summary = BedSummary::new(&report, bed.cache, model);
-    for warning in &bed_summary.warnings {
-        control.warn(warning);
-    }
-    impact::write_model(&folder, model, table.as_deref())?;
+    model_file::write_model(&folder, model, table.as_deref())?;
     if !is_list {
-        let setting =
-            impact::Setting { model, original, bed: &bed, bed_summary: &bed_summary, of: (0, 1) };
-        let summary = setting.run(&folder, &conditions[0], control)?;
+        let task = Task { model, original, of: (0, 1) };
+        let summary = ground.run(task, &folder, &conditions[0], control)?;
         return Ok(summary.map_or(Outcome::Interrupted, |one| Outcome::One(Box::new(one))));
     }
     let mut summaries = Vec::new();
@@ -294,15 +307,13 @@ pub fn run(
         let single = model.single(condition, &places.out)?;
         let sub = OutputFolder::lock(&places.out.join(format!("{:03}", index + 1)))?;
         // The list is ours, so an unfinished member is only ever met when the list is resumed.
-        if let Found::Finished = sub.claim(&impact::model_text(&single), Existing::Resume)? {
+        if let Found::Finished = sub.claim(&model_file::model_text(&single), Existing::Resume)? {
             summaries.push(sub.read_json("summary.json")?);
             continue;
         }
-        impact::write_model(&sub, &single, table.as_deref())?;
-        let of = (index, conditions.len());
-        let setting =
-            impact::Setting { model: &single, original, bed: &bed, bed_summary: &bed_summary, of };
-        match setting.run(&sub, condition, control)? {
+        model_file::write_model(&sub, &single, table.as_deref())?;
+        let task = Task { model: &single, original, of: (index, conditions.len()) };
+        match ground.run(task, &sub, condition, control)? {
             Some(summary) => summaries.push(summary),
             None => return Ok(Outcome::Interrupted),
         }
@@ -310,4 +321,62 @@ pub fn run(
     let summary = ListSummary::new(model, summaries);
     folder.write_json("summary.json", &summary)?;
     Ok(Outcome::List(Box::new(summary)))
+}
+
+/// One impact among those of a model.
+#[derive(Clone, Copy)]
+struct Task<'a> {
+    /// The model of this one impact.
+    model: &'a Model,
+    /// The model file as its author wrote it.
+    original: &'a str,
+    /// Which condition, of how many.
+    of: (usize, usize),
+}
+
+/// What the impacts of a model share.
+enum Ground {
+    Bed(Box<(PreparedBed, BedSummary)>),
+    Law,
+}
+
+impl Ground {
+    /// Prepares the bed, if the medium has one. Nothing if `control` wants to stop.
+    fn prepare(
+        model: &Model,
+        cache: &Path,
+        control: &mut dyn Control,
+    ) -> Result<Option<Self>, RunError> {
+        let Some(grains) = model.grains() else { return Ok(Some(Self::Law)) };
+        let Some(bed) = prepare(grains, cache, control)? else { return Ok(None) };
+        let report = BedReport::of(&grains.bed(&bed.resting));
+        let summary = BedSummary::new(&report, bed.cache, grains);
+        for warning in &summary.warnings {
+            control.warn(warning);
+        }
+        Ok(Some(Self::Bed(Box::new((bed, summary)))))
+    }
+
+    /// Runs one impact. Nothing if `control` wanted to stop.
+    fn run(
+        &self,
+        task: Task<'_>,
+        folder: &OutputFolder,
+        condition: &Condition,
+        control: &mut dyn Control,
+    ) -> Result<Option<Summary>, RunError> {
+        match (self, &task.model.medium) {
+            (Self::Bed(shared), Medium::Grains(medium)) => {
+                let (bed, bed_summary) = &**shared;
+                let grains = GrainModel { model: task.model, medium };
+                let setting = grains::Setting { grains, task, bed, bed_summary };
+                setting.run(folder, condition, control)
+            }
+            (_, Medium::Resistive(medium)) => {
+                let resistive = ResistiveModel { model: task.model, medium };
+                resistive::run(resistive, task, folder, condition, control)
+            }
+            (Self::Law, Medium::Grains(_)) => unreachable!("an impact has the medium of its model"),
+        }
+    }
 }

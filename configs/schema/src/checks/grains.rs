@@ -1,0 +1,262 @@
+//! What only a model of grains is checked for.
+
+use std::f64::consts::FRAC_PI_4;
+
+use super::{Common, metres, seconds};
+use crate::diagnostics::{Diagnostic, Span};
+use crate::limits;
+use crate::model::{BedSource, GrainModel, StartX};
+use crate::read::BodyPlaces;
+use crate::stability;
+
+pub(super) struct GrainChecks<'a> {
+    pub(super) grains: GrainModel<'a>,
+    pub(super) common: Common<'a>,
+}
+
+impl GrainChecks<'_> {
+    pub(super) fn all(&self) {
+        self.sizes();
+        self.derived_quantities();
+        self.common.number_of_conditions();
+        if !self.common.reader.failed() {
+            self.start_positions();
+            self.steps();
+            self.targets();
+        }
+    }
+
+    fn sizes(&self) {
+        let width = self.grains.medium.container.width;
+        let too_wide = |what: &str, diameter: f64, places: BodyPlaces| {
+            if diameter >= width {
+                self.common.reader.report(
+                    Diagnostic::error(format!("the {what} does not fit into the box"))
+                        .at(places.diameter, format!("{} wide", metres(diameter)))
+                        .with(
+                            self.common.places.width,
+                            format!("the box is {} wide", metres(width)),
+                        ),
+                );
+            }
+        };
+        if let Some(diameter) = self.common.intruder_diameter() {
+            too_wide("intruder", diameter, self.common.places.intruder);
+        }
+        if let BedSource::Settle(settle) = &self.grains.medium.bed.source {
+            for (kind, places) in settle.grains.iter().zip(&self.common.places.grains) {
+                too_wide("grain", kind.diameter, *places);
+            }
+        }
+    }
+
+    fn derived_quantities(&self) {
+        let (model, medium) = (self.grains.model, self.grains.medium);
+        let stiffness =
+            medium.contact_law.params.iter().find(|(key, _)| *key == "normal_stiffness");
+        let mut bodies: Vec<(&str, f64, f64, BodyPlaces)> = Vec::new();
+        if let BedSource::Settle(settle) = &medium.bed.source {
+            for (kind, places) in settle.grains.iter().zip(&self.common.places.grains) {
+                bodies.push(("grain", kind.diameter, kind.mass, *places));
+                let total = kind.count as f64 * kind.mass;
+                if kind.count > 0 {
+                    let inputs = [("mass", places.mass), ("count of grains", places.count)];
+                    self.common.derived("the mass of all grains", total, inputs);
+                }
+            }
+        }
+        if let Some(diameter) = self.common.intruder_diameter() {
+            bodies.push(("intruder", diameter, model.intruder.mass, self.common.places.intruder));
+        }
+        for (name, diameter, mass, places) in bodies {
+            let inputs = [("diameter", places.diameter), ("mass", places.mass)];
+            let inertia = 0.125 * mass * diameter * diameter;
+            self.common.derived(&format!("the moment of inertia of the {name}"), inertia, inputs);
+            self.common.derived(&format!("the mass of the {name}"), mass, inputs);
+            if medium.gravity > 0.0 {
+                let inputs = [("mass", places.mass), ("gravity", self.common.places.gravity)];
+                let weight = mass * medium.gravity;
+                self.common.derived(&format!("the weight of the {name}"), weight, inputs);
+            }
+            if let Some((_, stiffness)) = stiffness {
+                let place = ("stiffness", self.common.places.normal_stiffness);
+                let inputs = [place, ("mass", places.mass)];
+                let rate = stiffness / mass;
+                self.common.derived(&format!("the collision rate of the {name}"), rate, inputs);
+                let inputs = [place, ("diameter", places.diameter)];
+                let energy = stiffness * diameter * diameter;
+                self.common.derived(&format!("the elastic energy of the {name}"), energy, inputs);
+            }
+        }
+        self.common.impact_energy();
+        if let Some(step) = stability::time_step(self.grains) {
+            let factor = ("factor", self.common.places.time_step_factor);
+            self.common.derived(
+                "the time step",
+                step,
+                [("time step", self.common.places.time_step), factor],
+            );
+            let steps = model.run.duration / step;
+            if steps.is_nan() || steps > limits::STEPS {
+                self.common.reader.report(
+                    Diagnostic::error(format!("the run would take {steps:.1e} steps"))
+                        .at(self.common.places.duration, "this long")
+                        .with(self.common.places.time_step, "in steps of this")
+                        .help(format!("at most {:.0e} are accepted", limits::STEPS)),
+                );
+            }
+            if step > model.run.duration {
+                self.common.reader.report(
+                    Diagnostic::error("the time step is longer than the run")
+                        .at(self.common.places.time_step, seconds(step))
+                        .with(self.common.places.duration, seconds(model.run.duration)),
+                );
+            }
+        }
+    }
+
+    fn start_positions(&self) {
+        let width = self.grains.medium.container.width;
+        let radius = self.common.intruder_diameter().map_or(0.0, |diameter| 0.5 * diameter);
+        let inside = |x: f64| x >= radius && x <= width - radius;
+        let outside = |x: f64, span: Option<Span>| {
+            if !inside(x) {
+                self.common.reader.report(
+                    Diagnostic::error("the intruder would start outside of the box")
+                        .at(span, format!("its centre at {}", metres(x)))
+                        .with(
+                            self.common.places.width,
+                            format!("the box is {} wide", metres(width)),
+                        )
+                        .help(format!(
+                            "with its radius, the centre may be from {} to {}",
+                            metres(radius),
+                            metres(width - radius)
+                        )),
+                );
+            }
+        };
+        if let Some(x) = self.grains.medium.start.x {
+            outside(x, self.common.places.x);
+        }
+        let lists = self.grains.model.conditions.as_ref();
+        if let Some(x) = lists.and_then(|lists| lists.x.as_ref()) {
+            for (x, span) in x.iter().zip(&self.common.places.condition_x) {
+                outside(*x, *span);
+            }
+        }
+        let draws = self.grains.model.conditions().iter().any(|one| one.x == StartX::Drawn);
+        if self.common.places.x_range.is_some() || draws {
+            let (from, to) = self.grains.medium.start.x_range;
+            let span = self.common.places.x_range.or(self.common.places.positions);
+            outside(from, span);
+            if inside(from) {
+                outside(to, span);
+            }
+        }
+    }
+
+    fn steps(&self) {
+        let run = stability::time_step(self.grains);
+        let collision = stability::shortest_collision_time(self.grains);
+        self.step_against(run, collision, self.common.places.time_step, true);
+        let grains = stability::grain_collision_time(self.grains);
+        if self.common.places.preparation_time_step.is_some() {
+            let step = stability::preparation_time_step(self.grains);
+            self.step_against(step, grains, self.common.places.preparation_time_step, false);
+            self.step_against_damping(step, self.common.places.preparation_time_step);
+        }
+        self.step_against_damping(run, self.common.places.time_step);
+    }
+
+    fn step_against_damping(&self, step: Option<f64>, span: Option<Span>) {
+        let (Some(step), Some(relaxation)) = (step, stability::damping_time(self.grains)) else {
+            return;
+        };
+        let steps = relaxation / step;
+        let message = format!("the damping of a contact acts within {steps:.1} steps");
+        let diagnostic = if steps < stability::FEWEST_STEPS_PER_DAMPING_TIME {
+            Diagnostic::error(message)
+        } else if steps < stability::FEW_STEPS_PER_DAMPING_TIME {
+            Diagnostic::warning(message)
+        } else {
+            return;
+        };
+        let advice = seconds(relaxation / stability::STEPS_PER_DAMPING_TIME);
+        self.common.reader.report(
+            diagnostic
+                .at(
+                    span.or(self.common.places.time_step_factor),
+                    format!("a step of {}", seconds(step)),
+                )
+                .help(format!(
+                    "damping overshoots and the bed never comes to rest; write \"{advice}\" or \
+                     less, or \"auto\""
+                )),
+        );
+    }
+
+    fn step_against(
+        &self,
+        step: Option<f64>,
+        collision: Option<f64>,
+        span: Option<Span>,
+        is_run: bool,
+    ) {
+        let (Some(step), Some(collision)) = (step, collision) else {
+            return;
+        };
+        let per_collision = collision / step;
+        let message = format!("the shortest collision takes only {per_collision:.1} steps");
+        let diagnostic = if per_collision < stability::FEWEST_STEPS_PER_COLLISION {
+            Diagnostic::error(message)
+        } else if per_collision < stability::FEW_STEPS_PER_COLLISION {
+            Diagnostic::warning(message)
+        } else {
+            return;
+        };
+        let advice = seconds(collision / stability::STEPS_PER_COLLISION);
+        let diagnostic = diagnostic
+            .at(
+                span.or(self.common.places.time_step_factor),
+                format!("a step of {}", seconds(step)),
+            )
+            .with(
+                self.common.places.normal_stiffness,
+                format!("with the lightest pair, a collision of {}", seconds(collision)),
+            );
+        let factor = self.common.places.time_step_factor.filter(|_| is_run && span.is_some());
+        self.common.reader.report(
+            diagnostic
+                .with(factor, "multiplies the step")
+                .help(format!("write \"{advice}\" or less, \"auto\", or a smaller stiffness")),
+        );
+    }
+
+    fn targets(&self) {
+        let BedSource::Settle(settle) = &self.grains.medium.bed.source else {
+            return;
+        };
+        let bed = &self.grains.medium.bed;
+        let (Some(fraction), Some(height)) = (bed.target_packing_fraction, bed.target_height)
+        else {
+            return;
+        };
+        let area: f64 = settle
+            .grains
+            .iter()
+            .map(|kind| kind.count as f64 * FRAC_PI_4 * kind.diameter * kind.diameter)
+            .sum();
+        let implied = area / (self.grains.medium.container.width * height);
+        if (implied / fraction - 1.0).abs() > 0.03 {
+            self.common.reader.report(
+                Diagnostic::warning("the two targets of the bed contradict each other")
+                    .at(self.common.places.target_packing_fraction, "the packing fraction")
+                    .with(
+                        self.common.places.target_height,
+                        format!("this height means a packing fraction of {implied:.3}"),
+                    ),
+            );
+        }
+    }
+}

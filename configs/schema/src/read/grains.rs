@@ -1,0 +1,169 @@
+//! What only a model of grains has.
+
+use engine::params::ParamSpec;
+
+use super::bed::bed;
+use super::foreign::Foreign;
+use super::{
+    CommonTables, DataFolder, IMPACT_EXAMPLE, INTRUDER_EXAMPLE, KINDS, Places, energy, impact, laws,
+};
+use crate::diagnostics::Diagnostic;
+use crate::limits;
+use crate::model::{
+    Container, GrainLog, GrainMedium, LogSettings, Medium, Model, RunSettings, Stepping, TimeStep,
+};
+use crate::reader::{Found, TableReader};
+use crate::specs;
+
+const CONTAINER_EXAMPLE: &str =
+    "shape = \"box\"\nwidth = \"1 m\"\nsides = \"wall\"\nbottom = \"wall\"";
+const BED_EXAMPLE: &str = "source = \"settle\"\n[[bed.grains]]\ncount = 1000\n\
+                           diameter = \"5 mm\"\nmass = \"0.05 g\"";
+const LAW_EXAMPLE: &str = "name = \"linear-spring-dashpot\"\nnormal_stiffness = \"3200 N/m\"\n\
+                           normal_damping_rate = \"1e4 1/s\"\nfriction = 0.3";
+
+/// A model of grains. `None` when something required could not be read.
+pub(super) fn model(
+    root: &TableReader<'_>,
+    tables: CommonTables<'_>,
+    folder: &DataFolder<'_>,
+    places: &mut Places,
+) -> Option<Model> {
+    let foreign = Foreign { home: "resistive-force", here: ("grains", places.kind) };
+    foreign.keys(&tables.log, "log", &["interval"]);
+    foreign.keys(&tables.medium, "medium", &["bulk_density", "packing", "bed_depth"]);
+    foreign.tables(root, &["resistance", "fit"]);
+    let run = run(tables.run, places);
+    let log = log(tables.log);
+    let energy = energy(tables.energy);
+    let gravity = gravity(tables.medium, places);
+    let container = container(root.table("container", Some(CONTAINER_EXAMPLE)), places);
+    let contact_law = laws::contact_law(root.table("contact_law", Some(LAW_EXAMPLE)), places);
+    let bed = bed(
+        root.table("bed", Some(BED_EXAMPLE)),
+        contact_law.as_ref(),
+        container.as_ref(),
+        folder,
+        places,
+    );
+    let effects = laws::effects(root.tables("effect", limits::EFFECTS));
+    let intruder = impact::in_grains(root.table("intruder", Some(INTRUDER_EXAMPLE)), places);
+    let impact_table = root.table("impact", Some(IMPACT_EXAMPLE));
+    let impact = impact::impact(&impact_table, places);
+    let start = impact::start_positions(&impact_table, container.as_ref(), places);
+    impact_table.finish();
+    let conditions = impact::conditions_on_grains(root.table("conditions", None), places);
+    let (run, stepping) = run?;
+    let (log, grain_log) = log?;
+    Some(Model {
+        run,
+        log,
+        energy: energy?,
+        medium: Medium::Grains(GrainMedium {
+            dimension: 2,
+            gravity: gravity?,
+            container: container?,
+            bed: bed?,
+            contact_law: contact_law?,
+            effects: effects?,
+            start: start?,
+            stepping,
+            log: grain_log,
+        }),
+        intruder: intruder?,
+        impact: impact?,
+        conditions: conditions?,
+        resolved: String::new(),
+        bed_key: String::new(),
+        hash: String::new(),
+    })
+}
+
+fn run(table: TableReader<'_>, places: &mut Places) -> Option<(RunSettings, Stepping)> {
+    let name = table.slug("name", None, "the name of the run and of its folder");
+    let duration = table.number(&specs::DURATION);
+    let time_step = time_step(&table, &specs::TIME_STEP, None);
+    let factor = table.number(&specs::TIME_STEP_FACTOR);
+    let seed = table.integer("seed", None, 0..=i64::MAX as u64, "the seed of everything random");
+    let every = table.integer(
+        "checkpoint_every",
+        Some(20_000),
+        1..=1_000_000_000_000,
+        "the number of steps between checkpoints",
+    );
+    places.duration = table.span_of("duration");
+    places.time_step = table.span_of("time_step");
+    places.time_step_factor = table.span_of("time_step_factor");
+    table.finish();
+    let settings = RunSettings { name: name?.value, duration: duration?.value, seed: seed?.value };
+    let stepping = Stepping {
+        time_step: time_step?,
+        time_step_factor: factor?.value,
+        checkpoint_every: every?.value,
+    };
+    Some((settings, stepping))
+}
+
+fn log(table: TableReader<'_>) -> Option<(LogSettings, GrainLog)> {
+    let flush_every = table.integer(
+        "flush_every",
+        Some(1000),
+        1..=1_000_000_000,
+        "the number of steps between flushes of the log",
+    );
+    let frames_per_s = table.number(&specs::FRAMES_PER_S);
+    let grains = table.boolean("grains", true);
+    table.finish();
+    let settings = LogSettings { frames_per_s: frames_per_s?.value };
+    Some((settings, GrainLog { flush_every: flush_every?.value, grains: grains? }))
+}
+
+/// Reads `[medium]`, of which only gravity is free.
+fn gravity(table: TableReader<'_>, places: &mut Places) -> Option<f64> {
+    let kind = table.choice("kind", KINDS, &[], "the kind of medium");
+    let dimension = table.integer("dimension", None, 2..=3, "the number of space dimensions");
+    if let Some(Found { value: 3, span }) = dimension {
+        table.reader.report(
+            Diagnostic::error("dimension = 3 comes with a later version")
+                .at(span, "not available yet")
+                .help("available now: 2"),
+        );
+    }
+    let gravity = table.number(&specs::GRAVITY);
+    places.gravity = table.span_of("gravity");
+    table.finish();
+    kind?;
+    dimension.filter(|found| found.value == 2)?;
+    Some(gravity?.value)
+}
+
+fn container(table: TableReader<'_>, places: &mut Places) -> Option<Container> {
+    let shape = table.choice("shape", &["box"], &["cylinder"], "the shape of the container");
+    let width = table.number(&specs::WIDTH);
+    let sides = table.choice("sides", &["wall"], &["periodic", "absorbing"], "what the sides are");
+    let bottom = table.choice("bottom", &["wall"], &["absorbing"], "what the bottom is");
+    places.width = table.span_of("width");
+    // The keys of a shape that is yet to come are not worth a second message.
+    if shape.is_some() {
+        table.finish();
+    }
+    shape.and(sides).and(bottom)?;
+    Some(Container { width: width?.value })
+}
+
+/// A fixed step or `"auto"`.
+pub(super) fn time_step(
+    table: &TableReader<'_>,
+    spec: &ParamSpec,
+    default: Option<&str>,
+) -> Option<TimeStep> {
+    let auto = match table.has(spec.key) {
+        true => table.peek_text(spec.key) == Some("auto"),
+        false => default == Some("auto"),
+    };
+    if auto {
+        table.note_text(spec.key, "auto");
+        return Some(TimeStep::Auto);
+    }
+    table.number(spec).map(|found| TimeStep::Fixed(found.value))
+}

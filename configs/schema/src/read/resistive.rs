@@ -1,0 +1,217 @@
+//! What only a model of a resistive force has.
+
+use contact_laws::{RESISTANCE_LAWS, ResistanceEntry, Role};
+use engine::grains::Space;
+
+use super::fit::free;
+use super::foreign::Foreign;
+use super::laws::given_twice;
+use super::{CommonTables, IMPACT_EXAMPLE, INTRUDER_EXAMPLE, KINDS, Places, energy, impact};
+use crate::diagnostics::{Diagnostic, Span, nearest, shorten};
+use crate::limits;
+use crate::model::{
+    Coefficient, EffectChoice, LogSettings, Medium, Model, ResistanceChoice, ResistiveMedium,
+    RunSettings,
+};
+use crate::reader::TableReader;
+use crate::specs;
+
+const RESISTANCE_EXAMPLE: &str = "name = \"two-term-vector\"\ndrag = 1.0\nfriction = 15.0";
+
+/// A model of a resistive force. `None` when something required could not be read.
+pub(super) fn model(
+    root: &TableReader<'_>,
+    tables: CommonTables<'_>,
+    places: &mut Places,
+) -> Option<Model> {
+    let foreign = Foreign { home: "grains", here: ("resistive-force", places.kind) };
+    foreign.keys(&tables.run, "run", &["time_step", "time_step_factor", "checkpoint_every"]);
+    foreign.keys(&tables.log, "log", &["flush_every", "grains"]);
+    foreign.tables(root, &["container", "bed", "contact_law"]);
+    let run = run(tables.run, places);
+    let log = log(tables.log, places);
+    let energy = energy(tables.energy);
+    let bed = bed(tables.medium, places);
+    let resistance = resistance(root.table("resistance", Some(RESISTANCE_EXAMPLE)), places);
+    let effects = effects(root.tables("effect", limits::EFFECTS));
+    let free = free(root.table("fit", None), resistance.as_ref(), effects.as_deref());
+    let intruder_table = root.table("intruder", Some(INTRUDER_EXAMPLE));
+    let space = bed.as_ref().map(|bed| bed.space);
+    let intruder = space.and_then(|space| impact::in_resistance(intruder_table, space, places));
+    let impact_table = root.table("impact", Some(IMPACT_EXAMPLE));
+    foreign.keys(&impact_table, "impact", &["x", "position", "x_range"]);
+    let impact = impact::impact(&impact_table, places);
+    impact_table.finish();
+    let conditions_table = root.table("conditions", None);
+    foreign.keys(&conditions_table, "conditions", &["x", "positions"]);
+    let conditions = impact::conditions(&conditions_table, places);
+    conditions_table.finish();
+    let (log, log_interval) = log?;
+    let Bed { space, bulk_density, gravity, packing, bed_depth } = bed?;
+    Some(Model {
+        run: run?,
+        log,
+        energy: energy?,
+        medium: Medium::Resistive(ResistiveMedium {
+            space,
+            bulk_density,
+            gravity,
+            packing,
+            bed_depth,
+            resistance: resistance?,
+            effects: effects?,
+            free: free?,
+            log_interval,
+        }),
+        intruder: intruder?,
+        impact: impact?,
+        conditions: conditions?,
+        resolved: String::new(),
+        bed_key: String::new(),
+        hash: String::new(),
+    })
+}
+
+fn run(table: TableReader<'_>, places: &mut Places) -> Option<RunSettings> {
+    let name = table.slug("name", None, "the name of the run and of its folder");
+    let duration = table.number(&specs::DURATION);
+    let seed = table.integer("seed", Some(1), 0..=i64::MAX as u64, "the seed of everything random");
+    places.duration = table.span_of("duration");
+    table.finish();
+    Some(RunSettings { name: name?.value, duration: duration?.value, seed: seed?.value })
+}
+
+fn log(table: TableReader<'_>, places: &mut Places) -> Option<(LogSettings, f64)> {
+    let interval = table.number(&specs::LOG_INTERVAL);
+    let frames_per_s = table.number(&specs::FRAMES_PER_S);
+    places.interval = table.span_of("interval");
+    table.finish();
+    Some((LogSettings { frames_per_s: frames_per_s?.value }, interval?.value))
+}
+
+/// What `[medium]` says.
+struct Bed {
+    space: Space,
+    bulk_density: f64,
+    gravity: f64,
+    packing: Option<f64>,
+    bed_depth: Option<f64>,
+}
+
+fn bed(table: TableReader<'_>, places: &mut Places) -> Option<Bed> {
+    table.choice("kind", KINDS, &[], "the kind of medium");
+    let dimension = table.integer("dimension", Some(3), 2..=3, "the number of space dimensions");
+    let space = dimension.map(|found| match found.value {
+        2 => Space::Planar,
+        _ => Space::Spatial,
+    });
+    let bulk_density = table.number(match space {
+        Some(Space::Planar) => &specs::BULK_AREA_DENSITY,
+        _ => &specs::BULK_DENSITY,
+    });
+    let gravity = table.number(&specs::GRAVITY);
+    let packing = table.optional_number(&specs::PACKING);
+    let bed_depth = table.optional_number(&specs::BED_DEPTH);
+    places.gravity = table.span_of("gravity");
+    table.finish();
+    Some(Bed {
+        space: space?,
+        bulk_density: bulk_density?.value,
+        gravity: gravity?.value,
+        packing: packing?.map(|found| found.value),
+        bed_depth: bed_depth?.map(|found| found.value),
+    })
+}
+
+/// What a law is to a model, without the facts of an effect.
+#[derive(Clone, Copy, PartialEq)]
+enum Slot {
+    Baseline,
+    Effect,
+}
+
+impl Slot {
+    fn of(entry: &ResistanceEntry) -> Self {
+        match entry.role {
+            Role::Baseline => Self::Baseline,
+            Role::Effect(_) => Self::Effect,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Baseline => "resistance law",
+            Self::Effect => "effect",
+        }
+    }
+}
+
+fn resistance(table: TableReader<'_>, places: &mut Places) -> Option<ResistanceChoice> {
+    let (entry, span) = entry(&table, Slot::Baseline)?;
+    let read: Vec<Option<Coefficient>> =
+        entry.params.iter().map(|spec| table.coefficient(spec, entry.variables)).collect();
+    places.coefficients = entry.params.iter().map(|spec| table.span_of(spec.key)).collect();
+    table.finish();
+    let coefficients = read.into_iter().collect::<Option<Vec<_>>>()?;
+    Some(ResistanceChoice { entry, coefficients, span })
+}
+
+fn effects(tables: Vec<TableReader<'_>>) -> Option<Vec<EffectChoice>> {
+    let wanted = tables.len();
+    let mut effects: Vec<EffectChoice> = Vec::new();
+    for table in tables {
+        let Some((entry, span)) = entry(&table, Slot::Effect) else { continue };
+        let params = table.params(entry.params);
+        if let Some(first) = effects.iter().find(|other| other.entry.name == entry.name) {
+            table.reader.report(given_twice(entry.name, span, first.span));
+        }
+        table.finish();
+        if let Some(params) = params {
+            effects.push(EffectChoice { entry, q: params.get("q"), span });
+        }
+    }
+    (effects.len() == wanted).then_some(effects)
+}
+
+/// The law that `name` says.
+fn entry(table: &TableReader<'_>, slot: Slot) -> Option<(&'static ResistanceEntry, Span)> {
+    let known = || RESISTANCE_LAWS.iter().filter(|law| Slot::of(law) == slot);
+    let example = known().next().map_or("", |law| law.name);
+    let name = table.text("name", None, example, &format!("the {}", slot.name()))?;
+    let span = name.span?;
+    let found = known().find(|law| law.name == name.value).copied();
+    if found.is_none() {
+        let names: Vec<&str> = known().map(|law| law.name).collect();
+        table.reader.report(explain(&name.value, span, slot, &names));
+    }
+    Some((found?, span))
+}
+
+fn explain(name: &str, span: Span, slot: Slot, known: &[&str]) -> Diagnostic {
+    let shown = shorten(name);
+    let kind = slot.name();
+    let list = format!("{kind}s: {}; `plunge effects` describes them", known.join(", "));
+    match (contact_laws::find_resistance(name), slot) {
+        (None, _) => {}
+        (Some(_), Slot::Baseline) => {
+            return Diagnostic::error(format!("`{shown}` is an effect, not a resistance law"))
+                .at(span, "effects are added to a resistance law, below [[effect]]")
+                .help(list);
+        }
+        (Some(_), Slot::Effect) => {
+            return Diagnostic::error(format!("`{shown}` is a resistance law, not an effect"))
+                .at(span, "a model has one resistance law, in [resistance]")
+                .help(list);
+        }
+    }
+    if contact_laws::find(name).is_some() {
+        return Diagnostic::error(format!("`{shown}` acts on contacts of grains"))
+            .at(span, "this medium has no grains")
+            .help(list);
+    }
+    let label = match nearest(name, known.iter().copied()) {
+        Some(near) => format!("did you mean \"{near}\"?"),
+        None => "not known".to_owned(),
+    };
+    Diagnostic::error(format!("there is no {kind} `{shown}`")).at(span, label).help(list)
+}

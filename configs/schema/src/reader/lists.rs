@@ -1,0 +1,39 @@
+//! Lists of strings.
+
+use super::{Found, TableReader};
+use crate::document::Value;
+use crate::resolved::quoted;
+
+impl TableReader<'_> {
+    /// A list of strings, if it is given, without writing it to the resolved model; the outer `None` is
+    /// an error that was reported.
+    pub(crate) fn raw_texts(
+        &self,
+        key: &'static str,
+        example: &str,
+    ) -> Option<Option<Vec<Found<String>>>> {
+        let Some(entry) = self.entry(key) else {
+            return Some(None);
+        };
+        let texts = match &entry.node.value {
+            Value::Array(nodes) => nodes
+                .iter()
+                .map(|node| match &node.value {
+                    Value::Text(text) => Some(Found { value: text.clone(), span: Some(node.span) }),
+                    _ => None,
+                })
+                .collect::<Option<Vec<_>>>(),
+            _ => None,
+        };
+        if texts.is_none() {
+            self.wrong_kind(entry, "a list of strings", &format!("[{}]", quoted(example)));
+        }
+        texts.map(Some)
+    }
+
+    /// Writes a list of strings that was derived from what was read.
+    pub(crate) fn note_texts(&self, key: &str, values: &[String]) {
+        let items: Vec<String> = values.iter().map(|value| quoted(value)).collect();
+        self.write(key, format!("[{}]", items.join(", ")));
+    }
+}

@@ -1,0 +1,134 @@
+//! Intruders of resistive media as they are drawn.
+
+use std::f64::consts::{PI, TAU};
+
+use engine::math::Vec3;
+use engine::record::LoggedShape;
+use engine::resistance::{Impact, Space, State};
+
+use crate::model::Intruder;
+
+/// Sections of a drawn body along its axis.
+const LEVELS: usize = 24;
+
+/// Corners of a drawn round section.
+const CORNERS: usize = 32;
+
+/// Thickness of a drawn planar body, in its diameter.
+const THICKNESS: f64 = 0.1;
+
+/// Halvings that find the height of a body to the last digit.
+const HALVINGS: usize = 60;
+
+/// A part of `intruder` as it is drawn about its centre.
+pub(super) fn shape_of(intruder: &Intruder, space: Space, impact: &Impact) -> LoggedShape {
+    let param = |name| intruder.params.iter().find(|(key, _)| *key == name).map(|(_, value)| value);
+    let diameter = impact.assembly().part(0, impact.start()).immersion.diameter;
+    let radius = 0.5 * diameter;
+    match (intruder.shape.name, param("length")) {
+        ("sphere", _) if space == Space::Spatial => LoggedShape::Sphere { radius },
+        ("sphere" | "disc", _) => LoggedShape::Disc { radius, thickness: THICKNESS * diameter },
+        (_, Some(length)) => body(&[(-0.5 * length, radius), (0.5 * length, radius)], space),
+        _ => body(&profile(impact, space), space),
+    }
+}
+
+/// Heights above the centre (m) of sections of a compact body, with their half widths (m), as its
+/// volume grows while it sinks.
+fn profile(impact: &Impact, space: Space) -> Vec<(f64, f64)> {
+    let assembly = impact.assembly();
+    let sunk = |depth: f64| {
+        let mut state: State = *impact.start();
+        state.position[1] = -depth;
+        state
+    };
+    let half_width = |height: f64| {
+        let section = assembly.part(0, &sunk(height)).immersion.section;
+        match space {
+            Space::Planar => 0.5 * section,
+            Space::Spatial => (section / PI).sqrt(),
+        }
+    };
+    let centre = assembly.weight_at(0, &sunk(0.0)).0;
+    // Every shape is taller than its centre of mass is high, and none of ours four times.
+    let (mut inside, mut outside) = (centre, 8.0 * centre);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (inside + outside);
+        if half_width(middle) > 0.0 {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    (0..=LEVELS)
+        .map(|level| {
+            let height = inside * level as f64 / LEVELS as f64;
+            (height - centre, half_width(height))
+        })
+        .collect()
+}
+
+/// A closed surface around sections (height (m), half width (m)) in rising order.
+fn body(sections: &[(f64, f64)], space: Space) -> LoggedShape {
+    let corners: Vec<(f64, f64)> = match space {
+        Space::Planar => vec![(1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)],
+        Space::Spatial => (0..CORNERS)
+            .map(|corner| {
+                let angle = TAU * corner as f64 / CORNERS as f64;
+                (libm::cos(angle), libm::sin(angle))
+            })
+            .collect(),
+    };
+    let widest = sections.iter().map(|(_, half_width)| *half_width).fold(0.0, f64::max);
+    let n = corners.len() as u32;
+    let mut vertices = Vec::new();
+    for &(height, half_width) in sections {
+        let across = match space {
+            Space::Planar => THICKNESS * widest,
+            Space::Spatial => half_width,
+        };
+        vertices.extend(corners.iter().map(|(x, y)| Vec3::new(half_width * x, across * y, height)));
+    }
+    let last = n * (sections.len() as u32 - 1);
+    let mut triangles = Vec::new();
+    for ring in (0..last).step_by(n as usize) {
+        for corner in 0..n {
+            let next = (corner + 1) % n;
+            let [a, b, c, d] = [ring + corner, ring + next, ring + n + corner, ring + n + next];
+            triangles.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    for corner in 1..n - 1 {
+        triangles.push([0, corner + 1, corner]);
+        triangles.push([last, last + corner, last + corner + 1]);
+    }
+    LoggedShape::Mesh { vertices, triangles }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_edge_of_a_drawn_body_is_walked_once_in_each_direction() {
+        for space in [Space::Planar, Space::Spatial] {
+            let shape = body(&[(-1.0, 0.5), (0.0, 1.0), (2.0, 0.25)], space);
+            let LoggedShape::Mesh { vertices, triangles } = shape else { panic!("a mesh") };
+            let mut edges: Vec<(u32, u32)> =
+                triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).collect();
+            edges.sort_unstable();
+            let count = edges.len();
+            edges.dedup();
+            assert_eq!(edges.len(), count, "{space:?}");
+            assert!(edges.iter().all(|&(a, b)| edges.binary_search(&(b, a)).is_ok()), "{space:?}");
+            let volume: f64 = triangles
+                .iter()
+                .map(|&[a, b, c]| {
+                    let [a, b, c] = [a, b, c].map(|corner| vertices[corner as usize]);
+                    a.dot(&b.cross(&c)) / 6.0
+                })
+                .sum();
+            assert!(volume > 0.0, "outside is outside");
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! What a run comes to: the keys of `summary.json`.
+
+mod grains;
+mod list;
+mod resistive;
+
+use std::collections::BTreeMap;
+
+use engine::ledger::{ChannelKind, Ledger, TermKind};
+use serde::{Deserialize, Serialize};
+
+pub use list::{Group, ListSummary, Scatter};
+pub(super) use resistive::Watched;
+pub use resistive::{ForceSummary, LinkSummary};
+
+/// `summary.json` of one impact.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
+pub struct Summary {
+    pub name: String,
+    pub version: String,
+    pub model_hash: String,
+    pub medium: String,
+    pub impact: ImpactSummary,
+    pub stop: StopSummary,
+    pub energy: EnergySummary,
+    /// Of a bed of grains.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub bed: Option<BedSummary>,
+    /// Of a resistive force.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub forces: Option<ForceSummary>,
+    /// Of a chain, from its first link.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub links: Vec<LinkSummary>,
+    pub cost: CostSummary,
+}
+
+/// The impact as it was started.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
+pub struct ImpactSummary {
+    pub speed_m_per_s: f64,
+    pub angle_deg: f64,
+    pub x_m: f64,
+    pub position_index: usize,
+}
+
+/// When and where the intruder stopped; a time that was not reached is null.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
+pub struct StopSummary {
+    pub stopped: bool,
+    pub stopping_time_s: Option<f64>,
+    pub stopping_time_z_s: Option<f64>,
+    pub stopping_time_x_s: Option<f64>,
+    pub rest_time_s: Option<f64>,
+    pub depth_m: f64,
+    pub range_m: f64,
+}
+
+/// Where the energy went: `initial` is `final` plus what was dissipated, less what was put in and what
+/// is unaccounted for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
+pub struct EnergySummary {
+    #[serde(rename = "initial_J")]
+    pub initial: f64,
+    #[serde(rename = "final")]
+    pub at_end: FinalEnergy,
+    /// By channel, `snake_case`.
+    #[serde(rename = "dissipated_J")]
+    pub dissipated: BTreeMap<String, f64>,
+    /// By channel, `snake_case`; left out if no law puts energy in.
+    #[serde(rename = "input_J", skip_serializing_if = "BTreeMap::is_empty", default)]
+    pub input: BTreeMap<String, f64>,
+    #[serde(rename = "unaccounted_J")]
+    pub unaccounted: f64,
+    pub closure: f64,
+}
+
+/// What is still there at the end. Potential energy and everything of the bed count from the start of
+/// the impact: the springs of a bed at rest hold energy that is not the intruder's.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
+pub struct FinalEnergy {
+    #[serde(rename = "intruder_J")]
+    pub intruder: f64,
+    #[serde(rename = "grains_J")]
+    pub grains: f64,
+    #[serde(rename = "elastic_J")]
+    pub elastic: f64,
+}
+
+/// The bed before the impact.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
+pub struct BedSummary {
+    pub grains: usize,
+    pub packing_fraction: f64,
+    pub packing_fraction_inside: Option<f64>,
+    pub height_m: f64,
+    pub coordination: f64,
+    pub cache: String,
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub warnings: Vec<String>,
+}
+
+/// What it cost; the only part of a summary that depends on the machine.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
+pub struct CostSummary {
+    pub steps: u64,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub dt_s: Option<f64>,
+    pub threads: usize,
+    pub wall_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub grain_steps_per_s: Option<f64>,
+}
+
+/// The channels of `ledger` of one kind, by their names in `snake_case` (J).
+fn by_channel(ledger: &Ledger, kind: ChannelKind) -> BTreeMap<String, f64> {
+    let terms = ledger.terms().iter().zip(&ledger.balance().values);
+    terms
+        .filter(|(term, _)| term.kind == TermKind::Channel(kind))
+        .map(|(term, value)| (term.name.replace('-', "_"), *value))
+        .collect()
+}

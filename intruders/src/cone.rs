@@ -1,0 +1,144 @@
+//! The cone that enters tip first, and the triangle that is its mid-plane.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use engine::grains::Space;
+use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::resistance::{Compact, Silhouette};
+use engine::units::Dimension;
+
+use crate::registry::{Casting, Launchable, ShapeEntry};
+use crate::specs::{DIAMETER, section};
+
+/// The registry's line.
+pub(crate) const CONE: ShapeEntry = ShapeEntry {
+    name: "cone",
+    summary: "A cone, tip first; in a planar bed, its mid-plane.",
+    planar: true,
+    spatial: true,
+    params: PARAMS,
+    build: None,
+    volume: |params, space| Wedge::new(params, space).volume(f64::INFINITY),
+    assembly,
+};
+
+const PARAMS: &[ParamSpec] = &[
+    DIAMETER,
+    ParamSpec {
+        key: "apex_angle",
+        dimension: Dimension::ANGLE,
+        default: Default::Required,
+        // 179°: flatter, it is a plate.
+        allowed: Range { min: 0.0, max: PI * 179.0 / 180.0, includes_min: false },
+        plausible: Range::closed(PI / 18.0, PI * 150.0 / 180.0),
+        meaning: "full angle at the tip; with the diameter of the base it gives the height",
+    },
+];
+
+fn assembly(casting: &Casting) -> Launchable {
+    let shape = Wedge::new(casting.params, casting.space);
+    let (r, h) = (shape.radius, shape.height);
+    let (reach, moment) = match casting.space {
+        Space::Planar => (h / 1.5, h * h / 18.0 + r * r / 6.0),
+        Space::Spatial => (0.75 * h, 3.0 / 80.0 * h * h + 3.0 / 20.0 * r * r),
+    };
+    let body = Compact::new(Arc::new(shape), reach, casting.mass, casting.mass * moment);
+    Launchable {
+        assembly: Box::new(body),
+        start: Compact::at_surface(casting.velocity, casting.spin),
+    }
+}
+
+/// A cone or a triangle, by how much of it is below the surface.
+struct Wedge {
+    radius: f64,
+    height: f64,
+    /// Tangent of half the apex angle.
+    slope: f64,
+    space: Space,
+}
+
+impl Wedge {
+    fn new(params: &ParamTable, space: Space) -> Self {
+        let radius = 0.5 * params.get("diameter");
+        let slope = libm::tan(0.5 * params.get("apex_angle"));
+        Self { radius, height: radius / slope, slope, space }
+    }
+
+    /// Half the width of the body at the surface, or at its base if that is lower (m).
+    fn half_width(&self, depth: f64) -> f64 {
+        if depth < self.height { self.slope * depth } else { self.radius }
+    }
+}
+
+impl Silhouette for Wedge {
+    fn diameter(&self) -> f64 {
+        2.0 * self.radius
+    }
+
+    fn height(&self) -> f64 {
+        self.height
+    }
+
+    fn frontal_area(&self) -> f64 {
+        section(self.radius, self.space)
+    }
+
+    fn immersed_area(&self, depth: f64) -> f64 {
+        section(self.half_width(depth), self.space)
+    }
+
+    fn section(&self, depth: f64) -> f64 {
+        if depth < self.height { self.immersed_area(depth) } else { 0.0 }
+    }
+
+    fn volume(&self, depth: f64) -> f64 {
+        let base = self.immersed_area(depth) * depth.min(self.height);
+        match self.space {
+            Space::Planar => 0.5 * base,
+            Space::Spatial => base / 3.0,
+        }
+    }
+
+    fn contact_area(&self, depth: f64) -> f64 {
+        let half = self.half_width(depth);
+        // Along a generator: z/cos a with tan a = slope.
+        let slant = depth.min(self.height) * (1.0 + self.slope * self.slope).sqrt();
+        match self.space {
+            Space::Planar => 2.0 * slant,
+            Space::Spatial => PI * half * slant,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cone(apex_angle: f64) -> Wedge {
+        let mut params = ParamTable::new();
+        params.set("diameter", 0.04);
+        params.set("apex_angle", apex_angle);
+        Wedge::new(&params, Space::Spatial)
+    }
+
+    #[test]
+    fn the_height_follows_from_the_apex_angle() {
+        // A right angle at the tip: as high as the base is wide from its axis. Tangent of 45°, rounded.
+        assert!((cone(PI / 2.0).height / 0.02 - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn the_lateral_area_is_the_printed_one_with_the_base_angle() {
+        for apex_angle in [0.6, PI / 2.0, 2.2] {
+            let shape = cone(apex_angle);
+            let z = 0.7 * shape.height;
+            // Printed with the angle between generator and base.
+            let tan = libm::tan(0.5 * (PI - apex_angle));
+            let printed = PI * z * z / tan * (1.0 + 1.0 / (tan * tan)).sqrt();
+            // Two tangents and a root, each rounded once.
+            assert!((shape.contact_area(z) / printed - 1.0).abs() < 1e-13);
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! The cylinder that enters with a flat face first, and the rectangle that is its mid-plane.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use engine::grains::Space;
+use engine::params::{ParamSpec, ParamTable, Range};
+use engine::resistance::{Compact, Silhouette};
+
+use crate::registry::{Casting, Launchable, ShapeEntry};
+use crate::specs::{DIAMETER, length, section};
+
+/// The registry's line.
+pub(crate) const CYLINDER: ShapeEntry = ShapeEntry {
+    name: "cylinder",
+    summary: "A cylinder, flat face first; in a planar bed, its mid-plane.",
+    planar: true,
+    spatial: true,
+    params: PARAMS,
+    build: None,
+    volume: |params, space| Flat::new(params, space).volume(f64::INFINITY),
+    assembly,
+};
+
+const PARAMS: &[ParamSpec] =
+    &[DIAMETER, length("height", Range::closed(1e-3, 1.0), "height along the axis")];
+
+fn assembly(casting: &Casting) -> Launchable {
+    let shape = Flat::new(casting.params, casting.space);
+    let across = match casting.space {
+        Space::Planar => shape.radius * shape.radius / 3.0,
+        Space::Spatial => shape.radius * shape.radius / 4.0,
+    };
+    let inertia = casting.mass * (across + shape.height * shape.height / 12.0);
+    let reach = 0.5 * shape.height;
+    Launchable {
+        assembly: Box::new(Compact::new(Arc::new(shape), reach, casting.mass, inertia)),
+        start: Compact::at_surface(casting.velocity, casting.spin),
+    }
+}
+
+/// A cylinder or a rectangle, by how much of it is below the surface.
+struct Flat {
+    radius: f64,
+    height: f64,
+    space: Space,
+}
+
+impl Flat {
+    fn new(params: &ParamTable, space: Space) -> Self {
+        Self { radius: 0.5 * params.get("diameter"), height: params.get("height"), space }
+    }
+}
+
+impl Silhouette for Flat {
+    fn diameter(&self) -> f64 {
+        2.0 * self.radius
+    }
+
+    fn height(&self) -> f64 {
+        self.height
+    }
+
+    fn frontal_area(&self) -> f64 {
+        section(self.radius, self.space)
+    }
+
+    fn immersed_area(&self, _: f64) -> f64 {
+        self.frontal_area()
+    }
+
+    fn section(&self, depth: f64) -> f64 {
+        if depth < self.height { self.frontal_area() } else { 0.0 }
+    }
+
+    fn volume(&self, depth: f64) -> f64 {
+        self.frontal_area() * depth.min(self.height)
+    }
+
+    fn contact_area(&self, depth: f64) -> f64 {
+        let side = depth.min(self.height);
+        match self.space {
+            Space::Planar => self.frontal_area() + 2.0 * side,
+            Space::Spatial => self.frontal_area() + 2.0 * PI * self.radius * side,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_face_and_the_immersed_side_touch_the_bed() {
+        let shape = Flat { radius: 0.02, height: 0.05, space: Space::Spatial };
+        // Same formula in another order of operations: round-off only.
+        let printed = PI * (0.02 * 0.02 + 2.0 * 0.02 * 0.03);
+        assert!((shape.contact_area(0.03) / printed - 1.0).abs() < 1e-14);
+        let face = shape.frontal_area();
+        assert!((shape.contact_area(0.0) - face).abs() < 1e-18);
+    }
+}

@@ -1,0 +1,96 @@
+//! The hemisphere that enters dome first, and the half disc that is its mid-plane.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use engine::grains::Space;
+use engine::params::{ParamSpec, ParamTable};
+use engine::resistance::{Compact, Silhouette};
+
+use crate::registry::{Casting, Launchable, ShapeEntry};
+use crate::specs::{DIAMETER, section};
+use crate::sphere::Cap;
+
+/// The registry's line.
+pub(crate) const HEMISPHERE: ShapeEntry = ShapeEntry {
+    name: "hemisphere",
+    summary: "A hemisphere, dome first; in a planar bed, its mid-plane.",
+    planar: true,
+    spatial: true,
+    params: PARAMS,
+    build: None,
+    volume: |params, space| Dome::new(params, space).volume(f64::INFINITY),
+    assembly,
+};
+
+const PARAMS: &[ParamSpec] = &[DIAMETER];
+
+fn assembly(casting: &Casting) -> Launchable {
+    let shape = Dome::new(casting.params, casting.space);
+    let radius = shape.whole.radius;
+    // The centroid lies this far below the flat face; the moment of the whole about the centre of the
+    // sphere is moved to it by Steiner's theorem.
+    let (below, about_centre) = match casting.space {
+        Space::Planar => (4.0 * radius / (3.0 * PI), 0.5 * radius * radius),
+        Space::Spatial => (0.375 * radius, 0.4 * radius * radius),
+    };
+    let inertia = casting.mass * (about_centre - below * below);
+    Launchable {
+        assembly: Box::new(Compact::new(Arc::new(shape), radius - below, casting.mass, inertia)),
+        start: Compact::at_surface(casting.velocity, casting.spin),
+    }
+}
+
+/// A hemisphere or a half disc, by how much of it is below the surface: the lower half of a ball.
+struct Dome {
+    whole: Cap,
+}
+
+impl Dome {
+    fn new(params: &ParamTable, space: Space) -> Self {
+        Self { whole: Cap { radius: 0.5 * params.get("diameter"), space } }
+    }
+}
+
+impl Silhouette for Dome {
+    fn diameter(&self) -> f64 {
+        2.0 * self.whole.radius
+    }
+
+    fn height(&self) -> f64 {
+        self.whole.radius
+    }
+
+    fn frontal_area(&self) -> f64 {
+        section(self.whole.radius, self.whole.space)
+    }
+
+    fn immersed_area(&self, depth: f64) -> f64 {
+        self.whole.immersed_area(depth)
+    }
+
+    fn section(&self, depth: f64) -> f64 {
+        if depth < self.whole.radius { self.whole.section(depth) } else { 0.0 }
+    }
+
+    fn volume(&self, depth: f64) -> f64 {
+        self.whole.volume(depth.min(self.whole.radius))
+    }
+
+    fn contact_area(&self, depth: f64) -> f64 {
+        self.whole.contact_area(depth)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_dome_touches_with_its_cap_and_not_with_its_flat_face() {
+        let shape = Dome { whole: Cap { radius: 0.02, space: Space::Spatial } };
+        // One product in another order: round-off only.
+        assert!((shape.contact_area(0.015) / (2.0 * PI * 0.02 * 0.015) - 1.0).abs() < 1e-14);
+        assert!((shape.contact_area(0.5) / (2.0 * PI * 0.02 * 0.02) - 1.0).abs() < 1e-14);
+    }
+}

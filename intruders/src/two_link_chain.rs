@@ -1,0 +1,120 @@
+//! Two equal links on a joint without friction at their tops.
+
+use engine::math::Vec3;
+use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::resistance::assembly::{COORDINATES, PARTS};
+use engine::resistance::{Assembly, Part, PartLoad, State};
+
+use crate::equations::Equations;
+use crate::registry::{Casting, Launchable, ShapeEntry};
+use crate::rod::{Pose, Rod, link_angle};
+use crate::specs::{DIAMETER, length};
+
+/// The registry's line.
+pub(crate) const TWO_LINK_CHAIN: ShapeEntry = ShapeEntry {
+    name: "two-link-chain",
+    summary: "Two equal round links that enter with their tips, on a joint at their tops.",
+    planar: false,
+    spatial: true,
+    params: PARAMS,
+    build: None,
+    volume: |params, _| 2.0 * Rod::volume(params.get("length"), params.get("diameter")),
+    assembly,
+};
+
+const PARAMS: &[ParamSpec] = &[
+    length("length", Range::closed(1e-2, 1.0), "length of each link"),
+    DIAMETER,
+    link_angle(
+        "link_angle_1",
+        Default::Required,
+        "angle of the first link to the vertical at the start; the top leans towards +x",
+    ),
+    link_angle("link_angle_2", Default::Required, "the same of the second link"),
+];
+
+/// The links start at rest relative to each other. The deeper tip is at the surface, the first of two
+/// that are equally deep; the other meets it later.
+fn assembly(casting: &Casting) -> Launchable {
+    let chain = Chain::new(casting.params, casting.mass);
+    let Casting { velocity, spin, .. } = *casting;
+    let angles = ["link_angle_1", "link_angle_2"].map(|key| casting.params.get(key));
+    let deeper = if angles[1].abs() < angles[0].abs() { angles[1] } else { angles[0] };
+    let (sin, cos) = libm::sincos(deeper);
+    let arm = chain.links[0].length;
+    let start = State {
+        position: [arm * sin, arm * cos, angles[0], angles[1]],
+        rate: [velocity.x + spin * arm * cos, velocity.z - spin * arm * sin, spin, spin],
+    };
+    Launchable { assembly: Box::new(chain), start }
+}
+
+/// Coordinates: x and z of the joint and the angles of both links to the vertical.
+struct Chain {
+    links: [Rod; PARTS],
+}
+
+impl Chain {
+    fn new(params: &ParamTable, mass: f64) -> Self {
+        let (length, diameter) = (params.get("length"), params.get("diameter"));
+        let link = |coordinate| Rod {
+            length,
+            diameter,
+            mass: 0.5 * mass,
+            to_reference: length,
+            coordinate,
+        };
+        Self { links: [link(2), link(3)] }
+    }
+}
+
+fn pose(index: usize, state: &State) -> Pose {
+    let ([x, z, ..], [vx, vz, ..]) = (state.position, state.rate);
+    Pose {
+        reference: Vec3::new(x, 0.0, z),
+        velocity: Vec3::new(vx, 0.0, vz),
+        angle: state.position[2 + index],
+        spin: state.rate[2 + index],
+    }
+}
+
+impl Assembly for Chain {
+    fn n_parts(&self) -> usize {
+        PARTS
+    }
+
+    fn part(&self, index: usize, state: &State) -> Part {
+        self.links[index].part(&pose(index, state))
+    }
+
+    fn accelerate(
+        &self,
+        state: &State,
+        loads: &[PartLoad; PARTS],
+        gravity: f64,
+    ) -> [f64; COORDINATES] {
+        let mut equations = Equations::new(COORDINATES);
+        for (index, link) in self.links.iter().enumerate() {
+            link.contribute(&mut equations, &pose(index, state), &loads[index], gravity);
+        }
+        equations.solve()
+    }
+
+    fn kinetic_energy(&self, index: usize, state: &State) -> [f64; 2] {
+        self.links[index].kinetic_energy(&pose(index, state))
+    }
+
+    fn weight_at(&self, index: usize, state: &State) -> (f64, f64) {
+        let link = &self.links[index];
+        (link.centre(&pose(index, state)).z, link.mass)
+    }
+
+    fn placement(&self, index: usize, state: &State) -> (Vec3, f64) {
+        let pose = pose(index, state);
+        (self.links[index].centre(&pose), pose.angle)
+    }
+
+    fn ends_with_its_tips(&self) -> bool {
+        true
+    }
+}
