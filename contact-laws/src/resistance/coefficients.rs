@@ -37,10 +37,22 @@ impl Coefficients {
         self.numbers.get(key)
     }
 
+    /// The function of depth that stands for `key`, if one does.
+    #[must_use]
+    pub fn function(&self, key: &str) -> Option<&Expression> {
+        self.functions.iter().find(|(name, _)| *name == key).map(|(_, function)| function)
+    }
+
+    /// Whether `key` is a function of depth.
+    #[must_use]
+    pub fn is_function(&self, key: &str) -> bool {
+        self.function(key).is_some()
+    }
+
     /// `key` as a function of depth (m): the expression that was given, or a constant.
     pub(super) fn of_depth(&self, key: &str) -> OfDepth {
-        match self.functions.iter().find(|(name, _)| *name == key) {
-            Some((_, function)) => OfDepth::Expression(function.clone()),
+        match self.function(key) {
+            Some(function) => OfDepth::Expression(function.clone()),
             None => OfDepth::Constant(self.get(key)),
         }
     }

@@ -76,6 +76,12 @@ pub trait Assembly: Send + Sync {
     /// Where part `index` is drawn: the centre of its shape (m) and its rotation about y (rad).
     fn placement(&self, index: usize, state: &State) -> (Vec3, f64);
 
+    /// Whether it is one part whose point of application moves as the first two coordinates do, x and
+    /// z.
+    fn moves_as_a_point(&self) -> bool {
+        false
+    }
+
     /// Whether an impact of it is over when every tip has stopped sinking; else when it is at rest.
     fn ends_with_its_tips(&self) -> bool {
         false
@@ -115,6 +121,10 @@ impl Assembly for Compact {
         1
     }
 
+    fn moves_as_a_point(&self) -> bool {
+        true
+    }
+
     fn part(&self, _: usize, state: &State) -> Part {
         let [x, z, _, _] = state.position;
         let [vx, vz, spin, _] = state.rate;
@@ -137,7 +147,7 @@ impl Assembly for Compact {
                 section,
                 volume_rate: -section * vz,
                 mass: self.mass,
-                effective_depth: depth,
+                effective_depth: below,
                 loaded_area: frontal_area,
                 drag_factor: 1.0,
                 friction_factor: 1.0,

@@ -245,6 +245,15 @@ pub(super) fn accelerate(
     if holds.n == 0 {
         return (free, holds);
     }
+    if system.assembly.moves_as_a_point() {
+        let mut acceleration = free;
+        for hold in holds.list.iter_mut().take(holds.n) {
+            let mass = system.assembly.part(0, state).immersion.mass + loads[0].added_mass;
+            hold.force = -mass * free[hold.component];
+            acceleration[hold.component] = 0.0;
+        }
+        return (acceleration, holds);
+    }
     // Unknown forces on the held components make their accelerations vanish: a small linear system.
     let mut matrix = SMatrix::<f64, HOLDS, HOLDS>::identity();
     let mut right = SVector::<f64, HOLDS>::zeros();
@@ -286,6 +295,9 @@ fn change(
     state: &State,
     acceleration: &[f64; COORDINATES],
 ) -> Vec3 {
+    if assembly.moves_as_a_point() {
+        return Vec3::new(acceleration[0], 0.0, acceleration[1]);
+    }
     let at = |time: f64| {
         let mut moved = *state;
         for (index, acceleration) in acceleration.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! The forces of the medium on the parts of an assembly, in a given mode of motion.
 
 use super::assembly::{Assembly, PARTS, Part, PartLoad, State};
-use super::modes::{Modes, Sense};
+use super::modes::{AXES, Modes, Sense};
 use super::{Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use crate::math::Vec3;
 
@@ -89,6 +89,9 @@ impl System<'_> {
                 each(number, &before, &load);
             }
         }
+        if modes.gripping {
+            hold_along(&mut load, modes.sense[index]);
+        }
         Loaded { part, motion, load }
     }
 
@@ -99,6 +102,22 @@ impl System<'_> {
             *load = self.loaded(index, state, modes).on_part();
         }
         loads
+    }
+}
+
+/// A friction against the direction of motion, beside frictions that hold each component for itself:
+/// where one component is held it acts on the other alone, and where both are it helps to hold both.
+fn hold_along(load: &mut Load, senses: [Sense; 2]) {
+    let held = senses.map(|sense| sense == Sense::Held);
+    if held == [false; 2] {
+        return;
+    }
+    let friction = std::mem::replace(&mut load.friction, Vec3::zeros());
+    for (component, axis) in AXES.into_iter().enumerate() {
+        if held == [true; 2] || !held[component] {
+            load.grip[component].positive += friction[axis];
+            load.grip[component].negative += friction[axis];
+        }
     }
 }
 

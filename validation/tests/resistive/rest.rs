@@ -54,3 +54,22 @@ fn a_sphere_let_go_at_the_surface_sinks_to_twice_its_static_depth() {
     assert!(ending.stopped);
     assert!((ending.parts[0].depth / expected - 1.0).abs() < 1e-8);
 }
+
+#[test]
+fn a_constant_friction_helps_component_frictions_to_hold_a_body_that_is_light_on_them() {
+    // Where it stops, depth friction alone would not carry the weight, and friction alone neither.
+    let laws = vec![
+        law(
+            "two-term-components",
+            &[("drag_x", 0.4), ("friction_x", 1.2), ("drag_z", 0.57), ("friction_z", 5.4)],
+        ),
+        law("yield-stress", &[("q", 5.0)]),
+    ];
+    let ending = sphere(laws, 0.5, 90.0).run(10.0, &mut ()).unwrap();
+    let depth = ending.parts[0].depth;
+    let weight = MASS * BED.gravity;
+    let area = std::f64::consts::PI * 0.0127 * 0.0127;
+    let constant = 5.0 * BED.bulk_density * BED.gravity * area * 0.0254;
+    assert!(ending.stopped && ending.steps < 100, "{} steps", ending.steps);
+    assert!(5.4 * depth < weight && constant < weight && 5.4 * depth + constant > weight);
+}

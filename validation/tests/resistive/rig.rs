@@ -45,7 +45,7 @@ pub(crate) fn sphere(laws: Vec<Box<dyn ResistanceLaw>>, speed: f64, angle: f64) 
     params.set("diameter", DIAMETER);
     let radians = angle.to_radians();
     let (down, across) =
-        if angle == 90.0 { (1.0, 0.0) } else { (libm::sin(radians), libm::cos(radians)) };
+        if angle >= 90.0 { (1.0, 0.0) } else { (libm::sin(radians), libm::cos(radians)) };
     let velocity = Vec3::new(speed * across, 0.0, -speed * down);
     let casting =
         Casting { params: &params, space: Space::Spatial, mass: MASS, velocity, spin: 0.0 };
