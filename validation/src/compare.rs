@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::errors::Errors;
+use crate::fit::Fit;
 use crate::force_error::{ForceCell, ForceError, ForceErrors};
 use crate::forward::Forward;
 use crate::lack_of_fit::lack_of_fit;
@@ -136,7 +137,7 @@ fn compare_one(bench: &Bench<'_>, name: &str, seed: u64) -> Result<ModelComparis
     let ForceErrors { cells, fails } = ForceErrors::of(bench, &fitted)?;
     Ok(ModelComparison {
         model: name.to_owned(),
-        parameters: parameters(bench.forward, &fitted),
+        parameters: parameters(bench.forward, &fitted.fit),
         chi2_per_n: fitted.fit.chi2 / fitted.fit.residual.len() as f64,
         p_lof,
         rms,
@@ -149,11 +150,11 @@ fn compare_one(bench: &Bench<'_>, name: &str, seed: u64) -> Result<ModelComparis
 
 /// Value, standard error and unit of every free parameter.
 #[must_use]
-pub fn parameters(forward: &dyn Forward, fitted: &Fitted) -> Map<String, Value> {
-    let values = forward.parameters().iter().zip(&fitted.fit.point.parameters).enumerate();
+pub fn parameters(forward: &dyn Forward, fit: &Fit) -> Map<String, Value> {
+    let values = forward.parameters().iter().zip(&fit.point.parameters).enumerate();
     values
         .map(|(at, (parameter, value))| {
-            let se = rounded(fitted.fit.standard_error(at));
+            let se = rounded(fit.standard_error(at));
             let entry = json!({ "value": rounded(*value), "se": se, "unit": parameter.unit });
             (parameter.name.clone(), entry)
         })

@@ -4,15 +4,17 @@
 //! to the best of so many (`p1`). What the data cannot tell apart is named together. Whatever is named
 //! must leave no lack of fit and must predict conditions that were not fitted to.
 
-use serde_json::Map;
+use serde_json::{Map, Value, json};
 
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::compare::parameters;
 use crate::force_error::ForceErrors;
+use crate::forward::Forward;
 use crate::held_out::HeldOut;
 use crate::lack_of_fit::lack_of_fit;
 use crate::noise::NoiseSource;
 use crate::pair::{Pair, best_pair};
+use crate::rounding::rounded;
 use crate::score::Ranking;
 use crate::sensitivity::Point;
 use crate::verdict::{Amplitude, Diagnosis, RankedEffect, Strength, Unexplained, Verdict};
@@ -173,7 +175,7 @@ impl Judge<'_> {
             holdout: Some(held_out),
             unexplained: Unexplained { depends_on, hint },
             next: Vec::new(),
-            parameters: parameters(bench.forward, proposed),
+            parameters: parameters(bench.forward, &proposed.fit),
             amplitudes,
             amplitude_correlation: correlation(proposed),
             baseline: Some(self.baseline.clone()),
@@ -218,6 +220,16 @@ fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {
     }
 }
 
+/// Value and unit of every parameter at `point`.
+fn values(forward: &dyn Forward, point: &Point) -> Map<String, Value> {
+    let each = forward.parameters().iter().zip(&point.parameters);
+    each.map(|(parameter, value)| {
+        let entry = json!({ "value": rounded(*value), "unit": parameter.unit });
+        (parameter.name.clone(), entry)
+    })
+    .collect()
+}
+
 /// The ranked effects, best first, then those that were not ranked.
 fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
     let candidates = bench.forward.candidates();
@@ -235,6 +247,7 @@ fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
                 predicted_top1: Some(score.ranked_first),
                 testable: true,
                 detection_limit: Some(score.signature.detection_limit()),
+                parameters: values(bench.forward, &score.point),
                 note: candidate.separable_from.to_owned(),
                 point: Some(score.point.clone()),
             }
@@ -251,6 +264,7 @@ fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
             predicted_top1: None,
             testable: false,
             detection_limit: None,
+            parameters: Map::new(),
             note: candidates[index].not_testable.clone().unwrap_or_else(|| why_not(ranking, index)),
             point: None,
         });

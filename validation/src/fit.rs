@@ -20,6 +20,9 @@ const TOLERANCE: f64 = 1e-6;
 /// Share of a parameter by which it is moved for a derivative.
 const STEP: f64 = 1e-3;
 
+/// An unknown that moves the prediction by less than this share of what the others do is idle.
+const IDLE: f64 = 1e-9;
+
 /// What is fitted to.
 #[derive(Clone, Copy)]
 pub struct Data<'a> {
@@ -148,6 +151,14 @@ impl Data<'_> {
     fn result(&self, point: Point, scales: &[Scale], held: &[bool]) -> Result<Fit, PredictError> {
         let free: Vec<usize> = (0..scales.len()).filter(|&at| !held[at]).collect();
         let jacobian = self.derivative(&point, scales, &free)?;
+        // What nothing depends on any more, such as a logarithm on its way to minus infinity, is at a
+        // bound too.
+        let weight = |column: usize| jacobian.column(column).norm() * scales[free[column]].reach();
+        let heaviest = (0..free.len()).map(weight).fold(0.0, f64::max);
+        let alive: Vec<usize> =
+            (0..free.len()).filter(|&column| weight(column) > IDLE * heaviest).collect();
+        let jacobian = jacobian.select_columns(&alive);
+        let free: Vec<usize> = alive.into_iter().map(|column| free[column]).collect();
         let residual = self.residual(&point)?;
         let mut covariance = DMatrix::zeros(scales.len(), scales.len());
         if let Some(factor) = Cholesky::new(jacobian.tr_mul(&jacobian)) {
@@ -201,6 +212,11 @@ impl Scale {
 
     fn contains(&self, unknown: f64) -> bool {
         (self.unknown(self.min)..=self.unknown(self.max)).contains(&unknown)
+    }
+
+    /// How far the unknown may go (its own unit), to weigh derivatives by.
+    fn reach(&self) -> f64 {
+        self.step / STEP
     }
 
     fn unknown_step(&self) -> f64 {

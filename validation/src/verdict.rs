@@ -106,6 +106,9 @@ pub struct RankedEffect {
     /// The smallest amplitude that the data would show.
     #[serde(serialize_with = "six_digits_or_null")]
     pub detection_limit: Option<f64>,
+    /// Parameters of the model with it alone, with their units.
+    #[serde(skip_serializing_if = "Map::is_empty")]
+    pub parameters: Map<String, Value>,
     /// Why it cannot be tested, or what it takes to tell it from its twins.
     pub note: String,
     /// The model with it, fitted.

@@ -1,0 +1,250 @@
+//! Resistive-force models as the statistics see them: a prediction is an impact integrated anew.
+
+mod prepared;
+mod scatter;
+
+use std::f64::consts::FRAC_PI_2;
+
+use configs::{FreeParameter, Medium, Model};
+use contact_laws::{Needs, RESISTANCE_LAWS, ResistanceEntry, Role};
+use thiserror::Error;
+
+use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
+use crate::measurement::MeasurementSet;
+use crate::observable::Layout;
+use prepared::Prepared;
+
+/// A derivative is taken over this share of the greatest amplitude that one would expect.
+const STEP: f64 = 1e-3;
+
+/// By this share a parameter is moved to see whether anything depends on it.
+const PROBE: f64 = 1e-2;
+
+/// Why a model cannot be compared with a set.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ForwardError {
+    /// A grain bed.
+    #[error("`{model}` is a bed of grains; only resistive-force models are refitted as yet")]
+    Grains {
+        /// Name of the model.
+        model: String,
+    },
+    /// The set asks for a shape that is not there.
+    #[error("condition {condition}: there is no shape `{shape}`; known: {}", known.join(", "))]
+    UnknownShape {
+        /// Id of the condition.
+        condition: String,
+        /// What the set says.
+        shape: String,
+        /// What there is.
+        known: Vec<&'static str>,
+    },
+    /// A size of a shape is not given.
+    #[error("condition {condition}: a {shape} needs `{key}`, which the set does not give")]
+    MissingSize {
+        /// Id of the condition.
+        condition: String,
+        /// Name of the shape.
+        shape: &'static str,
+        /// What is missing.
+        key: &'static str,
+    },
+    /// A shape that the set's geometry does not have.
+    #[error("condition {condition}: a {shape} is no intruder of a {space} bed")]
+    WrongSpace {
+        /// Id of the condition.
+        condition: String,
+        /// Name of the shape.
+        shape: &'static str,
+        /// `2d` or `3d`.
+        space: &'static str,
+    },
+    /// A size outside of what the shape can have.
+    #[error("condition {condition}: `{key}` of a {shape} cannot be {value}")]
+    BadSize {
+        /// Id of the condition.
+        condition: String,
+        /// Name of the shape.
+        shape: &'static str,
+        /// Which size.
+        key: &'static str,
+        /// (SI).
+        value: f64,
+    },
+}
+
+/// A resistive-force model before a measurement set.
+///
+/// The set says what was dropped and how, and, where it does, what into: its bulk density, gravity,
+/// packing fraction and depth of the bed stand before the model's.
+pub struct ResistiveForward {
+    conditions: Vec<Prepared>,
+    /// Those that some number of the set depends on.
+    parameters: Vec<Parameter>,
+    /// Values of all free parameters of the model, and where in them those of `parameters` stand.
+    start: Vec<f64>,
+    active: Vec<usize>,
+    idle: Vec<String>,
+    candidates: Vec<Candidate>,
+    effects: Vec<&'static ResistanceEntry>,
+    scattering: Vec<&'static str>,
+}
+
+impl ResistiveForward {
+    /// `model` before `set`; `layouts` say what to predict, one per condition.
+    ///
+    /// # Errors
+    /// If the model is not of a resistive medium, or lacks something that a condition needs.
+    pub fn new(
+        model: &Model,
+        set: &MeasurementSet,
+        layouts: &[Layout],
+    ) -> Result<Self, ForwardError> {
+        let Medium::Resistive(medium) = &model.medium else {
+            return Err(ForwardError::Grains { model: model.run.name.clone() });
+        };
+        let free = medium.free_parameters();
+        let conditions = (0..set.conditions.len())
+            .map(|index| Prepared::new(medium, &free, set, index, &layouts[index]))
+            .collect::<Result<_, _>>()?;
+        let present = |entry: &ResistanceEntry| {
+            medium.effects.iter().any(|effect| effect.entry.name == entry.name)
+        };
+        let effects: Vec<&'static ResistanceEntry> = RESISTANCE_LAWS
+            .iter()
+            .copied()
+            .filter(|entry| matches!(entry.role, Role::Effect(_)) && !present(entry))
+            .collect();
+        let is_scattering = |key: &str| {
+            let (whole, node) = (format!("resistance.{key}"), format!("resistance.{key}@"));
+            free.iter().any(|one| one.path == whole || one.path.starts_with(&node))
+        };
+        let start: Vec<f64> = free.iter().map(|one| one.value).collect();
+        let mut forward = Self {
+            conditions,
+            parameters: free.iter().map(parameter).collect(),
+            active: (0..free.len()).collect(),
+            start,
+            idle: Vec::new(),
+            candidates: effects.iter().map(|entry| candidate(entry, set)).collect(),
+            effects,
+            scattering: medium
+                .resistance
+                .entry
+                .params
+                .iter()
+                .map(|spec| spec.key)
+                .filter(|key| is_scattering(key))
+                .collect(),
+        };
+        forward.drop_idle();
+        Ok(forward)
+    }
+
+    /// Sets those parameters aside that no number of the set depends on: the horizontal coefficients
+    /// before vertical impacts, the nodes of a table beyond its angles.
+    fn drop_idle(&mut self) {
+        let still = Scatter::default();
+        let all = |values: &[f64]| -> Vec<Option<Vec<f64>>> {
+            let at = Request { parameters: values, effects: &[], scatter: &still };
+            (0..self.conditions.len()).map(|index| self.predict(index, &at).ok()).collect()
+        };
+        let before = all(&self.start);
+        let matters = |index: usize| {
+            let mut values = self.start.clone();
+            values[index] += PROBE * if values[index] == 0.0 { 1.0 } else { values[index] };
+            all(&values) != before
+        };
+        let (active, idle): (Vec<usize>, Vec<usize>) =
+            (0..self.start.len()).partition(|&index| matters(index));
+        self.idle = idle.iter().map(|&index| self.parameters[index].name.clone()).collect();
+        self.parameters = active.iter().map(|&index| self.parameters[index].clone()).collect();
+        self.active = active;
+    }
+
+    /// Free parameters of the model that no number of the set depends on; they stay as they are.
+    #[must_use]
+    pub fn idle(&self) -> &[String] {
+        &self.idle
+    }
+
+    /// The entries of the candidates, in their order.
+    #[must_use]
+    pub fn effects(&self) -> &[&'static ResistanceEntry] {
+        &self.effects
+    }
+}
+
+impl Forward for ResistiveForward {
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    fn candidates(&self) -> &[Candidate] {
+        &self.candidates
+    }
+
+    fn n_scattering_coefficients(&self) -> usize {
+        self.scattering.len()
+    }
+
+    fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError> {
+        let added: Vec<(&ResistanceEntry, f64)> =
+            at.effects.iter().map(|&(index, q)| (self.effects[index], q)).collect();
+        let mut values = self.start.clone();
+        for (&index, &value) in self.active.iter().zip(at.parameters) {
+            values[index] = value;
+        }
+        self.conditions[condition]
+            .predict(&values, &added, at.scatter, &self.scattering)
+            .map_err(|why| PredictError { condition, why })
+    }
+}
+
+fn parameter(free: &FreeParameter) -> Parameter {
+    Parameter {
+        name: free.path.clone(),
+        unit: free.unit.clone(),
+        start: free.value,
+        min: free.allowed.min,
+        max: free.allowed.max,
+    }
+}
+
+fn candidate(entry: &'static ResistanceEntry, set: &MeasurementSet) -> Candidate {
+    let spec = &entry.params[0];
+    let Role::Effect(facts) = entry.role else { unreachable!("only effects are candidates") };
+    let missing: Vec<String> =
+        facts.visible.iter().filter_map(|need| why_missing(*need, set)).collect();
+    Candidate {
+        id: entry.name,
+        min: spec.allowed.min,
+        max: spec.allowed.max,
+        step: STEP * spec.plausible.max,
+        not_testable: (!missing.is_empty()).then(|| missing.join("; ")),
+        separable_from: facts.separable_from,
+    }
+}
+
+/// What of `need` the set does not contain; nothing if it does.
+fn why_missing(need: Needs, set: &MeasurementSet) -> Option<String> {
+    let distinct = |of: fn(&crate::measurement::Condition) -> Option<f64>| {
+        let mut values: Vec<f64> = set.conditions.iter().filter_map(of).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        values.len()
+    };
+    let (there, text) = match need {
+        Needs::Oblique => (
+            set.conditions.iter().any(|one| one.angle_deg.to_radians() < FRAC_PI_2),
+            "needs impacts that are not vertical",
+        ),
+        Needs::Spin => {
+            (set.conditions.iter().any(|one| one.spin != 0.0), "needs an intruder that spins")
+        }
+        Needs::Packings => (distinct(|one| one.packing) > 1, "needs two packing fractions"),
+        Needs::BedDepth => (distinct(|one| one.bed_depth) > 0, "needs the depth of the bed"),
+        Needs::BulkDensity => (true, ""),
+    };
+    (!there).then(|| text.to_owned())
+}

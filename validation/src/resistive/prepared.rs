@@ -1,0 +1,319 @@
+//! One condition of a measurement set, ready to be predicted many times.
+
+use std::f64::consts::FRAC_PI_2;
+
+use configs::{FreeParameter, ResistiveMedium};
+use contact_laws::{Coefficients, Expression, RESISTANCE_LAWS, ResistanceEntry};
+use engine::math::Vec3;
+use engine::params::{Default, ParamTable};
+use engine::resistance::{
+    Ending, Impact, ResistanceLaw, Space, State, Surroundings, Tolerance, Trajectory,
+};
+use intruders::{Casting, ShapeEntry};
+
+use super::ForwardError;
+use super::scatter::PathScatter;
+use crate::forward::Scatter;
+use crate::measurement::{Condition, FinalDefinition, Geometry, MeasurementSet, StopDefinition};
+use crate::observable::Layout;
+
+/// Longer than any impact (s): what has not stopped then never does.
+const DURATION: f64 = 10.0;
+
+/// Errors near 1e-9 m, far below any camera and small beside every difference that is taken.
+const TOLERANCE: Tolerance = Tolerance { relative: 1e-10, absolute: 1e-12 };
+
+/// A condition with the model's law for it.
+pub(super) struct Prepared {
+    layout: Layout,
+    stop: StopDefinition,
+    last: FinalDefinition,
+    shape: &'static ShapeEntry,
+    sizes: ParamTable,
+    space: Space,
+    mass: f64,
+    speed: f64,
+    angle: f64,
+    spin: f64,
+    bed: Surroundings,
+    law: Law,
+}
+
+/// The law of a model at one impact angle, as a function of its free parameters.
+struct Law {
+    baseline: &'static ResistanceEntry,
+    coefficients: Vec<Affine>,
+    functions: Vec<(&'static str, Expression)>,
+    effects: Vec<(&'static ResistanceEntry, Affine)>,
+}
+
+/// A number that depends on the free parameters: a coefficient that is a table over angle is a weighted
+/// mean of two of them.
+struct Affine {
+    key: &'static str,
+    constant: f64,
+    weights: Vec<(usize, f64)>,
+}
+
+impl Affine {
+    fn at(&self, parameters: &[f64]) -> f64 {
+        self.weights.iter().fold(self.constant, |sum, &(index, w)| sum + w * parameters[index])
+    }
+}
+
+impl Law {
+    fn new(medium: &ResistiveMedium, free: &[FreeParameter], angle: f64) -> Self {
+        let baseline = medium.resistance.entry;
+        let here = medium.coefficients_at(angle);
+        let (functions, numbers): (Vec<_>, Vec<_>) =
+            baseline.params.iter().map(|spec| spec.key).partition(|key| here.is_function(key));
+        let changed: Vec<(Coefficients, f64)> = free
+            .iter()
+            .map(|one| {
+                let change = if one.allowed.contains(one.value + 1.0) { 1.0 } else { -1.0 };
+                let value = one.value + change * one.value.abs().clamp(1e-3, 1.0);
+                let moved = medium.with_parameters(&[(&one.path, value)]);
+                // Where neither direction is allowed, nothing can be free.
+                let there = moved.map_or_else(|_| here.clone(), |m| m.coefficients_at(angle));
+                (there, value - one.value)
+            })
+            .collect();
+        let affine = |key: &'static str| {
+            let weights: Vec<(usize, f64)> = changed
+                .iter()
+                .enumerate()
+                .map(|(index, (there, step))| (index, (there.get(key) - here.get(key)) / step))
+                .filter(|(_, weight)| *weight != 0.0)
+                .collect();
+            let shares: f64 = weights.iter().map(|&(index, w)| w * free[index].value).sum();
+            Affine { key, constant: here.get(key) - shares, weights }
+        };
+        let effects = medium
+            .effects
+            .iter()
+            .map(|effect| {
+                let path = format!("effect.{}.q", effect.entry.name);
+                let q = match free.iter().position(|one| one.path == path) {
+                    Some(index) => Affine { key: "q", constant: 0.0, weights: vec![(index, 1.0)] },
+                    None => Affine { key: "q", constant: effect.q, weights: Vec::new() },
+                };
+                (effect.entry, q)
+            })
+            .collect();
+        Self {
+            baseline,
+            coefficients: numbers.into_iter().map(affine).collect(),
+            functions: functions
+                .into_iter()
+                .filter_map(|key| Some((key, here.function(key)?.clone())))
+                .collect(),
+            effects,
+        }
+    }
+
+    /// The laws with these parameters, `added` effects and what scatters from run to run.
+    fn laws(
+        &self,
+        parameters: &[f64],
+        added: &[(&ResistanceEntry, f64)],
+        scatter: &Scatter,
+        scattering: &[&str],
+    ) -> Vec<Box<dyn ResistanceLaw>> {
+        let mut numbers = ParamTable::new();
+        for coefficient in &self.coefficients {
+            let place = scattering.iter().position(|key| *key == coefficient.key);
+            let log = place.and_then(|index| scatter.coefficients.get(index)).copied();
+            let factor = log.map_or(1.0, |log| if log == 0.0 { 1.0 } else { libm::exp(log) });
+            numbers.set(coefficient.key, factor * coefficient.at(parameters));
+        }
+        let coefficients = self
+            .functions
+            .iter()
+            .fold(Coefficients::new(numbers), |all, (key, f)| all.with_function(key, f.clone()));
+        let mut laws = vec![(self.baseline.build)(&coefficients)];
+        for entry in RESISTANCE_LAWS {
+            let own = self.effects.iter().map(|(entry, q)| (*entry, q.at(parameters)));
+            let amplitudes = own.chain(added.iter().copied());
+            for (_, q) in amplitudes.filter(|(one, q)| one.name == entry.name && *q != 0.0) {
+                let mut numbers = ParamTable::new();
+                numbers.set("q", q);
+                laws.push((entry.build)(&Coefficients::new(numbers)));
+            }
+        }
+        if let Some(path) = PathScatter::of(scatter) {
+            laws.push(Box::new(path));
+        }
+        laws
+    }
+}
+
+impl Prepared {
+    pub(super) fn new(
+        medium: &ResistiveMedium,
+        free: &[FreeParameter],
+        set: &MeasurementSet,
+        index: usize,
+        layout: &Layout,
+    ) -> Result<Self, ForwardError> {
+        let condition = &set.conditions[index];
+        let (space, name) = match set.bed.geometry {
+            Geometry::Planar => (Space::Planar, "2d"),
+            Geometry::Spatial => (Space::Spatial, "3d"),
+        };
+        let shape =
+            intruders::find(&condition.shape).ok_or_else(|| ForwardError::UnknownShape {
+                condition: condition.id.clone(),
+                shape: condition.shape.clone(),
+                known: intruders::SHAPES.iter().map(|entry| entry.name).collect(),
+            })?;
+        let fits = match space {
+            Space::Planar => shape.planar,
+            Space::Spatial => shape.spatial,
+        };
+        if !fits {
+            let condition = condition.id.clone();
+            return Err(ForwardError::WrongSpace { condition, shape: shape.name, space: name });
+        }
+        let angle = condition.angle_deg.to_radians();
+        let bed = Surroundings {
+            bulk_density: set.bed.bulk_density.unwrap_or(medium.bulk_density),
+            gravity: set.bed.gravity,
+            packing: condition.packing.or(medium.packing),
+            bed_depth: condition.bed_depth.or(medium.bed_depth),
+        };
+        let there = ResistiveMedium { bulk_density: bed.bulk_density, ..medium.clone() };
+        Ok(Self {
+            layout: layout.clone(),
+            stop: set.stop,
+            last: set.last,
+            shape,
+            sizes: sizes(shape, condition)?,
+            space,
+            mass: condition.mass,
+            speed: condition.speed,
+            angle,
+            spin: condition.spin,
+            bed,
+            law: Law::new(&there, free, angle),
+        })
+    }
+
+    /// The observables, in the order of the layout.
+    pub(super) fn predict(
+        &self,
+        parameters: &[f64],
+        added: &[(&ResistanceEntry, f64)],
+        scatter: &Scatter,
+        scattering: &[&str],
+    ) -> Result<Vec<f64>, String> {
+        let laws = self.law.laws(parameters, added, scatter, scattering);
+        let impact = self.impact(laws, self.speed * (1.0 + scatter.speed));
+        let (before, after) = split(&self.layout.times);
+        let mut flight = impact.flight(&before).map_err(|error| error.to_string())?;
+        flight.reverse();
+        let mut seen = Trajectory::at(after);
+        let ending = impact.run(DURATION, &mut seen).map_err(|error| error.to_string())?;
+        let x = impact.assembly().part(0, impact.start()).tip.x;
+        let tip = |state: &State| impact.assembly().part(0, state).tip;
+        let states = || flight.iter().chain(seen.states());
+        let mut observables: Vec<f64> =
+            states().map(|state| scatter.level - tip(state).z).collect();
+        if self.layout.along_x {
+            observables.extend(states().map(|state| tip(state).x - x));
+        }
+        let stop = self.stop_time(&ending);
+        let (depth, range) = match self.last {
+            FinalDefinition::Deepest => (ending.parts[0].depth, ending.parts[0].range),
+            FinalDefinition::Resting => {
+                let at_rest = tip(&ending.state);
+                (-at_rest.z, (at_rest.x - x).abs())
+            }
+        };
+        let scalars = [
+            (self.layout.stop_time, stop),
+            (self.layout.final_z, depth + scatter.level),
+            (self.layout.final_x, range),
+        ];
+        observables.extend(scalars.iter().filter(|(there, _)| *there).map(|(_, value)| *value));
+        match observables.iter().all(|value| value.is_finite()) {
+            true => Ok(observables),
+            false => Err("an observable is not finite".to_owned()),
+        }
+    }
+
+    fn stop_time(&self, ending: &Ending) -> f64 {
+        let part = &ending.parts[0];
+        let contact = part.contact.unwrap_or(0.0);
+        let stop = match self.stop {
+            // A link has stopped when its tip no longer sinks, wherever it still drifts.
+            StopDefinition::ComponentZero if ending.state.rate.iter().any(|&rate| rate != 0.0) => {
+                part.vertical
+            }
+            StopDefinition::ComponentZero => part.time(),
+            StopDefinition::SpeedFivePercent => ending.slow,
+        };
+        stop.unwrap_or(ending.time) - contact
+    }
+
+    fn impact(&self, laws: Vec<Box<dyn ResistanceLaw>>, speed: f64) -> Impact {
+        // Straight down is exactly down: a cosine of round-off size is no horizontal speed.
+        let (sine, cosine) = if self.angle >= FRAC_PI_2 {
+            (1.0, 0.0)
+        } else {
+            (libm::sin(self.angle), libm::cos(self.angle))
+        };
+        let made = (self.shape.assembly)(&Casting {
+            params: &self.sizes,
+            space: self.space,
+            mass: self.mass,
+            velocity: Vec3::new(speed * cosine, 0.0, -speed * sine),
+            spin: self.spin,
+        });
+        Impact::new(made.assembly, laws, self.bed, made.start).with_tolerance(TOLERANCE)
+    }
+}
+
+/// The times before first contact, in falling order, and the others.
+fn split(times: &[f64]) -> (Vec<f64>, &[f64]) {
+    let n_before = times.partition_point(|&time| time < 0.0);
+    (times[..n_before].iter().rev().copied().collect(), &times[n_before..])
+}
+
+/// The sizes of the intruder of `condition`, complete for `shape`.
+fn sizes(shape: &'static ShapeEntry, condition: &Condition) -> Result<ParamTable, ForwardError> {
+    let link = condition.link_angle_deg.map(f64::to_radians);
+    let mut table = ParamTable::new();
+    for spec in shape.params {
+        let given = match spec.key {
+            "diameter" => Some(condition.diameter),
+            "length" => condition.length,
+            "height" => condition.height,
+            "apex_angle" => condition.apex_deg.map(f64::to_radians),
+            "link_angle" | "link_angle_1" => link,
+            "link_angle_2" => link.map(|angle| -angle),
+            _ => None,
+        };
+        let value = match (given, spec.default) {
+            (Some(value), _) | (None, Default::Value(value)) => value,
+            (None, Default::SameAs(other)) => table.get(other),
+            (None, Default::Required) => {
+                let condition = condition.id.clone();
+                return Err(ForwardError::MissingSize {
+                    condition,
+                    shape: shape.name,
+                    key: spec.key,
+                });
+            }
+        };
+        if !spec.allowed.contains(value) {
+            return Err(ForwardError::BadSize {
+                condition: condition.id.clone(),
+                shape: shape.name,
+                key: spec.key,
+                value,
+            });
+        }
+        table.set(spec.key, value);
+    }
+    Ok(table)
+}
