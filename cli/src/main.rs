@@ -1,15 +1,19 @@
 //! The `plunge` command: reads the arguments, calls the libraries, turns errors into messages and
 //! exit codes.
 
+mod add;
 mod bed;
 mod check;
 mod common;
+mod compare;
 mod control;
+mod diagnose;
 mod effects;
 mod new;
 mod output;
 mod recover;
 mod run;
+mod workbench;
 
 use std::process::ExitCode;
 
@@ -31,6 +35,12 @@ enum Command {
     Bed(bed::Args),
     /// Validate a model and show what it means in SI, without running it.
     Check(check::Args),
+    /// Compare revisions of a model with measurements: how wrong, and where.
+    Compare(compare::Args),
+    /// Find out which physical effect a model lacks.
+    Diagnose(diagnose::Args),
+    /// Add an effect to a model, with fitted values and all comments kept.
+    Add(add::Args),
     /// Describe the laws and effects that a model can use.
     Effects(effects::Args),
     /// Write a commented starter model.
@@ -52,6 +62,9 @@ fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Bed(args) => bed::run(&args),
         Command::Check(args) => check::run(&args),
+        Command::Compare(args) => compare::run(&args),
+        Command::Diagnose(args) => diagnose::run(&args),
+        Command::Add(args) => add::run(&args),
         Command::Effects(args) => effects::run(&args),
         Command::New(args) => new::run(&args),
         Command::Recover(args) => recover::run(&args),

@@ -1,0 +1,169 @@
+//! `plunge add`: an effect becomes part of a model.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use configs::edit::{AddedEffect, Addition, add_effects};
+use configs::{LoadOptions, Model, ModelSource, nearest};
+use serde_json::{Value, json};
+
+use crate::output::{self, CommandError, CommandResult};
+use crate::workbench::write_whole;
+
+/// Arguments of `plunge add`.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// A model file, or the name of a shipped model.
+    model: PathBuf,
+    /// The effect to add; with --from, --effect says which.
+    name: Option<String>,
+    /// Its parameters: `q=0.4`, `rolling_friction=0.05`, `cohesion="120 Pa"`.
+    #[arg(value_name = "KEY=VALUE")]
+    values: Vec<String>,
+    /// Take the effect and the fitted values from a diagnosis.json.
+    #[arg(long, value_name = "DIAGNOSIS.json", conflicts_with_all = ["name", "values"])]
+    from: Option<PathBuf>,
+    /// Which of the effects of the diagnosis; without, what its verdict names.
+    #[arg(long, value_name = "NAME", requires = "from")]
+    effect: Option<String>,
+    /// The file to write; it is not written over.
+    #[arg(short, long, value_name = "NEW.toml")]
+    output: PathBuf,
+    /// Write over the file.
+    #[arg(long)]
+    force: bool,
+    /// Print one JSON object to stdout.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &Args) -> CommandResult {
+    let source = || ModelSource::from_argument(&args.model);
+    let loaded = Model::load(source(), &LoadOptions::default())?;
+    let addition = match (&args.from, &args.name) {
+        (Some(path), _) => read_diagnosis(path, args.effect.as_deref())?,
+        (None, Some(name)) => by_hand(name, &args.values)?,
+        (None, None) => {
+            return Err(CommandError::bad_input(
+                "say which effect to add: `plunge add MODEL NAME key=value … -o NEW`, or \
+                 `--from DIAGNOSIS.json`",
+            ));
+        }
+    };
+    if args.output.exists() && !args.force {
+        return Err(CommandError::bad_input(format!(
+            "{} is there already; choose another name, or --force to write over it",
+            args.output.display()
+        )));
+    }
+    let text = add_effects(loaded.original.as_str(), &addition).map_err(CommandError::bad_input)?;
+    let folder = args.output.parent().unwrap_or(Path::new("")).to_owned();
+    let name = args.output.display().to_string();
+    let changed = ModelSource::Text { name: name.clone(), text: text.clone(), folder };
+    Model::load(changed, &LoadOptions::default())?;
+    write_whole(&args.output, &text)?;
+    let effects: Vec<&str> = addition.effects.iter().map(|effect| effect.name.as_str()).collect();
+    match args.json {
+        true => output::json_to_stdout(&json!({
+            "model": name,
+            "added": effects,
+            "fitted": addition.fitted.iter().map(|(path, value)| json!({
+                "parameter": path, "value": value,
+            })).collect::<Vec<_>>(),
+        })),
+        false => {
+            let fitted = match addition.fitted.len() {
+                0 => String::new(),
+                n => format!(", {n} fitted values set"),
+            };
+            output::to_stdout(&format!("{name}: {} added{fitted}\n", effects.join(" and ")))
+        }
+    }
+}
+
+fn by_hand(name: &str, values: &[String]) -> Result<Addition, CommandError> {
+    let values = values
+        .iter()
+        .map(|pair| {
+            let (key, value) = pair.split_once('=').ok_or_else(|| {
+                CommandError::bad_input(format!("`{pair}` is not of the form key=value"))
+            })?;
+            Ok((key.trim().to_owned(), value.trim().to_owned()))
+        })
+        .collect::<Result<_, CommandError>>()?;
+    Ok(Addition {
+        effects: vec![AddedEffect { name: name.to_owned(), values }],
+        fitted: Vec::new(),
+    })
+}
+
+fn read_diagnosis(path: &Path, effect: Option<&str>) -> Result<Addition, CommandError> {
+    let shown = path.display();
+    let text = fs::read_to_string(path)
+        .map_err(|error| CommandError::bad_input(format!("cannot read {shown}: {error}")))?;
+    let object: Value = serde_json::from_str(&text)
+        .map_err(|error| CommandError::bad_input(format!("{shown} is no JSON: {error}")))?;
+    let named: Vec<&str> = match effect {
+        Some(name) => vec![name],
+        None => strings(&object["effects"]),
+    };
+    if named.is_empty() {
+        let verdict = object["verdict"].as_str().unwrap_or("missing");
+        return Err(CommandError::bad_input(format!(
+            "{shown} names no effect (its verdict is {verdict}); --effect says which to add all the \
+             same"
+        )));
+    }
+    from_diagnosis(&object, &named)
+        .map_err(|why| CommandError::bad_input(format!("{shown}: {why}")))
+}
+
+fn strings(list: &Value) -> Vec<&str> {
+    list.as_array().into_iter().flatten().filter_map(Value::as_str).collect()
+}
+
+/// What a diagnosis says of `effects`: their amplitudes, and the parameters of the model with them.
+///
+/// # Errors
+/// If it says nothing of one of them.
+pub(crate) fn from_diagnosis(object: &Value, effects: &[&str]) -> Result<Addition, String> {
+    let named = strings(&object["effects"]);
+    let empty = Vec::new();
+    let ranking = object["ranking"].as_array().unwrap_or(&empty);
+    // What the verdict names was fitted together; any other effect was fitted alone.
+    let (amplitudes, parameters): (&Vec<Value>, &Value) = match effects.len() == named.len()
+        && effects.iter().all(|name| named.contains(name))
+    {
+        true => (object["amplitudes"].as_array().unwrap_or(&empty), &object["parameters"]),
+        false => {
+            let alone =
+                effects.first().and_then(|name| ranking.iter().find(|entry| entry["id"] == *name));
+            (ranking, alone.map_or(&Value::Null, |entry| &entry["parameters"]))
+        }
+    };
+    let additions = effects
+        .iter()
+        .map(|name| {
+            let entry = amplitudes.iter().find(|entry| entry["id"] == *name);
+            match entry.and_then(|entry| entry["q"].as_f64()) {
+                Some(q) => Ok(AddedEffect {
+                    name: (*name).to_owned(),
+                    values: vec![("q".to_owned(), format!("{q}"))],
+                }),
+                None => {
+                    let known = ranking.iter().filter_map(|entry| entry["id"].as_str());
+                    let hint = nearest(name, known)
+                        .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+                    Err(format!("no amplitude of `{name}` is there{hint}"))
+                }
+            }
+        })
+        .collect::<Result<_, String>>()?;
+    let fitted = parameters
+        .as_object()
+        .into_iter()
+        .flatten()
+        .filter_map(|(path, entry)| Some((path.clone(), entry["value"].as_f64()?)))
+        .collect();
+    Ok(Addition { effects: additions, fitted })
+}

@@ -1,0 +1,245 @@
+//! `plunge compare`: revisions of a model against measurements.
+
+use std::path::PathBuf;
+
+use comfy_table::presets::NOTHING;
+use comfy_table::{CellAlignment, Table};
+use serde_json::Value;
+use validation::compare::{Comparison, ModelComparison, Revision, compare};
+use validation::measurement::MeasurementSet;
+use validation::observable::Observable;
+use validation::picture;
+use validation::residual::Residual;
+
+use crate::output::{self, CommandError, CommandResult};
+use crate::workbench::Flags;
+
+/// Arguments of `plunge compare`.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// A measurement set: its folder, or its measurement.toml.
+    set: PathBuf,
+    /// A model file or the name of a shipped model; give several to see the error fall. Without,
+    /// the baseline that the set names.
+    #[arg(long = "model", value_name = "MODEL")]
+    models: Vec<PathBuf>,
+    #[command(flatten)]
+    flags: Flags,
+}
+
+pub(crate) fn run(args: &Args) -> CommandResult {
+    let flags = &args.flags;
+    let measured = flags.measured(&args.set)?;
+    let models = flags.models(&args.models, &measured)?;
+    let forwards = models
+        .iter()
+        .map(|model| model.forward(&measured, flags))
+        .collect::<Result<Vec<_>, _>>()?;
+    let revisions: Vec<Revision<'_>> = models
+        .iter()
+        .zip(&forwards)
+        .map(|(model, forward)| Revision { name: &model.name, forward })
+        .collect();
+    let results = flags.results(&measured, "compare", &models)?;
+    let comparison = compare(&measured.set, &measured.observed, &revisions, flags.seed)
+        .map_err(CommandError::bad_input)?;
+    flags.notes(&comparison.notes);
+    let object = serde_json::to_value(&comparison).map_err(anyhow::Error::new)?;
+    let figure = picture::comparison(&measured.set, &comparison)
+        .map_err(|error| CommandError::Failed(error.into()))?;
+    let mut files = vec![("comparison.json".to_owned(), format!("{object:#}\n"))];
+    files.extend(figure.map(|figure| ("comparison.svg".to_owned(), figure)));
+    results.write(&files)?;
+    match flags.json {
+        true => output::json_to_stdout(&object),
+        false => {
+            let n = [&measured.observed.fit, &measured.observed.holdout].map(Vec::len);
+            let text = as_text(&measured.set, &comparison, n);
+            let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+            let shown = results.shown();
+            output::to_stdout(&format!("{text}\nwritten to {shown}: {}\n", names.join(", ")))
+        }
+    }
+}
+
+/// Most numbers that are listed one by one.
+const MOST_NUMBERS: usize = 24;
+
+/// An error of a table: its key, its heading, and what it is multiplied with.
+const ERRORS: [(&str, &str, f64); 6] = [
+    ("z_m", "z (mm)", 1e3),
+    ("x_m", "x (mm)", 1e3),
+    ("stop_time_s", "stop time (ms)", 1e3),
+    ("final_z_m", "depth (mm)", 1e3),
+    ("final_x_m", "range (mm)", 1e3),
+    ("rms_relative", "relative (%)", 1e2),
+];
+
+fn as_text(
+    set: &MeasurementSet,
+    comparison: &Comparison,
+    [n_fit, n_holdout]: [usize; 2],
+) -> String {
+    let mut text = format!(
+        "{}: {n_fit} conditions to fit, {n_holdout} held out; errors {}\n\n",
+        comparison.set,
+        noise_words(&comparison.noise)
+    );
+    text.push_str("root mean square errors\n");
+    text.push_str(&errors(comparison));
+    text.push_str(&numbers(set, &comparison.models));
+    text.push_str("\nparameters, refitted\n");
+    text.push_str(&parameters(&comparison.models));
+    text.push_str("\nwhere the force is wrong (significant at a false-discovery rate of 5 %)\n");
+    text.push_str(&failures(&comparison.models));
+    text
+}
+
+/// Where the errors come from, in words.
+pub(crate) fn noise_words(noise: &Value) -> String {
+    let percent = |key: &str| 100.0 * noise[key].as_f64().unwrap_or(0.0);
+    match noise["source"].as_str() {
+        Some("repeats") => format!(
+            "from repeats: coefficients {:.1} %, force along the path {:.1} %, readings {:.2} mm",
+            percent("coefficient_sd"),
+            percent("path_force_sd"),
+            1e3 * noise["position_sigma_m"].as_f64().unwrap_or(0.0)
+        ),
+        Some("stated") => "as stated by the set".to_owned(),
+        _ => "not known".to_owned(),
+    }
+}
+
+/// An empty table with right-aligned numbers behind the first column.
+pub(crate) fn table(header: &[&str]) -> Table {
+    let mut table = Table::new();
+    table.load_preset(NOTHING).set_header(header);
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}
+
+/// The lines of a table, indented, without trailing blanks.
+pub(crate) fn lines(table: &Table) -> String {
+    table.lines().map(|line| format!(" {}\n", line.trim_end())).collect()
+}
+
+fn errors(comparison: &Comparison) -> String {
+    let measured: Vec<_> = ERRORS
+        .iter()
+        .filter(|(key, ..)| comparison.models.iter().any(|model| !model.rms.fit[*key].is_null()))
+        .collect();
+    let mut header = vec!["model", ""];
+    header.extend(measured.iter().map(|(_, heading, _)| *heading));
+    header.extend(["chi2/n", "p (lack of fit)"]);
+    let mut table = table(&header);
+    for model in &comparison.models {
+        for (role, errors) in [("fit", &model.rms.fit), ("held out", &model.rms.holdout)] {
+            if errors.is_null() {
+                continue;
+            }
+            let fit = role == "fit";
+            let mut row =
+                vec![if fit { model.model.clone() } else { String::new() }, role.to_owned()];
+            row.extend(measured.iter().map(|(key, _, scale)| {
+                errors[*key]
+                    .as_f64()
+                    .map_or("-".to_owned(), |error| format!("{:.3}", scale * error))
+            }));
+            row.push(if fit { format!("{:.2}", model.chi2_per_n) } else { String::new() });
+            row.push(match model.p_lof {
+                Some(p) if fit => probability(p),
+                None if fit => "-".to_owned(),
+                _ => String::new(),
+            });
+            table.add_row(row);
+        }
+    }
+    lines(&table)
+}
+
+/// Scalars beside their predictions; sets of many conditions have them in the picture alone.
+fn numbers(set: &MeasurementSet, models: &[ModelComparison]) -> String {
+    let Some(first) = models.first() else { return String::new() };
+    let is_scalar = |one: &Residual| one.observable.is_scalar();
+    let n = first.residuals.iter().filter(|one| is_scalar(one)).count();
+    if n == 0 || n > MOST_NUMBERS {
+        return String::new();
+    }
+    let mut header = vec!["condition", "speed (m/s)", "angle (deg)", "", "measured"];
+    header.extend(models.iter().map(|model| model.model.as_str()));
+    let mut table = table(&header);
+    for (place, one) in first.residuals.iter().enumerate().filter(|(_, one)| is_scalar(one)) {
+        let condition = &set.conditions[one.condition];
+        let (unit, scale) = match one.observable {
+            Observable::StopTime => ("ms", 1e3),
+            _ => ("mm", 1e3),
+        };
+        let mut row = vec![
+            condition.id.clone(),
+            format!("{}", condition.speed),
+            format!("{}", condition.angle_deg),
+            match one.observable {
+                Observable::StopTime => "stop time".to_owned(),
+                Observable::FinalDepth => "depth".to_owned(),
+                _ => "range".to_owned(),
+            },
+            format!("{:.1} {unit}", scale * one.measured),
+        ];
+        row.extend(models.iter().map(|model| {
+            let predicted = model.residuals[place].predicted;
+            let error = 100.0 * (predicted / one.measured - 1.0);
+            format!("{:.1} ({error:+.0} %)", scale * predicted)
+        }));
+        table.add_row(row);
+    }
+    format!("\nmeasured and predicted\n{}", lines(&table))
+}
+
+/// A probability as one would write it.
+pub(crate) fn probability(p: f64) -> String {
+    match p {
+        p if p < 1e-4 => "< 1e-4".to_owned(),
+        p if p < 0.1 => format!("{p:.4}"),
+        p => format!("{p:.2}"),
+    }
+}
+
+fn parameters(models: &[ModelComparison]) -> String {
+    let mut table = table(&["model", "parameter", "value", "se", "unit"]);
+    for model in models {
+        for (index, (name, entry)) in model.parameters.iter().enumerate() {
+            let number = |key: &str| {
+                entry[key].as_f64().map_or("-".to_owned(), |value| format!("{value:.5}"))
+            };
+            let name_of_model = if index == 0 { model.model.as_str() } else { "" };
+            let unit = entry["unit"].as_str().unwrap_or_default();
+            table.add_row([name_of_model, name, &number("value"), &number("se"), unit]);
+        }
+    }
+    if let Some(column) = table.column_mut(1) {
+        column.set_cell_alignment(CellAlignment::Left);
+    }
+    lines(&table)
+}
+
+fn failures(models: &[ModelComparison]) -> String {
+    let mut table = table(&["model", "over", "from", "to", "force error (%)", "se (%)"]);
+    for model in models {
+        for (index, fail) in model.fails.iter().enumerate() {
+            table.add_row([
+                if index == 0 { model.model.clone() } else { String::new() },
+                fail.over.to_owned(),
+                format!("{:.4}", fail.from),
+                format!("{:.4}", fail.to),
+                format!("{:+.1}", 100.0 * fail.force_error),
+                format!("{:.1}", 100.0 * fail.se),
+            ]);
+        }
+    }
+    match table.row_iter().next() {
+        Some(_) => lines(&table),
+        None => " nowhere\n".to_owned(),
+    }
+}

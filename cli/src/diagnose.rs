@@ -1,0 +1,182 @@
+//! `plunge diagnose`: which effect a model lacks.
+
+use std::path::PathBuf;
+
+use comfy_table::CellAlignment;
+use configs::edit::add_effects;
+use serde_json::Value;
+use validation::bench::Bench;
+use validation::diagnose::diagnose;
+use validation::verdict::{Diagnosis, Verdict};
+
+use crate::add::from_diagnosis;
+use crate::compare::{lines, noise_words, probability, table};
+use crate::output::{self, CommandError, CommandResult};
+use crate::workbench::{Candidate, Flags};
+
+/// Arguments of `plunge diagnose`.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// A measurement set: its folder, or its measurement.toml.
+    set: PathBuf,
+    /// A model file or the name of a shipped model; without, the baseline that the set names.
+    #[arg(long, value_name = "MODEL")]
+    model: Option<PathBuf>,
+    #[command(flatten)]
+    flags: Flags,
+}
+
+pub(crate) fn run(args: &Args) -> CommandResult {
+    let flags = &args.flags;
+    let measured = flags.measured(&args.set)?;
+    let models = flags.models(args.model.as_slice(), &measured)?;
+    let model = &models[0];
+    let forward = model.forward(&measured, flags)?;
+    let results = flags.results(&measured, "diagnose", &models)?;
+    let bench = Bench { set: &measured.set, observed: &measured.observed, forward: &forward };
+    let diagnosis = diagnose(&bench, flags.seed).map_err(CommandError::bad_input)?;
+    flags.notes(&measured.set.notes);
+    flags.notes(&measured.observed.notes);
+    let object = diagnosis.to_json().map_err(anyhow::Error::new)?;
+    let text = format!("{object:#}\n");
+    let mut files = propose(model, &object, &diagnosis)?;
+    files.insert(0, ("diagnosis.json".to_owned(), text.clone()));
+    results.write(&files)?;
+    if flags.json {
+        return output::to_stdout(&text);
+    }
+    let n = [&measured.observed.fit, &measured.observed.holdout].map(Vec::len);
+    let mut text = as_text(&model.name, &diagnosis, n);
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    text.push_str(&format!("\nwritten to {}: {}\n", results.shown(), names.join(", ")));
+    output::to_stdout(&text)
+}
+
+/// A model for each effect worth adding: names and texts of files.
+fn propose(
+    model: &Candidate,
+    object: &Value,
+    diagnosis: &Diagnosis,
+) -> Result<Vec<(String, String)>, CommandError> {
+    let proposals: Vec<Vec<&str>> = match diagnosis.verdict {
+        Verdict::Supported => vec![diagnosis.effects.iter().map(String::as_str).collect()],
+        Verdict::Pair => vec![diagnosis.effects.iter().map(String::as_str).collect()],
+        Verdict::NotSeparable => {
+            diagnosis.not_separable.iter().map(|id| vec![id.as_str()]).collect()
+        }
+        _ => Vec::new(),
+    };
+    proposals
+        .into_iter()
+        .map(|effects| {
+            let addition = from_diagnosis(object, &effects)
+                .map_err(|why| CommandError::Failed(anyhow::anyhow!(why)))?;
+            let text = add_effects(&model.text, &addition)
+                .map_err(|error| CommandError::Failed(anyhow::Error::new(error)))?;
+            Ok((format!("model+{}.toml", effects.join("+")), text))
+        })
+        .collect()
+}
+
+fn as_text(model: &str, diagnosis: &Diagnosis, [n_fit, n_holdout]: [usize; 2]) -> String {
+    let mut text = format!(
+        "Model {model}: {n_fit} conditions to fit, {n_holdout} held out. Errors {}.\n",
+        noise_words(&diagnosis.noise)
+    );
+    if let (Some(p1), Some(p_lof)) = (diagnosis.p1, diagnosis.p_lof) {
+        let explained = diagnosis.verdict == Verdict::NothingDetected;
+        text.push_str(&format!(
+            "Does the model explain the data?  {}   p1 {}   lack of fit p {}\n",
+            if explained { "YES" } else { "NO" },
+            probability(p1),
+            probability(p_lof)
+        ));
+    }
+    text.push('\n');
+    text.push_str(&ranking(diagnosis));
+    if let Some(p) = diagnosis.p_lof_with {
+        text.push_str(&format!("\nLack of fit with the best: p {}.\n", probability(p)));
+    }
+    text.push_str(&format!("\nVERDICT  {}\n", verdict(diagnosis)));
+    if !diagnosis.unexplained.hint.is_empty() {
+        text.push_str(&format!("{}.\n", diagnosis.unexplained.hint));
+    }
+    if !diagnosis.unexplained.depends_on.is_empty() {
+        let on = diagnosis.unexplained.depends_on.join(", ");
+        text.push_str(&format!("What remains of the force depends on {on}.\n"));
+    }
+    text.push_str(&held_out(diagnosis));
+    text
+}
+
+fn ranking(diagnosis: &Diagnosis) -> String {
+    let header = ["effect", "q", "se", "delta", "behind", "ranked first if there", "limit", ""];
+    let mut table = table(&header);
+    let best = diagnosis.ranking.first().and_then(|effect| effect.delta).unwrap_or(0.0);
+    let number = |value: Option<f64>, digits: usize| {
+        value.map_or("-".to_owned(), |value| format!("{value:.digits$}"))
+    };
+    for effect in diagnosis.ranking.iter().filter(|effect| effect.testable) {
+        table.add_row([
+            effect.id.clone(),
+            number(effect.q, 4),
+            number(effect.se, 4),
+            number(effect.delta, 1),
+            number(effect.delta.map(|delta| best - delta), 1),
+            number(effect.predicted_top1, 2),
+            number(effect.detection_limit, 4),
+            format!("separable by {}", effect.note),
+        ]);
+    }
+    if let Some(column) = table.column_mut(header.len() - 1) {
+        column.set_cell_alignment(CellAlignment::Left);
+    }
+    let mut text = lines(&table);
+    for effect in diagnosis.ranking.iter().filter(|effect| !effect.testable) {
+        text.push_str(&format!(" not testable: {} ({})\n", effect.id, effect.note));
+    }
+    text
+}
+
+fn verdict(diagnosis: &Diagnosis) -> String {
+    let suggested = match diagnosis.strength {
+        validation::verdict::Strength::Supported => "",
+        validation::verdict::Strength::Suggested => " (suggested)",
+    };
+    match diagnosis.verdict {
+        Verdict::NothingDetected => "nothing detected: the data are explained".to_owned(),
+        Verdict::Supported => format!("supported: {}{suggested}", diagnosis.effects.join(", ")),
+        Verdict::NotSeparable => format!(
+            "one of {{{}}}{suggested}: these data cannot tell them apart",
+            diagnosis.not_separable.join(", ")
+        ),
+        Verdict::Pair => format!(
+            "pair: {}{suggested}, or one effect outside the list",
+            diagnosis.effects.join(" + ")
+        ),
+        Verdict::NoneOfTheCandidates => "none of the candidates".to_owned(),
+        Verdict::CannotTell => "cannot tell".to_owned(),
+    }
+}
+
+fn held_out(diagnosis: &Diagnosis) -> String {
+    let (Some(held_out), false) = (&diagnosis.holdout, diagnosis.amplitudes.is_empty()) else {
+        return String::new();
+    };
+    let shown = |error: f64| match held_out.unit {
+        validation::held_out::Unit::Position => format!("{:.3} mm", 1e3 * error),
+        validation::held_out::Unit::Relative => format!("{:.1} %", 1e2 * error),
+    };
+    let which = match held_out.conditions {
+        validation::held_out::LeftOut::Holdout => "held-out conditions",
+        validation::held_out::LeftOut::OneAtATime => {
+            "conditions left out one at a time (the set holds out none)"
+        }
+    };
+    format!(
+        "Error on {which}: {} before, {} after (noise of the means {}).\n",
+        shown(held_out.before),
+        shown(held_out.after),
+        shown(held_out.noise_floor)
+    )
+}

@@ -1,0 +1,238 @@
+//! What `compare` and `diagnose` share: a set, models before it, and a folder for results.
+
+use std::fs::{self, File};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use configs::{LoadOptions, Loaded, Model, ModelSource};
+use validation::measurement::{self, MeasurementSet, SetError};
+use validation::observed::Observed;
+use validation::resistive::ResistiveForward;
+
+use crate::output::{self, CommandError, CommandResult, stderr_color};
+
+/// The seed of every resampling when none is given.
+const SEED: u64 = 1;
+
+/// The file that says what the results of a folder are from.
+const INPUTS: &str = "inputs.blake3";
+
+/// The flags of commands about a measurement set.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct Flags {
+    /// Change a key of every model; the value is TOML if it parses as TOML, else a string.
+    #[arg(long = "set", value_name = "KEY.PATH=VALUE")]
+    sets: Vec<String>,
+    /// The seed of resampling; equal seeds give equal bytes.
+    #[arg(long, default_value_t = SEED)]
+    pub(crate) seed: u64,
+    /// The folder to write to.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print one JSON object to stdout.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// No notes and no warnings.
+    #[arg(long)]
+    quiet: bool,
+    /// Replace results of other inputs.
+    #[arg(long)]
+    force: bool,
+    /// Accepted for symmetry with other commands: no result depends on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    threads: Option<u16>,
+    /// Let models read data files below this folder too.
+    #[arg(long = "allow-path", value_name = "DIR")]
+    allow_paths: Vec<PathBuf>,
+}
+
+/// A model under the name that the user gave it.
+pub(crate) struct Candidate {
+    pub(crate) name: String,
+    pub(crate) loaded: Loaded,
+    /// The file as its author wrote it, unless the command line changed it.
+    pub(crate) text: String,
+}
+
+/// A set with its observables.
+pub(crate) struct Measured {
+    pub(crate) set: MeasurementSet,
+    pub(crate) observed: Observed,
+    folder: PathBuf,
+}
+
+impl From<SetError> for CommandError {
+    fn from(error: SetError) -> Self {
+        Self::BadInput(error.render(stderr_color()))
+    }
+}
+
+impl Flags {
+    /// Reads the set at `path` and shows its warnings.
+    pub(crate) fn measured(&self, path: &Path) -> Result<Measured, CommandError> {
+        let measurement::Loaded { set, warnings, sources, .. } = MeasurementSet::load(path)?;
+        if !self.quiet {
+            output::to_stderr(&configs::render_all(&warnings, &sources, stderr_color()));
+        }
+        let folder = match path.is_dir() {
+            true => path.to_owned(),
+            false => path.parent().unwrap_or(Path::new("")).to_owned(),
+        };
+        Ok(Measured { observed: Observed::of(&set), set, folder })
+    }
+
+    /// The models called `names`, or the baseline that the set starts from.
+    pub(crate) fn models(
+        &self,
+        names: &[PathBuf],
+        measured: &Measured,
+    ) -> Result<Vec<Candidate>, CommandError> {
+        if !names.is_empty() {
+            return names.iter().map(|name| self.model(name, name)).collect();
+        }
+        let Some(baseline) = &measured.set.baseline else {
+            return Err(CommandError::bad_input(format!(
+                "the set {} names no baseline; give --model, or `[model] baseline`",
+                measured.set.id
+            )));
+        };
+        let beside = measured.folder.join(baseline);
+        let is_file = baseline.ends_with(".toml") && beside.is_file();
+        let path = if is_file { beside } else { PathBuf::from(baseline) };
+        Ok(vec![self.model(Path::new(baseline), &path)?])
+    }
+
+    fn model(&self, name: &Path, path: &Path) -> Result<Candidate, CommandError> {
+        let options = LoadOptions {
+            sets: self.sets.clone(),
+            seed: None,
+            allow_paths: self.allow_paths.clone(),
+        };
+        let loaded = Model::load(ModelSource::from_argument(path), &options)?;
+        if !self.quiet {
+            output::show_warnings(&loaded);
+        }
+        // What the command line changed has to be in a model that is proposed.
+        let text = match self.sets.is_empty() {
+            true => loaded.original.clone(),
+            false => loaded.model.resolved_toml().to_owned(),
+        };
+        Ok(Candidate { name: name.display().to_string(), loaded, text })
+    }
+
+    /// Shows sentences about what was assumed or left aside.
+    pub(crate) fn notes(&self, notes: &[String]) {
+        if !self.quiet {
+            for note in notes {
+                output::to_stderr(&format!("note: {}\n", configs::printable(note)));
+            }
+        }
+    }
+
+    /// The folder for the results of `command`, which follow from `inputs`.
+    pub(crate) fn results(
+        &self,
+        measured: &Measured,
+        command: &str,
+        models: &[Candidate],
+    ) -> Result<Results, CommandError> {
+        let default = || PathBuf::from("runs").join(format!("{}-{command}", measured.set.id));
+        let folder = self.out.clone().unwrap_or_else(default);
+        let mut hash = blake3::Hasher::new();
+        hash.update(env!("CARGO_PKG_VERSION").as_bytes());
+        hash.update(format!("{command} {} {:?}", self.seed, measured.set).as_bytes());
+        for model in models {
+            hash.update(model.name.as_bytes());
+            hash.update(model.loaded.model.resolved_toml().as_bytes());
+        }
+        Results::claim(folder, &hash.finalize().to_hex(), self.force)
+    }
+}
+
+impl Candidate {
+    /// The model before the set; says which of its parameters the set cannot tell anything of.
+    pub(crate) fn forward(
+        &self,
+        measured: &Measured,
+        flags: &Flags,
+    ) -> Result<ResistiveForward, CommandError> {
+        let layouts = measured.observed.layouts();
+        let forward = ResistiveForward::new(&self.loaded.model, &measured.set, &layouts)
+            .map_err(|error| CommandError::bad_input(format!("{}: {error}", self.name)))?;
+        if !forward.idle().is_empty() {
+            let (n, first) = (forward.idle().len(), &forward.idle()[0]);
+            let which = match n {
+                1 => first.clone(),
+                _ => format!("{first} and {} others", n - 1),
+            };
+            let name = &self.name;
+            flags.notes(&[format!(
+                "{name}: nothing in the set depends on {which}; left as they are"
+            )]);
+        }
+        Ok(forward)
+    }
+}
+
+/// A folder that results are written to.
+pub(crate) struct Results {
+    folder: PathBuf,
+    inputs: String,
+}
+
+impl Results {
+    /// A folder that holds nothing, results of the same inputs, or what may be replaced.
+    fn claim(folder: PathBuf, inputs: &str, replace: bool) -> Result<Self, CommandError> {
+        let stamp = folder.join(INPUTS);
+        let shown = folder.display();
+        let refusal = match fs::read_to_string(&stamp) {
+            Ok(found) => (found.trim() != inputs).then_some("results of other inputs"),
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                let occupied = fs::read_dir(&folder).is_ok_and(|mut files| files.next().is_some());
+                occupied.then_some("files that are no results of this command")
+            }
+            Err(error) => {
+                let error = anyhow::Error::new(error);
+                return Err(error.context(format!("cannot read {}", stamp.display())).into());
+            }
+        };
+        match refusal {
+            Some(what) if !replace => Err(CommandError::bad_input(format!(
+                "{shown} holds {what}; choose another --out, or --force to write there"
+            ))),
+            _ => Ok(Self { folder, inputs: inputs.to_owned() }),
+        }
+    }
+
+    /// Writes each file whole or not at all, and last what they are from.
+    pub(crate) fn write(&self, files: &[(String, String)]) -> CommandResult {
+        let shown = self.folder.display();
+        fs::create_dir_all(&self.folder)
+            .map_err(|error| anyhow::Error::new(error).context(format!("cannot make {shown}")))?;
+        let stamp = (INPUTS.to_owned(), format!("{}\n", self.inputs));
+        files
+            .iter()
+            .chain([&stamp])
+            .try_for_each(|(name, text)| write_whole(&self.folder.join(name), text))
+    }
+
+    /// Where they are, for messages.
+    pub(crate) fn shown(&self) -> String {
+        self.folder.display().to_string()
+    }
+}
+
+/// Writes the file `path` whole or not at all.
+pub(crate) fn write_whole(path: &Path, text: &str) -> CommandResult {
+    let mut partial = path.as_os_str().to_owned();
+    partial.push(".partial");
+    let partial = PathBuf::from(partial);
+    File::create(&partial)
+        .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()))
+        .and_then(|()| fs::rename(&partial, path))
+        .map_err(|error| {
+            let shown = format!("cannot write {}", path.display());
+            CommandError::Failed(anyhow::Error::new(error).context(shown))
+        })
+}

@@ -1,0 +1,182 @@
+//! The workbench seen from outside: compare, diagnose, add, and compare again.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// A shipped measurement set.
+fn shipped(set: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../validation/data").join(set)
+}
+
+fn plunge(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_plunge"))
+        .current_dir(folder)
+        .args(args)
+        .output()
+        .expect("the binary runs")
+}
+
+fn json(folder: &Path, args: &[&str]) -> Value {
+    let output = plunge(folder, args);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{args:?}: {errors}");
+    serde_json::from_slice(&output.stdout).expect("one JSON object")
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("a test path is UTF-8")
+}
+
+/// A copy of a shipped set, so that it can be changed.
+fn copied(set: &str, into: &Path) -> PathBuf {
+    let copy = into.join(set);
+    fs::create_dir(&copy).unwrap();
+    for file in fs::read_dir(shipped(set)).unwrap() {
+        let file = file.unwrap();
+        fs::copy(file.path(), copy.join(file.file_name())).unwrap();
+    }
+    copy
+}
+
+fn relative(model: &Value, role: &str) -> f64 {
+    model["rms"][role]["rms_relative"].as_f64().expect("an error")
+}
+
+#[test]
+fn the_error_falls_when_the_effect_that_was_found_is_added() {
+    let here = tempfile::tempdir().unwrap();
+    let (set, here) = (shipped("s1-tables-vertical"), here.path());
+    let before = json(here, &["compare", text(&set), "--json", "--quiet"]);
+    // 12 % is what the published law misses its own tables by at 90 degrees after a refit.
+    let published = relative(&before["models"][0], "fit");
+    assert!((0.10..0.15).contains(&published), "{published}");
+    assert!(before["models"][0]["p_lof"].as_f64().unwrap() < 1e-3);
+
+    let found = json(here, &["diagnose", text(&set), "--json", "--quiet"]);
+    assert_eq!(found["verdict"], "not-separable");
+    let together: Vec<&str> =
+        found["not_separable"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
+    for effect in ["yield-stress", "depth-exponent", "janssen"] {
+        assert!(together.contains(&effect), "{together:?}");
+    }
+    assert!(!together.contains(&"viscous-drag"), "{together:?}");
+
+    let folder = here.join("runs/s1-tables-vertical-diagnose");
+    let diagnosis = folder.join("diagnosis.json");
+    let added = here.join("better.toml");
+    let effect = ["--effect", "depth-exponent", "-o", text(&added)];
+    let add = plunge(
+        here,
+        &[&["add", "two-term-components", "--from", text(&diagnosis)], &effect[..]].concat(),
+    );
+    assert!(add.status.success(), "{}", String::from_utf8_lossy(&add.stderr));
+    assert_eq!(
+        fs::read_to_string(&added).unwrap(),
+        fs::read_to_string(folder.join("model+depth-exponent.toml")).unwrap(),
+        "the proposed model is what `add` writes"
+    );
+    let models = ["--model", "two-term-components", "--model", text(&added), "--force"];
+    let after = json(here, &[&["compare", text(&set), "--json", "--quiet"], &models[..]].concat());
+    let [old, new] = [0, 1].map(|index| &after["models"][index]);
+    assert!((relative(old, "fit") - published).abs() < 1e-9);
+    // 2.9 % was found for this exponent by an independent search; held out, a third is left too.
+    assert!(relative(new, "fit") < 0.035, "{}", relative(new, "fit"));
+    assert!(relative(new, "holdout") < relative(old, "holdout") / 3.0);
+    assert!(new["p_lof"].as_f64().unwrap() > 0.05);
+}
+
+#[test]
+fn an_added_effect_leaves_the_rest_of_the_model_as_it_was_written() {
+    let here = tempfile::tempdir().unwrap();
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/two-term-vector.toml");
+    let before = fs::read_to_string(&model).unwrap();
+    let add =
+        plunge(here.path(), &["add", text(&model), "viscous-drag", "q=0.5", "-o", "new.toml"]);
+    assert!(add.status.success(), "{}", String::from_utf8_lossy(&add.stderr));
+    let after = fs::read_to_string(here.path().join("new.toml")).unwrap();
+    let kept: Vec<&str> = before.lines().filter(|line| !line.starts_with("free")).collect();
+    let shown: Vec<&str> = after.lines().filter(|line| !line.starts_with("free")).collect();
+    assert_eq!(shown[..kept.len()], kept[..]);
+    assert_eq!(shown[kept.len()..], ["", "[[effect]]", "name = \"viscous-drag\"", "q = 0.5"]);
+}
+
+#[test]
+fn a_diagnosis_does_not_hang_on_names_or_order_and_not_on_what_is_held_out() {
+    let here = tempfile::tempdir().unwrap();
+    let here = here.path();
+    let set = copied("s1-tables-vertical", here);
+    let diagnose = || {
+        let args = ["diagnose", text(&set), "--json", "--quiet", "--force", "--out", "out"];
+        let output = plunge(here, &args);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let first = diagnose();
+    assert_eq!(first, diagnose(), "equal inputs give equal bytes");
+
+    let runs = set.join("runs.csv");
+    let table = fs::read_to_string(&runs).unwrap();
+    let is_row = |line: &&str| !line.starts_with('#') && !line.starts_with("run,");
+    let head: Vec<&str> = table.lines().filter(|line| !is_row(line)).collect();
+    let mut rows: Vec<String> =
+        table.lines().filter(is_row).map(|row| format!("renamed-{row}")).collect();
+    rows.reverse();
+    fs::write(&runs, format!("{}\n{}\n", head.join("\n"), rows.join("\n"))).unwrap();
+    assert_eq!(first, diagnose(), "names and order of runs change no byte");
+
+    let corrupted = table.lines().map(|line| {
+        let cells: Vec<&str> = line.split(',').collect();
+        match cells[1..].first() {
+            // 1.5 and 3.5 m/s are held out.
+            Some(&condition) if condition.ends_with("v1.5") || condition.ends_with("v3.5") => {
+                let mut cells = cells.clone();
+                cells[4] = "0.5";
+                cells.join(",")
+            }
+            _ => line.to_owned(),
+        }
+    });
+    fs::write(&runs, corrupted.map(|line| line + "\n").collect::<String>()).unwrap();
+    let corrupt: Value = serde_json::from_str(&diagnose()).unwrap();
+    let first: Value = serde_json::from_str(&first).unwrap();
+    assert_ne!(corrupt["holdout"], first["holdout"], "held-out rows are judged");
+    assert_eq!(corrupt["ranking"], first["ranking"], "held-out rows choose nothing");
+}
+
+#[test]
+fn results_of_other_inputs_are_not_written_over() {
+    let here = tempfile::tempdir().unwrap();
+    let set = shipped("katsuragi-durian");
+    let args = ["compare", text(&set), "--quiet", "--out", "out"];
+    assert!(plunge(here.path(), &args).status.success());
+    let again = plunge(here.path(), &args);
+    assert!(again.status.success(), "the same inputs may come again");
+    let other = [&args[..], &["--seed", "7"]].concat();
+    let refused = plunge(here.path(), &other);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("--force"));
+    assert!(plunge(here.path(), &[&other[..], &["--force"]].concat()).status.success());
+}
+
+#[test]
+fn what_cannot_be_compared_is_answered_with_what_could_be() {
+    let here = tempfile::tempdir().unwrap();
+    let here = here.path();
+    let set = shipped("s1-tables-vertical");
+    let message = |args: &[&str]| {
+        let output = plunge(here, args);
+        assert_eq!(output.status.code(), Some(2), "{args:?}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    assert!(message(&["compare", "nowhere"]).contains("nowhere"));
+    let grains = message(&["compare", text(&set), "--quiet", "--model", "vertical-2d"]);
+    assert!(grains.contains("bed of grains"), "{grains}");
+    let typo = message(&["add", "two-term-vector", "jansen", "q=1", "-o", "new.toml"]);
+    assert!(typo.contains("did you mean `janssen`?"), "{typo}");
+    assert!(!here.join("new.toml").exists());
+    let nothing = message(&["add", "two-term-vector", "-o", "new.toml"]);
+    assert!(nothing.contains("--from"), "{nothing}");
+}
