@@ -351,7 +351,8 @@ impl Impact {
                 let slot = 5 * hold.part + COMPONENTS + hold.component;
                 margins[slot] = modes.slack(system, state, hold);
             }
-        } else if self.assembly.n_parts() == 1 {
+        }
+        if self.assembly.moves_as_a_point() && modes.held()[0] == [false; 2] {
             let part = self.assembly.part(0, state);
             margins[STOPPING] = match modes.straight {
                 Some(direction) => part.velocity.dot(&direction),

@@ -214,12 +214,19 @@ pub(super) fn drive(system: &System<'_>, state: &State, modes: &Modes) -> Vec3 {
     loaded.load.dynamic - Vec3::new(0.0, 0.0, weight)
 }
 
-/// Whether friction holds a compact body that has come to rest.
+/// Whether friction holds a compact body that has come to rest: what the frictions of the components
+/// leave of the drive has to lie within that of the direction.
 pub(super) fn is_held(system: &System<'_>, state: &State, modes: &Modes) -> bool {
-    let limit = system.loaded(0, state, modes).load.friction;
+    let load = system.loaded(0, state, modes).load;
     let drive = drive(system, state, modes);
-    let share = AXES.map(|axis| if drive[axis] == 0.0 { 0.0 } else { drive[axis] / limit[axis] });
-    share[0] * share[0] + share[1] * share[1] <= 1.0
+    let mut share = 0.0;
+    for (grip, axis) in load.grip.iter().zip(AXES) {
+        let left = (drive[axis] - grip.positive).max(-drive[axis] - grip.negative);
+        if left > 0.0 {
+            share += (left / load.friction[axis]).powi(2);
+        }
+    }
+    share <= 1.0
 }
 
 /// Accelerations of the coordinates, and what holds the held components still.

@@ -63,13 +63,31 @@ fn a_constant_friction_helps_component_frictions_to_hold_a_body_that_is_light_on
             "two-term-components",
             &[("drag_x", 0.4), ("friction_x", 1.2), ("drag_z", 0.57), ("friction_z", 5.4)],
         ),
-        law("yield-stress", &[("q", 5.0)]),
+        law("yield-stress", &[("q", 2.5)]),
     ];
     let ending = sphere(laws, 0.5, 90.0).run(10.0, &mut ()).unwrap();
     let depth = ending.parts[0].depth;
     let weight = MASS * BED.gravity;
     let area = std::f64::consts::PI * 0.0127 * 0.0127;
-    let constant = 5.0 * BED.bulk_density * BED.gravity * area * 0.0254;
+    let constant = 2.5 * BED.bulk_density * BED.gravity * area * 0.0254;
     assert!(ending.stopped && ending.steps < 100, "{} steps", ending.steps);
     assert!(5.4 * depth < weight && constant < weight && 5.4 * depth + constant > weight);
+}
+
+#[test]
+fn a_friction_along_the_motion_stops_both_components_at_once() {
+    // Where depth friction alone would not carry the weight, the body keeps sinking a little as long
+    // as it moves on: then both components vanish together.
+    let laws = vec![
+        law(
+            "two-term-components",
+            &[("drag_x", 0.1), ("friction_x", 0.01), ("drag_z", 1.0), ("friction_z", 4.0)],
+        ),
+        law("rail-friction", &[("q", 0.6)]),
+    ];
+    let ending = sphere(laws, 3.0, 5.0).run(10.0, &mut ()).unwrap();
+    let part = ending.parts[0];
+    assert!(ending.stopped && ending.steps < 300, "{} steps", ending.steps);
+    assert!(part.depth > 0.01 && 4.0 * part.depth < MASS * BED.gravity, "{part:?}");
+    assert!((part.vertical.unwrap() - part.horizontal.unwrap()).abs() < 1e-3, "{part:?}");
 }
