@@ -21,7 +21,7 @@ const TOLERANCE: f64 = 1e-6;
 const STEP: f64 = 1e-3;
 
 /// An unknown that moves the prediction by less than this share of what the others do is idle.
-const IDLE: f64 = 1e-9;
+const IDLE: f64 = 1e-6;
 
 /// What is fitted to.
 #[derive(Clone, Copy)]
@@ -153,7 +153,10 @@ impl Data<'_> {
         let jacobian = self.derivative(&point, scales, &free)?;
         // What nothing depends on any more, such as a logarithm on its way to minus infinity, is at a
         // bound too.
-        let weight = |column: usize| jacobian.column(column).norm() * scales[free[column]].reach();
+        let weight = |column: usize| {
+            let at = free[column];
+            jacobian.column(column).norm() * scales[at].reach(value(&point, at))
+        };
         let heaviest = (0..free.len()).map(weight).fold(0.0, f64::max);
         let alive: Vec<usize> =
             (0..free.len()).filter(|&column| weight(column) > IDLE * heaviest).collect();
@@ -214,9 +217,9 @@ impl Scale {
         (self.unknown(self.min)..=self.unknown(self.max)).contains(&unknown)
     }
 
-    /// How far the unknown may go (its own unit), to weigh derivatives by.
-    fn reach(&self) -> f64 {
-        self.step / STEP
+    /// By how much an unknown of this value is moved in earnest, to weigh derivatives by.
+    fn reach(&self, value: f64) -> f64 {
+        if self.logarithmic { value } else { self.step / STEP }
     }
 
     fn unknown_step(&self) -> f64 {

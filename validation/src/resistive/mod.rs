@@ -189,7 +189,7 @@ impl Forward for ResistiveForward {
     }
 
     fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError> {
-        let added: Vec<(&ResistanceEntry, f64)> =
+        let added: Vec<(&'static ResistanceEntry, f64)> =
             at.effects.iter().map(|&(index, q)| (self.effects[index], q)).collect();
         let mut values = self.start.clone();
         for (&index, &value) in self.active.iter().zip(at.parameters) {

@@ -1,6 +1,8 @@
 //! One condition of a measurement set, ready to be predicted many times.
 
+use std::collections::VecDeque;
 use std::f64::consts::FRAC_PI_2;
+use std::sync::{Mutex, PoisonError};
 
 use configs::{FreeParameter, ResistiveMedium};
 use contact_laws::{Coefficients, Expression, RESISTANCE_LAWS, ResistanceEntry};
@@ -23,8 +25,13 @@ const DURATION: f64 = 10.0;
 /// Errors near 1e-9 m, far below any camera and small beside every difference that is taken.
 const TOLERANCE: Tolerance = Tolerance { relative: 1e-10, absolute: 1e-12 };
 
+/// How many predictions of a condition are kept: a derivative by one parameter leaves most conditions
+/// as they were.
+const KEPT: usize = 4;
+
 /// A condition with the model's law for it.
 pub(super) struct Prepared {
+    recent: Mutex<VecDeque<(Inputs, Vec<f64>)>>,
     layout: Layout,
     stop: StopDefinition,
     last: FinalDefinition,
@@ -37,6 +44,15 @@ pub(super) struct Prepared {
     spin: f64,
     bed: Surroundings,
     law: Law,
+}
+
+/// Everything that a prediction follows from: numbers of the law, effects with their amplitudes, and
+/// what scatters.
+#[derive(Clone, PartialEq)]
+struct Inputs {
+    numbers: Vec<f64>,
+    effects: Vec<(&'static str, f64)>,
+    scatter: Scatter,
 }
 
 /// The law of a model at one impact angle, as a function of its free parameters.
@@ -111,11 +127,25 @@ impl Law {
         }
     }
 
+    fn inputs(
+        &self,
+        parameters: &[f64],
+        added: &[(&'static ResistanceEntry, f64)],
+        scatter: &Scatter,
+    ) -> Inputs {
+        let own = self.effects.iter().map(|(entry, q)| (entry.name, q.at(parameters)));
+        Inputs {
+            numbers: self.coefficients.iter().map(|one| one.at(parameters)).collect(),
+            effects: own.chain(added.iter().map(|(entry, q)| (entry.name, *q))).collect(),
+            scatter: scatter.clone(),
+        }
+    }
+
     /// The laws with these parameters, `added` effects and what scatters from run to run.
     fn laws(
         &self,
         parameters: &[f64],
-        added: &[(&ResistanceEntry, f64)],
+        added: &[(&'static ResistanceEntry, f64)],
         scatter: &Scatter,
         scattering: &[&str],
     ) -> Vec<Box<dyn ResistanceLaw>> {
@@ -183,6 +213,7 @@ impl Prepared {
         };
         let there = ResistiveMedium { bulk_density: bed.bulk_density, ..medium.clone() };
         Ok(Self {
+            recent: Mutex::new(VecDeque::with_capacity(KEPT + 1)),
             layout: layout.clone(),
             stop: set.stop,
             last: set.last,
@@ -202,7 +233,27 @@ impl Prepared {
     pub(super) fn predict(
         &self,
         parameters: &[f64],
-        added: &[(&ResistanceEntry, f64)],
+        added: &[(&'static ResistanceEntry, f64)],
+        scatter: &Scatter,
+        scattering: &[&str],
+    ) -> Result<Vec<f64>, String> {
+        let inputs = self.law.inputs(parameters, added, scatter);
+        // A poisoned lock holds nothing worse than fewer predictions.
+        let recent = || self.recent.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, known)) = recent().iter().find(|(one, _)| *one == inputs) {
+            return Ok(known.clone());
+        }
+        let predicted = self.integrate(parameters, added, scatter, scattering)?;
+        let mut recent = recent();
+        recent.push_front((inputs, predicted.clone()));
+        recent.truncate(KEPT);
+        Ok(predicted)
+    }
+
+    fn integrate(
+        &self,
+        parameters: &[f64],
+        added: &[(&'static ResistanceEntry, f64)],
         scatter: &Scatter,
         scattering: &[&str],
     ) -> Result<Vec<f64>, String> {
