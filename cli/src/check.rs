@@ -1,4 +1,4 @@
-//! `plunge check`: what a model means and what it will cost.
+//! `plunge check`: what a model means and what it will cost; `check_set` has measurement sets.
 
 use std::path::PathBuf;
 
@@ -7,19 +7,24 @@ use configs::estimate::Estimate;
 use configs::{Color, GrainModel, Medium, Model, ResistiveModel, stability};
 use serde_json::{Map, Value, json};
 
+use crate::check_set;
 use crate::common::Common;
 use crate::output::{self, CommandResult};
 
 /// Arguments of `plunge check`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// A model file, or the name of a shipped model.
+    /// A model file, or the name of a shipped model. Or a measurement set: its folder or its file.
+    #[arg(value_name = "MODEL|SET")]
     model: PathBuf,
     #[command(flatten)]
     common: Common,
 }
 
 pub(crate) fn run(args: &Args) -> CommandResult {
+    if check_set::is_set(&args.model) {
+        return check_set::run(&args.model, &args.common);
+    }
     let loaded = args.common.load(&args.model)?;
     let model = &loaded.model;
     args.common.refuse_too_large(model)?;

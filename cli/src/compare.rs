@@ -1,4 +1,4 @@
-//! `plunge compare`: revisions of a model against measurements.
+//! `plunge compare`: revisions of a model against measurements; `compare_runs` has a run against a run.
 
 use std::path::PathBuf;
 
@@ -11,14 +11,19 @@ use validation::observable::Observable;
 use validation::picture;
 use validation::residual::Residual;
 
+use crate::compare_runs::{self, Found};
 use crate::output::{self, CommandError, CommandResult};
 use crate::workbench::Flags;
 
 /// Arguments of `plunge compare`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// A measurement set: its folder, or its measurement.toml.
-    set: PathBuf,
+    /// A measurement set: its folder, or its measurement.toml. Or the folder of a run.
+    #[arg(value_name = "SET|RUN_A")]
+    first: PathBuf,
+    /// The folder of the run to compare with RUN_A.
+    #[arg(value_name = "RUN_B")]
+    second: Option<PathBuf>,
     /// A model file or the name of a shipped model; give several to see the error fall. Without,
     /// the baseline that the set names.
     #[arg(long = "model", value_name = "MODEL")]
@@ -29,7 +34,30 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> CommandResult {
     let flags = &args.flags;
-    let measured = flags.measured(&args.set)?;
+    match (compare_runs::what_is(&args.first), &args.second) {
+        (Found::Run, Some(_)) if !args.models.is_empty() => {
+            return Err(CommandError::bad_input(
+                "--model goes with a measurement set, not with runs",
+            ));
+        }
+        (Found::Run, Some(second)) => return compare_runs::run([&args.first, second], flags),
+        (Found::Run, None) => {
+            return Err(CommandError::bad_input(format!(
+                "{} is a run; name the run to compare it with, as in `plunge compare RUN_A RUN_B`",
+                args.first.display()
+            )));
+        }
+        (Found::NoRun(why), _) => return Err(CommandError::bad_input(why)),
+        (Found::Other, Some(second)) => {
+            return Err(CommandError::bad_input(format!(
+                "{} is no run, so that {} is one argument too many; models go with --model",
+                args.first.display(),
+                second.display()
+            )));
+        }
+        (Found::Other, None) => {}
+    }
+    let measured = flags.measured(&args.first)?;
     let models = flags.models(&args.models, &measured)?;
     let forwards = models
         .iter()

@@ -4,8 +4,10 @@
 mod add;
 mod bed;
 mod check;
+mod check_set;
 mod common;
 mod compare;
+mod compare_runs;
 mod control;
 mod diagnose;
 mod effects;
@@ -33,9 +35,9 @@ enum Command {
     Run(run::Args),
     /// Prepare the bed of a model into the cache.
     Bed(bed::Args),
-    /// Validate a model and show what it means in SI, without running it.
+    /// Validate a model, or a measurement set, and show what it means in SI, without running it.
     Check(check::Args),
-    /// Compare revisions of a model with measurements: how wrong, and where.
+    /// Compare revisions of a model with measurements: how wrong, and where. Or a run with a run.
     Compare(compare::Args),
     /// Find out which physical effect a model lacks.
     Diagnose(diagnose::Args),

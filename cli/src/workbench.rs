@@ -103,6 +103,20 @@ impl Flags {
         Ok(vec![self.model(Path::new(baseline), &path)?])
     }
 
+    /// Whether `--set` was given.
+    pub(crate) fn change_models(&self) -> bool {
+        !self.sets.is_empty()
+    }
+
+    /// The folder that `--out` names, for results that follow from `inputs`; none without `--out`.
+    pub(crate) fn chosen_results(
+        &self,
+        inputs: &blake3::Hash,
+    ) -> Result<Option<Results>, CommandError> {
+        let claim = |folder| Results::claim(folder, &inputs.to_hex(), self.force);
+        self.out.clone().map(claim).transpose()
+    }
+
     fn model(&self, name: &Path, path: &Path) -> Result<Candidate, CommandError> {
         let options = LoadOptions {
             sets: self.sets.clone(),

@@ -1,3 +1,4 @@
 //! Files in and out of plunge: what reads, repairs and converts logs.
 
+pub mod read;
 pub mod recover;

@@ -12,6 +12,8 @@
 //! 4. [`compare::compare`] says how wrong each revision of a model is and where
 //!    ([`errors`], [`lack_of_fit`], [`force_error`], [`residual`]);
 //! 5. [`diagnose::diagnose`] says which effect is missing, as a [`verdict`].
+//!
+//! [`runs`] holds a run against a run.
 
 pub mod bench;
 pub mod case;
@@ -40,6 +42,7 @@ pub mod residual;
 pub mod resistive;
 pub mod rig;
 mod rounding;
+pub mod runs;
 mod score;
 pub mod sensitivity;
 mod signature;

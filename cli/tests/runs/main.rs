@@ -1,7 +1,10 @@
-//! What `plunge run`, `bed` and `recover` promise, seen from outside: bytes, folders, exit codes.
+//! What `plunge run`, `bed`, `recover`, `compare` of runs and `check` of sets promise, seen from
+//! outside: bytes, folders, exit codes.
 
 mod beds;
+mod check_sets;
 mod common;
+mod compare_runs;
 mod conditions;
 mod csv;
 mod failures;

@@ -54,6 +54,12 @@ pub(crate) struct Entry {
 }
 
 impl Table {
+    /// Whether there is anything called `key` in it.
+    #[must_use]
+    pub fn has(&self, key: &str) -> bool {
+        self.get(key).is_some()
+    }
+
     pub(crate) fn get(&self, key: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.key == key)
     }

@@ -20,7 +20,7 @@ const ALLOWED: [(&str, &[&str]); 8] = [
 ];
 
 /// Crates of others that are kept behind one of ours (two where a second reads what the first writes).
-const ONLY: [(&str, &[&str]); 23] = [
+const ONLY: [(&str, &[&str]); 24] = [
     ("annotate-snippets", &["configs"]),
     ("anyhow", &["plunge", "xtask"]),
     ("argmin", &["validation"]),
@@ -39,6 +39,7 @@ const ONLY: [(&str, &[&str]); 23] = [
     ("parry3d-f64", &["intruders"]),
     ("plotters", &["validation"]),
     ("postcard", &["engine"]),
+    ("prost-reflect", &["exchange"]),
     ("rayon", &["engine"]),
     ("signal-hook", &["plunge"]),
     ("statrs", &["validation"]),

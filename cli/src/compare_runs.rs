@@ -1,0 +1,287 @@
+//! `plunge compare RUN_A RUN_B`: a run against a run, of whatever media.
+
+use std::collections::BTreeSet;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use configs::run::Summary;
+use exchange::read::{BodyStates, Keep, read_run};
+use serde_json::{Map, Value, json};
+use validation::runs::{Change, PathDifference, StopDifference, Track, TrackPoint, Values};
+
+use crate::compare::{lines, table};
+use crate::output::{self, CommandError, CommandResult};
+use crate::workbench::Flags;
+
+/// The summary of a run, or of a list of them.
+const SUMMARY: &str = "summary.json";
+
+/// The log of a run.
+const LOG: &str = "run.mcap";
+
+/// Most sub-folders that a message names.
+const NAMED: usize = 10;
+
+/// What a path is to a comparison of runs.
+pub(crate) enum Found {
+    /// The folder of one finished run.
+    Run,
+    /// Something about runs that cannot be compared, and why not.
+    NoRun(String),
+    /// Anything else.
+    Other,
+}
+
+/// What `path` is to a comparison of runs.
+pub(crate) fn what_is(path: &Path) -> Found {
+    let shown = path.display();
+    let holds = |name: &str| path.join(name).is_file();
+    if holds(SUMMARY) && holds(LOG) {
+        return Found::Run;
+    }
+    if path.is_file() && path.extension().is_some_and(|extension| extension == "mcap") {
+        return Found::NoRun(format!("{shown} is a log; name the folder of its run"));
+    }
+    let runs = runs_below(path);
+    if !runs.is_empty() {
+        let more = if runs.len() > NAMED { ", …" } else { "" };
+        return Found::NoRun(format!(
+            "{shown} holds the runs of several conditions; name one of them: {}{more}",
+            runs[..runs.len().min(NAMED)].join(", ")
+        ));
+    }
+    if holds(LOG) || holds(&format!("{LOG}.partial")) {
+        return Found::NoRun(format!(
+            "{shown} holds a run that is not finished; `plunge run --resume` goes on with it"
+        ));
+    }
+    Found::Other
+}
+
+/// The finished runs in the folders of `path`, in order.
+fn runs_below(path: &Path) -> Vec<String> {
+    let Ok(entries) = fs::read_dir(path) else { return Vec::new() };
+    let folders = entries.filter_map(Result::ok).map(|entry| entry.path());
+    let finished = folders.filter(|one| one.join(SUMMARY).is_file() && one.join(LOG).is_file());
+    let mut names: Vec<String> = finished.map(|one| one.display().to_string()).collect();
+    names.sort();
+    names
+}
+
+/// Compares the runs in two folders; writes nothing unless `--out` says where.
+pub(crate) fn run(folders: [&Path; 2], flags: &Flags) -> CommandResult {
+    if flags.change_models() {
+        return Err(CommandError::bad_input("--set changes models; a run is what it is"));
+    }
+    match what_is(folders[1]) {
+        Found::Run => {}
+        Found::NoRun(why) => return Err(CommandError::bad_input(why)),
+        Found::Other => {
+            return Err(CommandError::bad_input(format!(
+                "{} is no folder of a run, which holds {SUMMARY} and {LOG}",
+                folders[1].display()
+            )));
+        }
+    }
+    let runs = [Run::read(folders[0])?, Run::read(folders[1])?];
+    let [first, second] = &runs;
+    let paths =
+        PathDifference::between(&first.tracks, &second.tracks).map_err(CommandError::bad_input)?;
+    let stops = StopDifference::between(&first.summary, &second.summary);
+    flags.notes(&notes(&runs, folders));
+    let object = as_json(&runs, &paths, &stops);
+    let results = flags.chosen_results(&inputs(folders)?)?;
+    if let Some(results) = &results {
+        results.write(&[("comparison.json".to_owned(), format!("{object:#}\n"))])?;
+    }
+    if flags.json {
+        return output::json_to_stdout(&object);
+    }
+    let mut text = as_text(&runs, &paths, &stops);
+    match results {
+        Some(results) => {
+            text.push_str(&format!("\nwritten to {}: comparison.json\n", results.shown()));
+        }
+        None => text.push_str("\nnothing was written; --out says where to\n"),
+    }
+    output::to_stdout(&text)
+}
+
+/// A run as far as it is compared.
+struct Run {
+    name: String,
+    summary: Summary,
+    tracks: Vec<Track>,
+    /// Whether the log is whole.
+    complete: bool,
+}
+
+impl Run {
+    fn read(folder: &Path) -> Result<Self, CommandError> {
+        let path = folder.join(SUMMARY);
+        let text = fs::read_to_string(&path).map_err(|error| unreadable(&path, &error))?;
+        let summary = serde_json::from_str(&text).map_err(|error| unreadable(&path, &error))?;
+        let log = read_run(&folder.join(LOG), Keep::States).map_err(CommandError::bad_input)?;
+        let tracks = log.bodies.iter().map(track).collect();
+        Ok(Self { name: folder.display().to_string(), summary, tracks, complete: log.complete })
+    }
+}
+
+fn unreadable(path: &Path, why: &dyn std::fmt::Display) -> CommandError {
+    CommandError::bad_input(format!("{} is no summary of a run: {why}", path.display()))
+}
+
+/// The path of a body, whose horizontal distance counts from its first sample: each run has an origin
+/// of its own.
+fn track(body: &BodyStates) -> Track {
+    let start = body.states.first().map_or(0.0, |state| state.position.x);
+    let points = body.states.iter().map(|state| TrackPoint {
+        time: state.time,
+        values: Values {
+            z: state.depth,
+            x: state.position.x - start,
+            speed: state.velocity.norm(),
+        },
+    });
+    Track { points: points.collect() }
+}
+
+/// What the results follow from.
+fn inputs(folders: [&Path; 2]) -> Result<blake3::Hash, CommandError> {
+    let mut hash = blake3::Hasher::new();
+    hash.update(concat!(env!("CARGO_PKG_VERSION"), " compare runs").as_bytes());
+    for folder in folders {
+        hash.update(folder.as_os_str().as_encoded_bytes());
+        for path in [folder.join(SUMMARY), folder.join(LOG)] {
+            let read = File::open(&path).and_then(|file| hash.update_reader(file).map(drop));
+            read.with_context(|| format!("cannot read {}", path.display()))?;
+        }
+    }
+    Ok(hash.finalize())
+}
+
+/// What is easily overlooked.
+fn notes(runs: &[Run; 2], folders: [&Path; 2]) -> Vec<String> {
+    let [first, second] = [&runs[0].summary, &runs[1].summary];
+    let canonical =
+        |folder: &Path| fs::canonicalize(folder).unwrap_or_else(|_| PathBuf::from(folder));
+    let mut notes: Vec<String> = runs
+        .iter()
+        .filter(|run| !run.complete)
+        .map(|run| {
+            format!("the log of {} is cut; its path is compared as far as it goes", run.name)
+        })
+        .collect();
+    if canonical(folders[0]) == canonical(folders[1]) {
+        notes.push("both are the same run".to_owned());
+    }
+    let impact =
+        |one: &Summary| (one.impact.speed_m_per_s.to_bits(), one.impact.angle_deg.to_bits());
+    if impact(first) != impact(second) {
+        notes.push("the runs are of different impacts".to_owned());
+    }
+    notes
+}
+
+fn as_json(runs: &[Run; 2], paths: &PathDifference, stops: &StopDifference) -> Value {
+    let dissipated: Map<String, Value> = channels(runs)
+        .into_iter()
+        .map(|channel| (channel.to_owned(), json!(dissipated(runs, channel))))
+        .collect();
+    json!({
+        "runs": runs.each_ref().map(|run| &run.name),
+        "common": paths.common,
+        "rms": paths.rms,
+        "largest": paths.largest,
+        "stop": stops,
+        "energy": { "dissipated_J": dissipated, "closure": closures(runs) },
+    })
+}
+
+/// The channels in which either of the runs dissipates.
+fn channels(runs: &[Run; 2]) -> BTreeSet<&str> {
+    runs.iter().flat_map(|run| run.summary.energy.dissipated.keys().map(String::as_str)).collect()
+}
+
+/// What each run dissipates in `channel` (J); none where its laws have no such channel.
+fn dissipated(runs: &[Run; 2], channel: &str) -> [Option<f64>; 2] {
+    runs.each_ref().map(|run| run.summary.energy.dissipated.get(channel).copied())
+}
+
+fn closures(runs: &[Run; 2]) -> [f64; 2] {
+    runs.each_ref().map(|run| run.summary.energy.closure)
+}
+
+fn as_text(runs: &[Run; 2], paths: &PathDifference, stops: &StopDifference) -> String {
+    let mut text = String::new();
+    for (letter, run) in ["A", "B"].iter().zip(runs) {
+        let Summary { name, medium, impact, .. } = &run.summary;
+        text.push_str(&format!(
+            "{letter}  {}: {name}, {} m/s at {} deg, {medium}\n",
+            run.name, impact.speed_m_per_s, impact.angle_deg
+        ));
+    }
+    let common = paths.common;
+    text.push_str(&format!("\nB - A from {:.4} s to {:.4} s\n", common.from, common.to));
+    text.push_str(&along_the_path(paths));
+    text.push_str("\nat the stop\n");
+    text.push_str(&at_the_stop(stops));
+    text.push_str("\nenergy dissipated (J)\n");
+    text.push_str(&energies(runs));
+    text
+}
+
+fn along_the_path(paths: &PathDifference) -> String {
+    let mut table = table(&["", "rms", "largest", "at (s)"]);
+    let PathDifference { rms, largest, .. } = paths;
+    let (most, at) = (largest.values, largest.at_s);
+    for (name, rms, most, at) in [
+        ("z (mm)", 1e3 * rms.z, 1e3 * most.z, at.z),
+        ("x (mm)", 1e3 * rms.x, 1e3 * most.x, at.x),
+        ("speed (m/s)", rms.speed, most.speed, at.speed),
+    ] {
+        table.add_row([
+            name.to_owned(),
+            format!("{rms:.4}"),
+            format!("{most:+.4}"),
+            format!("{at:.4}"),
+        ]);
+    }
+    lines(&table)
+}
+
+fn at_the_stop(stops: &StopDifference) -> String {
+    let mut table = table(&["", "A", "B", "B - A", "relative (%)"]);
+    for (name, Change { values, difference, relative }, scale) in [
+        ("stopping time (s)", stops.stopping_time, 1.0),
+        ("depth (mm)", stops.depth, 1e3),
+        ("range (mm)", stops.range, 1e3),
+        ("at rest after (s)", stops.rest_time, 1.0),
+    ] {
+        let digits = if scale > 1.0 { 3 } else { 5 };
+        let number = |value: Option<f64>| {
+            value.map_or("not reached".to_owned(), |value| format!("{:.digits$}", scale * value))
+        };
+        let signed = |value: Option<f64>, scale: f64, digits: usize| {
+            value.map_or("-".to_owned(), |value| format!("{:+.digits$}", scale * value))
+        };
+        let [first, second] = values.map(number);
+        let (apart, share) = (signed(difference, scale, digits), signed(relative, 1e2, 2));
+        table.add_row([name.to_owned(), first, second, apart, share]);
+    }
+    lines(&table)
+}
+
+fn energies(runs: &[Run; 2]) -> String {
+    let mut table = table(&["", "A", "B"]);
+    for channel in channels(runs) {
+        let number =
+            |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.4e}"));
+        let [first, second] = dissipated(runs, channel).map(number);
+        table.add_row([channel.replace('_', "-"), first, second]);
+    }
+    let [first, second] = closures(runs).map(|closure| format!("{closure:.1e}"));
+    table.add_row(["closure (of the impact)".to_owned(), first, second]);
+    lines(&table)
+}

@@ -1,0 +1,221 @@
+//! The series of a `run.mcap`: where the bodies were, and where the energy went.
+//!
+//! A log is read from its start to its last whole chunk, one chunk at a time, so that one whose
+//! run was killed reads as far as it goes. Messages are decoded by the descriptors that the log
+//! carries: fields are found by their names, wherever a version of plunge has put them.
+
+mod fields;
+mod records;
+mod series;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use mcap::records::Record;
+use prost_reflect::DescriptorPool;
+
+use fields::{EnergyFields, StateFields};
+use records::Records;
+
+pub use series::{BodyState, BodyStates, EnergyBudgets};
+
+/// What is kept of a log; the rest takes no memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Keep {
+    /// The states of the bodies.
+    States,
+    /// The states of the bodies and the energy budget.
+    StatesAndEnergy,
+}
+
+/// What a log says of its run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunRecord {
+    /// The metadata record `run`: name, model hash, versions; empty if the log has none.
+    pub metadata: BTreeMap<String, String>,
+    /// The bodies, in the order in which the log introduces them.
+    pub bodies: Vec<BodyStates>,
+    /// The energy budget, if it was to be kept and the log has one.
+    pub energy: Option<EnergyBudgets>,
+    /// Whether the log is finished; one that is not ends with its last whole chunk.
+    pub complete: bool,
+}
+
+/// Why a log gives no series.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file system refused an operation.
+    #[error("{}: cannot {doing}: {source}", path.display())]
+    Io {
+        /// The log.
+        path: PathBuf,
+        /// What was being done, as in "cannot …".
+        doing: &'static str,
+        /// The operating system's answer.
+        source: io::Error,
+    },
+    /// The file does not start as an MCAP file does.
+    #[error("{}: not an MCAP file", path.display())]
+    NotMcap {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A part that is all there and cannot be read.
+    #[error(
+        "{}: damaged at byte {offset}: {why}; `plunge recover` saves what is readable",
+        path.display()
+    )]
+    Damaged {
+        /// The log.
+        path: PathBuf,
+        /// Where the chunk or record starts (bytes).
+        offset: u64,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// Messages of ours whose descriptor lacks what is needed.
+    #[error("{}: {topic}: {why}", path.display())]
+    Fields {
+        /// The log.
+        path: PathBuf,
+        /// The topic of the messages.
+        topic: String,
+        /// What is wrong with their descriptor.
+        why: String,
+    },
+    /// A log without the state of any body.
+    #[error("{}: has no state of a body; is it the run.mcap of a run?", path.display())]
+    NoBodies {
+        /// The log.
+        path: PathBuf,
+    },
+}
+
+/// Reads the log at `path`, finished or not, and keeps what `keep` says.
+///
+/// Besides what is kept, memory is that of one chunk.
+///
+/// # Errors
+/// The file system's refusal, a file that is no log of a run, or damage before the end: what is
+/// not whole at the end of the file is no damage.
+pub fn read_run(path: &Path, keep: Keep) -> Result<RunRecord, ReadError> {
+    let mut records = Records::open(path)?;
+    let mut reading = Reading::new(path, keep);
+    while let Some(offset) = records.advance()? {
+        for (opcode, body) in records.present() {
+            let damaged = |why: String| ReadError::Damaged { path: path.to_owned(), offset, why };
+            let record =
+                mcap::parse_record(opcode, body).map_err(|error| damaged(error.to_string()))?;
+            reading.take(record, &damaged)?;
+        }
+    }
+    let Reading { metadata, bodies, energy, .. } = reading;
+    if bodies.iter().all(|body| body.states.is_empty()) {
+        return Err(ReadError::NoBodies { path: path.to_owned() });
+    }
+    Ok(RunRecord { metadata, bodies, energy, complete: records.complete() })
+}
+
+/// What messages of a channel are decoded into.
+enum Channel {
+    /// The state of the body with this index.
+    State(usize, StateFields),
+    Energy(EnergyFields),
+    Other,
+}
+
+/// A log while it is being read.
+struct Reading<'a> {
+    path: &'a Path,
+    keep: Keep,
+    /// Names and descriptors.
+    schemas: BTreeMap<u16, (String, Vec<u8>)>,
+    channels: BTreeMap<u16, Channel>,
+    metadata: BTreeMap<String, String>,
+    bodies: Vec<BodyStates>,
+    energy: Option<EnergyBudgets>,
+}
+
+impl<'a> Reading<'a> {
+    fn new(path: &'a Path, keep: Keep) -> Self {
+        Self {
+            path,
+            keep,
+            schemas: BTreeMap::new(),
+            channels: BTreeMap::new(),
+            metadata: BTreeMap::new(),
+            bodies: Vec::new(),
+            energy: None,
+        }
+    }
+
+    fn take(
+        &mut self,
+        record: Record<'_>,
+        damaged: &dyn Fn(String) -> ReadError,
+    ) -> Result<(), ReadError> {
+        match record {
+            Record::Schema { header, data } => {
+                self.schemas.entry(header.id).or_insert((header.name, data.into_owned()));
+            }
+            Record::Channel(channel) if !self.channels.contains_key(&channel.id) => {
+                let known = self.introduce(&channel)?;
+                self.channels.insert(channel.id, known);
+            }
+            Record::Message { header, data } => match self.channels.get(&header.channel_id) {
+                Some(Channel::State(body, fields)) => {
+                    let state = fields.read(&data).map_err(|e| damaged(e.to_string()))?;
+                    self.bodies[*body].states.push(state);
+                }
+                Some(Channel::Energy(fields)) => {
+                    if let Some(energy) = &mut self.energy {
+                        fields.read(&data, energy).map_err(|e| damaged(e.to_string()))?;
+                    }
+                }
+                Some(Channel::Other) | None => {}
+            },
+            Record::Metadata(record) if record.name == "run" => self.metadata = record.metadata,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Makes room for the series of `channel`, if it is one that is kept.
+    fn introduce(&mut self, channel: &mcap::records::Channel) -> Result<Channel, ReadError> {
+        let topic = &channel.topic;
+        let refusal = |why: String| ReadError::Fields {
+            path: self.path.to_owned(),
+            topic: topic.clone(),
+            why,
+        };
+        let body = topic.strip_prefix("/intruder/").and_then(|rest| rest.strip_suffix("/state"));
+        let is_energy = topic == "/energy/budget" && self.keep == Keep::StatesAndEnergy;
+        if body.is_none() && !is_energy {
+            return Ok(Channel::Other);
+        }
+        let (name, descriptor) = self
+            .schemas
+            .get(&channel.schema_id)
+            .ok_or_else(|| refusal("its messages come without a descriptor".to_owned()))?;
+        let message = DescriptorPool::decode(descriptor.as_slice())
+            .map_err(|error| refusal(error.to_string()))?
+            .get_message_by_name(name)
+            .ok_or_else(|| refusal(format!("its descriptor does not describe {name}")))?;
+        match body {
+            Some(body) => {
+                let fields = StateFields::of(message).map_err(refusal)?;
+                let states = Vec::new();
+                self.bodies.push(BodyStates { name: body.to_owned(), states });
+                Ok(Channel::State(self.bodies.len() - 1, fields))
+            }
+            None => {
+                let fields = EnergyFields::of(message).map_err(refusal)?;
+                self.energy = Some(fields.empty());
+                Ok(Channel::Energy(fields))
+            }
+        }
+    }
+}
