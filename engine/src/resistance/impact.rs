@@ -107,7 +107,8 @@ pub struct Ending {
     pub state: State,
     /// By part.
     pub parts: [PartStop; PARTS],
-    /// When the speed of the first part first fell below 5 % of the impact speed (s).
+    /// When the speed of the first part first fell below 5 % of the impact speed (s); of a body that
+    /// is let go from rest, when it came to rest.
     pub slow: Option<f64>,
     /// Since when it has stayed below 5 % of its greatest speed (s).
     pub rest: Option<f64>,
@@ -116,13 +117,14 @@ pub struct Ending {
 }
 
 /// What can happen between two steps, as indices of [`Impact::margins`].
-const N_MARGINS: usize = 5 * PARTS + 2;
+const N_MARGINS: usize = 5 * PARTS + 3;
 const SURFACE: usize = 0;
 const COMPONENTS: usize = 1;
 const SINKING: usize = 3;
 const FORWARD: usize = 4;
 const STOPPING: usize = 5 * PARTS;
 const SLOWING: usize = STOPPING + 1;
+const SLOW: usize = STOPPING + 2;
 
 type Margins = [f64; N_MARGINS];
 
@@ -139,6 +141,8 @@ struct Progress {
     /// Sign of the horizontal velocity of each tip at the start.
     forward: [f64; PARTS],
     first_x: [f64; PARTS],
+    /// Speed of the first part at the start (m/s).
+    start_speed: f64,
     top_speed: f64,
     slow: Option<f64>,
     rest: Option<f64>,
@@ -304,6 +308,7 @@ impl Impact {
             parts,
             forward,
             first_x,
+            start_speed: speed,
             top_speed: speed,
             slow: None,
             rest: None,
@@ -316,6 +321,18 @@ impl Impact {
         self.assembly.part(0, state).velocity.norm()
     }
 
+    /// The speed of the first part, negative beyond a reversal: along a line, or along the component
+    /// that is not held, it passes through zero.
+    fn speed_along(&self, state: &State, modes: &Modes) -> f64 {
+        let velocity = self.assembly.part(0, state).velocity;
+        match (modes.straight, modes.held()[0]) {
+            (Some(direction), _) => velocity.dot(&direction),
+            (None, [true, false]) => velocity.z * modes.sense[0][1].sign(),
+            (None, [false, true]) => velocity.x * modes.sense[0][0].sign(),
+            (None, _) => velocity.norm(),
+        }
+    }
+
     fn is_over(&self, progress: &Progress) -> bool {
         let n_parts = self.assembly.n_parts();
         let all_stopped = progress.parts[..n_parts].iter().all(|part| part.vertical.is_some());
@@ -326,7 +343,7 @@ impl Impact {
     fn margins(&self, system: &System<'_>, state: &State, progress: &Progress) -> Margins {
         let mut margins = [f64::INFINITY; N_MARGINS];
         let modes = &progress.modes;
-        let speed = self.speed(state);
+        let speed = self.speed_along(state, modes);
         for index in 0..self.assembly.n_parts() {
             let part = self.assembly.part(index, state);
             let (own, stop) = (&mut margins[5 * index..5 * index + 5], &progress.parts[index]);
@@ -365,6 +382,9 @@ impl Impact {
         }
         let above = speed - REST_SPEED * progress.top_speed;
         margins[SLOWING] = if progress.rest.is_some() { -above } else { above };
+        if progress.slow.is_none() {
+            margins[SLOW] = speed - REST_SPEED * progress.start_speed;
+        }
         margins
     }
 
@@ -438,7 +458,9 @@ impl Impact {
                 Some(_) => None,
                 None => Some(*time),
             };
-            progress.slow = progress.slow.or(progress.rest);
+        }
+        if fired.which[SLOW] {
+            progress.slow = Some(*time);
         }
         let stopping = fired.which[STOPPING];
         let creeping = progress.modes.creeping;

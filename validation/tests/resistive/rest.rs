@@ -31,7 +31,7 @@ fn each_component_stops_by_itself_under_component_frictions() {
 
 #[test]
 fn a_body_in_a_weak_medium_turns_round_where_friction_cannot_hold_it() {
-    // Buoyancy of ten times the displaced bed throws the sphere back out of a bed without friction.
+    // Buoyancy of thirty times the displaced bed throws the sphere back out of a bed without friction.
     let laws = vec![
         law("two-term-vector", &[("drag", 1.0), ("friction", 0.0)]),
         law("buoyancy", &[("q", 30.0)]),
@@ -90,4 +90,27 @@ fn a_friction_along_the_motion_stops_both_components_at_once() {
     assert!(ending.stopped && ending.steps < 300, "{} steps", ending.steps);
     assert!(part.depth > 0.01 && 4.0 * part.depth < MASS * BED.gravity, "{part:?}");
     assert!((part.vertical.unwrap() - part.horizontal.unwrap()).abs() < 1e-3, "{part:?}");
+}
+
+#[test]
+fn the_speed_falls_below_five_percent_before_the_stop_however_long_the_last_step_is() {
+    // At constant deceleration a the speed is 5 % of the first at 95 % of the stopping time.
+    for (baseline, values) in [
+        ("poncelet", &[("inertial", 0.0), ("resistance", 3.0)][..]),
+        (
+            "two-term-components",
+            &[("drag_x", 0.0), ("friction_x", 0.0), ("drag_z", 0.0), ("friction_z", 0.0)][..],
+        ),
+    ] {
+        let mut laws = vec![law(baseline, values)];
+        if baseline == "two-term-components" {
+            let area = std::f64::consts::PI * 0.0127 * 0.0127;
+            let unit = BED.bulk_density * BED.gravity * area * 0.0254;
+            laws.push(law("yield-stress", &[("q", 3.0 / unit)]));
+        }
+        let ending = sphere(laws, 1.0, 90.0).run(10.0, &mut ()).unwrap();
+        let share = ending.slow.unwrap() / ending.time;
+        assert!((share - 0.95).abs() < 1e-9, "{baseline}: {share}");
+        assert_eq!(ending.rest, ending.slow);
+    }
 }
