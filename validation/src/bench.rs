@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::fit::{Data, Fit};
 use crate::forward::{Forward, PredictError};
-use crate::measurement::MeasurementSet;
+use crate::measurement::{Kind, MeasurementSet};
 use crate::noise::Noise;
 use crate::observed::Observed;
 use crate::sensitivity::{Point, Sensitivity};
@@ -176,6 +176,8 @@ impl Bench<'_> {
             Ok(Noise::guess(&self.set.instrument))
         } else if self.observed.has_stated_errors() {
             Ok(Noise::stated())
+        } else if self.set.kind == Kind::Trajectory && self.set.states_errors() {
+            Ok(Noise::assumed_scatter(&self.set.instrument))
         } else {
             Err(BenchError::NoErrors)
         }

@@ -50,7 +50,8 @@ pub struct ModelComparison {
     /// Weighted sum of squares per number that was fitted to; about 1 for a model that is right.
     #[serde(serialize_with = "six_digits")]
     pub chi2_per_n: f64,
-    /// Probability of a lack of fit as large, if the model were right; none where no error is known.
+    /// Probability of a lack of fit as large, if the model were right; none where no error is
+    /// known, or as much is free as was measured.
     #[serde(serialize_with = "six_digits_or_null")]
     pub p_lof: Option<f64>,
     /// Root mean square errors by kind of number.
@@ -127,7 +128,9 @@ fn compare_one(bench: &Bench<'_>, name: &str, seed: u64) -> Result<ModelComparis
     }?;
     let p_lof = match fitted.noise.source {
         NoiseSource::Assumed => None,
-        NoiseSource::Repeats | NoiseSource::Stated => Some(lack_of_fit(bench, &fitted, seed)?),
+        NoiseSource::Repeats | NoiseSource::Stated | NoiseSource::AssumedScatter => {
+            lack_of_fit(bench, &fitted, seed)?
+        }
     };
     let errors = |conditions: &[usize]| {
         let errors = Errors::at(bench, &fitted.fit.point, conditions)?;

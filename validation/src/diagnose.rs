@@ -77,7 +77,7 @@ impl Judge<'_> {
     fn verdict(self) -> Result<Diagnosis, BenchError> {
         let p_lof = lack_of_fit(self.bench, &self.baseline, self.seed)?;
         if self.ranking.p > ALPHA {
-            return if p_lof > ALPHA {
+            return if adequate(p_lof) {
                 let baseline = &self.baseline;
                 self.diagnosis(Verdict::NothingDetected, baseline, (p_lof, None), String::new())
             } else {
@@ -86,40 +86,45 @@ impl Judge<'_> {
             };
         }
         let p_leader = lack_of_fit(self.bench, &self.leader, self.seed)?;
-        if p_leader > ALPHA {
+        if p_leader.is_none() {
+            let leader = self.name(self.ranking.scores[0].candidate());
+            let why = format!("with {leader} as much is free as was measured: nothing judges it");
+            return Ok(cannot_tell(self.bench, why));
+        }
+        if adequate(p_leader) {
             let held_out = HeldOut::of(self.bench, &self.weighed, &self.leader)?;
             if held_out.refutes() {
                 let hint = format!(
                     "{} explains what was fitted, but predicts what was left out worse than without it",
                     self.name(self.ranking.scores[0].candidate())
                 );
-                return self.refuse((p_lof, Some(p_leader)), hint);
+                return self.refuse((p_lof, p_leader), hint);
             }
             let verdict = match self.ranking.not_separable().len() {
                 1 => Verdict::Supported,
                 _ => Verdict::NotSeparable,
             };
-            return self.diagnosis(verdict, &self.leader, (p_lof, Some(p_leader)), String::new());
+            return self.diagnosis(verdict, &self.leader, (p_lof, p_leader), String::new());
         }
         let pair = best_pair(self.bench, &self.weighed, &self.ranking, self.seed)?;
         if let Some(Pair { fitted, p }) = pair.filter(|pair| pair.p <= ALPHA) {
             let p_pair = lack_of_fit(self.bench, &fitted, self.seed)?;
             let held_out = HeldOut::of(self.bench, &self.weighed, &fitted)?;
-            if p_pair > ALPHA && !held_out.refutes() {
+            if adequate(p_pair) && !held_out.refutes() {
                 let hint = format!(
                     "both are needed (each by chance: {p:.1e} at most), or one effect outside the list"
                 );
-                return self.diagnosis(Verdict::Pair, &fitted, (p_lof, Some(p_pair)), hint);
+                return self.diagnosis(Verdict::Pair, &fitted, (p_lof, p_pair), hint);
             }
         }
         let hint = format!(
             "no one or two listed effects explain the data; {} explains a part",
             self.name(self.ranking.scores[0].candidate())
         );
-        self.refuse((p_lof, Some(p_leader)), hint)
+        self.refuse((p_lof, p_leader), hint)
     }
 
-    fn refuse(&self, p: (f64, Option<f64>), hint: String) -> Result<Diagnosis, BenchError> {
+    fn refuse(&self, p: (Option<f64>, Option<f64>), hint: String) -> Result<Diagnosis, BenchError> {
         self.diagnosis(Verdict::NoneOfTheCandidates, &self.baseline, p, hint)
     }
 
@@ -127,7 +132,7 @@ impl Judge<'_> {
         &self,
         verdict: Verdict,
         proposed: &Fitted,
-        (p_lof, p_lof_with): (f64, Option<f64>),
+        (p_lof, p_lof_with): (Option<f64>, Option<f64>),
         hint: String,
     ) -> Result<Diagnosis, BenchError> {
         let Self { bench, ranking, .. } = self;
@@ -169,7 +174,7 @@ impl Judge<'_> {
             not_separable,
             ranking: ranked(bench, Some(ranking)),
             p1: Some(ranking.p),
-            p_lof: Some(p_lof),
+            p_lof,
             p_lof_with,
             noise: proposed.noise.to_json(&bench.set.instrument),
             holdout: Some(held_out),
@@ -186,6 +191,11 @@ impl Judge<'_> {
     fn name(&self, candidate: usize) -> String {
         self.bench.forward.candidates()[candidate].id.to_owned()
     }
+}
+
+/// Whether a model leaves no lack of fit; one that leaves nothing to judge by is not adequate.
+fn adequate(p_lof: Option<f64>) -> bool {
+    p_lof.is_some_and(|p| p > ALPHA)
 }
 
 /// Of the amplitudes of a pair.

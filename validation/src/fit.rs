@@ -181,7 +181,8 @@ impl Data<'_> {
             logarithmic: parameter.min >= 0.0 && parameter.start > 0.0,
             min: parameter.min,
             max: parameter.max,
-            step: STEP * parameter.start.abs().max(1e-3 * (parameter.max - parameter.min)),
+            // An open range says nothing of the size of a number that starts at zero.
+            step: STEP * parameter.start.abs().max(1e-3 * (parameter.max - parameter.min).min(1.0)),
         });
         let candidates = self.forward.candidates();
         let amplitudes = start.effects.iter().map(|&(index, _)| Scale {

@@ -26,7 +26,8 @@ pub struct HeldOut {
     pub unit: Unit,
     /// Which conditions were left out.
     pub conditions: LeftOut,
-    /// How much the logarithm of the predictive density rises by what is proposed.
+    /// How much the logarithm of the predictive density rises by what is proposed, over the
+    /// conditions that can be predicted both with and without it.
     #[serde(serialize_with = "six_digits")]
     pub log_density_gain: f64,
 }
@@ -78,14 +79,23 @@ impl HeldOut {
             LeftOut::Holdout => Predicted::unseen(bench, after, fitted, judged),
             LeftOut::OneAtATime => Predicted::left_out(bench, after, fitted),
         };
-        let (before, after) = (predict(before)?, predict(after)?);
+        let both = in_both(judged, predict(before)?, predict(after)?);
+        let error = |which: fn(&(usize, Predicted, Predicted)) -> (usize, &Predicted)| {
+            let mut sums = Sums::default();
+            for (condition, predicted) in both.iter().map(which) {
+                let observed = &bench.observed.conditions[condition];
+                sums.add(&observed.layout.kinds(), &observed.mean, &predicted.error);
+            }
+            pick(&sums.errors()).unwrap_or(0.0)
+        };
+        let compared: Vec<usize> = both.iter().map(|(condition, ..)| *condition).collect();
         Ok(Self {
-            before: pick(&before.errors).unwrap_or(0.0),
-            after: pick(&after.errors).unwrap_or(0.0),
-            noise_floor: pick(&noise_floor(bench, judged)).unwrap_or(0.0),
+            before: error(|(condition, before, _)| (*condition, before)),
+            after: error(|(condition, _, after)| (*condition, after)),
+            noise_floor: pick(&noise_floor(bench, &compared)).unwrap_or(0.0),
             unit,
             conditions,
-            log_density_gain: after.log_density - before.log_density,
+            log_density_gain: both.iter().map(|(_, b, a)| a.log_density - b.log_density).sum(),
         })
     }
 
@@ -102,9 +112,20 @@ impl HeldOut {
     }
 }
 
-/// Conditions predicted by fits that have not seen them.
+/// Those of `conditions` that were predicted both before and after, with both predictions.
+fn in_both(
+    conditions: &[usize],
+    before: Vec<Option<Predicted>>,
+    after: Vec<Option<Predicted>>,
+) -> Vec<(usize, Predicted, Predicted)> {
+    let pairs = conditions.iter().zip(before.into_iter().zip(after));
+    pairs.filter_map(|(&condition, (before, after))| Some((condition, before?, after?))).collect()
+}
+
+/// A condition predicted by a fit that has not seen it.
 struct Predicted {
-    errors: Errors,
+    /// Measured less predicted, each number in its own unit.
+    error: DVector<f64>,
     /// Logarithm of the predictive density, up to a constant of the measurements.
     log_density: f64,
 }
@@ -116,14 +137,13 @@ impl Predicted {
         noisy: &Fitted,
         fitted: &Fitted,
         conditions: &[usize],
-    ) -> Result<Self, BenchError> {
+    ) -> Result<Vec<Option<Self>>, BenchError> {
         let weights = bench.weights(&noisy.fit.point, &noisy.noise, conditions)?;
         let data = Data { conditions, ..bench.data(&weights) };
         let residual = data.residual(&fitted.fit.point)?;
         let jacobian = data.jacobian(&fitted.fit)?;
         let parameters = fitted.fit.free_covariance();
-        let mut sums = Sums::default();
-        let mut log_density = 0.0;
+        let mut predicted = Vec::with_capacity(conditions.len());
         let mut start = 0;
         for (&condition, weight) in conditions.iter().zip(&weights) {
             let observed = &bench.observed.conditions[condition];
@@ -131,19 +151,22 @@ impl Predicted {
             let residual = residual.rows(start, rows).into_owned();
             let jacobian = jacobian.rows(start, rows).into_owned();
             start += rows;
-            log_density += density(&residual, &(&jacobian * &parameters * jacobian.transpose()));
-            sums.add(&observed.layout.kinds(), &observed.mean, &weight.colour(&residual));
+            let log_density = density(&residual, &(&jacobian * &parameters * jacobian.transpose()));
+            predicted.push(Some(Self { error: weight.colour(&residual), log_density }));
         }
-        Ok(Self { errors: sums.errors(), log_density })
+        Ok(predicted)
     }
 
     /// Every condition that was fitted to, by one Gauss-Newton step without it from the fit of
-    /// `fitted`, under the noise of `noisy`.
-    fn left_out(bench: &Bench<'_>, noisy: &Fitted, fitted: &Fitted) -> Result<Self, BenchError> {
+    /// `fitted`, under the noise of `noisy`; `None` where one alone fixes a parameter.
+    fn left_out(
+        bench: &Bench<'_>,
+        noisy: &Fitted,
+        fitted: &Fitted,
+    ) -> Result<Vec<Option<Self>>, BenchError> {
         let fit = bench.data(&noisy.weights).fit(&fitted.fit.point)?;
         let all = fit.jacobian.tr_mul(&fit.jacobian);
-        let mut sums = Sums::default();
-        let mut log_density = 0.0;
+        let mut predicted = Vec::with_capacity(noisy.weights.len());
         let mut start = 0;
         for (&condition, weight) in bench.observed.fit.iter().zip(&noisy.weights) {
             let observed = &bench.observed.conditions[condition];
@@ -151,13 +174,16 @@ impl Predicted {
             let residual = fit.residual.rows(start, rows).into_owned();
             let jacobian = fit.jacobian.rows(start, rows).into_owned();
             start += rows;
-            // A condition that alone fixes a parameter cannot be predicted without it.
-            let Some(others) = Cholesky::new(&all - jacobian.tr_mul(&jacobian)) else { continue };
+            let Some(others) = Cholesky::new(&all - jacobian.tr_mul(&jacobian)) else {
+                predicted.push(None);
+                continue;
+            };
             let residual = &residual + &jacobian * others.solve(&jacobian.tr_mul(&residual));
-            log_density += density(&residual, &(&jacobian * others.solve(&jacobian.transpose())));
-            sums.add(&observed.layout.kinds(), &observed.mean, &weight.colour(&residual));
+            let log_density =
+                density(&residual, &(&jacobian * others.solve(&jacobian.transpose())));
+            predicted.push(Some(Self { error: weight.colour(&residual), log_density }));
         }
-        Ok(Self { errors: sums.errors(), log_density })
+        Ok(predicted)
     }
 }
 
@@ -185,12 +211,31 @@ fn noise_floor(bench: &Bench<'_>, conditions: &[usize]) -> Errors {
             let stated = observed.stated.iter().zip(observed.mean.iter());
             let stated = stated.map(|(error, value)| error.unwrap_or(0.0) * value);
             let mut error = observed.reading.clone();
-            for (error, stated) in error.iter_mut().zip(stated) {
-                *error = libm::hypot(*error, stated);
+            let kinds = observed.layout.kinds();
+            for ((error, stated), kind) in error.iter_mut().zip(stated).zip(kinds) {
+                // A stated error of a scalar is the whole of it.
+                let whole = kind.is_scalar() && stated != 0.0;
+                *error = if whole { stated.abs() } else { libm::hypot(*error, stated) };
             }
             error
         };
         sums.add(&observed.layout.kinds(), &observed.mean, &error);
     }
     sums.errors()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_condition_that_only_one_model_predicts_is_left_out_of_both() {
+        let predicted = |log_density| Some(Predicted { error: DVector::zeros(1), log_density });
+        let before = vec![predicted(-1.0), predicted(-20.0), None];
+        let after = vec![predicted(-2.0), None, predicted(-30.0)];
+        let both = in_both(&[4, 5, 6], before, after);
+        let kept: Vec<_> =
+            both.iter().map(|(c, b, a)| (*c, b.log_density, a.log_density)).collect();
+        assert_eq!(kept, [(4, -1.0, -2.0)]);
+    }
 }

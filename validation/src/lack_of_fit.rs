@@ -37,16 +37,24 @@ const SPACING: f64 = 3e-3;
 /// Spacing in grains.
 const GRAINS: f64 = 4.0;
 
-/// Probability of a lack of fit at least as large, if `fitted` were true.
+/// Probability of a lack of fit at least as large, if `fitted` were true; `None` where as much is free
+/// as was measured, so that nothing is left to judge by.
 ///
 /// # Errors
 /// If the model fails.
-pub fn lack_of_fit(bench: &Bench<'_>, fitted: &Fitted, seed: u64) -> Result<f64, BenchError> {
+pub fn lack_of_fit(
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+    seed: u64,
+) -> Result<Option<f64>, BenchError> {
     let observed = bench.observed;
     let residual = &fitted.fit.residual;
+    if residual.len() <= fitted.fit.n_free() {
+        return Ok(None);
+    }
     if fitted.noise.source != NoiseSource::Repeats {
         let freedom = (residual.len() - fitted.fit.n_free()) as f64;
-        return Ok(ChiSquared::new(freedom).map_or(1.0, |chi2| chi2.sf(fitted.fit.chi2)));
+        return Ok(ChiSquared::new(freedom).ok().map(|chi2| chi2.sf(fitted.fit.chi2)));
     }
     let reach = observed.fit.iter().fold(0.0_f64, |r, &c| r.max(observed.conditions[c].reach));
     let grain = bench.set.bed.grain_diameter.unwrap_or(0.0);
@@ -75,7 +83,7 @@ pub fn lack_of_fit(bench: &Bench<'_>, fitted: &Fitted, seed: u64) -> Result<f64,
         }
     }
     let least = reached[0].min(reached[1]) as f64 / (DRAWS + 1) as f64;
-    Ok((2.0 * least).min(1.0))
+    Ok(Some((2.0 * least).min(1.0)))
 }
 
 /// The two squared lengths that a residual is judged by.

@@ -43,6 +43,10 @@ pub enum NoiseSource {
     Repeats,
     /// Errors that the set states.
     Stated,
+    /// Readings as the set states them, and a run-to-run scatter that is assumed as in
+    /// [`Noise::assumed_scatter`], since nothing was repeated.
+    #[serde(rename = "assumed")]
+    AssumedScatter,
     /// Nothing: 5 % of every number, so that a fit has weights. No test is made on it.
     Assumed,
 }
@@ -62,6 +66,13 @@ impl Noise {
     #[must_use]
     pub fn assumed() -> Self {
         Self { source: NoiseSource::Assumed, ..Self::stated() }
+    }
+
+    /// Where readings have a stated error and nothing was repeated: coefficients scatter by 5 %, the
+    /// force along the path by 12 %, as in common beds.
+    #[must_use]
+    pub fn assumed_scatter(instrument: &Instrument) -> Self {
+        Self { source: NoiseSource::AssumedScatter, ..Self::guess(instrument) }
     }
 
     /// A first guess where there are repeats: coefficients to 5 %, the path to 12 %.
@@ -131,7 +142,7 @@ impl Noise {
         sensitivity: &Sensitivity,
     ) -> DMatrix<f64> {
         match self.source {
-            NoiseSource::Repeats => {
+            NoiseSource::Repeats | NoiseSource::AssumedScatter => {
                 let scatter = scaled_columns(&sensitivity.slope, &sensitivity.spread(&self.spread));
                 let readings = condition.reading.map(|sd| (self.reading * sd).powi(2));
                 DMatrix::from_diagonal(&readings) + &scatter * scatter.transpose()
@@ -142,13 +153,17 @@ impl Noise {
     }
 }
 
-/// A stated relative error is one factor on all numbers of a kind, beside the error of readings.
+/// A stated relative error is one factor on all numbers of a kind, beside the error of readings; that
+/// of a scalar is the whole of its error, since a number of the whole impact is stated as it was read.
 fn stated_covariance(condition: &ObservedCondition, otherwise: f64) -> DMatrix<f64> {
     let kinds = condition.layout.kinds();
     let error = |at: usize| condition.stated[at].unwrap_or(otherwise) * condition.mean[at];
     DMatrix::from_fn(kinds.len(), kinds.len(), |i, j| {
         let together = if kinds[i] == kinds[j] { error(i) * error(j) } else { 0.0 };
-        together + if i == j { condition.reading[i].powi(2) } else { 0.0 }
+        // A share of nothing is no error, and would have no inverse.
+        let whole =
+            kinds[i].is_scalar() && condition.stated[i].is_some() && condition.mean[i] != 0.0;
+        together + if i == j && !whole { condition.reading[i].powi(2) } else { 0.0 }
     })
 }
 
@@ -243,5 +258,25 @@ impl CostFunction for Likelihood {
         let noise = from_logarithms(at, &self.instrument);
         let total = self.terms.iter().map(|term| term.cost(&noise)).sum::<Option<f64>>();
         Ok(total.unwrap_or(f64::INFINITY))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measurement::{Kind, StatedError};
+    use crate::test_sets::{condition, scalar_run, set};
+
+    #[test]
+    fn a_scalar_with_a_stated_error_has_that_error_alone() {
+        // Repeated, so that the stopping time counts although its error is not stated.
+        let runs = vec![scalar_run(0, [Some(0.1), Some(0.05), None]); 2];
+        let mut set = set(Kind::Scalar, vec![condition(1.0, 90.0)], runs);
+        set.stated = StatedError { final_z: Some(0.06), ..StatedError::default() };
+        let observed = &Observed::of(&set).conditions[0];
+        let covariance = stated_covariance(observed, 0.0);
+        // Both are one rounding of a product away from the value.
+        assert!((covariance[(1, 1)].sqrt() / (0.06 * 0.05) - 1.0).abs() < 1e-12);
+        assert!((covariance[(0, 0)].sqrt() / observed.reading[0] - 1.0).abs() < 1e-12);
     }
 }

@@ -74,7 +74,19 @@ impl Observed {
                 .collect::<Vec<_>>()
         };
         let (fit, holdout) = (with_role(Role::Fit), with_role(Role::Holdout));
-        Self { conditions, fit, holdout, notes }
+        let mut observed = Self { conditions, fit, holdout, notes };
+        let assumed = set.kind == Kind::Trajectory
+            && set.states_errors()
+            && !observed.has_repeats()
+            && !observed.has_stated_errors();
+        if assumed {
+            observed.notes.push(
+                "nothing was repeated: it is assumed that from run to run coefficients scatter by \
+                 5 % and the force along the path by 12 %"
+                    .to_owned(),
+            );
+        }
+        observed
     }
 
     /// Whether any condition that may be fitted to was repeated.
@@ -108,7 +120,8 @@ impl ObservedCondition {
         let condition = &set.conditions[index];
         let mut runs: Vec<&Run> = set.runs.iter().filter(|run| run.condition == index).collect();
         let has_frames = |run: &&Run| run.frames.len() > 2;
-        if set.kind == Kind::Trajectory && runs.iter().any(has_frames) {
+        let tracked = set.kind == Kind::Trajectory && runs.iter().any(has_frames);
+        if tracked {
             let all = runs.len();
             runs.retain(has_frames);
             if runs.len() < all {
@@ -118,6 +131,11 @@ impl ObservedCondition {
                     condition.id
                 ));
             }
+        } else if runs.iter().any(|run| !run.frames.is_empty()) {
+            notes.push(format!(
+                "condition {}: no run has more than two readings, and none of them is used",
+                condition.id
+            ));
         }
         let common = |of: fn(&Run) -> Option<f64>| {
             !runs.is_empty()
@@ -125,16 +143,27 @@ impl ObservedCondition {
                 && runs.iter().any(|run| of(run) != Some(0.0))
         };
         let share = if common(|run| run.final_z) { BEFORE_STOP } else { 1.0 };
-        let frames = match set.kind {
-            Kind::Trajectory => frames_of(&runs, condition, share),
-            Kind::Scalar => CommonFrames::default(),
+        let frames = match tracked {
+            true => frames_of(&runs, condition, share),
+            false => CommonFrames::default(),
+        };
+        // Beside numbers with a stated error, one that has neither that nor repeats has no weight.
+        let unrepeated = set.runs.len() <= set.conditions.len();
+        let only_stated = set.kind == Kind::Scalar && unrepeated && set.states_errors();
+        let mut weighed = |there: bool, kind: Observable| {
+            let kept = there && (!only_stated || stated(&set.stated, kind).is_some());
+            if there && !kept {
+                let (id, key) = (&condition.id, kind.key());
+                notes.push(format!("condition {id}: {key} has no stated error and is left out"));
+            }
+            kept
         };
         let layout = Layout {
             along_x: frames.range.iter().flatten().any(|x| *x != 0.0),
             times: frames.times,
-            stop_time: common(|run| run.stop_time),
-            final_z: common(|run| run.final_z),
-            final_x: common(|run| run.final_x),
+            stop_time: weighed(common(|run| run.stop_time), Observable::StopTime),
+            final_z: weighed(common(|run| run.final_z), Observable::FinalDepth),
+            final_x: weighed(common(|run| run.final_x), Observable::FinalRange),
         };
         let mut vectors: Vec<DVector<f64>> = (0..runs.len())
             .map(|at| vector(&layout, runs[at], frames.depth.get(at), frames.range.get(at)))
@@ -325,6 +354,21 @@ mod tests {
     }
 
     #[test]
+    fn runs_of_one_or_two_readings_have_no_frames_and_a_note() {
+        for readings in [1, 2] {
+            let mut runs = [0, 1].map(|_| trajectory_run(0, |t| (t, 0.0)));
+            for run in &mut runs {
+                run.frames.truncate(readings);
+                run.stop_time = Some(0.1);
+            }
+            let set = set(Kind::Trajectory, vec![condition(1.0, 90.0)], runs.into());
+            let observed = Observed::of(&set);
+            assert_eq!(observed.conditions[0].layout.kinds(), [Observable::StopTime]);
+            assert_eq!(observed.notes.len(), 1, "{:?}", observed.notes);
+        }
+    }
+
+    #[test]
     fn a_scalar_counts_where_every_run_has_it() {
         let runs = vec![
             scalar_run(0, [Some(0.1), Some(0.05), None]),
@@ -336,6 +380,16 @@ mod tests {
         use Observable::{FinalDepth, FinalRange, StopTime};
         assert_eq!(observed.conditions[0].layout.kinds(), [StopTime]);
         assert_eq!(observed.conditions[1].layout.kinds(), [StopTime, FinalDepth, FinalRange]);
+    }
+
+    #[test]
+    fn without_repeats_scalars_without_a_stated_error_are_left_out_with_a_note() {
+        let runs = vec![scalar_run(0, [Some(0.1), Some(0.05), None])];
+        let mut set = set(Kind::Scalar, vec![condition(1.0, 90.0)], runs);
+        set.stated.final_z = Some(0.06);
+        let observed = Observed::of(&set);
+        assert_eq!(observed.conditions[0].layout.kinds(), [Observable::FinalDepth]);
+        assert!(observed.has_stated_errors() && observed.notes.len() == 1);
     }
 
     #[test]

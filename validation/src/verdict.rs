@@ -32,7 +32,7 @@ pub enum Verdict {
 pub enum Strength {
     /// The scatter of repeats, and better predictions of what was not fitted to.
     Supported,
-    /// Stated errors, or predictions that did not become better by more than chance.
+    /// Stated errors, an assumed scatter, or predictions that did not become better by more than chance.
     Suggested,
 }
 

@@ -4,6 +4,25 @@ use super::document::Document;
 use super::findings::Findings;
 use super::{Kind, MeasurementSet, Run, magnitudes, signs};
 
+impl MeasurementSet {
+    /// Whether the set states the error of any number that it compares: of readings, if it has
+    /// trajectories, else of scalars.
+    #[must_use]
+    pub fn states_errors(&self) -> bool {
+        match self.kind {
+            Kind::Scalar => {
+                let stated = &self.stated;
+                [stated.stop_time, stated.final_z, stated.final_x].iter().any(Option::is_some)
+            }
+            Kind::Trajectory => {
+                let mut frames = self.runs.iter().flat_map(|run| &run.frames);
+                let one = frames.any(|frame| frame.sigma.is_some());
+                self.instrument.position_sigma.is_some() || one
+            }
+        }
+    }
+}
+
 /// Checks a set whose tables were read; faults are reported.
 pub(super) fn check(set: &MeasurementSet, document: &Document, findings: &mut Findings) {
     signs::check(set, &document.places, findings);
@@ -18,17 +37,7 @@ pub(super) fn check(set: &MeasurementSet, document: &Document, findings: &mut Fi
 fn note_errors(set: &MeasurementSet, findings: &mut Findings) {
     // Every condition has a run.
     let repeated = set.runs.len() > set.conditions.len();
-    let stated = match set.kind {
-        Kind::Scalar => {
-            let stated = &set.stated;
-            [stated.stop_time, stated.final_z, stated.final_x].iter().any(Option::is_some)
-        }
-        Kind::Trajectory => {
-            let mut frames = set.runs.iter().flat_map(|run| &run.frames);
-            set.instrument.position_sigma.is_some() || frames.any(|frame| frame.sigma.is_some())
-        }
-    };
-    if !repeated && !stated {
+    if !repeated && !set.states_errors() {
         findings.note(
             "No stated errors and no repeats: chi-squared is not possible, differences can be \
              given as rms only."

@@ -192,6 +192,35 @@ fn stated_errors_suggest_and_nothing_stated_cannot_tell() {
 }
 
 #[test]
+fn trajectories_without_repeats_suggest_under_an_assumed_scatter() {
+    let laboratory = Laboratory { repeats: 1, ..Laboratory::hiding(Effect::Lift, 0.4) };
+    let found = diagnosis(&laboratory, &laboratory.measure(1));
+    assert_eq!(found.strength, Strength::Suggested);
+    assert_eq!(found.noise["source"], "assumed");
+    assert_eq!((found.verdict, found.effects), (Verdict::Supported, vec!["lift".to_owned()]));
+}
+
+#[test]
+fn an_effect_that_uses_up_all_that_was_measured_is_not_named() {
+    // Stopping time, depth and range of one impact, for two parameters and an effect.
+    let mut laboratory = Laboratory {
+        kind: Kind::Scalar,
+        repeats: 1,
+        holdout: 0,
+        ..Laboratory::hiding(Effect::Lift, 0.4)
+    };
+    laboratory.settings.truncate(2);
+    laboratory.settings.remove(0);
+    let mut set = laboratory.measure(1);
+    let error = Some(0.005);
+    set.stated = StatedError { stop_time: error, final_z: error, final_x: error };
+    let found = diagnosis(&laboratory, &set);
+    assert_eq!((found.verdict, found.effects.len()), (Verdict::CannotTell, 0));
+    let hint = &found.unexplained.hint;
+    assert!(hint.contains("as much is free as was measured"), "{hint}");
+}
+
+#[test]
 fn the_keys_of_the_json_are_those_that_users_rely_on() {
     let laboratory = Laboratory::hiding(Effect::Buoyancy, 3.0);
     let json = diagnosis(&laboratory, &laboratory.measure(1)).to_json().expect("it has JSON");
