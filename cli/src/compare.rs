@@ -13,7 +13,7 @@ use validation::residual::Residual;
 
 use crate::compare_runs::{self, Found};
 use crate::output::{self, CommandError, CommandResult};
-use crate::workbench::Flags;
+use crate::workbench::{Flags, failed};
 
 /// Arguments of `plunge compare`.
 #[derive(clap::Args, Debug)]
@@ -70,7 +70,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         .collect();
     let results = flags.results(&measured, "compare", &models)?;
     let comparison = compare(&measured.set, &measured.observed, &revisions, flags.seed)
-        .map_err(CommandError::bad_input)?;
+        .map_err(|failure| failed(failure.error, &failure.model))?;
     flags.notes(&comparison.notes);
     let object = serde_json::to_value(&comparison).map_err(anyhow::Error::new)?;
     let figure = picture::comparison(&measured.set, &comparison)
@@ -218,7 +218,10 @@ fn numbers(set: &MeasurementSet, models: &[ModelComparison]) -> String {
         row.extend(models.iter().map(|model| {
             let predicted = model.residuals[place].predicted;
             let error = 100.0 * (predicted / one.measured - 1.0);
-            format!("{:.1} ({error:+.0} %)", scale * predicted)
+            match error.is_finite() {
+                true => format!("{:.1} ({error:+.0} %)", scale * predicted),
+                false => format!("{:.1}", scale * predicted),
+            }
         }));
         table.add_row(row);
     }

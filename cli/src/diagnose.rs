@@ -12,7 +12,7 @@ use validation::verdict::{Diagnosis, Verdict};
 use crate::add::from_diagnosis;
 use crate::compare::{lines, noise_words, probability, table};
 use crate::output::{self, CommandError, CommandResult};
-use crate::workbench::{Candidate, Flags};
+use crate::workbench::{Candidate, Flags, failed};
 
 /// Arguments of `plunge diagnose`.
 #[derive(clap::Args, Debug)]
@@ -34,7 +34,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let forward = model.forward(&measured, flags)?;
     let results = flags.results(&measured, "diagnose", &models)?;
     let bench = Bench { set: &measured.set, observed: &measured.observed, forward: &forward };
-    let diagnosis = diagnose(&bench, flags.seed).map_err(CommandError::bad_input)?;
+    let diagnosis = diagnose(&bench, flags.seed).map_err(|error| failed(error, &model.name))?;
     flags.notes(&measured.set.notes);
     flags.notes(&measured.observed.notes);
     let object = diagnosis.to_json().map_err(anyhow::Error::new)?;

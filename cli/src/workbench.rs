@@ -2,10 +2,11 @@
 
 use std::fs::{self, File};
 use std::io::{ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use clap::Args;
 use configs::{LoadOptions, Loaded, Model, ModelSource};
+use validation::bench::BenchError;
 use validation::measurement::{self, MeasurementSet, SetError};
 use validation::observed::Observed;
 use validation::resistive::ResistiveForward;
@@ -17,6 +18,9 @@ const SEED: u64 = 1;
 
 /// The file that says what the results of a folder are from.
 const INPUTS: &str = "inputs.blake3";
+
+/// What these commands write, besides proposed models.
+const RESULTS: [&str; 4] = [INPUTS, "comparison.json", "comparison.svg", "diagnosis.json"];
 
 /// The flags of commands about a measurement set.
 #[derive(Args, Clone, Debug)]
@@ -97,9 +101,22 @@ impl Flags {
                 measured.set.id
             )));
         };
-        let beside = measured.folder.join(baseline);
-        let is_file = baseline.ends_with(".toml") && beside.is_file();
-        let path = if is_file { beside } else { PathBuf::from(baseline) };
+        if configs::find_shipped(baseline).is_some() {
+            return Ok(vec![self.model(Path::new(baseline), Path::new(baseline))?]);
+        }
+        // A set may be from anywhere: it names a model beside it, and no other file.
+        let is_below =
+            Path::new(baseline).components().all(|part| matches!(part, Component::Normal(_)));
+        let path = measured.folder.join(baseline);
+        if !is_below || !path.is_file() {
+            let shipped: Vec<&str> = configs::SHIPPED.iter().map(|model| model.name).collect();
+            return Err(CommandError::bad_input(format!(
+                "`[model] baseline = \"{baseline}\"` of the set {} is no file beside the set and no \
+                 shipped model; shipped: {}",
+                measured.set.id,
+                shipped.join(", ")
+            )));
+        }
         Ok(vec![self.model(Path::new(baseline), &path)?])
     }
 
@@ -155,7 +172,12 @@ impl Flags {
         let folder = self.out.clone().unwrap_or_else(default);
         let mut hash = blake3::Hasher::new();
         hash.update(env!("CARGO_PKG_VERSION").as_bytes());
-        hash.update(format!("{command} {} {:?}", self.seed, measured.set).as_bytes());
+        // Names and order of runs are no inputs: the observables are in an order of their own.
+        let MeasurementSet { id, kind, instrument, bed, stated, stop, last, conditions, .. } =
+            &measured.set;
+        let set = (id, kind, instrument, bed, stated, stop, last, conditions);
+        hash.update(format!("{command} {} {set:?}", self.seed).as_bytes());
+        hash.update(format!("{:?}", measured.observed.conditions).as_bytes());
         for model in models {
             hash.update(model.name.as_bytes());
             hash.update(model.loaded.model.resolved_toml().as_bytes());
@@ -186,6 +208,16 @@ impl Candidate {
             )]);
         }
         Ok(forward)
+    }
+}
+
+/// A failure of the numbers themselves: too little to fit to is bad input, the rest is not.
+pub(crate) fn failed(error: BenchError, name: &str) -> CommandError {
+    match error {
+        BenchError::TooFew { .. } | BenchError::NoErrors => {
+            CommandError::bad_input(format!("{name}: {error}"))
+        }
+        error => CommandError::Failed(anyhow::Error::new(error).context(name.to_owned())),
     }
 }
 
@@ -224,11 +256,35 @@ impl Results {
         let shown = self.folder.display();
         fs::create_dir_all(&self.folder)
             .map_err(|error| anyhow::Error::new(error).context(format!("cannot make {shown}")))?;
+        // While files of two diagnoses lie here, the folder is of neither.
+        for name in self.earlier()? {
+            fs::remove_file(self.folder.join(&name)).map_err(|error| {
+                anyhow::Error::new(error).context(format!("cannot remove {shown}/{name}"))
+            })?;
+        }
         let stamp = (INPUTS.to_owned(), format!("{}\n", self.inputs));
         files
             .iter()
             .chain([&stamp])
             .try_for_each(|(name, text)| write_whole(&self.folder.join(name), text))
+    }
+
+    /// The stamp and the results of an earlier call, by their names.
+    fn earlier(&self) -> Result<Vec<String>, CommandError> {
+        let fail = |error| {
+            let shown = format!("cannot read {}", self.folder.display());
+            CommandError::Failed(anyhow::Error::new(error).context(shown))
+        };
+        let mut names = Vec::new();
+        for entry in fs::read_dir(&self.folder).map_err(fail)? {
+            let name = entry.map_err(fail)?.file_name().to_string_lossy().into_owned();
+            let proposed = name.starts_with("model+") && name.ends_with(".toml");
+            if proposed || RESULTS.contains(&name.as_str()) {
+                names.push(name);
+            }
+        }
+        names.sort_by_key(|name| name != INPUTS);
+        Ok(names)
     }
 
     /// Where they are, for messages.

@@ -63,6 +63,18 @@ fn the_error_falls_when_the_effect_that_was_found_is_added() {
         assert!(together.contains(&effect), "{together:?}");
     }
     assert!(!together.contains(&"viscous-drag"), "{together:?}");
+    let ranking = found["ranking"].as_array().unwrap();
+    let exponent = ranking.iter().find(|effect| effect["id"] == "depth-exponent").unwrap();
+    // An independent search over all sixteen numbers found the power 0.447.
+    assert!((exponent["q"].as_f64().unwrap() + 0.55).abs() < 0.02, "{exponent}");
+
+    for (effect, most) in [("yield-stress", 0.036), ("janssen", 0.05)] {
+        let model = format!("runs/s1-tables-vertical-diagnose/model+{effect}.toml");
+        let out = ["--out", effect, "--json", "--quiet"];
+        let with = json(here, &[&["compare", text(&set), "--model", &model], &out[..]].concat());
+        let error = relative(&with["models"][0], "fit");
+        assert!(error < most, "{effect}: {error}");
+    }
 
     let folder = here.join("runs/s1-tables-vertical-diagnose");
     let diagnosis = folder.join("diagnosis.json");
@@ -89,6 +101,33 @@ fn the_error_falls_when_the_effect_that_was_found_is_added() {
 }
 
 #[test]
+fn the_published_law_sinks_too_deep_when_slow_and_too_little_when_fast() {
+    let here = tempfile::tempdir().unwrap();
+    let set = shipped("s1-tables-vertical");
+    let args = ["compare", text(&set), "--quiet", "--set", "fit.free=[]"];
+    let output = plunge(here.path(), &args);
+    let shown = String::from_utf8(output.stdout).unwrap();
+    let depth_at = |condition: &str| {
+        let of = |line: &&str| line.contains(condition) && line.contains("depth");
+        shown.lines().find(of).unwrap_or_else(|| panic!("no depth of {condition}")).to_owned()
+    };
+    // The published law integrated by another program: 120.4 mm for 96.9, 174.1 for 189.3.
+    assert!(depth_at("a90-v1.0").contains("120.4 (+24 %)"), "{shown}");
+    assert!(depth_at("a90-v4.0").contains("174.1 (-8 %)"), "{shown}");
+}
+
+#[test]
+fn every_shipped_set_is_compared_with_the_baseline_that_it_names() {
+    let here = tempfile::tempdir().unwrap();
+    for set in ["free-link", "katsuragi-durian", "s1-tables"] {
+        let found = json(here.path(), &["compare", text(&shipped(set)), "--json", "--quiet"]);
+        let model = &found["models"][0];
+        assert!(relative(model, "fit") < 0.2, "{set}: {model}");
+        assert!(model["p_lof"].is_number(), "{set}");
+    }
+}
+
+#[test]
 fn an_added_effect_leaves_the_rest_of_the_model_as_it_was_written() {
     let here = tempfile::tempdir().unwrap();
     let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/two-term-vector.toml");
@@ -109,7 +148,7 @@ fn a_diagnosis_does_not_hang_on_names_or_order_and_not_on_what_is_held_out() {
     let here = here.path();
     let set = copied("s1-tables-vertical", here);
     let diagnose = || {
-        let args = ["diagnose", text(&set), "--json", "--quiet", "--force", "--out", "out"];
+        let args = ["diagnose", text(&set), "--json", "--quiet", "--out", "out"];
         let output = plunge(here, &args);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         String::from_utf8(output.stdout).unwrap()
@@ -140,6 +179,7 @@ fn a_diagnosis_does_not_hang_on_names_or_order_and_not_on_what_is_held_out() {
         }
     });
     fs::write(&runs, corrupted.map(|line| line + "\n").collect::<String>()).unwrap();
+    fs::remove_dir_all(here.join("out")).unwrap();
     let corrupt: Value = serde_json::from_str(&diagnose()).unwrap();
     let first: Value = serde_json::from_str(&first).unwrap();
     assert_ne!(corrupt["holdout"], first["holdout"], "held-out rows are judged");
