@@ -22,6 +22,7 @@ Usage: cargo xtask <task>
 
   lint               fmt, clippy, doc and tidy, then cargo-deny and typos where installed
   tidy               the rules of the repository that no other tool knows
+  bench              impacts per second on resistive media, in release
   validate [ARG]...  the validation rows, in release; the arguments go to the program as they are
   help               this text
 
@@ -31,6 +32,7 @@ Exit status: 0 done, 1 something was found, 2 the command line was not understoo
 /// What the command line asks for.
 #[derive(Debug, PartialEq, Eq)]
 enum Task {
+    Bench,
     Help,
     Lint,
     Tidy,
@@ -59,6 +61,7 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
     let task = match first {
         Arg::Short('h') | Arg::Long("help") => return Ok(Task::Help),
         Arg::Value(name) => match name.to_str() {
+            Some("bench") => Task::Bench,
             Some("help") => Task::Help,
             Some("lint") => Task::Lint,
             Some("tidy") => Task::Tidy,
@@ -89,14 +92,15 @@ fn run(task: Task) -> Result<ExitCode> {
             sh.change_dir(root()?);
             tidy::run(&sh)
         }
-        Task::Validate(args) => validate(&sh, &args),
+        Task::Bench => program(&sh, "bench", &[]),
+        Task::Validate(args) => program(&sh, "validate", &args),
     }
 }
 
-/// Runs the validation program from where the user stands and hands its exit status on.
-fn validate(sh: &Shell, args: &[OsString]) -> Result<ExitCode> {
+/// Runs a program of `validation` from where the user stands and hands its exit status on.
+fn program(sh: &Shell, name: &str, args: &[OsString]) -> Result<ExitCode> {
     let cargo =
-        cmd!(sh, "cargo run --quiet --release --locked -p validation --bin validate -- {args...}");
+        cmd!(sh, "cargo run --quiet --release --locked -p validation --bin {name} -- {args...}");
     let status = std::process::Command::from(cargo).status().context("cannot start cargo")?;
     let code = status.code().and_then(|code| u8::try_from(code).ok());
     Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
@@ -122,6 +126,7 @@ mod tests {
     fn each_task_is_reached_by_its_name() {
         assert_eq!(parsed(&["lint"]), Ok(Task::Lint));
         assert_eq!(parsed(&["tidy"]), Ok(Task::Tidy));
+        assert_eq!(parsed(&["bench"]), Ok(Task::Bench));
         for help in ["help", "-h", "--help"] {
             assert_eq!(parsed(&[help]), Ok(Task::Help));
         }
