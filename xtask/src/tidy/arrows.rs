@@ -20,13 +20,15 @@ const ALLOWED: [(&str, &[&str]); 8] = [
 ];
 
 /// Crates of others that are kept behind one of ours (two where a second reads what the first writes).
-const ONLY: [(&str, &[&str]); 24] = [
+const ONLY: [(&str, &[&str]); 27] = [
     ("annotate-snippets", &["configs"]),
     ("anyhow", &["plunge", "xtask"]),
     ("argmin", &["validation"]),
     ("argmin-math", &["validation"]),
     ("arrow", &["exchange"]),
     ("clap", &["plunge"]),
+    ("comfy-table", &["plunge"]),
+    ("differential-equations", &["engine"]),
     ("exmex", &["contact-laws"]),
     ("foxglove", &["engine"]),
     ("indicatif", &["plunge"]),
@@ -41,6 +43,7 @@ const ONLY: [(&str, &[&str]); 24] = [
     ("postcard", &["engine"]),
     ("prost-reflect", &["exchange"]),
     ("rayon", &["engine"]),
+    ("roots", &["engine"]),
     ("signal-hook", &["plunge"]),
     ("statrs", &["validation"]),
     ("toml", &["configs"]),

@@ -1,11 +1,9 @@
 //! What the article on the two-link chain states in words, for the chain as it is here: the tables of
 //! `docs/two-link-chain.md`.
 
-mod common;
-
 use std::fmt::Write;
 
-use common::{chain, down, into_sand, law};
+use super::common::{chain, down, into_sand, law};
 use engine::resistance::{Assembly, Ending, Recorder, State};
 
 /// Assumed: speeds (m/s) and pairs of angles (degrees). The first pair is that of equal angles.
@@ -60,7 +58,7 @@ impl Outcome {
 fn energies(assembly: &dyn Assembly, part: usize, state: &State) -> (f64, f64) {
     let [translation, rotation] = assembly.kinetic_energy(part, state);
     let (height, mass) = assembly.weight_at(part, state);
-    (translation + rotation, mass * common::sand().gravity * height)
+    (translation + rotation, mass * super::common::sand().gravity * height)
 }
 
 /// Nothing where the chain does not stop.
@@ -270,7 +268,7 @@ fn the_middle_of_the_priors_shows_what_the_article_states_but_for_one_time() {
 
 #[test]
 fn the_tables_of_the_docs_are_what_the_chain_does() {
-    let docs = include_str!("../../docs/two-link-chain.md");
+    let docs = include_str!("../../../docs/two-link-chain.md");
     let tables = [impacts(), trends()];
     let there = tables.iter().all(|table| docs.contains(table));
     assert!(there, "docs/two-link-chain.md should have\n{}\n{}", tables[0], tables[1]);

@@ -1,8 +1,6 @@
 //! The two-link chain and the free link as bodies: no medium, or forces that are given.
 
-mod common;
-
-use common::{FINE, LENGTH, MASS, chain, law, link};
+use super::common::{FINE, LENGTH, MASS, chain, law, link};
 use engine::math::Vec3;
 use engine::resistance::{Impact, PartLoad, State, Surroundings};
 
@@ -15,8 +13,9 @@ fn tumbling() -> State {
 
 fn flight(gravity: f64, start: State) -> Impact {
     let launchable = chain([0.0, 0.0], Vec3::zeros());
-    let bed = Surroundings { gravity, ..common::sand() };
-    Impact::new(launchable.assembly, vec![common::resistance()], bed, start).with_tolerance(FINE)
+    let bed = Surroundings { gravity, ..super::common::sand() };
+    Impact::new(launchable.assembly, vec![super::common::resistance()], bed, start)
+        .with_tolerance(FINE)
 }
 
 /// The states at `times` (s) in free flight, each where a run ends and the solver is most accurate.
@@ -205,7 +204,7 @@ fn a_free_link_turns_uniformly_about_its_centre_which_falls() {
     let impact = Impact::new(
         launchable.assembly,
         vec![law("link", &[("drag", 3.0), ("horizontal", 5.0)])],
-        common::sand(),
+        super::common::sand(),
         start,
     )
     .with_tolerance(FINE);

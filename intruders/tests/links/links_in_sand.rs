@@ -1,8 +1,6 @@
 //! Links and chains under the resistance of a link, from first contact to rest.
 
-mod common;
-
-use common::{chain, down, into_sand, law, link, resistance};
+use super::common::{chain, down, into_sand, law, link, resistance};
 use engine::math::Vec3;
 use engine::resistance::{Ending, Impact, PartSample, Recorder, State, Trajectory};
 
@@ -179,7 +177,7 @@ fn a_link_that_moves_along_its_axis_meets_no_drag() {
     let (angle, speed) = (0.4_f64, 2.0);
     let velocity = Vec3::new(-libm::sin(angle), 0.0, -libm::cos(angle)) * speed;
     let launchable = link(angle, velocity, 0.0);
-    let mut bed = common::sand();
+    let mut bed = super::common::sand();
     bed.gravity = 0.0;
     let rate = launchable.start.rate;
     let impact = Impact::new(launchable.assembly, vec![only_drag()], bed, launchable.start);

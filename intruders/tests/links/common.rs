@@ -1,7 +1,5 @@
 //! Links and the law of their resistance, for the tests of both.
 
-#![allow(dead_code, unreachable_pub)] // Each test file takes what it needs.
-
 use contact_laws::{Coefficients, find_resistance};
 use engine::grains::Space;
 use engine::math::Vec3;
@@ -10,22 +8,22 @@ use engine::resistance::{Impact, ResistanceLaw, Surroundings, Tolerance};
 use intruders::{Casting, Launchable};
 
 /// Length and diameter (m) and mass (kg) of a link of aluminium.
-pub const LENGTH: f64 = 0.2;
-pub const DIAMETER: f64 = 0.0127;
-pub const MASS: f64 = 0.0684;
+pub(crate) const LENGTH: f64 = 0.2;
+pub(crate) const DIAMETER: f64 = 0.0127;
+pub(crate) const MASS: f64 = 0.0684;
 
 /// Dry sand.
-pub fn sand() -> Surroundings {
+pub(crate) fn sand() -> Surroundings {
     Surroundings { bulk_density: 1600.0, gravity: 9.81, packing: None, bed_depth: None }
 }
 
 /// The link at `angle` (rad) whose tip meets the surface with `velocity` (m/s).
-pub fn link(angle: f64, velocity: Vec3, spin: f64) -> Launchable {
+pub(crate) fn link(angle: f64, velocity: Vec3, spin: f64) -> Launchable {
     cast("link", &[("link_angle", angle)], MASS, velocity, spin)
 }
 
 /// Two such links.
-pub fn chain(angles: [f64; 2], velocity: Vec3) -> Launchable {
+pub(crate) fn chain(angles: [f64; 2], velocity: Vec3) -> Launchable {
     let given = [("link_angle_1", angles[0]), ("link_angle_2", angles[1])];
     cast("two-link-chain", &given, 2.0 * MASS, velocity, 0.0)
 }
@@ -39,26 +37,26 @@ fn cast(name: &str, given: &[(&str, f64)], mass: f64, velocity: Vec3, spin: f64)
 }
 
 /// `launchable` on sand under `laws`.
-pub fn into_sand(launchable: Launchable, laws: Vec<Box<dyn ResistanceLaw>>) -> Impact {
+pub(crate) fn into_sand(launchable: Launchable, laws: Vec<Box<dyn ResistanceLaw>>) -> Impact {
     Impact::new(launchable.assembly, laws, sand(), launchable.start)
 }
 
 /// Down, at `speed` (m/s).
-pub fn down(speed: f64) -> Vec3 {
+pub(crate) fn down(speed: f64) -> Vec3 {
     Vec3::new(0.0, 0.0, -speed)
 }
 
 /// As fine as the solver goes before round-off takes over.
-pub const FINE: Tolerance = Tolerance { relative: 1e-14, absolute: 1e-16 };
+pub(crate) const FINE: Tolerance = Tolerance { relative: 1e-14, absolute: 1e-16 };
 
 /// The law `name` with these values and its defaults.
-pub fn law(name: &str, given: &[(&str, f64)]) -> Box<dyn ResistanceLaw> {
+pub(crate) fn law(name: &str, given: &[(&str, f64)]) -> Box<dyn ResistanceLaw> {
     let entry = find_resistance(name).expect("the law is registered");
     (entry.build)(&Coefficients::new(fill(entry.params, given)))
 }
 
 /// The resistance of a link with coefficients in the middle of what is plausible.
-pub fn resistance() -> Box<dyn ResistanceLaw> {
+pub(crate) fn resistance() -> Box<dyn ResistanceLaw> {
     law("link", &[("drag", 3.0), ("horizontal", 5.0)])
 }
 
