@@ -127,13 +127,13 @@ impl<'a, F: FnMut(&Sample<'_>)> Recorder<'a, F> {
             .collect();
         for part in 0..assembly.n_parts() {
             let entries = &self.entries;
+            let squared_speed = assembly.part(part, state).velocity.norm_squared();
             system.visit(part, state, modes, |number, before, after| {
                 let mass = after.added_mass - before.added_mass;
-                let velocity = assembly.part(part, state).velocity;
                 for (value, entry) in values.iter_mut().zip(entries) {
                     if matches!(entry, Entry::Account { law, flow: Flow::AddedMass } if *law == number)
                     {
-                        *value += 0.5 * mass * velocity.norm_squared();
+                        *value += 0.5 * mass * squared_speed;
                     }
                 }
             });
