@@ -23,6 +23,8 @@ Usage: cargo xtask <task>
   lint               fmt, clippy, doc and tidy, then cargo-deny and typos where installed
   tidy               the rules of the repository that no other tool knows
   bench              impacts per second on resistive media, in release
+  bench diagnosis [ARG]...
+                     how often the diagnosis is right, in release; the arguments go to the program
   validate [ARG]...  the validation rows, in release; the arguments go to the program as they are
   help               this text
 
@@ -33,6 +35,7 @@ Exit status: 0 done, 1 something was found, 2 the command line was not understoo
 #[derive(Debug, PartialEq, Eq)]
 enum Task {
     Bench,
+    BenchDiagnosis(Vec<OsString>),
     Help,
     Lint,
     Tidy,
@@ -58,7 +61,7 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
     let Some(first) = parser.next()? else {
         return Err("a task is missing".into());
     };
-    let task = match first {
+    let mut task = match first {
         Arg::Short('h') | Arg::Long("help") => return Ok(Task::Help),
         Arg::Value(name) => match name.to_str() {
             Some("bench") => Task::Bench,
@@ -70,7 +73,15 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
         },
         other => return Err(other.unexpected()),
     };
-    match parser.next()? {
+    let mut next = parser.next()?;
+    if let (Task::Bench, Some(Arg::Value(what))) = (&task, &next) {
+        if what != "diagnosis" {
+            return Err(format!("no benchmark is called `{}`", what.display()).into());
+        }
+        task = Task::BenchDiagnosis(parser.raw_args()?.collect());
+        next = None;
+    }
+    match next {
         None => Ok(task),
         Some(Arg::Short('h') | Arg::Long("help")) => Ok(Task::Help),
         Some(other) => Err(other.unexpected()),
@@ -93,6 +104,7 @@ fn run(task: Task) -> Result<ExitCode> {
             tidy::run(&sh)
         }
         Task::Bench => program(&sh, "bench", &[]),
+        Task::BenchDiagnosis(args) => program(&sh, "diagnosis", &args),
         Task::Validate(args) => program(&sh, "validate", &args),
     }
 }
@@ -138,6 +150,20 @@ mod tests {
         let task = parsed(&["validate", "--only", "row 3", "--", "--help"]);
         let args = ["--only", "row 3", "--", "--help"].map(OsString::from).to_vec();
         assert_eq!(task, Ok(Task::Validate(args)));
+    }
+
+    #[test]
+    fn a_benchmark_is_chosen_by_its_name_and_gets_its_arguments() {
+        let task = parsed(&["bench", "diagnosis", "--quick", "--help"]);
+        assert_eq!(
+            task,
+            Ok(Task::BenchDiagnosis(["--quick", "--help"].map(OsString::from).into()))
+        );
+        assert_eq!(
+            parsed(&["bench", "diagnoses"]),
+            Err("no benchmark is called `diagnoses`".into())
+        );
+        assert_eq!(parsed(&["bench", "--help"]), Ok(Task::Help));
     }
 
     #[test]

@@ -357,3 +357,22 @@ fn spread(metric: String, values: &[f64], [required, stretch]: [Target; 2]) -> S
 pub(super) fn percent(share: f64) -> String {
     format!("{:.0} %", 100.0 * share)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_target_is_met_when_the_interval_reaches_it() {
+        // 6 of 10: 0.31 to 0.83.
+        let share = Measured::Share(Share { hits: 6, n: 10 });
+        assert_eq!(Target::AtLeast(0.8).is_met(&share), Some(true));
+        assert_eq!(Target::AtLeast(0.9).is_met(&share), Some(false));
+        assert_eq!(Target::AtMost(0.3).is_met(&share), Some(false));
+        assert_eq!(Target::Within(0.2, 0.3).is_met(&share), Some(false));
+        assert_eq!(Target::AtLeast(0.0).is_met(&Measured::Share(Share::default())), None);
+        let spread = Measured::Spread { quartiles: Some([0.1, 0.2, 0.9]), n: 3 };
+        assert_eq!(Target::AtMost(0.2).is_met(&spread), Some(true));
+        assert_eq!(Target::None.is_met(&spread), None);
+    }
+}

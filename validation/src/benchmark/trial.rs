@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use configs::{ConfigError, LoadOptions, Model, ModelSource, find_shipped};
+use contact_laws::find_resistance;
 use nalgebra::DVector;
 
 use super::chance::Chance;
@@ -12,7 +13,6 @@ use super::plan::Plan;
 use super::strength::amplitude;
 use crate::bench::{Bench, BenchError, DEFAULT_SEED, Fitted};
 use crate::diagnose::diagnose;
-use crate::forward::Forward;
 use crate::measurement::MeasurementSet;
 use crate::observable::Observable;
 use crate::observed::Observed;
@@ -108,12 +108,18 @@ impl Trial {
     /// Draws the world of `plan`, measures in it, and has `model` diagnosed by the measurements.
     #[must_use]
     pub fn of(plan: Plan, model: &Model) -> Self {
-        let outcome = match draw(&plan) {
-            Err(error) => Outcome::Skipped(error.to_string()),
-            Ok((nature, set)) => answer(&plan, &nature, &set, model)
-                .map_or_else(Outcome::Skipped, |answer| Outcome::Answered(Box::new(answer))),
+        let unknown = plan
+            .hidden
+            .iter()
+            .find(|hidden| hidden.is_listed() && find_resistance(hidden.id()).is_none());
+        let outcome = match unknown {
+            Some(hidden) => Err(format!("{} is no candidate", hidden.id())),
+            None => draw(&plan)
+                .map_err(|error| error.to_string())
+                .and_then(|(nature, set)| answer(&plan, &nature, &set, model)),
         };
-        Self { plan, outcome }
+        let answered = |answer| Outcome::Answered(Box::new(answer));
+        Self { plan, outcome: outcome.map_or_else(Outcome::Skipped, answered) }
     }
 
     /// Whether the effect `id` is hidden.
@@ -142,12 +148,6 @@ fn answer(
     let observed = Observed::of(set);
     let forward = ResistiveForward::new(model, set, &observed.layouts())
         .map_err(|error| error.to_string())?;
-    let listed = plan.hidden.iter().filter(|hidden| hidden.is_listed());
-    for hidden in listed {
-        if forward.candidates().iter().all(|candidate| candidate.id != hidden.id()) {
-            return Err(format!("{} is no candidate", hidden.id()));
-        }
-    }
     let bench = Bench { set, observed: &observed, forward: &forward };
     let diagnosis = diagnose(&bench, DEFAULT_SEED).map_err(|error| error.to_string())?;
     let seconds = clock.elapsed().as_secs_f64();
