@@ -73,8 +73,8 @@ pub fn lack_of_fit(
         responses.push(weight.whiten_columns(&DMatrix::from_columns(&columns)));
     }
     let statistics = Statistics::new(bench, fitted, &responses);
-    let measured = statistics.of(residual);
-    let mut noise = Resampled::new(bench, fitted, seed);
+    let measured = statistics.of(&statistics.split(residual));
+    let mut noise = Resampled::new(bench, fitted, &statistics, seed);
     let mut reached = [1_usize; 2];
     for _ in 0..DRAWS {
         let drawn = statistics.of(&noise.draw());
@@ -88,10 +88,28 @@ pub fn lack_of_fit(
 
 /// The two squared lengths that a residual is judged by.
 struct Statistics {
-    parameters: Basis,
-    coherent: Basis,
-    /// Per condition: its first row, and a basis of the changes of its own forces.
-    own: Vec<(usize, usize, Basis)>,
+    conditions: Vec<Directions>,
+}
+
+/// In which directions the residual of one condition is looked at.
+struct Directions {
+    /// Its first row, and how many.
+    rows: (usize, usize),
+    /// What the parameters can do, over all conditions.
+    parameters: DMatrix<f64>,
+    /// What forces can do that change in all conditions together.
+    coherent: DMatrix<f64>,
+    /// What its own forces can do.
+    own: DMatrix<f64>,
+    /// The second within the first of these: what its own forces do of the parameters.
+    shared: DMatrix<f64>,
+}
+
+/// What of residuals, as columns, lies along the directions of one condition.
+struct Along {
+    parameters: DMatrix<f64>,
+    coherent: DMatrix<f64>,
+    own: DMatrix<f64>,
 }
 
 impl Statistics {
@@ -103,7 +121,6 @@ impl Statistics {
         let angles = standardised(conditions.iter().map(|condition| condition.angle_deg).collect());
         let nodes = responses.first().map_or(0, DMatrix::ncols);
         let mut coherent = DMatrix::zeros(fitted.fit.residual.len(), 3 * nodes);
-        let mut own = Vec::with_capacity(responses.len());
         let mut start = 0;
         for (at, response) in responses.iter().enumerate() {
             let rows = response.nrows();
@@ -111,19 +128,55 @@ impl Statistics {
                 let mut part = coherent.view_mut((start, block * nodes), (rows, nodes));
                 part.copy_from(&(response * factor));
             }
-            own.push((start, rows, Basis::of(response)));
             start += rows;
         }
-        Self { coherent: Basis::beside(&coherent, &parameters), parameters, own }
+        let coherent = Basis::beside(&coherent, &parameters).to_matrix(start);
+        let parameters = parameters.to_matrix(start);
+        start = 0;
+        let conditions = responses.iter().map(|response| {
+            let rows = (start, response.nrows());
+            start += rows.1;
+            let own = Basis::of(response).to_matrix(rows.1);
+            let parameters = parameters.rows(rows.0, rows.1).into_owned();
+            let coherent = coherent.rows(rows.0, rows.1).into_owned();
+            Directions { rows, shared: own.tr_mul(&parameters), parameters, coherent, own }
+        });
+        Self { conditions: conditions.collect() }
     }
 
-    fn of(&self, residual: &DVector<f64>) -> [f64; 2] {
-        let rest = self.parameters.rest(residual);
-        let own = self
-            .own
-            .iter()
-            .map(|(start, rows, basis)| basis.energy(&rest.rows(*start, *rows).into_owned()));
-        [self.coherent.energy(&rest), own.sum()]
+    /// A residual of all conditions along their directions.
+    fn split(&self, residual: &DVector<f64>) -> Vec<Along> {
+        let each = self.conditions.iter();
+        each.map(|directions| {
+            let (start, rows) = directions.rows;
+            directions.along(&DMatrix::from_columns(&[residual.rows(start, rows)]))
+        })
+        .collect()
+    }
+
+    /// Of the sums of the columns.
+    fn of(&self, columns: &[Along]) -> [f64; 2] {
+        let sum = |part: fn(&Along) -> &DMatrix<f64>| {
+            let mut sums = columns.iter().map(|along| part(along).column_sum());
+            let first = sums.next().unwrap_or_else(|| DVector::zeros(0));
+            sums.fold(first, |total, one| total + one)
+        };
+        let parameters = sum(|along| &along.parameters);
+        let own = self.conditions.iter().zip(columns).map(|(directions, along)| {
+            (along.own.column_sum() - &directions.shared * &parameters).norm_squared()
+        });
+        let own = own.sum();
+        [sum(|along| &along.coherent).norm_squared(), own]
+    }
+}
+
+impl Directions {
+    fn along(&self, columns: &DMatrix<f64>) -> Along {
+        Along {
+            parameters: self.parameters.tr_mul(columns),
+            coherent: self.coherent.tr_mul(columns),
+            own: self.own.tr_mul(columns),
+        }
     }
 }
 
@@ -139,22 +192,40 @@ fn standardised(values: Vec<f64>) -> Vec<f64> {
 }
 
 /// Errors of means, drawn from the deviations of runs.
-pub(crate) struct Resampled {
-    /// Per condition: whitened deviations of its runs (none of too few), and how many numbers.
-    conditions: Vec<(Vec<DVector<f64>>, usize, Pcg64)>,
+struct Resampled {
+    conditions: Vec<Source>,
     /// From how many independent numbers the noise model is known.
     freedom: f64,
     scale: Pcg64,
 }
 
+/// Where the errors of the mean of one condition are drawn from.
+struct Source {
+    /// Its whitened deviations along the directions that are looked at; of too few runs, the units of
+    /// its numbers.
+    columns: Along,
+    /// Of how many runs the deviations are.
+    runs: Option<usize>,
+    random: Pcg64,
+}
+
 impl Resampled {
-    pub(crate) fn new(bench: &Bench<'_>, fitted: &Fitted, seed: u64) -> Self {
+    fn new(bench: &Bench<'_>, fitted: &Fitted, statistics: &Statistics, seed: u64) -> Self {
         let fit = bench.observed.fit.iter();
-        let conditions = fit.zip(&fitted.weights).map(|(&condition, weight)| {
+        let each = fit.zip(&fitted.weights).zip(&statistics.conditions);
+        let conditions = each.map(|((&condition, weight), directions)| {
             let observed = &bench.observed.conditions[condition];
-            let runs = if observed.runs.len() >= ENOUGH_RUNS { observed.runs.len() } else { 0 };
-            let deviations = (0..runs).map(|run| weight.whiten(&observed.deviation(run))).collect();
-            (deviations, observed.mean.len(), stream(seed, Purpose::Resampling, condition))
+            let n = observed.mean.len();
+            let runs = Some(observed.runs.len()).filter(|&runs| runs >= ENOUGH_RUNS);
+            let columns = runs.map_or_else(
+                || DMatrix::identity(n, n),
+                |runs| {
+                    let deviations = (0..runs).map(|run| weight.whiten(&observed.deviation(run)));
+                    DMatrix::from_columns(&deviations.collect::<Vec<_>>())
+                },
+            );
+            let columns = directions.along(&columns);
+            Source { columns, runs, random: stream(seed, Purpose::Resampling, condition) }
         });
         let conditions = conditions.collect();
         let deviations = bench.observed.fit.iter().map(|&condition| {
@@ -165,22 +236,24 @@ impl Resampled {
         Self { conditions, freedom, scale: stream(seed, Purpose::NoiseScale, 0) }
     }
 
-    /// Whitened errors of the means of all conditions.
-    pub(crate) fn draw(&mut self) -> DVector<f64> {
-        let mut all = Vec::new();
+    /// Whitened errors of the means of all conditions along the directions that are looked at.
+    fn draw(&mut self) -> Vec<Along> {
         let scale = 1.0 / mean_square(self.freedom, normal(&mut self.scale)).sqrt();
-        for (deviations, len, random) in &mut self.conditions {
-            if deviations.is_empty() {
-                all.extend((0..*len).map(|_| scale * normal(random)));
-            } else {
-                let factors = factors(deviations.len(), random);
-                let error = deviations.iter().zip(factors);
-                all.extend(
-                    error.fold(DVector::zeros(*len), |sum, (d, factor)| sum + d * factor).iter(),
-                );
+        let draw = |source: &mut Source| {
+            let random = &mut source.random;
+            let n = source.columns.own.ncols();
+            let factors = match source.runs {
+                Some(runs) => factors(runs, random),
+                None => (0..n).map(|_| scale * normal(random)).collect(),
+            };
+            let factors = DMatrix::from_column_slice(n, 1, &factors);
+            Along {
+                parameters: &source.columns.parameters * &factors,
+                coherent: &source.columns.coherent * &factors,
+                own: &source.columns.own * &factors,
             }
-        }
-        DVector::from_vec(all)
+        };
+        self.conditions.iter_mut().map(draw).collect()
     }
 }
 

@@ -18,6 +18,7 @@
 pub mod bench;
 pub mod case;
 mod cases;
+mod chord;
 pub mod compare;
 pub mod diagnose;
 mod discovery;

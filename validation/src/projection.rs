@@ -45,8 +45,12 @@ impl Basis {
         rest
     }
 
-    /// Squared length of what of `vector` lies within the basis.
-    pub(crate) fn energy(&self, vector: &DVector<f64>) -> f64 {
-        self.columns.iter().map(|column| column.dot(vector).powi(2)).sum()
+    /// Its columns, `rows` long.
+    pub(crate) fn to_matrix(&self, rows: usize) -> DMatrix<f64> {
+        let mut matrix = DMatrix::zeros(rows, self.columns.len());
+        for (mut column, unit) in matrix.column_iter_mut().zip(&self.columns) {
+            column.copy_from(unit);
+        }
+        matrix
     }
 }
