@@ -189,7 +189,7 @@ impl Judge<'_> {
     }
 
     fn name(&self, candidate: usize) -> String {
-        self.bench.forward.candidates()[candidate].id.to_owned()
+        self.bench.forward.candidates()[candidate].id.clone()
     }
 }
 
@@ -249,16 +249,16 @@ fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
         .map(|score| {
             let candidate = &candidates[score.candidate()];
             RankedEffect {
-                id: candidate.id.to_owned(),
+                id: candidate.id.clone(),
                 q: Some(score.amplitude()),
                 se: Some(score.standard_error),
-                unit: "1",
+                unit: candidate.unit.clone(),
                 delta: Some(score.delta),
                 predicted_top1: Some(score.ranked_first),
                 testable: true,
                 detection_limit: Some(score.signature.detection_limit()),
                 parameters: values(bench.forward, &score.point),
-                note: candidate.separable_from.to_owned(),
+                note: candidate.separable_from.clone(),
                 point: Some(score.point.clone()),
             }
         })
@@ -266,10 +266,10 @@ fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
     let not_ranked = (0..candidates.len())
         .filter(|index| scores.iter().all(|score| score.candidate() != *index))
         .map(|index| RankedEffect {
-            id: candidates[index].id.to_owned(),
+            id: candidates[index].id.clone(),
             q: None,
             se: None,
-            unit: "1",
+            unit: candidates[index].unit.clone(),
             delta: None,
             predicted_top1: None,
             testable: false,

@@ -65,7 +65,7 @@ fn derivative(
     fitted: &Fitted,
     candidate: usize,
 ) -> Result<DVector<f64>, PredictError> {
-    let Candidate { min, max, step, .. } = bench.forward.candidates()[candidate];
+    let &Candidate { min, max, step, .. } = &bench.forward.candidates()[candidate];
     let data = bench.data(&fitted.weights);
     let residual = |q: f64| {
         let mut point: Point = fitted.fit.point.clone();

@@ -5,6 +5,7 @@ mod added_mass;
 mod buoyancy;
 mod coefficients;
 mod depth_exponent;
+mod facts;
 mod janssen;
 mod link;
 mod poncelet;
@@ -18,7 +19,8 @@ mod viscous_drag;
 mod yield_stress;
 
 pub use coefficients::{Coefficients, Expression, ExpressionError};
-pub use registry::{Facts, Needs, ResistanceEntry, Role};
+pub use facts::{Facts, Needs, Twin};
+pub use registry::{ResistanceEntry, Role};
 
 /// Every baseline and every effect, in the order of the docs, of the sum and of a diagnosis.
 pub static RESISTANCE_LAWS: &[&ResistanceEntry] = &[
@@ -39,4 +41,16 @@ pub static RESISTANCE_LAWS: &[&ResistanceEntry] = &[
 #[must_use]
 pub fn find_resistance(name: &str) -> Option<&'static ResistanceEntry> {
     RESISTANCE_LAWS.iter().find(|entry| entry.name == name).copied()
+}
+
+/// The effects that look like the effect called `name`, whichever of the two says so.
+pub fn twins(name: &str) -> impl Iterator<Item = Twin> {
+    RESISTANCE_LAWS.iter().filter_map(move |entry| {
+        let listed = |name: &str, effect: &str| {
+            let Role::Effect(facts) = find_resistance(name)?.role else { return None };
+            facts.separable_from.iter().find(|twin| twin.effect == effect)
+        };
+        let twin = listed(name, entry.name).or_else(|| listed(entry.name, name))?;
+        Some(Twin { effect: entry.name, any_of: twin.any_of })
+    })
 }
