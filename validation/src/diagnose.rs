@@ -100,7 +100,7 @@ impl Judge<'_> {
                 );
                 return self.refuse((p_lof, p_leader), hint);
             }
-            let verdict = match self.ranking.not_separable().len() {
+            let verdict = match self.ranking.not_separable(self.bench.forward.candidates()).len() {
                 1 => Verdict::Supported,
                 _ => Verdict::NotSeparable,
             };
@@ -138,7 +138,7 @@ impl Judge<'_> {
         let Self { bench, ranking, .. } = self;
         let not_separable = match verdict {
             Verdict::NotSeparable => ranking
-                .not_separable()
+                .not_separable(bench.forward.candidates())
                 .into_iter()
                 .map(|place| self.name(ranking.scores[place].candidate()))
                 .collect(),

@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::chord::{Extended, extend};
-use crate::forward::PredictError;
+use crate::forward::{Candidate, PredictError};
 use crate::sensitivity::Point;
 use crate::signature::{Signature, collinearity, signature, variance_along};
 use crate::significance::NullScores;
@@ -95,11 +95,14 @@ impl Ranking {
         scores.into_iter().map(|score| refit(bench, fitted, score.signature)).collect()
     }
 
-    /// Places of the effects that cannot be told from the best, itself included.
-    pub(crate) fn not_separable(&self) -> Vec<usize> {
+    /// Places of the effects that cannot be told from the best, itself included: by the numbers, or
+    /// because the data lack what would tell them apart.
+    pub(crate) fn not_separable(&self, candidates: &[Candidate]) -> Vec<usize> {
         let Some(best) = self.scores.first() else { return Vec::new() };
+        let twins = &candidates[best.candidate()].unresolved;
         let confused = |place: usize| {
-            best.delta - self.scores[place].delta < SEPARATE
+            twins.contains(&candidates[self.scores[place].candidate()].id)
+                || best.delta - self.scores[place].delta < SEPARATE
                 || self.null.beats(self.rows[0], self.rows[place], best.strength()) < CONFUSED
         };
         (0..self.scores.len()).filter(|&place| place == 0 || confused(place)).collect()
