@@ -1,6 +1,6 @@
-//! A model with one more effect, refitted with derivatives that are already known.
+//! A model with more effects, refitted with derivatives that are already known.
 //!
-//! Gauss–Newton steps whose derivatives are those of the model without the effect, corrected after
+//! Gauss–Newton steps whose derivatives are those of the model without them, corrected after
 //! every step by what it did (Broyden 1965, Math. Comp. 19, 577): each costs one prediction of the set,
 //! where a search that takes its own derivatives costs one per unknown.
 
@@ -19,18 +19,18 @@ const STEPS: usize = 12;
 /// How often a step that does not lower χ² is halved.
 const HALVINGS: u32 = 4;
 
-/// A fit with an effect, without its derivatives.
+/// A fit with more effects, without its derivatives.
 #[derive(Clone, Debug)]
 pub(crate) struct Extended {
-    /// Parameters and amplitudes, that of the effect last.
+    /// Parameters and amplitudes, those of the effects last.
     pub(crate) point: Point,
     pub(crate) chi2: f64,
     /// Of the last amplitude; 0 at a bound.
     pub(crate) standard_error: f64,
 }
 
-/// Refits `fit` with the effect whose amplitude is the last of `start`, from there; `slope` is the
-/// whitened derivative of the prediction by it. `None` if the search does not come to its end.
+/// Refits `fit` with the effects whose amplitudes are the last of `start`, from there; `slopes` are the
+/// whitened derivatives of the prediction by them. `None` if the search does not come to its end.
 ///
 /// # Errors
 /// If the model cannot be integrated at `start`.
@@ -38,10 +38,10 @@ pub(crate) fn extend(
     data: &Data<'_>,
     fit: &Fit,
     start: &Point,
-    slope: &DVector<f64>,
+    slopes: &[&DVector<f64>],
 ) -> Result<Option<Extended>, PredictError> {
     let scales = data.scales(start);
-    let mut search = Search::new(fit, start, slope, &scales);
+    let mut search = Search::new(fit, start, slopes, &scales);
     let mut residual = data.residual(start)?;
     for _ in 0..STEPS {
         let Some(mut step) = search.step(&residual) else { return Ok(None) };
@@ -77,32 +77,33 @@ pub(crate) fn extend(
 /// Unknowns in units in which each moves the prediction by one standard deviation.
 struct Search {
     unknowns: Vec<f64>,
-    /// Which of the unknowns are searched; the amplitude last.
+    /// Which of the unknowns are searched; the amplitudes last.
     free: Vec<usize>,
     /// Size of an unknown per unit of its column.
     units: Vec<f64>,
     jacobian: DMatrix<f64>,
-    least: f64,
-    greatest: f64,
+    /// Least and greatest amplitudes.
+    bounds: Vec<(f64, f64)>,
 }
 
 struct Step {
     /// In the units of the columns.
     change: DVector<f64>,
     promise: f64,
-    /// Whether the amplitude stays at its bound.
+    /// Whether the last amplitude stays at its bound.
     held: bool,
 }
 
 impl Search {
-    fn new(fit: &Fit, start: &Point, slope: &DVector<f64>, scales: &[Scale]) -> Self {
-        let amplitude = scales.len() - 1;
-        let free: Vec<usize> = fit.free().iter().copied().chain([amplitude]).collect();
+    fn new(fit: &Fit, start: &Point, slopes: &[&DVector<f64>], scales: &[Scale]) -> Self {
+        let first = scales.len() - slopes.len();
+        let free: Vec<usize> = fit.free().iter().copied().chain(first..scales.len()).collect();
         let columns = fit.jacobian.column_iter().map(|column| column.into_owned());
+        let slopes = slopes.iter().map(|&slope| slope.clone());
         let mut units = Vec::with_capacity(free.len());
         let columns: Vec<DVector<f64>> = free
             .iter()
-            .zip(columns.chain([slope.clone()]))
+            .zip(columns.chain(slopes))
             .map(|(&at, column)| {
                 let column = column * scales[at].slope(value(start, at));
                 let length = column.norm().max(f64::MIN_POSITIVE);
@@ -110,37 +111,44 @@ impl Search {
                 column / length
             })
             .collect();
-        let bound = &scales[amplitude];
         Self {
             unknowns: unknowns(start, scales),
             free,
             units,
             jacobian: DMatrix::from_columns(&columns),
-            least: bound.min,
-            greatest: bound.max,
+            bounds: scales[first..].iter().map(|scale| (scale.min, scale.max)).collect(),
         }
     }
 
-    /// The step that lowers χ² most, within the range of the amplitude.
+    /// The step that lowers χ² most, within the ranges of the amplitudes.
     fn step(&self, residual: &DVector<f64>) -> Option<Step> {
-        let all = self.solve(residual, self.free.len())?;
-        let amplitude = self.unknowns.last()?;
-        let there = amplitude + all[self.free.len() - 1] * self.units.last()?;
-        let outward = |bound: f64, beyond: bool| *amplitude == bound && beyond;
-        let held = outward(self.least, there < self.least)
-            || outward(self.greatest, there > self.greatest);
-        let change = match held {
-            true => self.solve(residual, self.free.len() - 1)?.push(0.0),
-            false => all,
-        };
-        let promise = (&self.jacobian * &change).norm_squared();
-        Some(Step { change, promise, held })
-    }
-
-    fn solve(&self, residual: &DVector<f64>, columns: usize) -> Option<DVector<f64>> {
-        let jacobian = self.jacobian.columns(0, columns);
-        let factor = Cholesky::new(jacobian.tr_mul(&jacobian))?;
-        Some(factor.solve(&jacobian.tr_mul(residual)))
+        let parameters = self.free.len() - self.bounds.len();
+        let mut kept: Vec<usize> = (0..self.free.len()).collect();
+        loop {
+            let part = self.jacobian.select_columns(&kept);
+            let factor = Cholesky::new(part.tr_mul(&part))?;
+            let solved = factor.solve(&part.tr_mul(residual));
+            let mut change = DVector::zeros(self.free.len());
+            for (&column, solved) in kept.iter().zip(solved.iter()) {
+                change[column] = *solved;
+            }
+            let outward = |column: usize| {
+                let Some((least, greatest)) =
+                    column.checked_sub(parameters).map(|k| self.bounds[k])
+                else {
+                    return false;
+                };
+                let here = self.unknowns[self.free[column]];
+                here == least && change[column] < 0.0 || here == greatest && change[column] > 0.0
+            };
+            let before = kept.len();
+            kept.retain(|&column| !outward(column));
+            if kept.len() == before {
+                let promise = (&self.jacobian * &change).norm_squared();
+                let held = kept.last() != Some(&(self.free.len() - 1));
+                return Some(Step { change, promise, held });
+            }
+        }
     }
 
     fn moved(&self, change: &DVector<f64>) -> Vec<f64> {
@@ -148,8 +156,9 @@ impl Search {
         for ((&at, unit), change) in self.free.iter().zip(&self.units).zip(change.iter()) {
             unknowns[at] += unit * change;
         }
-        if let Some(amplitude) = unknowns.last_mut() {
-            *amplitude = amplitude.clamp(self.least, self.greatest);
+        let first = unknowns.len() - self.bounds.len();
+        for (amplitude, (least, greatest)) in unknowns[first..].iter_mut().zip(&self.bounds) {
+            *amplitude = amplitude.clamp(*least, *greatest);
         }
         unknowns
     }

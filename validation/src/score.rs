@@ -80,21 +80,6 @@ impl Ranking {
         Ok(Self { scores, p, rows, null, failed })
     }
 
-    /// The best few of `candidates`, judged to first order, refitted.
-    pub(crate) fn best_of(
-        bench: &Bench<'_>,
-        fitted: &Fitted,
-        candidates: &[usize],
-        count: usize,
-    ) -> Result<Vec<Score>, BenchError> {
-        let (signatures, _) = signatures(bench, fitted, candidates);
-        let mut scores: Vec<Score> =
-            signatures.into_iter().map(|s| first_order(bench, fitted, s)).collect();
-        scores.sort_by(|a, b| b.delta.total_cmp(&a.delta));
-        scores.truncate(count);
-        scores.into_iter().map(|score| refit(bench, fitted, score.signature)).collect()
-    }
-
     /// Places of the effects that cannot be told from the best, itself included: by the numbers, or
     /// because the data lack what would tell them apart.
     pub(crate) fn not_separable(&self, candidates: &[Candidate]) -> Vec<usize> {
@@ -167,9 +152,9 @@ fn refit(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Result<Sco
         }
         point
     };
-    let slope = &first.signature.slope;
+    let slopes = [&first.signature.slope];
     // A first guess may lie beyond what the effect is linear in; absent, it is no worse than before.
-    let guessed = extend(&data, &fitted.fit, &first.point, slope).ok().flatten();
+    let guessed = extend(&data, &fitted.fit, &first.point, &slopes).ok().flatten();
     let extended = match guessed.filter(|one| one.chi2 <= fitted.fit.chi2) {
         Some(extended) => extended,
         None => {
