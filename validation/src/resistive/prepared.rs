@@ -284,7 +284,8 @@ impl Prepared {
             FinalDefinition::Deepest => (ending.parts[0].depth, ending.parts[0].range),
             FinalDefinition::Resting => {
                 let at_rest = tip(&ending.state);
-                (-at_rest.z, (at_rest.x - x).abs())
+                // With its sign, forward: a size would have a kink where a vertical impact drifts.
+                (-at_rest.z, at_rest.x - x)
             }
         };
         let (depth, range) = read(depth + scatter.level, range);
