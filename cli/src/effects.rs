@@ -157,7 +157,7 @@ fn as_text(law: &Described) -> String {
         .map(|channel| format!("{} ({})", channel.name, kind_name(channel.kind)))
         .collect();
     match channels.as_slice() {
-        [] => line("energy", "in the channels of the law that it changes"),
+        [] => line("energy", "books nothing of its own"),
         channels => line("energy", &channels.join(", ")),
     }
     if !law.shows_with.is_empty() {

@@ -2,17 +2,31 @@
 //! its own and one line of [`RESISTANCE_LAWS`].
 
 mod added_mass;
+mod air_drag;
+mod anisotropic_drag;
+mod anisotropic_friction;
+mod bottom_wall;
 mod buoyancy;
+mod camera_scale;
 mod coefficients;
+mod depth_drag;
 mod depth_exponent;
+mod depth_zero;
 mod facts;
+mod immersion;
 mod janssen;
+mod lift;
 mod link;
+mod magnus;
+mod packing;
 mod poncelet;
 mod rail_friction;
+mod rate_friction;
 mod registry;
+mod spin_friction;
 #[cfg(test)]
 mod testing;
+mod tilt;
 mod two_term_components;
 mod two_term_vector;
 mod viscous_drag;
@@ -32,9 +46,23 @@ pub static RESISTANCE_LAWS: &[&ResistanceEntry] = &[
     &yield_stress::ENTRY,
     &janssen::ENTRY,
     &depth_exponent::ENTRY,
+    &bottom_wall::ENTRY,
     &added_mass::ENTRY,
     &buoyancy::ENTRY,
+    &magnus::ENTRY,
+    &anisotropic_drag::ENTRY,
+    &anisotropic_friction::ENTRY,
+    &rate_friction::ENTRY,
     &rail_friction::ENTRY,
+    &air_drag::ENTRY,
+    &packing::ENTRY,
+    &spin_friction::ENTRY,
+    &lift::ENTRY,
+    &immersion::ENTRY,
+    &depth_drag::ENTRY,
+    &tilt::ENTRY,
+    &camera_scale::ENTRY,
+    &depth_zero::ENTRY,
 ];
 
 /// The baseline or effect called `name`.
