@@ -136,12 +136,13 @@ impl Judge<'_> {
         hint: String,
     ) -> Result<Diagnosis, BenchError> {
         let Self { bench, ranking, .. } = self;
+        let leaders: Vec<String> = ranking
+            .not_separable(bench.forward.candidates())
+            .into_iter()
+            .map(|place| self.name(ranking.scores[place].candidate()))
+            .collect();
         let not_separable = match verdict {
-            Verdict::NotSeparable => ranking
-                .not_separable(bench.forward.candidates())
-                .into_iter()
-                .map(|place| self.name(ranking.scores[place].candidate()))
-                .collect(),
+            Verdict::NotSeparable => leaders.clone(),
             _ => Vec::new(),
         };
         let depends_on = match verdict {
@@ -172,6 +173,7 @@ impl Judge<'_> {
             },
             effects: amplitudes.iter().map(|amplitude| amplitude.id.clone()).collect(),
             not_separable,
+            leaders,
             ranking: ranked(bench, Some(ranking)),
             p1: Some(ranking.p),
             p_lof,
@@ -214,6 +216,7 @@ fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {
         strength: Strength::Suggested,
         effects: Vec::new(),
         not_separable: Vec::new(),
+        leaders: Vec::new(),
         ranking: ranked(bench, None),
         p1: None,
         p_lof: None,

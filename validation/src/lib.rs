@@ -16,6 +16,7 @@
 //! [`runs`] holds a run against a run.
 
 pub mod bench;
+pub mod benchmark;
 pub mod case;
 mod cases;
 mod chord;

@@ -31,6 +31,12 @@ const DASHES: [(u32, u32); 4] = [(4, 3), (1, 0), (9, 3), (2, 2)];
 #[error("cannot draw: {0}")]
 pub struct PictureError(String);
 
+impl PictureError {
+    pub(crate) fn new(why: String) -> Self {
+        Self(why)
+    }
+}
+
 /// A number of one condition, measured and predicted.
 struct Point {
     angle_deg: f64,

@@ -47,6 +47,9 @@ pub struct Diagnosis {
     pub effects: Vec<String>,
     /// All that cannot be told apart, the leader first; empty under other verdicts.
     pub not_separable: Vec<String>,
+    /// All that cannot be told from the first of the ranking, itself included, whatever the verdict.
+    #[serde(skip)]
+    pub leaders: Vec<String>,
     /// Every effect, best first, those that the data cannot show last.
     pub ranking: Vec<RankedEffect>,
     /// Probability that the best of all effects explains so much by chance; none if nothing was

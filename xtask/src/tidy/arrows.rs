@@ -42,7 +42,7 @@ const ONLY: [(&str, &[&str]); 27] = [
     ("plotters", &["validation"]),
     ("postcard", &["engine"]),
     ("prost-reflect", &["exchange"]),
-    ("rayon", &["engine"]),
+    ("rayon", &["engine", "validation"]),
     ("roots", &["engine"]),
     ("signal-hook", &["plunge"]),
     ("statrs", &["validation"]),
@@ -199,7 +199,10 @@ mod tests {
         assert!(whats(&[("engine", &[("rayon", NORMAL), ("serde", NORMAL)])]).is_empty());
         let found = problems(&[("contact-laws", &[("rayon", NORMAL)])]);
         assert_eq!(found[0].what, "`contact-laws` imports `rayon`");
-        assert_eq!(found[0].right, "only `engine` may import `rayon`: ask it for what is needed");
+        assert_eq!(
+            found[0].right,
+            "only `engine`, `validation` may import `rayon`: ask it for what is needed"
+        );
     }
 
     #[test]

@@ -1,0 +1,75 @@
+//! Shares with their intervals.
+
+/// Of the normal distribution: 95 % lie within this many standard deviations.
+const Z: f64 = 1.959_963_984_540_054;
+
+/// How many of how many.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Share {
+    /// How many.
+    pub hits: usize,
+    /// Of how many.
+    pub n: usize,
+}
+
+impl Share {
+    /// Those of `all` for which `is` holds.
+    pub fn of<T>(all: &[T], is: impl Fn(&T) -> bool) -> Self {
+        Self { hits: all.iter().filter(|one| is(one)).count(), n: all.len() }
+    }
+
+    /// The share; none of none.
+    #[must_use]
+    pub fn value(self) -> Option<f64> {
+        (self.n > 0).then(|| self.hits as f64 / self.n as f64)
+    }
+
+    /// Interval of 95 % (Wilson 1927, J. Am. Stat. Assoc. 22, 209); everything is possible of none.
+    #[must_use]
+    pub fn interval(self) -> [f64; 2] {
+        let Some(share) = self.value() else { return [0.0, 1.0] };
+        let n = self.n as f64;
+        let square = Z * Z / n;
+        let middle = share + 0.5 * square;
+        let half = Z * (share * (1.0 - share) / n + 0.25 * square / n).sqrt();
+        [(middle - half) / (1.0 + square), (middle + half) / (1.0 + square)]
+            .map(|bound| bound.clamp(0.0, 1.0))
+    }
+}
+
+/// The quantile `share` of `values`, linear between two; none of none.
+#[must_use]
+pub fn quantile(values: &[f64], share: f64) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let place = share * sorted.len().checked_sub(1)? as f64;
+    let (below, above) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
+    Some(below + (above - below) * place.fract())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Table I of Newcombe (1998), Stat. Med. 17, 857, method 3, to its four digits.
+    #[test]
+    fn intervals_are_the_published_ones() {
+        for (hits, n, low, high) in [
+            (81, 263, 0.2553, 0.3662),
+            (15, 148, 0.0624, 0.1605),
+            (0, 20, 0.0, 0.1611),
+            (1, 29, 0.0061, 0.1718),
+        ] {
+            let found = Share { hits, n }.interval();
+            assert!((found[0] - low).abs() < 5.1e-5, "{found:?}");
+            assert!((found[1] - high).abs() < 5.1e-5, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn the_median_of_an_even_number_lies_between_the_middle_two() {
+        assert_eq!(quantile(&[4.0, 1.0, 3.0, 2.0], 0.5), Some(2.5));
+        assert_eq!(quantile(&[7.0], 0.25), Some(7.0));
+        assert_eq!(quantile(&[], 0.5), None);
+    }
+}

@@ -1,0 +1,38 @@
+//! How often the diagnosis is right: worlds in which something is hidden, measured, and diagnosed
+//! blindly.
+//!
+//! [`hidden`] says what can be hidden, `forces`, `path` and `field` are the world, [`design`] and
+//! [`laboratory`] measure in it, [`strength`] says how much an effect matters. They share nothing
+//! with the models that are diagnosed: neither laws nor integrator nor noise.
+
+pub mod calibration;
+pub mod chance;
+pub mod design;
+pub mod document;
+mod field;
+pub mod forces;
+pub mod hidden;
+pub mod interval;
+pub mod json;
+pub mod laboratory;
+pub mod path;
+mod peers;
+pub mod plan;
+pub mod scores;
+pub mod strength;
+pub mod table;
+pub mod trial;
+
+use configs::Model;
+use rayon::prelude::*;
+
+/// Draws and diagnoses `plans`, as many at a time as there are threads; `done` is told of each.
+#[must_use]
+pub fn run(plans: Vec<plan::Plan>, model: &Model, done: &(dyn Fn() + Sync)) -> Vec<trial::Trial> {
+    let each = |plan| {
+        let trial = trial::Trial::of(plan, model);
+        done();
+        trial
+    };
+    plans.into_par_iter().map(each).collect()
+}

@@ -1,0 +1,336 @@
+//! Which worlds are drawn, row by row of the benchmark.
+
+use super::design::Design;
+use super::hidden::Hidden;
+
+/// Strengths of the grid: relative shift of the resting points.
+pub const STRENGTHS: [f64; 3] = [0.03, 0.06, 0.12];
+
+/// Strength of the rows that vary something else.
+const MIDDLE: f64 = 0.08;
+
+/// Strength of each effect of a pair.
+const OF_PAIR: f64 = 0.09;
+
+/// Error of one reading in the rows of the camera (m).
+pub const CAMERAS: [f64; 4] = [3e-5, 1e-4, 3e-4, 1e-3];
+
+/// What the rows that vary the instrument hide: some of every kind, the hard ones among them.
+const SAMPLE: [Hidden; 12] = [
+    Hidden::ViscousDrag,
+    Hidden::YieldStress,
+    Hidden::Janssen,
+    Hidden::DepthExponent,
+    Hidden::Buoyancy,
+    Hidden::AddedMass,
+    Hidden::RailFriction,
+    Hidden::RateFriction,
+    Hidden::AnisotropicFriction,
+    Hidden::Magnus,
+    Hidden::Packing,
+    Hidden::Lift,
+];
+
+/// A row of the benchmark: one thing is varied in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Row {
+    /// One listed effect, full data.
+    Singles,
+    /// Nothing hidden, full data.
+    Nulls,
+    /// One effect outside the list.
+    Unlisted,
+    /// Two listed effects.
+    Pairs,
+    /// One sphere without spin.
+    OneIntruder,
+    /// Everything straight down.
+    Vertical,
+    /// One listed effect, scalars alone.
+    Scalars,
+    /// Nothing hidden, scalars alone.
+    ScalarNulls,
+    /// Other cameras.
+    Camera,
+    /// Beds that scatter less, or more.
+    Beds,
+    /// Two runs of each condition.
+    Repeats,
+}
+
+/// Which random numbers a benchmark is drawn with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Seeds {
+    /// For work on the diagnosis.
+    Development,
+    /// For the tables; never looked at while the diagnosis is worked on.
+    Release,
+}
+
+/// How much is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Size {
+    /// Worlds per effect and strength; the other rows grow with it.
+    pub draws: usize,
+    /// Rows to draw.
+    pub rows: Vec<Row>,
+}
+
+/// One world to draw.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Its row.
+    pub row: Row,
+    /// Its own number.
+    pub seed: u64,
+    /// What is measured and how.
+    pub design: Design,
+    /// What is hidden.
+    pub hidden: Vec<Hidden>,
+    /// How strong each is.
+    pub strength: f64,
+}
+
+impl Row {
+    /// Every row.
+    pub const ALL: [Self; 11] = [
+        Self::Singles,
+        Self::Nulls,
+        Self::Unlisted,
+        Self::Pairs,
+        Self::OneIntruder,
+        Self::Vertical,
+        Self::Scalars,
+        Self::ScalarNulls,
+        Self::Camera,
+        Self::Beds,
+        Self::Repeats,
+    ];
+
+    /// Name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Singles => "singles",
+            Self::Nulls => "nulls",
+            Self::Unlisted => "unlisted",
+            Self::Pairs => "pairs",
+            Self::OneIntruder => "one-intruder",
+            Self::Vertical => "vertical",
+            Self::Scalars => "scalars",
+            Self::ScalarNulls => "scalar-nulls",
+            Self::Camera => "camera",
+            Self::Beds => "beds",
+            Self::Repeats => "repeats",
+        }
+    }
+}
+
+impl Size {
+    /// The grid of the tables.
+    #[must_use]
+    pub fn full() -> Self {
+        Self { draws: 3, rows: Row::ALL.to_vec() }
+    }
+
+    /// A third of the main rows: a first impression in two minutes.
+    #[must_use]
+    pub fn quick() -> Self {
+        Self { draws: 1, rows: vec![Row::Singles, Row::Nulls, Row::Unlisted] }
+    }
+
+    /// The worlds to draw. A world depends on its place in the grid, not on the size of it.
+    #[must_use]
+    pub fn plans(&self, seeds: Seeds) -> Vec<Plan> {
+        self.rows.iter().flat_map(|&row| self.row(Drawer { row, seeds })).collect()
+    }
+
+    /// `many` of a grid of three draws, in a grid of as many as are asked for.
+    fn share(&self, many: usize) -> usize {
+        (many * self.draws).div_ceil(3)
+    }
+
+    fn row(&self, drawer: Drawer) -> Vec<Plan> {
+        let full = Design::full();
+        match drawer.row {
+            Row::Singles => self.grid(drawer, &full, self.draws),
+            Row::Scalars => self.grid(drawer, &Design::scalars(), self.share(1)),
+            Row::Nulls => drawer.nothing(&full, self.share(100)),
+            Row::ScalarNulls => drawer.nothing(&Design::scalars(), self.share(60)),
+            Row::Unlisted => {
+                let mut plans = Vec::new();
+                for (kind, hidden) in Hidden::unlisted().enumerate() {
+                    for (level, strength) in [0.06, 0.12].into_iter().enumerate() {
+                        for draw in 0..self.share(4) {
+                            plans.push(drawer.plan(
+                                [kind, level, draw],
+                                &full,
+                                (&[hidden], strength),
+                            ));
+                        }
+                    }
+                }
+                plans
+            }
+            Row::Pairs => drawer.pairs(&full, self.share(40)),
+            Row::OneIntruder => {
+                let acts = |hidden: &Hidden| !hidden.needs_spin() && *hidden != Hidden::Packing;
+                drawer.each(0, Hidden::listed().filter(acts), &Design::one_intruder())
+            }
+            Row::Vertical => {
+                let acts = |hidden: &Hidden| !hidden.needs_spin() && !hidden.needs_oblique();
+                drawer.each(0, Hidden::listed().filter(acts), &Design::vertical())
+            }
+            Row::Camera => {
+                self.variants(drawer, CAMERAS.map(|camera| Design { camera, ..full.clone() }))
+            }
+            Row::Beds => {
+                let bed = |coefficient_scatter, path_scatter| Design {
+                    coefficient_scatter,
+                    path_scatter,
+                    ..full.clone()
+                };
+                self.variants(drawer, [bed(0.02, 0.05), bed(0.10, 0.25)])
+            }
+            Row::Repeats => {
+                self.variants(drawer, [2, 5].map(|repeats| Design { repeats, ..full.clone() }))
+            }
+        }
+    }
+
+    /// Every listed effect at every strength.
+    fn grid(&self, drawer: Drawer, design: &Design, draws: usize) -> Vec<Plan> {
+        let mut plans = Vec::new();
+        for (level, strength) in STRENGTHS.into_iter().enumerate() {
+            for (kind, hidden) in Hidden::listed().enumerate() {
+                for draw in 0..draws {
+                    plans.push(drawer.plan([kind, level, draw], design, (&[hidden], strength)));
+                }
+            }
+        }
+        plans
+    }
+
+    /// The sample before each of `designs`; the worlds are the same before all of them.
+    fn variants(&self, drawer: Drawer, designs: impl IntoIterator<Item = Design>) -> Vec<Plan> {
+        let designs: Vec<Design> = designs.into_iter().collect();
+        let draws = 0..self.share(1);
+        let each = designs.iter();
+        each.flat_map(|design| {
+            draws.clone().flat_map(move |draw| drawer.each(draw, SAMPLE.into_iter(), design))
+        })
+        .collect()
+    }
+}
+
+/// Draws the worlds of one row.
+#[derive(Clone, Copy)]
+struct Drawer {
+    row: Row,
+    seeds: Seeds,
+}
+
+impl Drawer {
+    /// The world at `place` of the grid of the row.
+    fn plan(
+        self,
+        place: [usize; 3],
+        design: &Design,
+        (hidden, strength): (&[Hidden], f64),
+    ) -> Plan {
+        let seed = place
+            .into_iter()
+            .fold(self.row as u64 + 1, |number, index| 1000 * number + index as u64);
+        let stream = match self.seeds {
+            Seeds::Development => 0,
+            Seeds::Release => 1 << 60,
+        };
+        Plan {
+            row: self.row,
+            seed: stream + seed,
+            design: design.clone(),
+            hidden: hidden.to_vec(),
+            strength,
+        }
+    }
+
+    fn nothing(self, design: &Design, count: usize) -> Vec<Plan> {
+        (0..count).map(|draw| self.plan([0, 0, draw], design, (&[], 0.0))).collect()
+    }
+
+    fn each(
+        self,
+        draw: usize,
+        effects: impl Iterator<Item = Hidden>,
+        design: &Design,
+    ) -> Vec<Plan> {
+        effects
+            .map(|hidden| self.plan([hidden as usize, 0, draw], design, (&[hidden], MIDDLE)))
+            .collect()
+    }
+
+    /// Pairs of listed effects: every one is in about as many as any other.
+    fn pairs(self, design: &Design, count: usize) -> Vec<Plan> {
+        let listed: Vec<Hidden> = Hidden::listed().collect();
+        let n = listed.len();
+        (0..count)
+            .map(|draw| {
+                // Steps of 1, 2, 3, … around the circle of effects: no pair comes twice.
+                let (first, step) = (draw % n, 1 + draw / n + 3 * (draw % 3));
+                let both = [listed[first], listed[(first + step) % n]];
+                self.plan([1, 0, draw], design, (&both, OF_PAIR))
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_worlds_of_a_row_share_their_numbers_but_those_before_several_designs() {
+        for seeds in [Seeds::Development, Seeds::Release] {
+            let plans = Size::full().plans(seeds);
+            for (at, plan) in plans.iter().enumerate() {
+                for other in &plans[..at] {
+                    let same_world = plan.hidden == other.hidden && plan.design != other.design;
+                    assert!(plan.seed != other.seed || same_world, "{plan:?} {other:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn seeds_for_development_and_for_release_are_disjoint() {
+        let of = |seeds| Size::full().plans(seeds).into_iter().map(|plan| plan.seed);
+        let development: Vec<u64> = of(Seeds::Development).collect();
+        assert!(of(Seeds::Release).all(|seed| !development.contains(&seed)));
+    }
+
+    #[test]
+    fn a_smaller_grid_is_a_part_of_the_larger_one() {
+        let full = Size::full().plans(Seeds::Development);
+        let quick = Size::quick().plans(Seeds::Development);
+        assert!(quick.iter().all(|plan| full.contains(plan)));
+        assert!(quick.len() < full.len() && full.len() <= 900, "{}", full.len());
+    }
+
+    #[test]
+    fn forty_pairs_are_forty_different_pairs_of_two_different_effects() {
+        let size = Size { draws: 3, rows: vec![Row::Pairs] };
+        let mut pairs: Vec<Vec<Hidden>> = size
+            .plans(Seeds::Development)
+            .into_iter()
+            .map(|plan| {
+                let mut pair = plan.hidden;
+                pair.sort();
+                pair
+            })
+            .collect();
+        pairs.sort();
+        pairs.dedup();
+        assert_eq!(pairs.len(), 40);
+        assert!(pairs.iter().all(|pair| pair[0] != pair[1]));
+    }
+}

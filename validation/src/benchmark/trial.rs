@@ -1,0 +1,248 @@
+//! One world, measured and diagnosed blindly.
+
+use std::time::Instant;
+
+use configs::{ConfigError, LoadOptions, Model, ModelSource, find_shipped};
+use nalgebra::DVector;
+
+use super::chance::Chance;
+use super::laboratory::{Nature, measure, resting_points};
+use super::path::WorldError;
+use super::plan::Plan;
+use super::strength::amplitude;
+use crate::bench::{Bench, BenchError, DEFAULT_SEED, Fitted};
+use crate::diagnose::diagnose;
+use crate::forward::Forward;
+use crate::measurement::MeasurementSet;
+use crate::observable::Observable;
+use crate::observed::Observed;
+use crate::pair::best_pair;
+use crate::resistive::ResistiveForward;
+use crate::score::Ranking;
+use crate::sensitivity::Point;
+use crate::verdict::{Diagnosis, RankedEffect, Verdict};
+
+/// The model that every set is diagnosed with.
+const BASELINE: &str = "two-term-vector";
+
+/// A planned set with what came of it.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// What was hidden where.
+    pub plan: Plan,
+    /// What came of it.
+    pub outcome: Outcome,
+}
+
+/// What came of a planned set.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    /// The diagnosis.
+    Answered(Box<Answer>),
+    /// Why there is none that could be scored.
+    Skipped(String),
+}
+
+/// What a diagnosis said, as far as it is scored.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Probability that the best of all effects explains so much by chance.
+    pub p1: Option<f64>,
+    /// Of the lack of fit of the baseline.
+    pub p_lof: Option<f64>,
+    /// Of the lack of fit with the best effect, or with the pair.
+    pub p_lof_with: Option<f64>,
+    /// Ranked effects, best first.
+    pub ranked: Vec<String>,
+    /// Those that the set cannot show.
+    pub refused: Vec<String>,
+    /// Those that cannot be told from the first.
+    pub leaders: Vec<String>,
+    /// Those that the verdict names.
+    pub named: Vec<String>,
+    /// Predicted probability that the first is ranked first, were it there.
+    pub predicted_first: Option<f64>,
+    /// Amplitude of the first, with its standard error.
+    pub amplitude: Option<(f64, f64)>,
+    /// Amplitudes that were hidden, in the order of the plan.
+    pub hidden: Vec<f64>,
+    /// Root mean square error of the resting points of held-out conditions (m) against the mean bed of
+    /// the world, without and with what is named; none where nothing is named.
+    pub endpoint: Option<[f64; 2]>,
+    /// The pair that a search finds, whatever the verdict; none where it is not asked for.
+    pub pair: Option<Vec<String>>,
+    /// Time that the diagnosis took (s).
+    pub seconds: f64,
+}
+
+/// The model that every set is diagnosed with.
+///
+/// # Errors
+/// If the shipped model does not load.
+pub fn baseline() -> Result<Model, Box<ConfigError>> {
+    let text = find_shipped(BASELINE).map_or("", |shipped| shipped.text).to_owned();
+    let source = ModelSource::Text { name: BASELINE.to_owned(), text, folder: ".".into() };
+    Model::load(source, &LoadOptions::default()).map(|loaded| loaded.model).map_err(Box::new)
+}
+
+/// Draws the world of `plan` and measures in it.
+///
+/// # Errors
+/// If nothing in it is as strong as planned, or a sphere does not stop.
+pub fn draw(plan: &Plan) -> Result<(Nature, MeasurementSet), WorldError> {
+    let mut chance = Chance::new(plan.seed);
+    let mut nature = Nature::drawn(&mut chance);
+    for &hidden in &plan.hidden {
+        let signs = hidden.form().signs;
+        let sign = signs[chance.below(signs.len())];
+        let q = amplitude(&plan.design, &nature, (hidden, sign), plan.strength)?;
+        nature.hidden.push((hidden, q));
+    }
+    let set = measure(&plan.design, &nature, &mut chance)?;
+    Ok((nature, set))
+}
+
+impl Trial {
+    /// Draws the world of `plan`, measures in it, and has `model` diagnosed by the measurements.
+    #[must_use]
+    pub fn of(plan: Plan, model: &Model) -> Self {
+        let outcome = match draw(&plan) {
+            Err(error) => Outcome::Skipped(error.to_string()),
+            Ok((nature, set)) => answer(&plan, &nature, &set, model)
+                .map_or_else(Outcome::Skipped, |answer| Outcome::Answered(Box::new(answer))),
+        };
+        Self { plan, outcome }
+    }
+
+    /// Whether the effect `id` is hidden.
+    #[must_use]
+    pub fn hides(&self, id: &str) -> bool {
+        self.plan.hidden.iter().any(|hidden| hidden.id() == id)
+    }
+
+    /// The answer, if there is one.
+    #[must_use]
+    pub fn answer(&self) -> Option<&Answer> {
+        match &self.outcome {
+            Outcome::Answered(answer) => Some(answer),
+            Outcome::Skipped(_) => None,
+        }
+    }
+}
+
+fn answer(
+    plan: &Plan,
+    nature: &Nature,
+    set: &MeasurementSet,
+    model: &Model,
+) -> Result<Answer, String> {
+    let clock = Instant::now();
+    let observed = Observed::of(set);
+    let forward = ResistiveForward::new(model, set, &observed.layouts())
+        .map_err(|error| error.to_string())?;
+    let listed = plan.hidden.iter().filter(|hidden| hidden.is_listed());
+    for hidden in listed {
+        if forward.candidates().iter().all(|candidate| candidate.id != hidden.id()) {
+            return Err(format!("{} is no candidate", hidden.id()));
+        }
+    }
+    let bench = Bench { set, observed: &observed, forward: &forward };
+    let diagnosis = diagnose(&bench, DEFAULT_SEED).map_err(|error| error.to_string())?;
+    let seconds = clock.elapsed().as_secs_f64();
+    let pair = match plan.hidden.len() {
+        2 => pair_found(&bench).map_err(|error| error.to_string())?,
+        _ => None,
+    };
+    let rest = resting_points(&plan.design, nature).map_err(|error| error.to_string())?;
+    let endpoint = endpoints(&bench, &diagnosis, &rest).map_err(|error| error.to_string())?;
+    Ok(Answer::new(diagnosis, nature, Apart { pair, endpoint, seconds }))
+}
+
+/// What is learned beside a diagnosis.
+struct Apart {
+    pair: Option<Vec<String>>,
+    endpoint: Option<[f64; 2]>,
+    seconds: f64,
+}
+
+impl Answer {
+    fn new(diagnosis: Diagnosis, nature: &Nature, apart: Apart) -> Self {
+        let ids = |of: fn(&&RankedEffect) -> bool| {
+            diagnosis.ranking.iter().filter(of).map(|effect| effect.id.clone()).collect()
+        };
+        let first = diagnosis.ranking.first().filter(|effect| effect.testable);
+        Self {
+            verdict: diagnosis.verdict,
+            p1: diagnosis.p1,
+            p_lof: diagnosis.p_lof,
+            p_lof_with: diagnosis.p_lof_with,
+            ranked: ids(|effect| effect.testable),
+            refused: ids(|effect| !effect.testable),
+            predicted_first: first.and_then(|effect| effect.predicted_top1),
+            amplitude: first.and_then(|effect| effect.q.zip(effect.se)),
+            hidden: nature.hidden.iter().map(|(_, q)| *q).collect(),
+            leaders: diagnosis.leaders,
+            named: diagnosis.effects,
+            endpoint: apart.endpoint,
+            pair: apart.pair,
+            seconds: apart.seconds,
+        }
+    }
+}
+
+/// The two effects that a search for pairs ends with.
+fn pair_found(bench: &Bench<'_>) -> Result<Option<Vec<String>>, BenchError> {
+    let baseline = bench.fit(&Point::start(bench.forward))?;
+    let candidates = bench.forward.candidates();
+    let testable: Vec<usize> =
+        (0..candidates.len()).filter(|&at| candidates[at].not_testable.is_none()).collect();
+    let singles = Ranking::of(bench, &baseline, &testable, DEFAULT_SEED)?;
+    let pair = best_pair(bench, &baseline, &singles, DEFAULT_SEED)?;
+    Ok(pair.map(|pair| {
+        let effects = &pair.fitted.fit.point.effects;
+        effects.iter().map(|&(index, _)| candidates[index].id.to_string()).collect()
+    }))
+}
+
+/// Errors of the resting points `rest` (m) of held-out conditions, without and with what is named.
+fn endpoints(
+    bench: &Bench<'_>,
+    diagnosis: &Diagnosis,
+    rest: &[[f64; 2]],
+) -> Result<Option<[f64; 2]>, BenchError> {
+    let (Some(baseline), Some(proposed)) = (&diagnosis.baseline, &diagnosis.proposed) else {
+        return Ok(None);
+    };
+    if diagnosis.verdict != Verdict::Supported {
+        return Ok(None);
+    }
+    let error = |fitted: &Fitted| -> Result<f64, BenchError> {
+        let (mut square, mut n) = (0.0, 0.0);
+        for &condition in &bench.observed.holdout {
+            let predicted = fitted.fit.point.predict(bench.forward, condition)?;
+            let [x, z] = rest[condition];
+            square += distance_squared(bench, condition, &predicted, [x, z]);
+            n += 1.0;
+        }
+        Ok((square / f64::max(n, 1.0)).sqrt())
+    };
+    Ok(Some([error(baseline)?, error(proposed)?]))
+}
+
+fn distance_squared(
+    bench: &Bench<'_>,
+    condition: usize,
+    predicted: &DVector<f64>,
+    [x, z]: [f64; 2],
+) -> f64 {
+    let kinds = bench.observed.conditions[condition].layout.kinds();
+    let each = kinds.iter().zip(predicted.iter());
+    each.map(|(kind, value)| match kind {
+        Observable::FinalDepth => (value - z).powi(2),
+        Observable::FinalRange => (value - x).powi(2),
+        _ => 0.0,
+    })
+    .sum()
+}

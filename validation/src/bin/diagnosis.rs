@@ -1,0 +1,166 @@
+//! `cargo xtask bench diagnosis`: how often the diagnosis is right.
+
+#![allow(clippy::print_stdout, reason = "stdout is where a command's result belongs")]
+
+use std::error::Error;
+use std::fs;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use engine::parallel::with_threads;
+use validation::benchmark::calibration::{calibration, picture};
+use validation::benchmark::interval::quantile;
+use validation::benchmark::plan::{Row, Seeds, Size};
+use validation::benchmark::trial::{Trial, baseline, draw};
+use validation::benchmark::{document, json, run, table};
+
+const HELP: &str = "\
+Worlds in which something is hidden, measured and diagnosed blindly: how often is it found?
+
+Usage: cargo xtask bench diagnosis [--seeds development|release] [--only ROW]... [--sets N] [--quick]
+                                   [--threads N] [--json] [--write] [--export DIR]
+
+  --seeds WHICH  random numbers for work on the diagnosis (default), or those of the tables
+  --only ROW     one row; may be given several times
+                 (singles, nulls, unlisted, pairs, one-intruder, vertical, scalars, scalar-nulls,
+                 camera, beds, repeats)
+  --sets N       worlds per effect and strength (3); all rows grow with it
+  --quick        a third of singles, nulls and unlisted
+  --threads N    sets diagnosed at a time (one per core)
+  --json         one JSON object, every set in it
+  --write        the tables to docs/diagnosis-benchmark.md, the picture to docs/diagnosis-calibration.svg
+  --export DIR   writes the first set of what is asked for to DIR, and diagnoses nothing
+
+Exit status: 0 done, 1 failed, 2 the command line was not understood.
+";
+
+/// Sets whose time is taken on one thread.
+const TIMED: usize = 5;
+
+/// What the command line asks for.
+struct Wish {
+    seeds: Seeds,
+    size: Size,
+    threads: usize,
+    json: bool,
+    write: bool,
+    export: Option<PathBuf>,
+}
+
+fn main() -> ExitCode {
+    let wish = match parse(std::env::args().skip(1)) {
+        Ok(Some(wish)) => wish,
+        Ok(None) => {
+            print!("{HELP}");
+            return ExitCode::SUCCESS;
+        }
+        Err(message) => {
+            eprintln!("error: {message}\n\n{HELP}");
+            return ExitCode::from(2);
+        }
+    };
+    match work(&wish) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// `None` for help.
+fn parse(mut args: impl Iterator<Item = String>) -> Result<Option<Wish>, String> {
+    let (mut seeds, mut size, mut only, mut draws) =
+        (Seeds::Development, Size::full(), Vec::new(), None);
+    let (mut threads, mut json, mut write, mut export) = (0, false, false, None);
+    while let Some(arg) = args.next() {
+        let mut value = || args.next().ok_or(format!("`{arg}` needs a value"));
+        match arg.as_str() {
+            "--seeds" => {
+                seeds = match value()?.as_str() {
+                    "development" => Seeds::Development,
+                    "release" => Seeds::Release,
+                    other => return Err(format!("there are no seeds `{other}`")),
+                }
+            }
+            "--only" => only.push(row(&value()?)?),
+            "--sets" => draws = Some(count(&value()?)?),
+            "--threads" => threads = count(&value()?)?,
+            "--quick" => size = Size::quick(),
+            "--json" => json = true,
+            "--write" => write = true,
+            "--export" => export = Some(PathBuf::from(value()?)),
+            "-h" | "--help" => return Ok(None),
+            other => return Err(format!("`{other}` is not understood")),
+        }
+    }
+    if !only.is_empty() {
+        size.rows = only;
+    }
+    size.draws = draws.unwrap_or(size.draws);
+    Ok(Some(Wish { seeds, size, threads, json, write, export }))
+}
+
+fn row(name: &str) -> Result<Row, String> {
+    let row = Row::ALL.into_iter().find(|row| row.name() == name);
+    let known = || Row::ALL.map(Row::name).join(", ");
+    row.ok_or_else(|| format!("no row is called `{name}`; there are {}", known()))
+}
+
+fn count(text: &str) -> Result<usize, String> {
+    text.parse()
+        .ok()
+        .filter(|n| (1..=1000).contains(n))
+        .ok_or(format!("`{text}` is no number of 1 to 1000"))
+}
+
+fn work(wish: &Wish) -> Result<(), Box<dyn Error>> {
+    let plans = wish.size.plans(wish.seeds);
+    if let Some(folder) = &wish.export {
+        let plan = plans.first().ok_or("nothing is asked for")?;
+        let (nature, set) = draw(plan)?;
+        set.write(folder)?;
+        println!("{}: drag {}, friction {}", folder.display(), nature.drag, nature.friction);
+        for (hidden, q) in nature.hidden {
+            println!("hidden: {}, q = {q}: {}", hidden.id(), hidden.form().law);
+        }
+        return Ok(());
+    }
+    let model = baseline()?;
+    let (total, finished) = (plans.len(), AtomicUsize::new(0));
+    let done = || {
+        let n = finished.fetch_add(1, Ordering::Relaxed) + 1;
+        if n.is_multiple_of(20) || n == total {
+            eprintln!("{n} of {total} sets");
+        }
+    };
+    let timed: Vec<_> = plans.iter().take(TIMED).cloned().collect();
+    let trials = with_threads(wish.threads, || run(plans, &model, &done))?;
+    let alone = with_threads(1, || run(timed, &model, &|| ()))?;
+    let seconds: Vec<f64> = alone.iter().filter_map(Trial::answer).map(|a| a.seconds).collect();
+    let bins = calibration(&trials);
+    let mut report = table::report(&trials, &bins);
+    if let Some(median) = quantile(&seconds, 0.5) {
+        report.insert_str(
+            0,
+            &format!(
+                "Alone on one thread, a set takes {median:.2} s at the median of {}.\n",
+                seconds.len()
+            ),
+        );
+    }
+    match wish.json {
+        true => println!("{:#}", json::report(&trials, &bins)),
+        false => println!("{report}"),
+    }
+    if wish.write {
+        let path = "docs/diagnosis-benchmark.md";
+        let page = fs::read_to_string(path).map_err(|error| format!("{path}: {error}"))?;
+        let page =
+            document::with_tables(&page, &[("worlds", &table::worlds()), ("results", &report)])?;
+        fs::write(path, page)?;
+        fs::write("docs/diagnosis-calibration.svg", picture(&bins)?)?;
+    }
+    Ok(())
+}
