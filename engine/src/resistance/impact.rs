@@ -9,6 +9,7 @@ use super::motion::System;
 use super::observe::{Observer, Stretch};
 use super::solver::{Plan, Solver};
 use super::{ResistanceLaw, Surroundings};
+use crate::math::Vec3;
 
 /// A speed below this share of the greatest so far counts as rest.
 const REST_SPEED: f64 = 0.05;
@@ -134,6 +135,22 @@ struct Fired {
     which: [bool; N_MARGINS],
 }
 
+/// The margins where a look at a step begins.
+struct Before {
+    margins: Margins,
+    /// Whether something has just happened there.
+    fresh: bool,
+}
+
+/// How the motion goes on when something has happened.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Course {
+    /// In the same modes: the step that was taken holds to its end.
+    Same,
+    /// In other modes or not at all.
+    New,
+}
+
 /// Everything of a run that is not the state.
 struct Progress {
     modes: Modes,
@@ -217,29 +234,41 @@ impl Impact {
             let plan = Plan { from: time, to: duration, first_step: hint };
             let mut solver =
                 Solver::start(&system, &modes, plan, &state, &self.tolerance).ok_or(stalled)?;
-            let mut margins = self.margins(&system, &state, &progress);
-            let mut first = true;
+            let mut before =
+                Before { margins: self.margins(&system, &state, &progress), fresh: true };
+            let mut rest_of_step = None;
             loop {
-                let (from, to) = solver.step().ok_or(ImpactError::Stalled { time })?;
-                hint = to - from;
-                progress.steps += 1;
-                let fired =
-                    self.look(&mut solver, &system, (from, to), (margins, first), &progress);
+                let (from, to) = match rest_of_step.take() {
+                    Some(rest) => rest,
+                    None => {
+                        let (from, to) = solver.step().ok_or(ImpactError::Stalled { time })?;
+                        hint = to - from;
+                        progress.steps += 1;
+                        (from, to)
+                    }
+                };
+                let (after, fired) =
+                    self.look(&mut solver, &system, (from, to), &before, &progress);
                 time = fired.as_ref().map_or(to, |fired| fired.time);
                 state = solver.at(time);
                 let mut stretch =
                     Stretch { from, to: time, solver: &mut solver, system: &system, modes: &modes };
                 observer.stretch(&mut stretch);
                 progress.top_speed = progress.top_speed.max(self.speed(&state));
+                before = Before { margins: after, fresh: false };
                 if let Some(fired) = fired {
-                    self.respond(&system, &mut time, &mut state, &mut progress, &fired);
+                    let course =
+                        self.respond(&system, &mut time, &mut state, &mut progress, &fired);
+                    if course == Course::New || self.is_over(&progress) || time <= from {
+                        break;
+                    }
+                    let margins = self.margins(&system, &state, &progress);
+                    before = Before { margins, fresh: true };
+                    rest_of_step = (time < to).then_some((time, to));
+                }
+                if rest_of_step.is_none() && to >= duration {
                     break;
                 }
-                if to >= duration {
-                    break;
-                }
-                margins = self.margins(&system, &state, &progress);
-                first = false;
             }
         }
         Err(ImpactError::Chatter { time })
@@ -323,8 +352,7 @@ impl Impact {
 
     /// The speed of the first part, negative beyond a reversal: along a line, or along the component
     /// that is not held, it passes through zero.
-    fn speed_along(&self, state: &State, modes: &Modes) -> f64 {
-        let velocity = self.assembly.part(0, state).velocity;
+    fn speed_along(velocity: &Vec3, modes: &Modes) -> f64 {
         match (modes.straight, modes.held()[0]) {
             (Some(direction), _) => velocity.dot(&direction),
             (None, [true, false]) => velocity.z * modes.sense[0][1].sign(),
@@ -343,9 +371,10 @@ impl Impact {
     fn margins(&self, system: &System<'_>, state: &State, progress: &Progress) -> Margins {
         let mut margins = [f64::INFINITY; N_MARGINS];
         let modes = &progress.modes;
-        let speed = self.speed_along(state, modes);
+        let first = self.assembly.part(0, state);
+        let speed = Self::speed_along(&first.velocity, modes);
         for index in 0..self.assembly.n_parts() {
-            let part = self.assembly.part(index, state);
+            let part = if index == 0 { first } else { self.assembly.part(index, state) };
             let (own, stop) = (&mut margins[5 * index..5 * index + 5], &progress.parts[index]);
             let depth = part.immersion.depth;
             own[SURFACE] = if modes.in_bed[index] { depth } else { -depth };
@@ -370,11 +399,10 @@ impl Impact {
             }
         }
         if self.assembly.moves_as_a_point() && modes.held()[0] == [false; 2] {
-            let part = self.assembly.part(0, state);
             margins[STOPPING] = match modes.straight {
-                Some(direction) => part.velocity.dot(&direction),
+                Some(direction) => first.velocity.dot(&direction),
                 None => {
-                    let scale = (self.bed.gravity * part.immersion.diameter).sqrt();
+                    let scale = (self.bed.gravity * first.immersion.diameter).sqrt();
                     let above = speed - ALMOST_REST * scale;
                     if modes.creeping { -above } else { above }
                 }
@@ -388,22 +416,28 @@ impl Impact {
         margins
     }
 
-    /// The first thing that happens in the last step of `solver`.
+    /// The margins at the end of a part of the last step of `solver`, and the first thing that happens
+    /// in it.
     fn look(
         &self,
         solver: &mut Solver<'_>,
         system: &System<'_>,
         (from, to): (f64, f64),
-        (before, first): (Margins, bool),
+        before: &Before,
         progress: &Progress,
-    ) -> Option<Fired> {
+    ) -> (Margins, Option<Fired>) {
         let middle = 0.5 * (from + to);
-        let halfway = self.margins(system, &solver.at(middle), progress);
         let after = self.margins(system, &solver.at(to), progress);
+        let near_halfway = self.margins(system, &solver.near(middle), progress);
+        if after.iter().chain(&near_halfway).all(|margin| *margin >= 0.0) {
+            return (after, None);
+        }
+        let halfway = self.margins(system, &solver.at(middle), progress);
         let mut roots = [f64::INFINITY; N_MARGINS];
         for which in 0..N_MARGINS {
+            let start = before.margins[which];
             // Round-off may leave a margin below zero where a stretch begins; it has not been crossed.
-            let start = if first { before[which].max(0.0) } else { before[which] };
+            let start = if before.fresh { start.max(0.0) } else { start };
             let value = |state: &State| self.margins(system, state, progress)[which];
             if start >= 0.0 && halfway[which] < 0.0 {
                 roots[which] = solver.root((from, start), (middle, halfway[which]), value);
@@ -412,8 +446,10 @@ impl Impact {
             }
         }
         let time = roots.iter().copied().fold(f64::INFINITY, f64::min);
-        time.is_finite()
-            .then(|| Fired { time, which: roots.map(|root| root <= time + SIMULTANEOUS) })
+        let fired = time
+            .is_finite()
+            .then(|| Fired { time, which: roots.map(|root| root <= time + SIMULTANEOUS) });
+        (after, fired)
     }
 
     /// Takes note of what happened and changes the modes accordingly.
@@ -424,7 +460,7 @@ impl Impact {
         state: &mut State,
         progress: &mut Progress,
         fired: &Fired,
-    ) {
+    ) -> Course {
         let mut still = progress.modes.held();
         let mut in_bed = progress.modes.in_bed;
         let mut changed = false;
@@ -466,10 +502,10 @@ impl Impact {
         let creeping = progress.modes.creeping;
         if stopping && !creeping && is_held(system, state, &progress.modes) {
             self.come_to_rest(system, time, state, progress);
-            return;
+            return Course::New;
         }
         if !(changed || stopping) {
-            return;
+            return Course::Same;
         }
         if stopping && progress.modes.straight.is_some() {
             still[0] = [true; 2];
@@ -497,6 +533,7 @@ impl Impact {
             }
             self.close(*time, state, progress);
         }
+        Course::New
     }
 
     /// Covers what is left of the way at constant deceleration.

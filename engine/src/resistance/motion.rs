@@ -22,11 +22,13 @@ pub(super) struct Loaded {
 
 impl Loaded {
     /// Force of the terms that vary smoothly with the velocity (N).
+    #[inline]
     pub(super) fn dynamic(&self) -> Vec3 {
         self.load.dynamic - self.part.velocity * self.load.recruitment
     }
 
     /// Force of the frictions (N), without those that hold a component.
+    #[inline]
     pub(super) fn sliding(&self) -> Vec3 {
         let Self { motion, load, .. } = self;
         let mut force = -load.friction.component_mul(&motion.direction);
@@ -41,6 +43,7 @@ impl Loaded {
     }
 
     /// Everything but the frictions that hold.
+    #[inline]
     pub(super) fn on_part(&self) -> PartLoad {
         PartLoad {
             force: self.dynamic() + self.sliding(),
@@ -52,11 +55,13 @@ impl Loaded {
 
 impl System<'_> {
     /// Part `index` under all laws.
+    #[inline]
     pub(super) fn loaded(&self, index: usize, state: &State, modes: &Modes) -> Loaded {
         self.visit(index, state, modes, |_, _, _| {})
     }
 
     /// The same; `each` is told what every law added, as the loads before and after it.
+    #[inline]
     pub(super) fn visit(
         &self,
         index: usize,
@@ -96,6 +101,7 @@ impl System<'_> {
     }
 
     /// All parts under all laws; those that an assembly does not have carry nothing.
+    #[inline]
     pub(super) fn on_parts(&self, state: &State, modes: &Modes) -> [PartLoad; PARTS] {
         let mut loads = [PartLoad::default(); PARTS];
         for (index, load) in loads.iter_mut().enumerate().take(self.assembly.n_parts()) {
