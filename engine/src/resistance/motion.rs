@@ -69,35 +69,37 @@ impl System<'_> {
         modes: &Modes,
         mut each: impl FnMut(usize, &Load, &Load),
     ) -> Loaded {
-        let mut part = self.assembly.part(index, state);
+        let part = self.assembly.part(index, state);
         let motion = motion(&part, index, modes);
+        // Made where it is returned: it is too large to be moved in the innermost loop of all.
+        let mut loaded = Loaded { part, motion, load: Load::default() };
+        let Loaded { part, motion, load } = &mut loaded;
         let immersion: &mut Immersion = &mut part.immersion;
-        let mut load = Load::default();
         let inside = modes.in_bed[index];
         if inside {
             for law in self.laws {
-                law.expose(immersion, &motion, &self.bed);
+                law.expose(immersion, motion, &self.bed);
             }
         }
         for (number, law) in self.laws.iter().enumerate() {
-            let before = load;
+            let before = *load;
             if inside {
-                law.act(immersion, &motion, &self.bed, &mut load);
+                law.act(immersion, motion, &self.bed, load);
             }
-            law.act_everywhere(immersion, &motion, &self.bed, &mut load);
-            each(number, &before, &load);
+            law.act_everywhere(immersion, motion, &self.bed, load);
+            each(number, &before, load);
         }
         if inside {
             for (number, law) in self.laws.iter().enumerate() {
-                let before = load;
-                law.modulate(immersion, &motion, &mut load);
-                each(number, &before, &load);
+                let before = *load;
+                law.modulate(immersion, motion, load);
+                each(number, &before, load);
             }
         }
         if modes.gripping {
-            hold_along(&mut load, modes.sense[index]);
+            hold_along(load, modes.sense[index]);
         }
-        Loaded { part, motion, load }
+        loaded
     }
 
     /// All parts under all laws; those that an assembly does not have carry nothing.

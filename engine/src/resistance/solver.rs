@@ -28,6 +28,9 @@ const SHORTEST: f64 = 1e-18;
 /// What is kept of the step that the errors allow, so that the next one seldom fails.
 const SAFETY: f64 = 0.9;
 
+/// An error below this says nothing of how errors grow from step to step.
+const LEAST_ERROR: f64 = 1e-2;
+
 /// Least and greatest ratio of a step to the one before.
 const RATIOS: (f64, f64) = (1.0 / 3.0, 6.0);
 
@@ -66,6 +69,8 @@ pub(super) struct Solver<'a> {
     /// Length of the next step, negative backward (s).
     next: f64,
     steps: usize,
+    /// Length (s) and error of the last step.
+    accepted: Option<(f64, f64)>,
     /// Start and end of the last step (s), and the numbers there.
     times: (f64, f64),
     before: Flat,
@@ -93,6 +98,7 @@ impl<'a> Solver<'a> {
             end: plan.to,
             next: plan.first_step,
             steps: 0,
+            accepted: None,
             times: (plan.from, plan.from),
             before: numbers,
             after: numbers,
@@ -124,12 +130,12 @@ impl<'a> Solver<'a> {
             let taken = self.combined(STEP);
             let tried = self.displaced(&taken, step);
             let error = self.error(&taken, &tried, step);
-            // The eighth root: the error is of order 8 in the step.
-            let ratio = SAFETY / error.sqrt().sqrt().sqrt();
+            let ratio = self.ratio(step, error);
             self.next = step * ratio.max(RATIOS.0).min(largest_ratio);
             if error <= 1.0 {
                 self.times = (from, if last { self.end } else { from + step });
                 self.after = tried;
+                self.accepted = Some((step, error.max(LEAST_ERROR)));
                 self.slopes[END] = self.slope(&tried);
                 return self.after.iter().all(|number| number.is_finite()).then_some(self.times);
             }
@@ -147,10 +153,14 @@ impl<'a> Solver<'a> {
         if time - self.times.1 == 0.0 {
             return self.after.into();
         }
-        if self.beyond_cubic.is_none() {
-            self.beyond_cubic = Some(self.finish_dense_output());
-        }
-        let beyond = self.beyond_cubic.unwrap_or_default();
+        let beyond = match self.beyond_cubic {
+            Some(known) => known,
+            None => {
+                let found = self.finish_dense_output();
+                self.beyond_cubic = Some(found);
+                found
+            }
+        };
         self.interpolate(time, &beyond)
     }
 
@@ -178,6 +188,21 @@ impl<'a> Solver<'a> {
         let state = State::from(*numbers);
         let (acceleration, _) = accelerate(self.system, &state, self.modes);
         State { position: state.rate, rate: acceleration }.into()
+    }
+
+    /// Ratio of the next step to one of length `step` (s) with this error. On the way to rest errors grow
+    /// from step to step, so their trend counts too where it asks for less (Gustafsson 1994).
+    fn ratio(&self, step: f64, error: f64) -> f64 {
+        // The error is of order 8 in the step.
+        let eighth_root = |value: f64| value.sqrt().sqrt().sqrt();
+        let ratio = SAFETY / eighth_root(error);
+        match self.accepted {
+            Some((before, error_before)) if error <= 1.0 => {
+                let trend = step / before * eighth_root(error_before / error);
+                ratio.min(ratio * trend)
+            }
+            _ => ratio,
+        }
     }
 
     /// The numbers at the start of the step, moved by `step` (s) along the slopes of `row`.
