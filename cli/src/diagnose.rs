@@ -7,7 +7,7 @@ use configs::edit::add_effects;
 use serde_json::Value;
 use validation::bench::Bench;
 use validation::diagnose::diagnose;
-use validation::verdict::{Diagnosis, Verdict};
+use validation::verdict::{Diagnosis, RankedEffect, Verdict};
 
 use crate::add::from_diagnosis;
 use crate::compare::{lines, noise_words, probability, table};
@@ -109,6 +109,14 @@ fn as_text(model: &str, diagnosis: &Diagnosis, [n_fit, n_holdout]: [usize; 2]) -
     text
 }
 
+/// The name of an effect, with the unit of its amplitude where that is no pure number.
+fn in_unit(effect: &RankedEffect) -> String {
+    match effect.unit.as_str() {
+        "1" => effect.id.clone(),
+        unit => format!("{} ({unit})", effect.id),
+    }
+}
+
 fn ranking(diagnosis: &Diagnosis) -> String {
     let header = ["effect", "q", "se", "delta", "behind", "ranked first if there", "limit", ""];
     let mut table = table(&header);
@@ -118,14 +126,17 @@ fn ranking(diagnosis: &Diagnosis) -> String {
     };
     for effect in diagnosis.ranking.iter().filter(|effect| effect.testable) {
         table.add_row([
-            effect.id.clone(),
+            in_unit(effect),
             number(effect.q, 4),
             number(effect.se, 4),
             number(effect.delta, 1),
             number(effect.delta.map(|delta| best - delta), 1),
             number(effect.predicted_top1, 2),
             number(effect.detection_limit, 4),
-            format!("separable by {}", effect.note),
+            match effect.note.as_str() {
+                "" => String::new(),
+                note => format!("separable {note}"),
+            },
         ]);
     }
     if let Some(column) = table.column_mut(header.len() - 1) {

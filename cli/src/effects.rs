@@ -1,7 +1,7 @@
 //! `plunge effects`: the library of laws and effects.
 
 use configs::contact_laws::{
-    ActsOn, LAWS, LawEntry, Needs, RESISTANCE_LAWS, ResistanceEntry, Role,
+    ActsOn, LAWS, LawEntry, RESISTANCE_LAWS, ResistanceEntry, Role, Twin, twins,
 };
 use configs::engine::ledger::{Channel, ChannelKind};
 use configs::engine::params::{Default, ParamSpec, Range};
@@ -37,8 +37,10 @@ struct Described {
     channels: Vec<Channel>,
     /// What an expression in place of a parameter may depend on.
     variables: &'static [&'static str],
-    /// What data must have to show an effect, and what it takes to tell it from its twins.
-    diagnosis: Option<(&'static [Needs], &'static str)>,
+    /// What data must have to show an effect.
+    shows_with: Vec<&'static str>,
+    /// The effects that look like it.
+    twins: Vec<Twin>,
 }
 
 impl From<&LawEntry> for Described {
@@ -59,19 +61,17 @@ impl From<&LawEntry> for Described {
             params: law.params,
             channels: law.channels.to_vec(),
             variables: &[],
-            diagnosis: None,
+            shows_with: Vec::new(),
+            twins: Vec::new(),
         }
     }
 }
 
 impl From<&ResistanceEntry> for Described {
     fn from(law: &ResistanceEntry) -> Self {
-        let (acts_on, table, diagnosis) = match law.role {
-            Role::Baseline => ("resistance-base", "[resistance]", None),
-            Role::Effect(facts) => {
-                let diagnosis = (facts.visible, facts.separable_from);
-                ("resistance-effect", "[[effect]]", Some(diagnosis))
-            }
+        let (acts_on, table, visible) = match law.role {
+            Role::Baseline => ("resistance-base", "[resistance]", &[][..]),
+            Role::Effect(facts) => ("resistance-effect", "[[effect]]", facts.visible),
         };
         Self {
             name: law.name,
@@ -85,7 +85,8 @@ impl From<&ResistanceEntry> for Described {
             params: law.params,
             channels: law.accounts.iter().map(|account| account.channel).collect(),
             variables: law.variables,
-            diagnosis,
+            shows_with: visible.iter().map(|need| need.describe()).collect(),
+            twins: twins(law.name).collect(),
         }
     }
 }
@@ -156,15 +157,15 @@ fn as_text(law: &Described) -> String {
         .map(|channel| format!("{} ({})", channel.name, kind_name(channel.kind)))
         .collect();
     match channels.as_slice() {
-        [] => line("energy", "in the channels of the law that it changes"),
+        [] => line("energy", "books nothing of its own"),
         channels => line("energy", &channels.join(", ")),
     }
-    if let Some((needs, separable_from)) = law.diagnosis {
-        let needs: Vec<&str> = needs.iter().map(|needs| needs_text(*needs)).collect();
-        if !needs.is_empty() {
-            line("shows with", &needs.join(", "));
-        }
-        line("told apart", &format!("by {separable_from}"));
+    if !law.shows_with.is_empty() {
+        line("shows with", &law.shows_with.join(", "));
+    }
+    for (index, twin) in law.twins.iter().enumerate() {
+        let name = if index == 0 { "told apart" } else { "" };
+        line(name, &format!("from {}", twin.describe()));
     }
     text.push_str("\nparameters\n");
     let width = law.params.iter().map(|spec| spec.key.len()).max().unwrap_or(0) + 2;
@@ -186,16 +187,6 @@ fn as_text(law: &Described) -> String {
         ));
     }
     text
-}
-
-fn needs_text(needs: Needs) -> &'static str {
-    match needs {
-        Needs::Oblique => "oblique impacts",
-        Needs::Spin => "spin",
-        Needs::Packings => "two packing fractions",
-        Needs::BedDepth => "a known depth of the bed",
-        Needs::BulkDensity => "a known bulk density",
-    }
 }
 
 fn default_text(spec: &ParamSpec) -> String {
@@ -236,12 +227,19 @@ fn as_json(law: &Described) -> Value {
     if !law.variables.is_empty() {
         object["variables"] = json!(law.variables);
     }
-    if let Some((needs, separable_from)) = law.diagnosis {
-        let needs: Vec<&str> = needs.iter().map(|needs| needs_text(*needs)).collect();
-        object["shows_with"] = json!(needs);
-        object["told_apart_by"] = json!(separable_from);
+    if !law.shows_with.is_empty() {
+        object["shows_with"] = json!(law.shows_with);
+    }
+    if !law.twins.is_empty() {
+        let told_apart: Vec<Value> = law.twins.iter().map(twin_json).collect();
+        object["told_apart"] = json!(told_apart);
     }
     object
+}
+
+fn twin_json(twin: &Twin) -> Value {
+    let by: Vec<&str> = twin.any_of.iter().map(|need| need.describe()).collect();
+    json!({ "from": twin.effect, "by_any_of": by })
 }
 
 fn parameter_json(spec: &ParamSpec) -> Value {

@@ -8,7 +8,7 @@ mod rolling_resistance;
 pub use registry::{ActsOn, FromParams, LawEntry};
 pub use resistance::{
     Coefficients, Expression, ExpressionError, Facts, Needs, RESISTANCE_LAWS, ResistanceEntry,
-    Role, find_resistance,
+    Role, Twin, find_resistance, twins,
 };
 
 /// Every law and effect, in the order of the docs.

@@ -100,7 +100,7 @@ impl Judge<'_> {
                 );
                 return self.refuse((p_lof, p_leader), hint);
             }
-            let verdict = match self.ranking.not_separable().len() {
+            let verdict = match self.ranking.not_separable(self.bench.forward.candidates()).len() {
                 1 => Verdict::Supported,
                 _ => Verdict::NotSeparable,
             };
@@ -137,7 +137,7 @@ impl Judge<'_> {
     ) -> Result<Diagnosis, BenchError> {
         let Self { bench, ranking, .. } = self;
         let leaders: Vec<String> = ranking
-            .not_separable()
+            .not_separable(bench.forward.candidates())
             .into_iter()
             .map(|place| self.name(ranking.scores[place].candidate()))
             .collect();
@@ -191,7 +191,7 @@ impl Judge<'_> {
     }
 
     fn name(&self, candidate: usize) -> String {
-        self.bench.forward.candidates()[candidate].id.to_owned()
+        self.bench.forward.candidates()[candidate].id.clone()
     }
 }
 
@@ -252,16 +252,16 @@ fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
         .map(|score| {
             let candidate = &candidates[score.candidate()];
             RankedEffect {
-                id: candidate.id.to_owned(),
+                id: candidate.id.clone(),
                 q: Some(score.amplitude()),
                 se: Some(score.standard_error),
-                unit: "1",
+                unit: candidate.unit.clone(),
                 delta: Some(score.delta),
                 predicted_top1: Some(score.ranked_first),
                 testable: true,
                 detection_limit: Some(score.signature.detection_limit()),
                 parameters: values(bench.forward, &score.point),
-                note: candidate.separable_from.to_owned(),
+                note: candidate.separable_from.clone(),
                 point: Some(score.point.clone()),
             }
         })
@@ -269,10 +269,10 @@ fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
     let not_ranked = (0..candidates.len())
         .filter(|index| scores.iter().all(|score| score.candidate() != *index))
         .map(|index| RankedEffect {
-            id: candidates[index].id.to_owned(),
+            id: candidates[index].id.clone(),
             q: None,
             se: None,
-            unit: "1",
+            unit: candidates[index].unit.clone(),
             delta: None,
             predicted_top1: None,
             testable: false,

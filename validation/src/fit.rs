@@ -60,6 +60,11 @@ impl Fit {
         self.free.len()
     }
 
+    /// The unknowns that are not held at a bound, parameters first.
+    pub(crate) fn free(&self) -> &[usize] {
+        &self.free
+    }
+
     /// Covariance of the unknowns that are not held at a bound.
     #[must_use]
     pub fn free_covariance(&self) -> DMatrix<f64> {
@@ -175,7 +180,8 @@ impl Data<'_> {
         Ok(Fit { point, covariance, chi2: residual.norm_squared(), residual, jacobian, free })
     }
 
-    fn scales(&self, start: &Point) -> Vec<Scale> {
+    /// How each unknown of `start` is searched.
+    pub(crate) fn scales(&self, start: &Point) -> Vec<Scale> {
         let parameters = self.forward.parameters().iter();
         let parameters = parameters.map(|parameter| Scale {
             logarithmic: parameter.min >= 0.0 && parameter.start > 0.0,
@@ -196,14 +202,19 @@ impl Data<'_> {
 }
 
 /// How an unknown is searched.
-struct Scale {
+pub(crate) struct Scale {
     logarithmic: bool,
-    min: f64,
-    max: f64,
+    pub(crate) min: f64,
+    pub(crate) max: f64,
     step: f64,
 }
 
 impl Scale {
+    /// Derivative of the value by its unknown, at `value`.
+    pub(crate) fn slope(&self, value: f64) -> f64 {
+        if self.logarithmic { value } else { 1.0 }
+    }
+
     fn unknown(&self, value: f64) -> f64 {
         if self.logarithmic { libm::log(value.max(f64::MIN_POSITIVE)) } else { value }
     }
@@ -232,7 +243,7 @@ impl Scale {
     }
 }
 
-fn value(point: &Point, at: usize) -> f64 {
+pub(crate) fn value(point: &Point, at: usize) -> f64 {
     let n = point.parameters.len();
     if at < n { point.parameters[at] } else { point.effects[at - n].1 }
 }
@@ -242,11 +253,11 @@ fn value_mut(point: &mut Point, at: usize) -> &mut f64 {
     if at < n { &mut point.parameters[at] } else { &mut point.effects[at - n].1 }
 }
 
-fn unknowns(point: &Point, scales: &[Scale]) -> Vec<f64> {
+pub(crate) fn unknowns(point: &Point, scales: &[Scale]) -> Vec<f64> {
     scales.iter().enumerate().map(|(at, scale)| scale.unknown(value(point, at))).collect()
 }
 
-fn point_of(unknowns: &[f64], scales: &[Scale], like: &Point) -> Point {
+pub(crate) fn point_of(unknowns: &[f64], scales: &[Scale], like: &Point) -> Point {
     let mut point = like.clone();
     for (at, (unknown, scale)) in unknowns.iter().zip(scales).enumerate() {
         *value_mut(&mut point, at) = scale.value(*unknown);

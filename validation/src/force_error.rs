@@ -140,10 +140,10 @@ impl ForceErrors {
     }
 }
 
-type Covariate = (&'static str, fn(&Condition) -> Option<f64>);
+pub(crate) type Covariate = (&'static str, fn(&Condition) -> Option<f64>);
 
 /// What a condition has that a force error may depend on.
-const COVARIATES: [Covariate; 7] = [
+pub(crate) const COVARIATES: [Covariate; 7] = [
     ("speed", |condition| Some(condition.speed)),
     ("angle_deg", |condition| Some(condition.angle_deg)),
     ("diameter", |condition| Some(condition.diameter)),

@@ -59,7 +59,9 @@ pub struct Parameter {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     /// kebab-case.
-    pub id: &'static str,
+    pub id: String,
+    /// Unit of the amplitude; 1 where it has none.
+    pub unit: String,
     /// Least allowed amplitude.
     pub min: f64,
     /// Greatest allowed amplitude.
@@ -68,8 +70,11 @@ pub struct Candidate {
     pub step: f64,
     /// Why these data cannot show it at all; `None` if they can.
     pub not_testable: Option<String>,
-    /// What it takes to tell it from its twins, in words.
-    pub separable_from: &'static str,
+    /// What it takes to tell it from its twins, in words; empty if it has none.
+    pub separable_from: String,
+    /// Ids of the candidates that these data cannot tell it from, because they lack what it takes; each
+    /// of them has it likewise.
+    pub unresolved: Vec<String>,
 }
 
 /// Run-level random inputs: all zero for the run of the mean bed.

@@ -1,32 +1,22 @@
 //! Whether a fitted model leaves something behind that is not noise.
 //!
-//! The residual is held against changes of the force around each depth (against the motion, and, on
-//! half as many depths, normal to it), once coherent over conditions
-//! (the same change, and one that grows with speed or angle), once free in every condition. How large
-//! noise alone makes the two is learned by resampling the deviations of runs within conditions; a
-//! theoretical distribution with one pooled scale rejects too many true models.
+//! The residual is held against changes of the force over depth, against the motion and normal to it:
+//! smooth and sharp ones, coherent over conditions and free in every one ([`crate::directions`]). How
+//! large noise alone makes each is learned by resampling the deviations of runs within conditions
+//! ([`crate::redraw`]); a theoretical distribution with one pooled scale rejects too many true models.
+//! The smallest of their probabilities is held against the smallest of every resampled residual, so
+//! that looking in several ways costs no more than it must (Westfall & Young 1993).
 
-use nalgebra::{DMatrix, DVector};
-use rand::RngExt;
-use rand_pcg::Pcg64;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::bench::{Bench, BenchError, Fitted};
+use crate::directions::Directions;
 use crate::noise::NoiseSource;
-use crate::projection::Basis;
-use crate::random::{Purpose, normal, stream};
+use crate::redraw::Redraw;
 use crate::sensitivity::{Direction, force_response};
 
-/// Fewest runs of a condition that are resampled. The deviations of two have one direction and one
-/// size, whatever their sign, so that draws from them hardly differ; fewer are drawn from the noise
-/// model, which is learned from all conditions together.
-const ENOUGH_RUNS: usize = 4;
-
-/// How many numbers the noise model has.
-const NOISE_PARAMETERS: usize = 3;
-
 /// Resampled sets of means.
-const DRAWS: usize = 999;
+const DRAWS: usize = 1999;
 
 /// Bounds of the number of nodes of depth: fewer let a layer slip through, more find nothing new.
 const NODES: (usize, usize) = (10, 24);
@@ -69,160 +59,66 @@ pub fn lack_of_fit(
         };
         let along = response(Direction::Along, nodes)?;
         let sideways = response(Direction::Sideways, nodes.div_ceil(2))?;
-        let columns: Vec<_> = along.column_iter().chain(sideways.column_iter()).collect();
-        responses.push(weight.whiten_columns(&DMatrix::from_columns(&columns)));
+        responses.push([along, sideways].map(|response| weight.whiten_columns(&response)));
     }
-    let statistics = Statistics::new(bench, fitted, &responses);
-    let measured = statistics.of(residual);
-    let mut noise = Resampled::new(bench, fitted, seed);
-    let mut reached = [1_usize; 2];
-    for _ in 0..DRAWS {
-        let drawn = statistics.of(&noise.draw());
-        for (count, (drawn, measured)) in reached.iter_mut().zip(drawn.iter().zip(&measured)) {
-            *count += usize::from(drawn >= measured);
-        }
-    }
-    let least = reached[0].min(reached[1]) as f64 / (DRAWS + 1) as f64;
-    Ok(Some((2.0 * least).min(1.0)))
+    let directions = Directions::new(bench, fitted, &responses);
+    let mut noise = Redraw::new(bench, fitted, &directions, seed);
+    let drawn: Vec<Vec<f64>> = (0..DRAWS).map(|_| directions.sizes(&noise.draw())).collect();
+    let measured = directions.sizes(&directions.of(residual));
+    Ok(Some(smallest_probability(&measured, &drawn)))
 }
 
-/// The two squared lengths that a residual is judged by.
-struct Statistics {
-    parameters: Basis,
-    coherent: Basis,
-    /// Per condition: its first row, and a basis of the changes of its own forces.
-    own: Vec<(usize, usize, Basis)>,
-}
-
-impl Statistics {
-    fn new(bench: &Bench<'_>, fitted: &Fitted, responses: &[DMatrix<f64>]) -> Self {
-        let parameters = Basis::of(&fitted.fit.jacobian);
-        let conditions: Vec<_> =
-            bench.observed.fit.iter().map(|&index| &bench.set.conditions[index]).collect();
-        let speeds = standardised(conditions.iter().map(|condition| condition.speed).collect());
-        let angles = standardised(conditions.iter().map(|condition| condition.angle_deg).collect());
-        let nodes = responses.first().map_or(0, DMatrix::ncols);
-        let mut coherent = DMatrix::zeros(fitted.fit.residual.len(), 3 * nodes);
-        let mut own = Vec::with_capacity(responses.len());
-        let mut start = 0;
-        for (at, response) in responses.iter().enumerate() {
-            let rows = response.nrows();
-            for (block, factor) in [1.0, speeds[at], angles[at]].into_iter().enumerate() {
-                let mut part = coherent.view_mut((start, block * nodes), (rows, nodes));
-                part.copy_from(&(response * factor));
-            }
-            own.push((start, rows, Basis::of(response)));
-            start += rows;
+/// Probability that the smallest probability of several sizes is as small as that of `measured`,
+/// where noise gives `drawn`.
+fn smallest_probability(measured: &[f64], drawn: &[Vec<f64>]) -> f64 {
+    let mut sorted = vec![Vec::with_capacity(drawn.len()); measured.len()];
+    for sizes in drawn {
+        for (column, size) in sorted.iter_mut().zip(sizes) {
+            column.push(*size);
         }
-        Self { coherent: Basis::beside(&coherent, &parameters), parameters, own }
     }
-
-    fn of(&self, residual: &DVector<f64>) -> [f64; 2] {
-        let rest = self.parameters.rest(residual);
-        let own = self
-            .own
+    for column in &mut sorted {
+        column.sort_by(f64::total_cmp);
+    }
+    let rarest = |sizes: &[f64]| {
+        let larger = sizes
             .iter()
-            .map(|(start, rows, basis)| basis.energy(&rest.rows(*start, *rows).into_owned()));
-        [self.coherent.energy(&rest), own.sum()]
-    }
-}
-
-/// Values less their mean, over their standard deviation; zero if they are all the same.
-fn standardised(values: Vec<f64>) -> Vec<f64> {
-    let n = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    let sd = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n).sqrt();
-    values
-        .iter()
-        .map(|value| if sd > 1e-9 * mean.abs() { (value - mean) / sd } else { 0.0 })
-        .collect()
-}
-
-/// Errors of means, drawn from the deviations of runs.
-pub(crate) struct Resampled {
-    /// Per condition: whitened deviations of its runs (none of too few), and how many numbers.
-    conditions: Vec<(Vec<DVector<f64>>, usize, Pcg64)>,
-    /// From how many independent numbers the noise model is known.
-    freedom: f64,
-    scale: Pcg64,
-}
-
-impl Resampled {
-    pub(crate) fn new(bench: &Bench<'_>, fitted: &Fitted, seed: u64) -> Self {
-        let fit = bench.observed.fit.iter();
-        let conditions = fit.zip(&fitted.weights).map(|(&condition, weight)| {
-            let observed = &bench.observed.conditions[condition];
-            let runs = if observed.runs.len() >= ENOUGH_RUNS { observed.runs.len() } else { 0 };
-            let deviations = (0..runs).map(|run| weight.whiten(&observed.deviation(run))).collect();
-            (deviations, observed.mean.len(), stream(seed, Purpose::Resampling, condition))
-        });
-        let conditions = conditions.collect();
-        let deviations = bench.observed.fit.iter().map(|&condition| {
-            let observed = &bench.observed.conditions[condition];
-            (observed.runs.len() - 1) * observed.mean.len()
-        });
-        let freedom = deviations.sum::<usize>().saturating_sub(NOISE_PARAMETERS).max(1) as f64;
-        Self { conditions, freedom, scale: stream(seed, Purpose::NoiseScale, 0) }
-    }
-
-    /// Whitened errors of the means of all conditions.
-    pub(crate) fn draw(&mut self) -> DVector<f64> {
-        let mut all = Vec::new();
-        let scale = 1.0 / mean_square(self.freedom, normal(&mut self.scale)).sqrt();
-        for (deviations, len, random) in &mut self.conditions {
-            if deviations.is_empty() {
-                all.extend((0..*len).map(|_| scale * normal(random)));
-            } else {
-                let factors = factors(deviations.len(), random);
-                let error = deviations.iter().zip(factors);
-                all.extend(
-                    error.fold(DVector::zeros(*len), |sum, (d, factor)| sum + d * factor).iter(),
-                );
-            }
-        }
-        DVector::from_vec(all)
-    }
-}
-
-/// The mean square of `freedom` normal numbers where a normal number is `z` (Wilson & Hilferty 1931,
-/// Proc. Natl. Acad. Sci. 17, 684): a noise that is known from few numbers may be larger than it seems.
-fn mean_square(freedom: f64, z: f64) -> f64 {
-    let spread = 2.0 / (9.0 * freedom);
-    (1.0 - spread + z * spread.sqrt()).max(0.1).powi(3)
-}
-
-/// Factors on the deviations of `runs` runs whose sum has the covariance of their mean: they are drawn
-/// with replacement, and enlarged by √(r/(r−1)) since deviations from a mean are too small by that.
-fn factors(runs: usize, random: &mut Pcg64) -> Vec<f64> {
-    let r = runs as f64;
-    let mut counts = vec![0.0; runs];
-    for _ in 0..runs {
-        counts[random.random_range(0..runs)] += 1.0;
-    }
-    let scale = (r / (r - 1.0)).sqrt() / r;
-    counts.iter().map(|count| count * scale).collect()
+            .zip(&sorted)
+            .map(|(size, column)| column.len() - column.partition_point(|drawn| drawn < size));
+        larger.min().unwrap_or(drawn.len())
+    };
+    let own = rarest(measured);
+    // A drawn size is as large as itself, a measured one only as large as the drawn ones.
+    let rarer = drawn.iter().filter(|sizes| rarest(sizes) <= own + 1).count();
+    (1 + rarer) as f64 / (1 + drawn.len()) as f64
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::{Purpose, normal, stream};
 
     #[test]
-    fn resampled_means_scatter_as_much_as_means_do() {
-        for runs in [4, 5, 10] {
-            let mut random = stream(1, Purpose::Resampling, 0);
-            let values: Vec<f64> = (0..runs).map(|_| normal(&mut random)).collect();
-            let mean = values.iter().sum::<f64>() / runs as f64;
-            let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
-            let expected = squares / ((runs - 1) * runs) as f64;
-            let draws = 20_000;
-            let drawn = (0..draws).map(|_| {
-                let factors = factors(runs, &mut random);
-                factors.iter().zip(&values).map(|(f, v)| f * (v - mean)).sum::<f64>().powi(2)
-            });
-            let variance = drawn.sum::<f64>() / f64::from(draws);
-            // The variance of a variance over so many draws is about 1 %; four of those.
-            assert!((variance / expected - 1.0).abs() < 0.04, "{runs}: {variance} {expected}");
-        }
+    fn looking_in_several_ways_rejects_no_more_than_looking_in_one() {
+        let mut random = stream(1, Purpose::Resampling, 0);
+        let mut sizes = || -> Vec<f64> {
+            let shared = normal(&mut random);
+            (0..4).map(|_| (shared + normal(&mut random)).powi(2)).collect()
+        };
+        let (sets, level) = (400, 0.05);
+        let rejected = (0..sets).filter(|_| {
+            let drawn: Vec<Vec<f64>> = (0..199).map(|_| sizes()).collect();
+            smallest_probability(&sizes(), &drawn) <= level
+        });
+        // Twenty are expected; the standard deviation is 4.4, here three of those.
+        let rejected = rejected.count();
+        assert!((7..=33).contains(&rejected), "{rejected}");
+    }
+
+    #[test]
+    fn what_no_draw_reaches_is_as_rare_as_the_draws_can_say() {
+        let drawn: Vec<Vec<f64>> = (0..99).map(|k| vec![f64::from(k), 0.5]).collect();
+        assert!((smallest_probability(&[1e3, 0.0], &drawn) - 0.02).abs() < 1e-12);
+        assert!(smallest_probability(&[-1.0, 0.0], &drawn) > 0.99);
     }
 }

@@ -14,25 +14,40 @@ pub(crate) struct Basis {
 impl Basis {
     /// A basis of what the columns of `matrix` span.
     pub(crate) fn of(matrix: &DMatrix<f64>) -> Self {
-        Self::beside(matrix, &Self { columns: Vec::new() })
+        Self::beside(matrix, &Self::none())
+    }
+
+    /// Nothing.
+    pub(crate) fn none() -> Self {
+        Self { columns: Vec::new() }
     }
 
     /// A basis of what the columns of `matrix` span beside `other`.
     pub(crate) fn beside(matrix: &DMatrix<f64>, other: &Self) -> Self {
-        let mut basis = Self { columns: Vec::new() };
+        let mut basis = Self::none();
+        basis.extend(matrix, other);
+        basis
+    }
+
+    /// Adds what the columns of `matrix` span beside it and `other`.
+    pub(crate) fn extend(&mut self, matrix: &DMatrix<f64>, other: &Self) {
         for column in matrix.column_iter() {
             let whole = column.norm();
             let mut rest = column.into_owned();
             // Twice is enough to be orthogonal to rounding (Kahan; Parlett 1998, §6.9).
             for _ in 0..2 {
-                rest = basis.rest(&other.rest(&rest));
+                rest = self.rest(&other.rest(&rest));
             }
             let left = rest.norm();
             if left > NEW * whole {
-                basis.columns.push(rest / left);
+                self.columns.push(rest / left);
             }
         }
-        basis
+    }
+
+    /// How many columns it has.
+    pub(crate) fn len(&self) -> usize {
+        self.columns.len()
     }
 
     /// What of `vector` lies beside the basis.
@@ -45,8 +60,12 @@ impl Basis {
         rest
     }
 
-    /// Squared length of what of `vector` lies within the basis.
-    pub(crate) fn energy(&self, vector: &DVector<f64>) -> f64 {
-        self.columns.iter().map(|column| column.dot(vector).powi(2)).sum()
+    /// Its columns, `rows` long.
+    pub(crate) fn to_matrix(&self, rows: usize) -> DMatrix<f64> {
+        let mut matrix = DMatrix::zeros(rows, self.columns.len());
+        for (mut column, unit) in matrix.column_iter_mut().zip(&self.columns) {
+            column.copy_from(unit);
+        }
+        matrix
     }
 }

@@ -1,7 +1,8 @@
 //! Refits of a model with one more effect, and which of them the measurements tell apart.
 
 use crate::bench::{Bench, BenchError, Fitted};
-use crate::forward::PredictError;
+use crate::chord::{Extended, extend};
+use crate::forward::{Candidate, PredictError};
 use crate::sensitivity::Point;
 use crate::signature::{Signature, collinearity, signature, variance_along};
 use crate::significance::NullScores;
@@ -11,9 +12,6 @@ const SEPARATE: f64 = 6.0;
 
 /// Nor are those that would be mistaken for one another more often than once in twenty.
 const CONFUSED: f64 = 0.95;
-
-/// How many effects are refitted.
-const REFITTED: usize = 8;
 
 /// A model with one more effect.
 #[derive(Clone, Debug)]
@@ -58,8 +56,7 @@ pub(crate) struct Ranking {
 }
 
 impl Ranking {
-    /// Adds each of `candidates` (indices) to `fitted`, under its weights. Those with the largest
-    /// scores are refitted; the others are taken to first order, which is exact for small effects.
+    /// Adds each of `candidates` (indices) to `fitted` and refits, under its weights.
     pub(crate) fn of(
         bench: &Bench<'_>,
         fitted: &Fitted,
@@ -70,17 +67,12 @@ impl Ranking {
         let null = NullScores::new(collinearity(&signatures), seed);
         let mut scores = signatures
             .into_iter()
-            .map(|signature| first_order(bench, fitted, signature))
-            .collect::<Vec<_>>();
-        let mut by_score: Vec<usize> = (0..scores.len()).collect();
-        by_score.sort_by(|&a, &b| scores[b].delta.total_cmp(&scores[a].delta));
-        for &row in by_score.iter().take(REFITTED) {
-            scores[row] = refit(bench, fitted, scores[row].signature.clone())?;
-        }
+            .map(|signature| refit(bench, fitted, signature))
+            .collect::<Result<Vec<_>, _>>()?;
         for (row, score) in scores.iter_mut().enumerate() {
             score.ranked_first = null.ranked_first(row, score.strength());
         }
-        let mut rows = by_score;
+        let mut rows: Vec<usize> = (0..scores.len()).collect();
         rows.sort_by(|&a, &b| scores[b].delta.total_cmp(&scores[a].delta));
         let mut scores: Vec<Option<Score>> = scores.into_iter().map(Some).collect();
         let scores: Vec<Score> = rows.iter().filter_map(|&row| scores[row].take()).collect();
@@ -88,26 +80,14 @@ impl Ranking {
         Ok(Self { scores, p, rows, null, failed })
     }
 
-    /// The best few of `candidates`, judged to first order, refitted.
-    pub(crate) fn best_of(
-        bench: &Bench<'_>,
-        fitted: &Fitted,
-        candidates: &[usize],
-        count: usize,
-    ) -> Result<Vec<Score>, BenchError> {
-        let (signatures, _) = signatures(bench, fitted, candidates);
-        let mut scores: Vec<Score> =
-            signatures.into_iter().map(|s| first_order(bench, fitted, s)).collect();
-        scores.sort_by(|a, b| b.delta.total_cmp(&a.delta));
-        scores.truncate(count);
-        scores.into_iter().map(|score| refit(bench, fitted, score.signature)).collect()
-    }
-
-    /// Places of the effects that cannot be told from the best, itself included.
-    pub(crate) fn not_separable(&self) -> Vec<usize> {
+    /// Places of the effects that cannot be told from the best, itself included: by the numbers, or
+    /// because the data lack what would tell them apart.
+    pub(crate) fn not_separable(&self, candidates: &[Candidate]) -> Vec<usize> {
         let Some(best) = self.scores.first() else { return Vec::new() };
+        let twins = &candidates[best.candidate()].unresolved;
         let confused = |place: usize| {
-            best.delta - self.scores[place].delta < SEPARATE
+            twins.contains(&candidates[self.scores[place].candidate()].id)
+                || best.delta - self.scores[place].delta < SEPARATE
                 || self.null.beats(self.rows[0], self.rows[place], best.strength()) < CONFUSED
         };
         (0..self.scores.len()).filter(|&place| place == 0 || confused(place)).collect()
@@ -165,20 +145,26 @@ fn first_order(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Scor
 fn refit(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Result<Score, BenchError> {
     let first = first_order(bench, fitted, signature);
     let data = bench.data(&fitted.weights);
-    let mut start = first.point.clone();
-    let guessed = data.fit(&start).ok().filter(|fit| fit.chi2 <= fitted.fit.chi2);
-    let fit = match guessed {
-        Some(fit) => fit,
-        // A first guess beyond what the effect is linear in; absent, it is no worse than before.
+    let absent = || {
+        let mut point = first.point.clone();
+        if let Some(last) = point.effects.last_mut() {
+            last.1 = 0.0;
+        }
+        point
+    };
+    let slopes = [&first.signature.slope];
+    // A first guess may lie beyond what the effect is linear in; absent, it is no worse than before.
+    let guessed = extend(&data, &fitted.fit, &first.point, &slopes).ok().flatten();
+    let extended = match guessed.filter(|one| one.chi2 <= fitted.fit.chi2) {
+        Some(extended) => extended,
         None => {
-            if let Some(last) = start.effects.last_mut() {
-                last.1 = 0.0;
-            }
-            data.fit(&start)?
+            let fit = data.fit(&absent())?;
+            let standard_error = fit.standard_error(fit.covariance.nrows() - 1);
+            Extended { chi2: fit.chi2, standard_error, point: fit.point }
         }
     };
     let scale = variance_along(bench, fitted, &first.signature.unit).max(1.0);
-    let delta = (fitted.fit.chi2 - fit.chi2).max(0.0) / scale;
-    let standard_error = fit.standard_error(fit.covariance.nrows() - 1) * scale.sqrt();
-    Ok(Score { point: fit.point, standard_error, delta, ..first })
+    let delta = (fitted.fit.chi2 - extended.chi2).max(0.0) / scale;
+    let standard_error = extended.standard_error * scale.sqrt();
+    Ok(Score { point: extended.point, standard_error, delta, ..first })
 }

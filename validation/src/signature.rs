@@ -24,6 +24,8 @@ pub(crate) struct Signature {
     pub(crate) norm: f64,
     /// Score: the residual along the direction, in standard errors.
     pub(crate) score: f64,
+    /// Whitened derivative of the prediction by the amplitude, parameters as they are.
+    pub(crate) slope: DVector<f64>,
 }
 
 impl Signature {
@@ -53,7 +55,7 @@ pub(crate) fn signature(
     }
     let unit = rest / norm;
     let score = unit.dot(&fitted.fit.residual);
-    Ok(Some(Signature { candidate, unit, norm, score }))
+    Ok(Some(Signature { candidate, unit, norm, score, slope: raw }))
 }
 
 /// Whitened derivative of the observables by the amplitude of `candidate` at zero; to one side, of
@@ -63,7 +65,7 @@ fn derivative(
     fitted: &Fitted,
     candidate: usize,
 ) -> Result<DVector<f64>, PredictError> {
-    let Candidate { min, max, step, .. } = bench.forward.candidates()[candidate];
+    let &Candidate { min, max, step, .. } = &bench.forward.candidates()[candidate];
     let data = bench.data(&fitted.weights);
     let residual = |q: f64| {
         let mut point: Point = fitted.fit.point.clone();

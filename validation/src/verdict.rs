@@ -97,7 +97,7 @@ pub struct RankedEffect {
     #[serde(serialize_with = "six_digits_or_null")]
     pub se: Option<f64>,
     /// Unit of the amplitude; 1 where it has none.
-    pub unit: &'static str,
+    pub unit: String,
     /// Fall of χ² by adding it.
     #[serde(serialize_with = "six_digits_or_null")]
     pub delta: Option<f64>,

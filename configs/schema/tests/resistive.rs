@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use configs::contact_laws::{RESISTANCE_LAWS, Role};
 use configs::edit::{AddedEffect, Addition, add_effects};
 use configs::{
     Color, Launch, LoadOptions, Model, ModelSource, ParameterError, ResistiveMedium, find_shipped,
@@ -155,6 +156,22 @@ fn an_effect_added_to_the_text_of_a_model_is_in_the_model() {
     assert!((grains.effects[0].params.get("rolling_friction") - 0.05).abs() < 1e-15);
     let added = "\n[[effect]]\nname = \"rolling-resistance\"\nrolling_friction = 0.05\n";
     assert_eq!(edited.replace(added, ""), text, "all else is as it was");
+}
+
+#[test]
+fn every_effect_can_be_written_in_a_model_and_added_to_one() {
+    let text = find_shipped("two-term-vector").expect("a shipped model").text;
+    for entry in RESISTANCE_LAWS.iter().filter(|law| matches!(law.role, Role::Effect(_))) {
+        let name = entry.name.to_owned();
+        let q = entry.params[0].plausible.max.to_string();
+        let effects = vec![AddedEffect { name, values: vec![("q".to_owned(), q)] }];
+        let added = add_effects(text, &Addition { effects, fitted: Vec::new() });
+        let added = added.unwrap_or_else(|error| panic!("{}: {error}", entry.name));
+        let model = load(&added, &[]).unwrap_or_else(|error| panic!("{error}")).model;
+        let effect = &medium(&model).effects[0];
+        assert_eq!(effect.entry.name, entry.name);
+        assert_eq!(effect.q.to_bits(), entry.params[0].plausible.max.to_bits(), "{}", entry.name);
+    }
 }
 
 #[test]

@@ -4,7 +4,8 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::params::Range;
 use engine::resistance::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 
-use super::registry::{Facts, Needs, ResistanceEntry, Role, amplitude};
+use super::facts::{Facts, Needs, Twin};
+use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// (m + m_a) a = … − dm_a/dt v,  m_a = q ρ V(z)   (kg)
 ///
@@ -32,8 +33,12 @@ const ACCOUNTS: &[Account] = &[
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "added-mass",
     role: Role::Effect(Facts {
-        visible: &[Needs::BulkDensity],
-        separable_from: "two masses (a constant added mass and a constant force are the same at one mass and gravity)",
+        unit: "1",
+        visible: &[],
+        separable_from: &[
+            Twin { effect: "buoyancy", any_of: &[Needs::Masses] },
+            Twin { effect: "yield-stress", any_of: &[Needs::Masses] },
+        ],
     }),
     summary: "Grains that move with the intruder and add to its inertia.",
     formula: "(m + q rho V) dv/dt = ... - q rho dV/dt v",

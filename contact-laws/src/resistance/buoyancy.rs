@@ -4,7 +4,8 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::params::Range;
 use engine::resistance::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 
-use super::registry::{Facts, Needs, ResistanceEntry, Role, amplitude};
+use super::facts::{Facts, Needs, Twin};
+use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = q ρ g V(z), upward   (N)
 ///
@@ -25,8 +26,12 @@ const ACCOUNTS: &[Account] = &[Account {
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "buoyancy",
     role: Role::Effect(Facts {
-        visible: &[Needs::BulkDensity],
-        separable_from: "oblique impacts, or two masses (else a constant resistance looks alike)",
+        unit: "1",
+        visible: &[],
+        separable_from: &[Twin {
+            effect: "yield-stress",
+            any_of: &[Needs::Oblique, Needs::Masses],
+        }],
     }),
     summary: "The weight of the displaced bed, upward.",
     formula: "F = q rho g V",

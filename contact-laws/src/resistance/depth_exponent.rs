@@ -3,7 +3,8 @@
 use engine::params::Range;
 use engine::resistance::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
 
-use super::registry::{Facts, ResistanceEntry, Role, amplitude};
+use super::facts::Facts;
+use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// z → D (z/D)^(1+q)   (m)
 ///
@@ -21,10 +22,7 @@ const ACCOUNTS: &[Account] = &[];
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "depth-exponent",
-    role: Role::Effect(Facts {
-        visible: &[],
-        separable_from: "depths over a range of two diameters or more (else janssen looks alike)",
-    }),
+    role: Role::Effect(Facts { unit: "1", visible: &[], separable_from: &[] }),
     summary: "Friction that grows with a power of depth other than one.",
     formula: "z -> D (z/D)^(1+q)",
     signature: "below one like a constant force at low speed, with the sign changed at high speed",

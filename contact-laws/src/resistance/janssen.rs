@@ -3,7 +3,8 @@
 use engine::params::Range;
 use engine::resistance::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
 
-use super::registry::{Facts, ResistanceEntry, Role, amplitude};
+use super::facts::{Facts, Needs, Twin};
+use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// z → λ (1 − e^(−z/λ)), q = D/λ   (m)
 ///
@@ -21,8 +22,9 @@ const ACCOUNTS: &[Account] = &[];
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "janssen",
     role: Role::Effect(Facts {
+        unit: "1",
         visible: &[],
-        separable_from: "depths over a range of two diameters or more (else depth-exponent looks alike)",
+        separable_from: &[Twin { effect: "depth-exponent", any_of: &[Needs::Depths] }],
     }),
     summary: "Friction that saturates with depth, as the pressure in a silo does.",
     formula: "z -> lambda (1 - exp(-z/lambda)), q = D/lambda",

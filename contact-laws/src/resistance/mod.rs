@@ -2,23 +2,39 @@
 //! its own and one line of [`RESISTANCE_LAWS`].
 
 mod added_mass;
+mod air_drag;
+mod anisotropic_drag;
+mod anisotropic_friction;
+mod bottom_wall;
 mod buoyancy;
+mod camera_scale;
 mod coefficients;
+mod depth_drag;
 mod depth_exponent;
+mod depth_zero;
+mod facts;
+mod immersion;
 mod janssen;
+mod lift;
 mod link;
+mod magnus;
+mod packing;
 mod poncelet;
 mod rail_friction;
+mod rate_friction;
 mod registry;
+mod spin_friction;
 #[cfg(test)]
 mod testing;
+mod tilt;
 mod two_term_components;
 mod two_term_vector;
 mod viscous_drag;
 mod yield_stress;
 
 pub use coefficients::{Coefficients, Expression, ExpressionError};
-pub use registry::{Facts, Needs, ResistanceEntry, Role};
+pub use facts::{Facts, Needs, Twin};
+pub use registry::{ResistanceEntry, Role};
 
 /// Every baseline and every effect, in the order of the docs, of the sum and of a diagnosis.
 pub static RESISTANCE_LAWS: &[&ResistanceEntry] = &[
@@ -30,13 +46,39 @@ pub static RESISTANCE_LAWS: &[&ResistanceEntry] = &[
     &yield_stress::ENTRY,
     &janssen::ENTRY,
     &depth_exponent::ENTRY,
+    &bottom_wall::ENTRY,
     &added_mass::ENTRY,
     &buoyancy::ENTRY,
+    &magnus::ENTRY,
+    &anisotropic_drag::ENTRY,
+    &anisotropic_friction::ENTRY,
+    &rate_friction::ENTRY,
     &rail_friction::ENTRY,
+    &air_drag::ENTRY,
+    &packing::ENTRY,
+    &spin_friction::ENTRY,
+    &lift::ENTRY,
+    &immersion::ENTRY,
+    &depth_drag::ENTRY,
+    &tilt::ENTRY,
+    &camera_scale::ENTRY,
+    &depth_zero::ENTRY,
 ];
 
 /// The baseline or effect called `name`.
 #[must_use]
 pub fn find_resistance(name: &str) -> Option<&'static ResistanceEntry> {
     RESISTANCE_LAWS.iter().find(|entry| entry.name == name).copied()
+}
+
+/// The effects that look like the effect called `name`, whichever of the two says so.
+pub fn twins(name: &str) -> impl Iterator<Item = Twin> {
+    RESISTANCE_LAWS.iter().filter_map(move |entry| {
+        let listed = |name: &str, effect: &str| {
+            let Role::Effect(facts) = find_resistance(name)?.role else { return None };
+            facts.separable_from.iter().find(|twin| twin.effect == effect)
+        };
+        let twin = listed(name, entry.name).or_else(|| listed(entry.name, name))?;
+        Some(Twin { effect: entry.name, any_of: twin.any_of })
+    })
 }

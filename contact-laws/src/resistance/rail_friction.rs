@@ -5,7 +5,8 @@ use engine::math::Vec3;
 use engine::params::Range;
 use engine::resistance::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 
-use super::registry::{Facts, ResistanceEntry, Role, amplitude};
+use super::facts::Facts;
+use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = −q v̂ (1 N), in the bed and above   (N)
 ///
@@ -24,10 +25,7 @@ const ACCOUNTS: &[Account] = &[Account {
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "rail-friction",
-    role: Role::Effect(Facts {
-        visible: &[],
-        separable_from: "frames before impact, or two diameters (else yield-stress looks alike)",
-    }),
+    role: Role::Effect(Facts { unit: "N", visible: &[], separable_from: &[] }),
     summary: "A constant friction of the guide, in the bed and above, whatever the area.",
     formula: "F = -q v/|v|, q in newtons",
     signature: "impact speed below that of free fall; in the bed like a constant force",

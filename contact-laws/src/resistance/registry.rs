@@ -5,6 +5,7 @@ use engine::resistance::{Account, ResistanceLaw};
 use engine::units::Dimension;
 
 use super::coefficients::Coefficients;
+use super::facts::Facts;
 
 /// One baseline or effect: its line in [`super::RESISTANCE_LAWS`] makes it exist for `run`, `compare`,
 /// `diagnose`, `effects`, the docs and the shared tests.
@@ -38,30 +39,6 @@ pub enum Role {
     Baseline,
     /// Something added to it, with one amplitude `q` that is 0 when it is absent.
     Effect(Facts),
-}
-
-/// What decides whether data can show an effect.
-#[derive(Clone, Copy, Debug)]
-pub struct Facts {
-    /// What the data must contain for it to act at all.
-    pub visible: &'static [Needs],
-    /// What it takes to tell it from its twins, in words.
-    pub separable_from: &'static str,
-}
-
-/// Something that a measurement set may contain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Needs {
-    /// Impacts that are not vertical.
-    Oblique,
-    /// An intruder that spins.
-    Spin,
-    /// Two packing fractions.
-    Packings,
-    /// A known depth of the bed.
-    BedDepth,
-    /// A known bulk density.
-    BulkDensity,
 }
 
 /// The amplitude of an effect.

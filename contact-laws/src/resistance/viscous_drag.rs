@@ -4,7 +4,8 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::params::Range;
 use engine::resistance::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 
-use super::registry::{Facts, Needs, ResistanceEntry, Role, amplitude};
+use super::facts::{Facts, Needs, Twin};
+use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = −q ρ A V_s v, V_s = √(g D)   (N)
 ///
@@ -23,8 +24,9 @@ const ACCOUNTS: &[Account] = &[Account {
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "viscous-drag",
     role: Role::Effect(Facts {
-        visible: &[Needs::BulkDensity],
-        separable_from: "impact speeds over a range of 3 or more (else yield-stress looks alike)",
+        unit: "1",
+        visible: &[],
+        separable_from: &[Twin { effect: "yield-stress", any_of: &[Needs::Speeds] }],
     }),
     summary: "A drag in proportion to the speed.",
     formula: "F = -q rho A sqrt(g D) v",

@@ -5,7 +5,8 @@ use engine::math::Vec3;
 use engine::params::Range;
 use engine::resistance::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 
-use super::registry::{Facts, Needs, ResistanceEntry, Role, amplitude};
+use super::facts::{Facts, Needs, Twin};
+use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = −q ρ g A D v̂ in the bed   (N)
 ///
@@ -24,8 +25,12 @@ const ACCOUNTS: &[Account] = &[Account {
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "yield-stress",
     role: Role::Effect(Facts {
-        visible: &[Needs::BulkDensity],
-        separable_from: "several diameters, or frames before impact (else rail-friction looks alike)",
+        unit: "1",
+        visible: &[],
+        separable_from: &[Twin {
+            effect: "rail-friction",
+            any_of: &[Needs::FramesBeforeImpact, Needs::Diameters],
+        }],
     }),
     summary: "A constant resistance in the bed, against the motion: cohesion.",
     formula: "F = -q rho g A D v/|v|",

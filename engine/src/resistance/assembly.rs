@@ -94,6 +94,9 @@ pub trait Assembly: Send + Sync {
 /// shows in no force but those that ask for the spin.
 pub struct Compact {
     silhouette: Arc<dyn Silhouette>,
+    /// Of the silhouette, which are asked for at every evaluation of a force (m; m², planar m).
+    diameter: f64,
+    frontal_area: f64,
     /// Of the lowest point below the centre of the shape (m).
     reach: f64,
     mass: f64,
@@ -105,7 +108,8 @@ impl Compact {
     /// above its lowest point.
     #[must_use]
     pub fn new(silhouette: Arc<dyn Silhouette>, reach: f64, mass: f64, inertia: f64) -> Self {
-        Self { silhouette, reach, mass, inertia }
+        let (diameter, frontal_area) = (silhouette.diameter(), silhouette.frontal_area());
+        Self { silhouette, diameter, frontal_area, reach, mass, inertia }
     }
 
     /// The state with the lowest point at the surface at x = 0, moving with `velocity` (m/s) and
@@ -129,7 +133,7 @@ impl Assembly for Compact {
         let [x, z, _, _] = state.position;
         let [vx, vz, spin, _] = state.rate;
         let shape = &*self.silhouette;
-        let frontal_area = shape.frontal_area();
+        let frontal_area = self.frontal_area;
         let depth = -z;
         let below = depth.max(0.0);
         let velocity = Vec3::new(vx, 0.0, vz);
@@ -138,7 +142,7 @@ impl Assembly for Compact {
         Part {
             immersion: Immersion {
                 depth,
-                diameter: shape.diameter(),
+                diameter: self.diameter,
                 frontal_area,
                 immersed_area: shape.immersed_area(below),
                 reference_area: frontal_area,

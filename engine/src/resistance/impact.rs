@@ -1,5 +1,7 @@
 //! One impact on a resistive medium, from first contact to rest.
 
+mod events;
+
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -9,13 +11,7 @@ use super::motion::System;
 use super::observe::{Observer, Stretch};
 use super::solver::{Plan, Solver};
 use super::{ResistanceLaw, Surroundings};
-
-/// A speed below this share of the greatest so far counts as rest.
-const REST_SPEED: f64 = 0.05;
-
-/// A body on a curved path whose speed falls below this share of √(gD) is asked whether friction
-/// holds it; what is left of its way, some 1e-10 m, is covered at constant deceleration.
-const ALMOST_REST: f64 = 1e-4;
+use events::{Before, COMPONENTS, FORWARD, Fired, SINKING, SLOW, SLOWING, STOPPING, SURFACE};
 
 /// Below this share of √(gD) a component of the velocity is what the integration has left of zero.
 const STILL: f64 = 1e-6;
@@ -25,9 +21,6 @@ const MOST_STRETCHES: usize = 10_000;
 
 /// A tip this near to the surface touches it (m).
 const TOUCH: f64 = 1e-12;
-
-/// Events this near to each other are one (s).
-const SIMULTANEOUS: f64 = 1e-12;
 
 /// Errors that a step may make, as the solver weighs them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,22 +109,13 @@ pub struct Ending {
     pub steps: u64,
 }
 
-/// What can happen between two steps, as indices of [`Impact::margins`].
-const N_MARGINS: usize = 5 * PARTS + 3;
-const SURFACE: usize = 0;
-const COMPONENTS: usize = 1;
-const SINKING: usize = 3;
-const FORWARD: usize = 4;
-const STOPPING: usize = 5 * PARTS;
-const SLOWING: usize = STOPPING + 1;
-const SLOW: usize = STOPPING + 2;
-
-type Margins = [f64; N_MARGINS];
-
-/// What happened first in a step, and what else at the same time.
-struct Fired {
-    time: f64,
-    which: [bool; N_MARGINS],
+/// How the motion goes on when something has happened.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Course {
+    /// In the same modes: the step that was taken holds to its end.
+    Same,
+    /// In other modes or not at all.
+    New,
 }
 
 /// Everything of a run that is not the state.
@@ -217,29 +201,41 @@ impl Impact {
             let plan = Plan { from: time, to: duration, first_step: hint };
             let mut solver =
                 Solver::start(&system, &modes, plan, &state, &self.tolerance).ok_or(stalled)?;
-            let mut margins = self.margins(&system, &state, &progress);
-            let mut first = true;
+            let mut before =
+                Before { margins: self.margins(&system, &state, &progress), fresh: true };
+            let mut rest_of_step = None;
             loop {
-                let (from, to) = solver.step().ok_or(ImpactError::Stalled { time })?;
-                hint = to - from;
-                progress.steps += 1;
-                let fired =
-                    self.look(&mut solver, &system, (from, to), (margins, first), &progress);
+                let (from, to) = match rest_of_step.take() {
+                    Some(rest) => rest,
+                    None => {
+                        let (from, to) = solver.step().ok_or(ImpactError::Stalled { time })?;
+                        hint = to - from;
+                        progress.steps += 1;
+                        (from, to)
+                    }
+                };
+                let (after, fired) =
+                    self.look(&mut solver, &system, (from, to), &before, &progress);
                 time = fired.as_ref().map_or(to, |fired| fired.time);
                 state = solver.at(time);
                 let mut stretch =
                     Stretch { from, to: time, solver: &mut solver, system: &system, modes: &modes };
                 observer.stretch(&mut stretch);
                 progress.top_speed = progress.top_speed.max(self.speed(&state));
+                before = Before { margins: after, fresh: false };
                 if let Some(fired) = fired {
-                    self.respond(&system, &mut time, &mut state, &mut progress, &fired);
+                    let course =
+                        self.respond(&system, &mut time, &mut state, &mut progress, &fired);
+                    if course == Course::New || self.is_over(&progress) || time <= from {
+                        break;
+                    }
+                    let margins = self.margins(&system, &state, &progress);
+                    before = Before { margins, fresh: true };
+                    rest_of_step = (time < to).then_some((time, to));
+                }
+                if rest_of_step.is_none() && to >= duration {
                     break;
                 }
-                if to >= duration {
-                    break;
-                }
-                margins = self.margins(&system, &state, &progress);
-                first = false;
             }
         }
         Err(ImpactError::Chatter { time })
@@ -251,19 +247,21 @@ impl Impact {
     /// As [`Self::run`].
     pub fn flight(&self, times: &[f64]) -> Result<Vec<State>, ImpactError> {
         let system = self.system();
-        let Some(&last) = times.last() else { return Ok(Vec::new()) };
         let modes = Modes::at(&system, &self.start, [false; PARTS], [[false; 2]; PARTS]);
-        let plan = Plan { from: 0.0, to: last, first_step: 0.0 };
-        let stalled = ImpactError::Stalled { time: 0.0 };
-        let mut solver =
-            Solver::start(&system, &modes, plan, &self.start, &self.tolerance).ok_or(stalled)?;
+        let (mut reached, mut state) = (0.0, self.start);
         let mut states = Vec::with_capacity(times.len());
-        let mut reached = 0.0;
         for &time in times {
-            while reached > time {
-                reached = solver.step().ok_or(ImpactError::Stalled { time })?.1;
+            // The library does not interpolate backward: a step has to end at each time.
+            let stalled = ImpactError::Stalled { time };
+            let plan = Plan { from: reached, to: time, first_step: 0.0 };
+            let mut solver =
+                Solver::start(&system, &modes, plan, &state, &self.tolerance).ok_or(stalled)?;
+            // The last step may end a round-off before its aim, and none is short enough to go on.
+            while reached - time > SIMULTANEOUS {
+                reached = solver.step().ok_or(stalled)?.1;
+                state = solver.at(reached);
             }
-            states.push(solver.at(time));
+            states.push(state);
         }
         Ok(states)
     }
@@ -321,99 +319,10 @@ impl Impact {
         self.assembly.part(0, state).velocity.norm()
     }
 
-    /// The speed of the first part, negative beyond a reversal: along a line, or along the component
-    /// that is not held, it passes through zero.
-    fn speed_along(&self, state: &State, modes: &Modes) -> f64 {
-        let velocity = self.assembly.part(0, state).velocity;
-        match (modes.straight, modes.held()[0]) {
-            (Some(direction), _) => velocity.dot(&direction),
-            (None, [true, false]) => velocity.z * modes.sense[0][1].sign(),
-            (None, [false, true]) => velocity.x * modes.sense[0][0].sign(),
-            (None, _) => velocity.norm(),
-        }
-    }
-
     fn is_over(&self, progress: &Progress) -> bool {
         let n_parts = self.assembly.n_parts();
         let all_stopped = progress.parts[..n_parts].iter().all(|part| part.vertical.is_some());
         progress.held || self.assembly.ends_with_its_tips() && all_stopped
-    }
-
-    /// Quantities that stay positive until something happens; infinite where it cannot.
-    fn margins(&self, system: &System<'_>, state: &State, progress: &Progress) -> Margins {
-        let mut margins = [f64::INFINITY; N_MARGINS];
-        let modes = &progress.modes;
-        let speed = self.speed_along(state, modes);
-        for index in 0..self.assembly.n_parts() {
-            let part = self.assembly.part(index, state);
-            let (own, stop) = (&mut margins[5 * index..5 * index + 5], &progress.parts[index]);
-            let depth = part.immersion.depth;
-            own[SURFACE] = if modes.in_bed[index] { depth } else { -depth };
-            if stop.contact.is_some() && stop.vertical.is_none() {
-                own[SINKING] = -part.tip_velocity.z;
-            }
-            if stop.horizontal.is_none() {
-                own[FORWARD] = part.tip_velocity.x * progress.forward[index];
-            }
-            if modes.gripping && modes.in_bed[index] {
-                for (component, axis) in AXES.into_iter().enumerate() {
-                    let sense = modes.sense[index][component].sign();
-                    own[COMPONENTS + component] = part.velocity[axis] * sense;
-                }
-            }
-        }
-        if modes.gripping {
-            let (_, holds) = accelerate(system, state, modes);
-            for hold in holds.iter() {
-                let slot = 5 * hold.part + COMPONENTS + hold.component;
-                margins[slot] = modes.slack(system, state, hold);
-            }
-        }
-        if self.assembly.moves_as_a_point() && modes.held()[0] == [false; 2] {
-            let part = self.assembly.part(0, state);
-            margins[STOPPING] = match modes.straight {
-                Some(direction) => part.velocity.dot(&direction),
-                None => {
-                    let scale = (self.bed.gravity * part.immersion.diameter).sqrt();
-                    let above = speed - ALMOST_REST * scale;
-                    if modes.creeping { -above } else { above }
-                }
-            };
-        }
-        let above = speed - REST_SPEED * progress.top_speed;
-        margins[SLOWING] = if progress.rest.is_some() { -above } else { above };
-        if progress.slow.is_none() {
-            margins[SLOW] = speed - REST_SPEED * progress.start_speed;
-        }
-        margins
-    }
-
-    /// The first thing that happens in the last step of `solver`.
-    fn look(
-        &self,
-        solver: &mut Solver<'_>,
-        system: &System<'_>,
-        (from, to): (f64, f64),
-        (before, first): (Margins, bool),
-        progress: &Progress,
-    ) -> Option<Fired> {
-        let middle = 0.5 * (from + to);
-        let halfway = self.margins(system, &solver.at(middle), progress);
-        let after = self.margins(system, &solver.at(to), progress);
-        let mut roots = [f64::INFINITY; N_MARGINS];
-        for which in 0..N_MARGINS {
-            // Round-off may leave a margin below zero where a stretch begins; it has not been crossed.
-            let start = if first { before[which].max(0.0) } else { before[which] };
-            let value = |state: &State| self.margins(system, state, progress)[which];
-            if start >= 0.0 && halfway[which] < 0.0 {
-                roots[which] = solver.root((from, start), (middle, halfway[which]), value);
-            } else if halfway[which] >= 0.0 && after[which] < 0.0 {
-                roots[which] = solver.root((middle, halfway[which]), (to, after[which]), value);
-            }
-        }
-        let time = roots.iter().copied().fold(f64::INFINITY, f64::min);
-        time.is_finite()
-            .then(|| Fired { time, which: roots.map(|root| root <= time + SIMULTANEOUS) })
     }
 
     /// Takes note of what happened and changes the modes accordingly.
@@ -424,7 +333,7 @@ impl Impact {
         state: &mut State,
         progress: &mut Progress,
         fired: &Fired,
-    ) {
+    ) -> Course {
         let mut still = progress.modes.held();
         let mut in_bed = progress.modes.in_bed;
         let mut changed = false;
@@ -466,10 +375,10 @@ impl Impact {
         let creeping = progress.modes.creeping;
         if stopping && !creeping && is_held(system, state, &progress.modes) {
             self.come_to_rest(system, time, state, progress);
-            return;
+            return Course::New;
         }
         if !(changed || stopping) {
-            return;
+            return Course::Same;
         }
         if stopping && progress.modes.straight.is_some() {
             still[0] = [true; 2];
@@ -497,6 +406,7 @@ impl Impact {
             }
             self.close(*time, state, progress);
         }
+        Course::New
     }
 
     /// Covers what is left of the way at constant deceleration.

@@ -166,6 +166,10 @@ pub trait ResistanceLaw: Send + Sync {
     /// Changes the sum of all terms, after them.
     fn modulate(&self, _at: &Immersion, _motion: &Motion, _load: &mut Load) {}
 
+    /// Changes what is read of a position: the depth of the lowest point and the distance along the
+    /// motion (m). A fault of the instrument; the motion itself knows nothing of it.
+    fn read(&self, _depth: &mut f64, _range: &mut f64) {}
+
     /// Whether a body that falls straight down can be pushed out of line by it.
     fn deflects(&self) -> bool {
         false

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::assembly::{Assembly, COORDINATES, PARTS, State};
+use super::assembly::{Assembly, COORDINATES, PARTS, PartLoad, State};
 use super::motion::System;
 use crate::math::Vec3;
 
@@ -230,17 +230,29 @@ pub(super) fn is_held(system: &System<'_>, state: &State, modes: &Modes) -> bool
 }
 
 /// Accelerations of the coordinates, and what holds the held components still.
+#[inline]
 pub(super) fn accelerate(
     system: &System<'_>,
     state: &State,
     modes: &Modes,
 ) -> ([f64; COORDINATES], Holds) {
     let loads = system.on_parts(state, modes);
-    let gravity = system.bed.gravity;
-    let free = system.assembly.accelerate(state, &loads, gravity);
-    if !modes.gripping {
-        return (free, Holds::default());
+    let free = system.assembly.accelerate(state, &loads, system.bed.gravity);
+    if modes.gripping {
+        hold(system, state, modes, (loads, free))
+    } else {
+        (free, Holds::default())
     }
+}
+
+/// The same where frictions hold components: `loads` alone would accelerate the coordinates by `free`.
+fn hold(
+    system: &System<'_>,
+    state: &State,
+    modes: &Modes,
+    (loads, free): ([PartLoad; PARTS], [f64; COORDINATES]),
+) -> ([f64; COORDINATES], Holds) {
+    let gravity = system.bed.gravity;
     let mut holds = Holds::default();
     for part in (0..system.assembly.n_parts()).filter(|&part| modes.in_bed[part]) {
         for component in 0..2 {

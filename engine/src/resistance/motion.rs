@@ -22,11 +22,13 @@ pub(super) struct Loaded {
 
 impl Loaded {
     /// Force of the terms that vary smoothly with the velocity (N).
+    #[inline]
     pub(super) fn dynamic(&self) -> Vec3 {
         self.load.dynamic - self.part.velocity * self.load.recruitment
     }
 
     /// Force of the frictions (N), without those that hold a component.
+    #[inline]
     pub(super) fn sliding(&self) -> Vec3 {
         let Self { motion, load, .. } = self;
         let mut force = -load.friction.component_mul(&motion.direction);
@@ -41,6 +43,7 @@ impl Loaded {
     }
 
     /// Everything but the frictions that hold.
+    #[inline]
     pub(super) fn on_part(&self) -> PartLoad {
         PartLoad {
             force: self.dynamic() + self.sliding(),
@@ -52,11 +55,13 @@ impl Loaded {
 
 impl System<'_> {
     /// Part `index` under all laws.
+    #[inline]
     pub(super) fn loaded(&self, index: usize, state: &State, modes: &Modes) -> Loaded {
         self.visit(index, state, modes, |_, _, _| {})
     }
 
     /// The same; `each` is told what every law added, as the loads before and after it.
+    #[inline]
     pub(super) fn visit(
         &self,
         index: usize,
@@ -64,38 +69,41 @@ impl System<'_> {
         modes: &Modes,
         mut each: impl FnMut(usize, &Load, &Load),
     ) -> Loaded {
-        let mut part = self.assembly.part(index, state);
+        let part = self.assembly.part(index, state);
         let motion = motion(&part, index, modes);
+        // Made where it is returned: it is too large to be moved in the innermost loop of all.
+        let mut loaded = Loaded { part, motion, load: Load::default() };
+        let Loaded { part, motion, load } = &mut loaded;
         let immersion: &mut Immersion = &mut part.immersion;
-        let mut load = Load::default();
         let inside = modes.in_bed[index];
         if inside {
             for law in self.laws {
-                law.expose(immersion, &motion, &self.bed);
+                law.expose(immersion, motion, &self.bed);
             }
         }
         for (number, law) in self.laws.iter().enumerate() {
-            let before = load;
+            let before = *load;
             if inside {
-                law.act(immersion, &motion, &self.bed, &mut load);
+                law.act(immersion, motion, &self.bed, load);
             }
-            law.act_everywhere(immersion, &motion, &self.bed, &mut load);
-            each(number, &before, &load);
+            law.act_everywhere(immersion, motion, &self.bed, load);
+            each(number, &before, load);
         }
         if inside {
             for (number, law) in self.laws.iter().enumerate() {
-                let before = load;
-                law.modulate(immersion, &motion, &mut load);
-                each(number, &before, &load);
+                let before = *load;
+                law.modulate(immersion, motion, load);
+                each(number, &before, load);
             }
         }
         if modes.gripping {
-            hold_along(&mut load, modes.sense[index]);
+            hold_along(load, modes.sense[index]);
         }
-        Loaded { part, motion, load }
+        loaded
     }
 
     /// All parts under all laws; those that an assembly does not have carry nothing.
+    #[inline]
     pub(super) fn on_parts(&self, state: &State, modes: &Modes) -> [PartLoad; PARTS] {
         let mut loads = [PartLoad::default(); PARTS];
         for (index, load) in loads.iter_mut().enumerate().take(self.assembly.n_parts()) {

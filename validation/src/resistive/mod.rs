@@ -1,21 +1,18 @@
 //! Resistive-force models as the statistics see them: a prediction is an impact integrated anew.
 
+mod candidates;
+mod needs;
 mod prepared;
 mod scatter;
 
-use std::f64::consts::FRAC_PI_2;
-
 use configs::{FreeParameter, Medium, Model};
-use contact_laws::{Needs, RESISTANCE_LAWS, ResistanceEntry, Role};
+use contact_laws::{RESISTANCE_LAWS, ResistanceEntry, Role};
 use thiserror::Error;
 
 use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
 use crate::measurement::MeasurementSet;
 use crate::observable::Layout;
 use prepared::Prepared;
-
-/// A derivative is taken over this share of the greatest amplitude that one would expect.
-const STEP: f64 = 1e-3;
 
 /// By this share a parameter is moved to see whether anything depends on it.
 const PROBE: f64 = 1e-2;
@@ -126,7 +123,7 @@ impl ResistiveForward {
             active: (0..free.len()).collect(),
             start,
             idle: Vec::new(),
-            candidates: effects.iter().map(|entry| candidate(entry, set)).collect(),
+            candidates: candidates::of(&effects, set),
             effects,
             scattering: medium
                 .resistance
@@ -209,42 +206,4 @@ fn parameter(free: &FreeParameter) -> Parameter {
         min: free.allowed.min,
         max: free.allowed.max,
     }
-}
-
-fn candidate(entry: &'static ResistanceEntry, set: &MeasurementSet) -> Candidate {
-    let spec = &entry.params[0];
-    let Role::Effect(facts) = entry.role else { unreachable!("only effects are candidates") };
-    let missing: Vec<String> =
-        facts.visible.iter().filter_map(|need| why_missing(*need, set)).collect();
-    Candidate {
-        id: entry.name,
-        min: spec.allowed.min,
-        max: spec.allowed.max,
-        step: STEP * spec.plausible.max,
-        not_testable: (!missing.is_empty()).then(|| missing.join("; ")),
-        separable_from: facts.separable_from,
-    }
-}
-
-/// What of `need` the set does not contain; nothing if it does.
-fn why_missing(need: Needs, set: &MeasurementSet) -> Option<String> {
-    let distinct = |of: fn(&crate::measurement::Condition) -> Option<f64>| {
-        let mut values: Vec<f64> = set.conditions.iter().filter_map(of).collect();
-        values.sort_by(f64::total_cmp);
-        values.dedup();
-        values.len()
-    };
-    let (there, text) = match need {
-        Needs::Oblique => (
-            set.conditions.iter().any(|one| one.angle_deg.to_radians() < FRAC_PI_2),
-            "needs impacts that are not vertical",
-        ),
-        Needs::Spin => {
-            (set.conditions.iter().any(|one| one.spin != 0.0), "needs an intruder that spins")
-        }
-        Needs::Packings => (distinct(|one| one.packing) > 1, "needs two packing fractions"),
-        Needs::BedDepth => (distinct(|one| one.bed_depth) > 0, "needs the depth of the bed"),
-        Needs::BulkDensity => (true, ""),
-    };
-    (!there).then(|| text.to_owned())
 }

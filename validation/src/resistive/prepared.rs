@@ -266,23 +266,32 @@ impl Prepared {
         let ending = impact.run(DURATION, &mut seen).map_err(|error| error.to_string())?;
         let x = impact.assembly().part(0, impact.start()).tip.x;
         let tip = |state: &State| impact.assembly().part(0, state).tip;
-        let states = || flight.iter().chain(seen.states());
-        let mut observables: Vec<f64> =
-            states().map(|state| scatter.level - tip(state).z).collect();
+        let read = |mut depth: f64, mut range: f64| {
+            impact.laws().iter().for_each(|law| law.read(&mut depth, &mut range));
+            (depth, range)
+        };
+        let frames: Vec<(f64, f64)> = flight
+            .iter()
+            .chain(seen.states())
+            .map(|state| read(scatter.level - tip(state).z, tip(state).x - x))
+            .collect();
+        let mut observables: Vec<f64> = frames.iter().map(|(depth, _)| *depth).collect();
         if self.layout.along_x {
-            observables.extend(states().map(|state| tip(state).x - x));
+            observables.extend(frames.iter().map(|(_, range)| *range));
         }
-        let stop = self.stop_time(&ending);
+        let stop = self.stop_time(&impact, &ending);
         let (depth, range) = match self.last {
             FinalDefinition::Deepest => (ending.parts[0].depth, ending.parts[0].range),
             FinalDefinition::Resting => {
                 let at_rest = tip(&ending.state);
-                (-at_rest.z, (at_rest.x - x).abs())
+                // With its sign, forward: a size would have a kink where a vertical impact drifts.
+                (-at_rest.z, at_rest.x - x)
             }
         };
+        let (depth, range) = read(depth + scatter.level, range);
         let scalars = [
             (self.layout.stop_time, stop),
-            (self.layout.final_z, depth + scatter.level),
+            (self.layout.final_z, depth),
             (self.layout.final_x, range),
         ];
         observables.extend(scalars.iter().filter(|(there, _)| *there).map(|(_, value)| *value));
@@ -292,14 +301,14 @@ impl Prepared {
         }
     }
 
-    fn stop_time(&self, ending: &Ending) -> f64 {
+    fn stop_time(&self, impact: &Impact, ending: &Ending) -> f64 {
         let part = &ending.parts[0];
         let contact = part.contact.unwrap_or(0.0);
+        let drifts = impact.assembly().ends_with_its_tips()
+            && ending.state.rate.iter().any(|&rate| rate != 0.0);
         let stop = match self.stop {
             // A link has stopped when its tip no longer sinks, wherever it still drifts.
-            StopDefinition::ComponentZero if ending.state.rate.iter().any(|&rate| rate != 0.0) => {
-                part.vertical
-            }
+            StopDefinition::ComponentZero if drifts => part.vertical,
             StopDefinition::ComponentZero => part.time(),
             StopDefinition::SpeedFivePercent => ending.slow,
         };

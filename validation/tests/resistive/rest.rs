@@ -114,3 +114,19 @@ fn the_speed_falls_below_five_percent_before_the_stop_however_long_the_last_step
         assert_eq!(ending.rest, ending.slow);
     }
 }
+
+#[test]
+fn the_flight_that_led_to_the_impact_is_a_free_fall_at_every_time_that_is_asked_for() {
+    let (down, across) =
+        (2.0 * libm::sin(60_f64.to_radians()), 2.0 * libm::cos(60_f64.to_radians()));
+    let laws = vec![law("two-term-vector", &[("drag", 1.0), ("friction", 15.0)])];
+    let times = [-1e-4, -0.003, -0.02, -0.021, -0.04, -0.1];
+    let states = sphere(laws, 2.0, 60.0).flight(&times).unwrap();
+    for (time, state) in times.into_iter().zip(states) {
+        let [x, z, ..] = state.position;
+        let fallen = -down * time - 0.5 * BED.gravity * time * time;
+        // The tolerance of the integration, over a tenth of a metre.
+        assert!((z - fallen).abs() < 1e-11, "{time} s: {z}");
+        assert!((x - across * time).abs() < 1e-11, "{time} s: {x}");
+    }
+}

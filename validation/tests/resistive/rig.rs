@@ -10,7 +10,7 @@ use intruders::Casting;
 pub(crate) const MASS: f64 = 0.0692;
 pub(crate) const DIAMETER: f64 = 0.0254;
 pub(crate) const BED: Surroundings =
-    Surroundings { bulk_density: 1520.0, gravity: 9.8, packing: None, bed_depth: None };
+    Surroundings { bulk_density: 1520.0, gravity: 9.8, packing: Some(0.61), bed_depth: Some(0.12) };
 
 /// The law called `name` with these coefficients, and the defaults for the others.
 pub(crate) fn law(name: &str, values: &[(&'static str, f64)]) -> Box<dyn ResistanceLaw> {
@@ -41,14 +41,23 @@ pub(crate) fn law_of_depth(
 
 /// A sphere that touches the surface at `speed` (m/s), `angle` degrees below the horizontal.
 pub(crate) fn sphere(laws: Vec<Box<dyn ResistanceLaw>>, speed: f64, angle: f64) -> Impact {
+    spinning_sphere(laws, speed, angle, 0.0)
+}
+
+/// The same with a `spin` (rad/s), positive where it rolls forward.
+pub(crate) fn spinning_sphere(
+    laws: Vec<Box<dyn ResistanceLaw>>,
+    speed: f64,
+    angle: f64,
+    spin: f64,
+) -> Impact {
     let mut params = ParamTable::new();
     params.set("diameter", DIAMETER);
     let radians = angle.to_radians();
     let (down, across) =
         if angle >= 90.0 { (1.0, 0.0) } else { (libm::sin(radians), libm::cos(radians)) };
     let velocity = Vec3::new(speed * across, 0.0, -speed * down);
-    let casting =
-        Casting { params: &params, space: Space::Spatial, mass: MASS, velocity, spin: 0.0 };
+    let casting = Casting { params: &params, space: Space::Spatial, mass: MASS, velocity, spin };
     let shape = intruders::find("sphere").expect("the sphere is registered");
     let made = (shape.assembly)(&casting);
     Impact::new(made.assembly, laws, BED, made.start)

@@ -236,8 +236,16 @@ impl TwoTerm {
                 Effect::LessWeight | Effect::MoreMass => (-0.5, 0.9, 0.01),
                 _ => (-5.0, 20.0, 0.02),
             };
-            let id = effect.id();
-            Candidate { id, min, max, step, not_testable: None, separable_from: "more runs" }
+            Candidate {
+                id: effect.id().into(),
+                unit: "1".into(),
+                min,
+                max,
+                step,
+                not_testable: None,
+                separable_from: "from others by more runs".into(),
+                unresolved: Vec::new(),
+            }
         };
         Self {
             settings: settings.to_vec(),

@@ -28,7 +28,6 @@ const ONLY: [(&str, &[&str]); 27] = [
     ("arrow", &["exchange"]),
     ("clap", &["plunge"]),
     ("comfy-table", &["plunge"]),
-    ("differential-equations", &["engine"]),
     ("exmex", &["contact-laws"]),
     ("foxglove", &["engine"]),
     ("indicatif", &["plunge"]),

@@ -1,0 +1,140 @@
+//! What data must contain to show an effect, and to tell it from the effects that look like it.
+
+/// What a diagnosis has to know of an effect.
+#[derive(Clone, Copy, Debug)]
+pub struct Facts {
+    /// Unit of the amplitude: "1" where it is a pure number.
+    pub unit: &'static str,
+    /// What the data must contain for it to act at all.
+    pub visible: &'static [Needs],
+    /// The effects that look like it, and what tells them apart; a pair is listed with one of the two.
+    pub separable_from: &'static [Twin],
+}
+
+/// An effect that does nearly the same to the observables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Twin {
+    /// Its name.
+    pub effect: &'static str,
+    /// Data tell the two apart only if they contain any of these.
+    pub any_of: &'static [Needs],
+}
+
+/// Something that a measurement set may contain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Needs {
+    /// Impacts that are not vertical.
+    Oblique,
+    /// Impacts at two angles that are not vertical.
+    ObliqueAngles,
+    /// Impacts that are vertical.
+    Vertical,
+    /// An intruder that spins.
+    Spin,
+    /// Spin in the sense of rolling forward, and against it.
+    SpinBothWays,
+    /// Two packing fractions.
+    Packings,
+    /// A known depth of the bed.
+    BedDepth,
+    /// Two depths of the bed.
+    BedDepths,
+    /// Impact speeds of which the largest is three times the smallest or more.
+    Speeds,
+    /// A run that ends two diameters deep or more.
+    Depths,
+    /// A condition whose runs end less than two diameters deep.
+    Shallow,
+    /// Two masses of the intruder.
+    Masses,
+    /// Two diameters of the intruder.
+    Diameters,
+    /// Frames before first contact.
+    FramesBeforeImpact,
+    /// Two conditions.
+    Conditions,
+}
+
+impl Needs {
+    /// What is needed, as a noun.
+    #[must_use]
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Oblique => "oblique impacts",
+            Self::ObliqueAngles => "two oblique angles",
+            Self::Vertical => "vertical impacts",
+            Self::Spin => "an intruder that spins",
+            Self::SpinBothWays => "spin both ways",
+            Self::Packings => "two packing fractions",
+            Self::BedDepth => "a known depth of the bed",
+            Self::BedDepths => "two depths of the bed",
+            Self::Speeds => "impact speeds over a range of 3 or more",
+            Self::Depths => "final depths of two diameters or more",
+            Self::Shallow => "final depths below two diameters",
+            Self::Masses => "two masses",
+            Self::Diameters => "two diameters",
+            Self::FramesBeforeImpact => "frames before impact",
+            Self::Conditions => "two conditions",
+        }
+    }
+}
+
+impl Twin {
+    /// "yield-stress by two diameters or frames before impact".
+    #[must_use]
+    pub fn describe(&self) -> String {
+        let needs: Vec<&str> = self.any_of.iter().map(|need| need.describe()).collect();
+        format!("{} by {}", self.effect, needs.join(" or "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{RESISTANCE_LAWS, Role, find_resistance, twins};
+    use super::*;
+
+    fn declared() -> Vec<(&'static str, Twin)> {
+        let of = |role| match role {
+            Role::Effect(facts) => facts.separable_from,
+            Role::Baseline => &[],
+        };
+        RESISTANCE_LAWS
+            .iter()
+            .flat_map(|entry| of(entry.role).iter().map(|twin| (entry.name, *twin)))
+            .collect()
+    }
+
+    #[test]
+    fn every_twin_is_another_effect_and_can_be_told_apart_by_something() {
+        for (name, twin) in declared() {
+            let entry = find_resistance(twin.effect)
+                .unwrap_or_else(|| panic!("{name} has the twin {}, which is none", twin.effect));
+            assert!(matches!(entry.role, Role::Effect(_)), "{name}: {}", twin.effect);
+            assert_ne!(name, twin.effect);
+            assert!(!twin.any_of.is_empty(), "{name}: {}", twin.effect);
+        }
+    }
+
+    #[test]
+    fn a_pair_of_twins_is_declared_once_and_known_to_both() {
+        let pairs = declared();
+        for (index, (name, twin)) in pairs.iter().enumerate() {
+            let same = |(other, its): &&(&str, Twin)| {
+                (*other, its.effect) == (*name, twin.effect)
+                    || (*other, its.effect) == (twin.effect, *name)
+            };
+            let again = pairs[..index].iter().find(same);
+            assert!(again.is_none(), "{name} and {} are declared twice", twin.effect);
+            let back = twins(twin.effect).find(|back| back.effect == *name);
+            assert_eq!(back.map(|back| back.any_of), Some(twin.any_of));
+            assert!(twins(name).any(|there| there == *twin));
+        }
+    }
+
+    #[test]
+    fn what_tells_twins_apart_reads_as_a_sentence() {
+        let twin =
+            Twin { effect: "lift", any_of: &[Needs::ObliqueAngles, Needs::FramesBeforeImpact] };
+        assert_eq!(twin.describe(), "lift by two oblique angles or frames before impact");
+    }
+}

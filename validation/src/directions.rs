@@ -1,0 +1,192 @@
+//! In which directions a residual is looked at: what changes of the force would do to the observables.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::bench::{Bench, Fitted};
+use crate::force_error::COVARIATES;
+use crate::projection::Basis;
+
+/// Modes of a smooth change over depth against the motion, and normal to it.
+const MODES: [usize; 2] = [4, 2];
+
+/// Modes over depth of a change that one condition has for itself.
+const OWN_MODES: [usize; 2] = [2, 1];
+
+/// Directions over all conditions and within each; what the parameters of the model can do is no
+/// lack of fit, and is left out of all of them.
+pub(crate) struct Directions {
+    conditions: Vec<Within>,
+    /// How many of the coherent directions are smooth.
+    smooth: usize,
+}
+
+/// The part of the directions that lies in one condition.
+pub(crate) struct Within {
+    /// Its first row, and how many.
+    rows: (usize, usize),
+    /// What the parameters can do, over all conditions.
+    parameters: DMatrix<f64>,
+    /// What forces can do that change in all conditions together, smooth ones first.
+    coherent: DMatrix<f64>,
+    /// What its own forces can do, smooth ones first.
+    own: DMatrix<f64>,
+    /// How many of those are smooth.
+    smooth: usize,
+    /// What the parameters do of it.
+    shared: DMatrix<f64>,
+}
+
+/// What of residuals of one condition, as columns, lies along the directions.
+pub(crate) struct Along {
+    pub(crate) parameters: DMatrix<f64>,
+    pub(crate) coherent: DMatrix<f64>,
+    pub(crate) own: DMatrix<f64>,
+}
+
+impl Directions {
+    /// Beside what the parameters of `fitted` can do; `responses` are, for every condition, the
+    /// whitened changes by forces around depths against the motion and normal to it.
+    pub(crate) fn new(bench: &Bench<'_>, fitted: &Fitted, responses: &[[DMatrix<f64>; 2]]) -> Self {
+        let rows = fitted.fit.residual.len();
+        let parameters = Basis::of(&fitted.fit.jacobian);
+        let smooth = stacked(responses, rows, &smooth_factors(bench), MODES);
+        let sharp = stacked(responses, rows, &factors(bench), [usize::MAX; 2]);
+        let mut coherent = Basis::beside(&smooth, &parameters);
+        let n_smooth = coherent.len();
+        coherent.extend(&sharp, &parameters);
+        let (coherent, parameters) = (coherent.to_matrix(rows), parameters.to_matrix(rows));
+        let mut start = 0;
+        let conditions = responses.iter().map(|response| {
+            let rows = (start, response[0].nrows());
+            start += rows.1;
+            let mut own = Basis::of(&modes(response, OWN_MODES));
+            let smooth = own.len();
+            own.extend(&modes(response, [usize::MAX; 2]), &Basis::none());
+            let own = own.to_matrix(rows.1);
+            let parameters = parameters.rows(rows.0, rows.1).into_owned();
+            let coherent = coherent.rows(rows.0, rows.1).into_owned();
+            Within { rows, smooth, shared: own.tr_mul(&parameters), parameters, coherent, own }
+        });
+        Self { conditions: conditions.collect(), smooth: n_smooth }
+    }
+
+    /// One per condition that was fitted to.
+    pub(crate) fn conditions(&self) -> &[Within] {
+        &self.conditions
+    }
+
+    /// A residual of all conditions along the directions.
+    pub(crate) fn of(&self, residual: &DVector<f64>) -> Vec<Along> {
+        let each = self.conditions.iter();
+        each.map(|within| {
+            let (start, rows) = within.rows;
+            within.of(&DMatrix::from_columns(&[residual.rows(start, rows)]))
+        })
+        .collect()
+    }
+
+    /// Squared lengths of a residual along the directions: coherent smooth, coherent, smooth in each
+    /// condition, any in each condition.
+    pub(crate) fn sizes(&self, residual: &[Along]) -> Vec<f64> {
+        let sum = |part: fn(&Along) -> &DMatrix<f64>| {
+            let mut columns = residual.iter().map(|along| part(along).column(0).into_owned());
+            let first = columns.next().unwrap_or_else(|| DVector::zeros(0));
+            columns.fold(first, |total, one| total + one)
+        };
+        let parameters = sum(|along| &along.parameters);
+        let coherent = sum(|along| &along.coherent);
+        let mut sizes =
+            vec![coherent.rows(0, self.smooth).norm_squared(), coherent.norm_squared(), 0.0, 0.0];
+        for (within, along) in self.conditions.iter().zip(residual) {
+            let own = along.own.column(0) - &within.shared * &parameters;
+            sizes[2] += own.rows(0, within.smooth).norm_squared();
+            sizes[3] += own.norm_squared();
+        }
+        sizes
+    }
+}
+
+impl Within {
+    /// Residuals of the condition, as columns, along the directions.
+    pub(crate) fn of(&self, columns: &DMatrix<f64>) -> Along {
+        Along {
+            parameters: self.parameters.tr_mul(columns),
+            coherent: self.coherent.tr_mul(columns),
+            own: self.own.tr_mul(columns),
+        }
+    }
+}
+
+/// For every factor, a block of columns: the modes of every condition times its factor.
+fn stacked(
+    responses: &[[DMatrix<f64>; 2]],
+    rows: usize,
+    factors: &[(Vec<f64>, [usize; 2])],
+    most: [usize; 2],
+) -> DMatrix<f64> {
+    let mut columns = Vec::new();
+    for (factor, limit) in factors {
+        let count = [most[0].min(limit[0]), most[1].min(limit[1])];
+        let blocks: Vec<DMatrix<f64>> = responses.iter().map(|r| modes(r, count)).collect();
+        let mut all = DMatrix::zeros(rows, blocks.first().map_or(0, DMatrix::ncols));
+        let mut start = 0;
+        for (block, factor) in blocks.iter().zip(factor) {
+            let mut part = all.view_mut((start, 0), block.shape());
+            part.copy_from(&(block * *factor));
+            start += block.nrows();
+        }
+        columns.extend(all.column_iter().map(|column| column.into_owned()));
+    }
+    match columns.is_empty() {
+        true => DMatrix::zeros(rows, 0),
+        false => DMatrix::from_columns(&columns),
+    }
+}
+
+/// Changes of the force over depth as cosines, the smoothest `count` against the motion and normal to
+/// it; where all are asked for, the nodes themselves.
+fn modes(response: &[DMatrix<f64>; 2], count: [usize; 2]) -> DMatrix<f64> {
+    let mut columns = Vec::new();
+    for (response, count) in response.iter().zip(count) {
+        let nodes = response.ncols();
+        if count >= nodes {
+            columns.extend(response.column_iter().map(|column| column.into_owned()));
+            continue;
+        }
+        let phase = std::f64::consts::PI / (nodes - 1) as f64;
+        columns.extend((0..count).map(|mode| {
+            response * DVector::from_fn(nodes, |node, _| libm::cos(phase * (mode * node) as f64))
+        }));
+    }
+    DMatrix::from_columns(&columns)
+}
+
+/// By what a coherent change may differ between conditions: not at all, with the speed, with the angle.
+fn factors(bench: &Bench<'_>) -> Vec<(Vec<f64>, [usize; 2])> {
+    let conditions = bench.observed.fit.iter().map(|&index| &bench.set.conditions[index]);
+    let one = vec![1.0; bench.observed.fit.len()];
+    let speed = standardised(conditions.clone().map(|condition| condition.speed).collect());
+    let angle = standardised(conditions.map(|condition| condition.angle_deg).collect());
+    [one, speed, angle].into_iter().map(|factor| (factor, [usize::MAX; 2])).collect()
+}
+
+/// The same, and a change of the whole force with anything else that was varied.
+fn smooth_factors(bench: &Bench<'_>) -> Vec<(Vec<f64>, [usize; 2])> {
+    let others = COVARIATES.iter().filter_map(|(_, value)| {
+        let conditions = bench.observed.fit.iter().map(|&index| &bench.set.conditions[index]);
+        let values: Option<Vec<f64>> = conditions.map(value).collect();
+        Some((standardised(values?), [1, 0]))
+    });
+    factors(bench).into_iter().chain(others).collect()
+}
+
+/// Values less their mean, over their standard deviation; zero if they are all the same.
+fn standardised(values: Vec<f64>) -> Vec<f64> {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let sd = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n).sqrt();
+    values
+        .iter()
+        .map(|value| if sd > 1e-9 * mean.abs() { (value - mean) / sd } else { 0.0 })
+        .collect()
+}
