@@ -249,21 +249,19 @@ impl Impact {
     /// As [`Self::run`].
     pub fn flight(&self, times: &[f64]) -> Result<Vec<State>, ImpactError> {
         let system = self.system();
+        let Some(&last) = times.last() else { return Ok(Vec::new()) };
         let modes = Modes::at(&system, &self.start, [false; PARTS], [[false; 2]; PARTS]);
-        let (mut reached, mut state) = (0.0, self.start);
+        let plan = Plan { from: 0.0, to: last, first_step: 0.0 };
+        let stalled = ImpactError::Stalled { time: 0.0 };
+        let mut solver =
+            Solver::start(&system, &modes, plan, &self.start, &self.tolerance).ok_or(stalled)?;
         let mut states = Vec::with_capacity(times.len());
+        let mut reached = 0.0;
         for &time in times {
-            // The library does not interpolate backward: a step has to end at each time.
-            let stalled = ImpactError::Stalled { time };
-            let plan = Plan { from: reached, to: time, first_step: 0.0 };
-            let mut solver =
-                Solver::start(&system, &modes, plan, &state, &self.tolerance).ok_or(stalled)?;
-            // The last step may end a round-off before its aim, and none is short enough to go on.
-            while reached - time > SIMULTANEOUS {
-                reached = solver.step().ok_or(stalled)?.1;
-                state = solver.at(reached);
+            while reached > time {
+                reached = solver.step().ok_or(ImpactError::Stalled { time })?.1;
             }
-            states.push(state);
+            states.push(solver.at(time));
         }
         Ok(states)
     }
