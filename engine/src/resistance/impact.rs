@@ -11,9 +11,7 @@ use super::motion::System;
 use super::observe::{Observer, Stretch};
 use super::solver::{Plan, Solver};
 use super::{ResistanceLaw, Surroundings};
-use events::{
-    Before, COMPONENTS, FORWARD, Fired, SIMULTANEOUS, SINKING, SLOW, SLOWING, STOPPING, SURFACE,
-};
+use events::{Before, COMPONENTS, FORWARD, Fired, SINKING, SLOW, SLOWING, STOPPING, SURFACE};
 
 /// Below this share of √(gD) a component of the velocity is what the integration has left of zero.
 const STILL: f64 = 1e-6;

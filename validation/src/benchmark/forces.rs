@@ -1,6 +1,6 @@
 //! Forces on a sphere in the world.
 
-use std::f64::consts::{FRAC_PI_4, PI, TAU};
+use std::f64::consts::{FRAC_PI_4, PI};
 
 use super::field::Field;
 use super::hidden::{Amplitudes, Hidden};
@@ -170,7 +170,7 @@ impl Sphere<'_> {
         }
         let wave = self.amplitude(Hidden::Periodic);
         if wave != 0.0 {
-            factor *= 1.0 + wave * libm::cos(TAU * depth / 0.012);
+            factor *= 1.0 + wave * libm::sin(PI * depth / 0.012).powi(2);
         }
         factor
     }

@@ -82,7 +82,7 @@ pub struct Form {
     pub(super) signs: &'static [f64],
     /// A small amplitude, where the search starts.
     pub(super) small: f64,
-    /// The greatest that makes sense.
+    /// The greatest: beyond what a laboratory could overlook, and what a candidate may have.
     pub(super) most: f64,
 }
 
@@ -141,7 +141,7 @@ pub static FORMS: [Form; COUNT] = [
         Hidden::AirDrag,
         ("air-drag", Same),
         "½ ρ_air q A v², ρ_air = 1.2 kg/m³, everywhere",
-        (UP, 10.0, 5000.0),
+        (UP, 10.0, 1000.0),
     ),
     form(Hidden::Packing, ("packing", Other), "friction × exp(q (φ − 0.59))", (UP, 1.0, 60.0)),
     form(Hidden::SpinFriction, ("spin-friction", Same), "q ρ g A z (R/V_s) ω×v̂", (BOTH, 0.1, 50.0)),
@@ -175,8 +175,8 @@ pub static FORMS: [Form; COUNT] = [
     form(
         Hidden::Periodic,
         ("periodic", Unlisted),
-        "friction × (1 + q cos(2π z/12 mm))",
-        (UP, 0.05, 0.98),
+        "friction × (1 + q sin²(π z/12 mm))",
+        (UP, 0.05, 50.0),
     ),
     form(Hidden::CubicDrag, ("cubic-drag", Unlisted), "q ρ A v³/V_s", (UP, 0.01, 10.0)),
     form(

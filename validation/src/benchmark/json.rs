@@ -70,6 +70,6 @@ fn said(answer: &Answer) -> Value {
         "q_hidden": answer.hidden,
         "resting_error_m": answer.endpoint,
         "pair_found": answer.pair,
-        "seconds": answer.seconds,
+        "cost": { "wall_s": answer.seconds },
     })
 }

@@ -91,13 +91,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_effect_of_the_list_can_be_as_strong_as_the_grid_asks() {
+    fn every_effect_shifts_the_resting_points_by_the_strength_that_is_asked_for() {
         let design = Design::full();
         let nature = Nature { drag: 1.2, friction: 12.0, hidden: Vec::new() };
         let rest = resting_points(&design, &nature).expect("it stops");
         for hidden in Hidden::listed().chain(Hidden::unlisted()) {
             let sign = hidden.form().signs[0];
-            for strength in [0.03, 0.12] {
+            for strength in [0.03, 0.06] {
                 let q = amplitude(&design, &nature, (hidden, sign), strength)
                     .unwrap_or_else(|error| panic!("{error}"));
                 let hiding = Nature { hidden: vec![(hidden, q)], ..nature.clone() };

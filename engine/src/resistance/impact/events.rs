@@ -14,7 +14,7 @@ const REST_SPEED: f64 = 0.05;
 const ALMOST_REST: f64 = 1e-4;
 
 /// Events this near to each other are one (s).
-pub(super) const SIMULTANEOUS: f64 = 1e-12;
+const SIMULTANEOUS: f64 = 1e-12;
 
 /// What can happen between two steps, as indices of [`Margins`].
 pub(super) const N_MARGINS: usize = 5 * PARTS + 3;
