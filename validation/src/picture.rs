@@ -107,9 +107,9 @@ fn fitting(text: &str, width: u32) -> String {
     text.chars().take(room.saturating_sub(1)).chain(['\u{2026}']).collect()
 }
 
-/// `low` and `high` with a twelfth of their distance beyond either.
+/// `low` and `high` with a ninth of their distance beyond either.
 fn padded(low: f64, high: f64) -> std::ops::Range<f64> {
     let distance = high - low;
-    let pad = if distance > 0.0 { distance / 12.0 } else { low.abs().max(1.0) / 12.0 };
+    let pad = if distance > 0.0 { distance / 9.0 } else { low.abs().max(1.0) / 9.0 };
     low - pad..high + pad
 }

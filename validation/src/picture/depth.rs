@@ -66,9 +66,10 @@ fn draw_map(
     let n = conditions.len();
     let mut chart = ChartBuilder::on(area)
         .margin_top(ABOVE)
+        .margin_left(8)
         .margin_right(20)
         .x_label_area_size(below)
-        .y_label_area_size(LEFT)
+        .y_label_area_size(LEFT - 8)
         .build_cartesian_2d(0.0..n as f64, 1e3 * deepest..0.0)?;
     chart
         .configure_mesh()

@@ -90,14 +90,9 @@ fn rows(found: &WhereItFails<'_>) -> Vec<(Sign, String)> {
     }
     rows.push((Sign::Dashed(BLACK), "what the noise of the means alone would give".to_owned()));
     let names = found.models.iter().enumerate();
-    let names: Vec<String> =
-        names.map(|(at, model)| format!("{}: {}", at + 1, model.model)).collect();
-    let longest = names.len() > 2;
-    if longest {
-        rows.extend(names.into_iter().map(|name| (Sign::Dot(WHITE), name)));
-    } else {
-        rows.push((Sign::Dot(WHITE), names.join("    ")));
-    }
+    rows.extend(
+        names.map(|(at, model)| (Sign::Dot(WHITE), format!("{}: {}", at + 1, model.model))),
+    );
     rows
 }
 

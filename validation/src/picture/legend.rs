@@ -27,13 +27,13 @@ pub(super) enum Sign {
 
 /// Height of a legend of `rows` (pixels).
 pub(super) fn height(rows: usize) -> u32 {
-    ROW * rows as u32 + 10
+    ROW * rows as u32 + 14
 }
 
 /// Draws `rows` from the top of `area`.
 pub(super) fn draw(area: &Area<'_>, rows: &[(Sign, String)]) -> Drawn {
     for (row, (sign, text)) in rows.iter().enumerate() {
-        let y = (ROW / 2 + ROW * row as u32) as i32;
+        let y = (4 + ROW / 2 + ROW * row as u32) as i32;
         draw_sign(area, *sign, y)?;
         area.draw(&Text::new(text.clone(), (70, y - LETTERS as i32 / 2), letters()))?;
     }

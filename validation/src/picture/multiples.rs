@@ -100,6 +100,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
     let (first, last) = (times.clone().fold(0.0, f64::min), times.fold(0.0, f64::max));
     let mut chart = ChartBuilder::on(area)
         .margin_top(24)
+        .margin_left(6)
         .margin_right(10)
         .x_label_area_size(34)
         .y_label_area_size(46)

@@ -7,7 +7,10 @@ use super::{Area, COLOURS, Drawn, GREY, centred, letters, short};
 use crate::force_error::ForceCell;
 
 /// Where a scale may end.
-const LIMITS: [f64; 8] = [0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 5.0];
+const LIMITS: [f64; 9] = [0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 1.0, 2.0, 5.0];
+
+/// Share of the errors that the scale holds.
+const MOST: f64 = 0.8;
 
 /// Steps of the drawn scale to either side.
 const STEPS: i32 = 20;
@@ -21,13 +24,16 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// That holds every cell to be believed, or every error where none is.
+    /// That holds most of the cells to be believed, or most of all where none is: a single large error
+    /// must not make the others pale.
     pub(super) fn of<'c>(cells: impl Iterator<Item = &'c ForceCell> + Clone) -> Self {
-        let largest = |largest: f64, cell: &ForceCell| largest.max(cell.force_error.abs());
-        let mut most = cells.clone().filter(|cell| cell.significant).fold(0.0, largest);
-        if most <= 0.0 {
-            most = cells.fold(0.0, largest);
+        let size = |cell: &ForceCell| cell.force_error.abs();
+        let mut sizes: Vec<f64> = cells.clone().filter(|cell| cell.significant).map(size).collect();
+        if sizes.is_empty() {
+            sizes = cells.map(size).collect();
         }
+        sizes.sort_by(f64::total_cmp);
+        let most = sizes.get((MOST * sizes.len() as f64) as usize).copied().unwrap_or(0.0);
         let limit = LIMITS.into_iter().find(|limit| *limit >= most);
         Self { limit: limit.unwrap_or(LIMITS[LIMITS.len() - 1]) }
     }
@@ -55,9 +61,9 @@ impl Scale {
         area.draw(&Rectangle::new([(left, 4), (right, 20)], BLACK.stroke_width(1)))?;
         let limit = short(100.0 * self.limit);
         for (x, text) in [
-            (left, format!("\u{2212}{limit} %")),
+            (left, format!("\u{2264} \u{2212}{limit} %")),
             ((left + right) / 2, "0".to_owned()),
-            (right, format!("+{limit} %")),
+            (right, format!("\u{2265} +{limit} %")),
         ] {
             area.draw(&Text::new(text, (x, 30), centred()))?;
         }

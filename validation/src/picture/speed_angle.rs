@@ -73,7 +73,7 @@ fn intruder(condition: &Condition) -> String {
 
 fn draw_panel(area: &Area<'_>, panel: &Panel<'_>, scale: &Scale) -> Drawn {
     for (row, title) in panel.titles.iter().enumerate() {
-        let place = (52, 6 + 17 * row as i32);
+        let place = (56, 6 + 17 * row as i32);
         area.draw(&Text::new(fitting(title, PANEL.0 - 60), place, letters()))?;
     }
     let speeds = values(panel, |condition| condition.speed);
@@ -83,9 +83,10 @@ fn draw_panel(area: &Area<'_>, panel: &Panel<'_>, scale: &Scale) -> Drawn {
     let (across, up) = (padded(*slowest, *fastest), padded(*flattest, *steepest));
     let mut chart = ChartBuilder::on(area)
         .margin_top(42)
+        .margin_left(8)
         .margin_right(12)
         .x_label_area_size(40)
-        .y_label_area_size(52)
+        .y_label_area_size(48)
         .build_cartesian_2d(across.clone(), up.clone())?;
     chart
         .configure_mesh()
