@@ -86,7 +86,7 @@ fn draw_panel(area: &Area<'_>, covariate: Covariate, all: &[Series<'_>]) -> Draw
         .margin_left(8)
         .margin_right(12)
         .x_label_area_size(44)
-        .y_label_area_size(50)
+        .y_label_area_size(62)
         .build_cartesian_2d(across, padded(-100.0 * highest, 100.0 * highest))?;
     let Covariate { heading, unit, .. } = covariate;
     let heading = if unit == "1" { heading.to_owned() } else { format!("{heading} ({unit})") };

@@ -6,7 +6,7 @@ use serde_json::Value;
 use validation::bench::{Bench, DEFAULT_SEED};
 use validation::compare::{Comparison, Revision, compare};
 use validation::diagnose::diagnose;
-use validation::force_error::{ForceErrors, Trend};
+use validation::force_error::{ForceCell, ForceErrors, Trend};
 use validation::measurement::{Kind, MeasurementSet};
 use validation::observed::Observed;
 use validation::where_it_fails::{FILES, WhereItFails};
@@ -115,9 +115,15 @@ fn a_layer_shows_in_the_cells_around_it_as_too_small_a_force() {
     let inside = marked().filter(|cell| touches(cell.from, cell.to));
     assert!(inside.clone().count() >= 4, "{:?}", marked().collect::<Vec<_>>());
     assert!(inside.clone().all(|cell| cell.force_error > 0.0), "{:?}", inside.collect::<Vec<_>>());
-    // The fitted friction makes up for the layer: elsewhere the force is too large.
-    let elsewhere = marked().filter(|cell| !touches(cell.from, cell.to) && cell.from > 0.016);
-    assert!(elsewhere.filter(|cell| cell.force_error > 0.0).count() <= 1);
+    // Neighbours in depth of one condition are estimated against each other, so that single ones have
+    // either sign; on average the force is too small in the layer and not below it.
+    let mean = |cells: Vec<&ForceCell>| {
+        cells.iter().map(|cell| cell.force_error / cell.se).sum::<f64>() / cells.len() as f64
+    };
+    let within = mean(errors.cells.iter().filter(|c| touches(c.from, c.to)).collect());
+    let below = mean(errors.cells.iter().filter(|c| c.from > 0.016).collect());
+    // Two standard errors between single cells are many between means of ten and more.
+    assert!(within > 0.0 && within > below + 2.0, "{within} {below}");
 }
 
 #[test]
