@@ -10,6 +10,7 @@ use validation::measurement::MeasurementSet;
 use validation::observable::Observable;
 use validation::picture;
 use validation::residual::Residual;
+use validation::where_it_fails::WhereItFails;
 
 use crate::compare_runs::{self, Found};
 use crate::output::{self, CommandError, CommandResult};
@@ -77,6 +78,9 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         .map_err(|error| CommandError::Failed(error.into()))?;
     let mut files = vec![("comparison.json".to_owned(), format!("{object:#}\n"))];
     files.extend(figure.map(|figure| ("comparison.svg".to_owned(), figure)));
+    let where_it_fails =
+        WhereItFails::of_comparison(&measured.set, &measured.observed, &comparison);
+    files.extend(where_it_fails.files().map_err(anyhow::Error::new)?);
     results.write(&files)?;
     match flags.json {
         true => output::json_to_stdout(&object),
@@ -191,14 +195,15 @@ fn errors(comparison: &Comparison) -> String {
 fn numbers(set: &MeasurementSet, models: &[ModelComparison]) -> String {
     let Some(first) = models.first() else { return String::new() };
     let is_scalar = |one: &Residual| one.observable.is_scalar();
-    let n = first.residuals.iter().filter(|one| is_scalar(one)).count();
+    let n = first.failing.residuals.iter().filter(|one| is_scalar(one)).count();
     if n == 0 || n > MOST_NUMBERS {
         return String::new();
     }
     let mut header = vec!["condition", "speed (m/s)", "angle (deg)", "", "measured"];
     header.extend(models.iter().map(|model| model.model.as_str()));
     let mut table = table(&header);
-    for (place, one) in first.residuals.iter().enumerate().filter(|(_, one)| is_scalar(one)) {
+    for (place, one) in first.failing.residuals.iter().enumerate().filter(|(_, one)| is_scalar(one))
+    {
         let condition = &set.conditions[one.condition];
         let (unit, scale) = match one.observable {
             Observable::StopTime => ("ms", 1e3),
@@ -216,7 +221,7 @@ fn numbers(set: &MeasurementSet, models: &[ModelComparison]) -> String {
             format!("{:.1} {unit}", scale * one.measured),
         ];
         row.extend(models.iter().map(|model| {
-            let predicted = model.residuals[place].predicted;
+            let predicted = model.failing.residuals[place].predicted;
             let error = 100.0 * (predicted / one.measured - 1.0);
             match error.is_finite() {
                 true => format!("{:.1} ({error:+.0} %)", scale * predicted),

@@ -8,6 +8,7 @@ use serde_json::Value;
 use validation::bench::Bench;
 use validation::diagnose::diagnose;
 use validation::verdict::{Diagnosis, RankedEffect, Verdict};
+use validation::where_it_fails::WhereItFails;
 
 use crate::add::from_diagnosis;
 use crate::compare::{lines, noise_words, probability, table};
@@ -41,6 +42,9 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let text = format!("{object:#}\n");
     let mut files = propose(model, &object, &diagnosis)?;
     files.insert(0, ("diagnosis.json".to_owned(), text.clone()));
+    let where_it_fails = WhereItFails::of_diagnosis(&bench, &model.name, &diagnosis, flags.seed)
+        .map_err(|error| failed(error, &model.name))?;
+    files.extend(where_it_fails.files().map_err(anyhow::Error::new)?);
     results.write(&files)?;
     if flags.json {
         return output::to_stdout(&text);

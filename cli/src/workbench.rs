@@ -10,6 +10,7 @@ use validation::bench::BenchError;
 use validation::measurement::{self, MeasurementSet, SetError};
 use validation::observed::Observed;
 use validation::resistive::ResistiveForward;
+use validation::where_it_fails;
 
 use crate::output::{self, CommandError, CommandResult, stderr_color};
 
@@ -19,7 +20,7 @@ const SEED: u64 = 1;
 /// The file that says what the results of a folder are from.
 const INPUTS: &str = "inputs.blake3";
 
-/// What these commands write, besides proposed models.
+/// What these commands write, besides proposed models and [`where_it_fails::FILES`].
 const RESULTS: [&str; 4] = [INPUTS, "comparison.json", "comparison.svg", "diagnosis.json"];
 
 /// The flags of commands about a measurement set.
@@ -172,7 +173,7 @@ impl Flags {
         let folder = self.out.clone().unwrap_or_else(default);
         let mut hash = blake3::Hasher::new();
         hash.update(env!("CARGO_PKG_VERSION").as_bytes());
-        // Names and order of runs are no inputs: the observables are in an order of their own.
+        // Names of runs and the order of rows are no inputs: the observables are in an order of their own.
         let MeasurementSet { id, kind, instrument, bed, stated, stop, last, conditions, .. } =
             &measured.set;
         let set = (id, kind, instrument, bed, stated, stop, last, conditions);
@@ -279,7 +280,8 @@ impl Results {
         for entry in fs::read_dir(&self.folder).map_err(fail)? {
             let name = entry.map_err(fail)?.file_name().to_string_lossy().into_owned();
             let proposed = name.starts_with("model+") && name.ends_with(".toml");
-            if proposed || RESULTS.contains(&name.as_str()) {
+            let known = RESULTS.iter().chain(&where_it_fails::FILES);
+            if proposed || known.copied().any(|known| known == name) {
                 names.push(name);
             }
         }

@@ -117,6 +117,49 @@ fn the_published_law_sinks_too_deep_when_slow_and_too_little_when_fast() {
 }
 
 #[test]
+fn where_a_model_fails_is_written_and_listed_and_old_views_do_not_stay() {
+    let here = tempfile::tempdir().unwrap();
+    let (set, folder) = (shipped("s1-tables-vertical"), here.path().join("out"));
+    let written = |command: &str| {
+        let args = [command, text(&set), "--quiet", "--out", "out", "--force"];
+        let output = plunge(here.path(), &args);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let shown = String::from_utf8(output.stdout).unwrap();
+        let listed = shown.lines().find_map(|line| line.strip_prefix("written to out: "));
+        let mut listed: Vec<String> =
+            listed.expect("files are listed").split(", ").map(str::to_owned).collect();
+        listed.sort();
+        let entries = fs::read_dir(&folder).unwrap();
+        let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut found: Vec<String> = names.filter(|name| name != "inputs.blake3").collect();
+        found.sort();
+        assert_eq!(listed, found, "what is listed is there, and nothing else");
+        found
+    };
+    let views = [
+        "covariates.svg",
+        "errors.svg",
+        "force_errors.csv",
+        "map-speed-angle.svg",
+        "residuals.csv",
+        "where_it_fails.json",
+    ];
+    let diagnosed = written("diagnose");
+    let of_diagnosis = ["diagnosis.json", "signatures.csv", "signatures.svg"];
+    for name in views.iter().chain(&of_diagnosis) {
+        assert!(diagnosed.iter().any(|found| found == name), "{name} in {diagnosed:?}");
+    }
+    let table = fs::read_to_string(folder.join("signatures.csv")).unwrap();
+    // Two numbers of each of eight conditions, for two effects, and a header.
+    assert_eq!(table.lines().count(), 1 + 2 * 2 * 8);
+
+    let compared = written("compare");
+    let mut expected = [&views[..], &["comparison.json", "comparison.svg"]].concat();
+    expected.sort_unstable();
+    assert_eq!(compared, expected, "tables alone: no depths, no trajectories, no signatures");
+}
+
+#[test]
 fn every_shipped_set_is_compared_with_the_baseline_that_it_names() {
     let here = tempfile::tempdir().unwrap();
     for set in ["free-link", "katsuragi-durian", "s1-tables"] {

@@ -7,15 +7,15 @@ use thiserror::Error;
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::errors::Errors;
 use crate::fit::Fit;
-use crate::force_error::{ForceCell, ForceError, ForceErrors};
+use crate::force_error::ForceError;
 use crate::forward::Forward;
 use crate::lack_of_fit::lack_of_fit;
 use crate::measurement::MeasurementSet;
 use crate::noise::{Noise, NoiseSource};
 use crate::observed::Observed;
-use crate::residual::{Residual, residuals};
 use crate::rounding::{rounded, six_digits, six_digits_or_null};
 use crate::sensitivity::Point;
+use crate::where_it_fails::Failing;
 
 /// A model under the name that a report gives it.
 #[derive(Clone, Copy)]
@@ -58,12 +58,9 @@ pub struct ModelComparison {
     pub rms: Rms,
     /// Where the force is wrong.
     pub fails: Vec<ForceError>,
-    /// The map of it by condition and depth.
+    /// All that is known of where it fails.
     #[serde(skip)]
-    pub cells: Vec<ForceCell>,
-    /// Every number beside its prediction.
-    #[serde(skip)]
-    pub residuals: Vec<Residual>,
+    pub failing: Failing,
     /// The fit behind it.
     #[serde(skip)]
     pub fitted: Fitted,
@@ -132,21 +129,16 @@ fn compare_one(bench: &Bench<'_>, name: &str, seed: u64) -> Result<ModelComparis
             lack_of_fit(bench, &fitted, seed)?
         }
     };
-    let errors = |conditions: &[usize]| {
-        let errors = Errors::at(bench, &fitted.fit.point, conditions)?;
-        Ok::<_, BenchError>(errors.map_or(Value::Null, |errors| errors.to_json()))
-    };
-    let rms = Rms { fit: errors(&bench.observed.fit)?, holdout: errors(&bench.observed.holdout)? };
-    let ForceErrors { cells, fails } = ForceErrors::of(bench, &fitted)?;
+    let failing = Failing::of(bench, name, &fitted, seed)?;
+    let json = |errors: &Option<Errors>| errors.as_ref().map_or(Value::Null, Errors::to_json);
     Ok(ModelComparison {
         model: name.to_owned(),
         parameters: parameters(bench.forward, &fitted.fit),
         chi2_per_n: fitted.fit.chi2 / fitted.fit.residual.len() as f64,
         p_lof,
-        rms,
-        fails,
-        cells,
-        residuals: residuals(bench, &fitted.fit.point, &fitted.noise)?,
+        rms: Rms { fit: json(&failing.fit), holdout: json(&failing.holdout) },
+        fails: failing.force_errors.fails(),
+        failing,
         fitted,
     })
 }

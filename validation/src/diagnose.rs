@@ -145,10 +145,13 @@ impl Judge<'_> {
             Verdict::NotSeparable => leaders.clone(),
             _ => Vec::new(),
         };
+        let remaining = match verdict {
+            Verdict::NoneOfTheCandidates => ForceErrors::of(bench, &self.baseline, self.seed)?,
+            _ => ForceErrors::of(bench, proposed, self.seed)?,
+        };
         let depends_on = match verdict {
-            Verdict::NoneOfTheCandidates => ForceErrors::of(bench, &self.baseline)?.depends_on(),
-            Verdict::Pair => ForceErrors::of(bench, proposed)?.depends_on(),
-            _ => Vec::new(),
+            Verdict::NoneOfTheCandidates | Verdict::Pair => remaining.depends_on(),
+            _ => remaining.drifts(),
         };
         let before = if proposed.fit.point.effects.is_empty() { proposed } else { &self.weighed };
         let amplitudes: Vec<Amplitude> = proposed

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::bench::{Bench, Fitted};
-use crate::force_error::COVARIATES;
+use crate::covariate::OF_CONDITIONS;
 use crate::projection::Basis;
 
 /// Modes of a smooth change over depth against the motion, and normal to it.
@@ -172,7 +172,7 @@ fn factors(bench: &Bench<'_>) -> Vec<(Vec<f64>, [usize; 2])> {
 
 /// The same, and a change of the whole force with anything else that was varied.
 fn smooth_factors(bench: &Bench<'_>) -> Vec<(Vec<f64>, [usize; 2])> {
-    let others = COVARIATES.iter().filter_map(|(_, value)| {
+    let others = OF_CONDITIONS.iter().filter_map(|(_, value)| {
         let conditions = bench.observed.fit.iter().map(|&index| &bench.set.conditions[index]);
         let values: Option<Vec<f64>> = conditions.map(value).collect();
         Some((standardised(values?), [1, 0]))

@@ -2,31 +2,28 @@
 //!
 //! In every condition the force is multiplied around six depths, and generalised least squares on the
 //! residual says by how much; the noise model knows that the force scatters along the path, so the
-//! standard errors do too. Aggregates share one factor among conditions or depths.
+//! standard errors do too. Aggregates share one factor among conditions or depths, trends let it
+//! change linearly. The residual is that of the fitted model, whose parameters have taken up what they
+//! can: the errors are of what is left, and their standard errors rather too large than too small.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+mod chronology;
+mod groups;
+mod normal;
+mod trend;
+
 use serde::Serialize;
 
+pub use self::trend::Trend;
+
+use self::chronology::Chronology;
+use self::normal::Normal;
 use crate::bench::{Bench, BenchError, Fitted};
+use crate::covariate::OF_CONDITIONS;
 use crate::discovery::discoveries;
-use crate::measurement::Condition;
 use crate::rounding::six_digits;
-use crate::sensitivity::{Direction, force_response};
-
-/// Depths per condition.
-const NODES: usize = 6;
-
-/// Fewest numbers of a condition from which all depths are told apart.
-const ENOUGH: usize = 2 * NODES;
-
-/// Most groups that the values of a covariate are cut into.
-const GROUPS: usize = 5;
 
 /// Share of false marks that is tolerated.
 const FALSE_DISCOVERIES: f64 = 0.05;
-
-/// Information below this share of the largest counts as none.
-const RIDGE: f64 = 1e-10;
 
 /// A force error over a part of what was varied.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -47,6 +44,15 @@ pub struct ForceError {
     pub se: f64,
 }
 
+/// A force error and whether to believe it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// The error.
+    pub error: ForceError,
+    /// Whether it is a discovery at a rate of 5 % false ones.
+    pub significant: bool,
+}
+
 /// A force error in one condition around one depth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForceCell {
@@ -64,70 +70,59 @@ pub struct ForceCell {
     pub significant: bool,
 }
 
-/// Where a fitted model fails.
+/// Where a fitted model fails, in the conditions that it was fitted to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ForceErrors {
     /// By condition and depth.
     pub cells: Vec<ForceCell>,
-    /// By covariate, those parts that are discoveries at a rate of 5 % false ones.
-    pub fails: Vec<ForceError>,
+    /// By condition, over the whole path.
+    pub means: Vec<ForceCell>,
+    /// By part of each covariate that was varied.
+    pub groups: Vec<Group>,
+    /// Over each covariate that was varied.
+    pub trends: Vec<Trend>,
 }
 
 impl ForceErrors {
-    /// Of `fitted`.
+    /// Of `fitted`; orders of runs are drawn with `seed`.
     ///
     /// # Errors
     /// If the model fails.
-    pub fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, BenchError> {
-        let mut normals = Vec::with_capacity(fitted.weights.len());
-        let mut start = 0;
-        for (&condition, weight) in bench.observed.fit.iter().zip(&fitted.weights) {
-            let observed = &bench.observed.conditions[condition];
-            let rows = observed.mean.len();
-            let path = (NODES, observed.reach);
-            let response = force_response(
-                &fitted.fit.point,
-                bench.forward,
-                condition,
-                Direction::Along,
-                path,
-            )?;
-            let response = weight.whiten_columns(&response);
-            let residual = fitted.fit.residual.rows(start, rows);
-            start += rows;
-            normals.push(Normal {
-                condition,
-                reach: observed.reach,
-                resolved: rows >= ENOUGH,
-                information: response.tr_mul(&response),
-                score: response.tr_mul(&residual),
-            });
+    pub fn of(bench: &Bench<'_>, fitted: &Fitted, seed: u64) -> Result<Self, BenchError> {
+        let normals = Normal::all(bench, fitted)?;
+        let chronology = Chronology::of(bench, fitted, &normals, seed);
+        let mut errors = groups::over_depth(&normals);
+        let mut trends: Vec<Trend> = trend::over_depth(&normals).into_iter().collect();
+        for (over, of) in OF_CONDITIONS {
+            let value = |at: usize| of(&bench.set.conditions[at]);
+            errors.extend(groups::over_conditions(&normals, over, value));
+            trends.extend(trend::over_conditions(&normals, over, value));
         }
-        let mut cells: Vec<ForceCell> = normals.iter().flat_map(Normal::cells).collect();
-        let found = discoveries(
-            &cells.iter().map(|cell| p_value(cell.force_error, cell.se)).collect::<Vec<_>>(),
-            FALSE_DISCOVERIES,
-        );
-        for (cell, found) in cells.iter_mut().zip(found) {
-            cell.significant = found;
-        }
-        let mut fails = over_depth(&normals);
-        for (name, of) in COVARIATES {
-            fails.extend(over_conditions(&normals, name, |at| of(&bench.set.conditions[at])));
-        }
-        let found = discoveries(
-            &fails.iter().map(|fail| p_value(fail.force_error, fail.se)).collect::<Vec<_>>(),
-            FALSE_DISCOVERIES,
-        );
-        let mut found = found.iter();
-        fails.retain(|_| found.next() == Some(&true));
-        Ok(Self { cells, fails })
+        trends.extend(chronology.trends);
+        let found = believed(trends.iter().map(|trend| trend.p));
+        trends.iter_mut().zip(found).for_each(|(trend, found)| trend.significant = found);
+        let mut groups = marked(errors);
+        groups.extend(marked(chronology.groups));
+        Ok(Self {
+            cells: marked_cells(normals.iter().flat_map(groups::cells).collect()),
+            means: marked_cells(normals.iter().filter_map(groups::mean).collect()),
+            groups,
+            trends,
+        })
     }
 
-    /// What the force error depends on, clearest first.
+    /// Those parts of covariates of conditions and depths that are discoveries.
+    #[must_use]
+    pub fn fails(&self) -> Vec<ForceError> {
+        let of_runs = crate::covariate::ORDER.name;
+        let fails = self.groups.iter().filter(|group| group.significant);
+        fails.map(|group| group.error.clone()).filter(|error| error.over != of_runs).collect()
+    }
+
+    /// What the force error depends on, clearest first; then what [`ForceErrors::drifts`] says.
     #[must_use]
     pub fn depends_on(&self) -> Vec<&'static str> {
-        let mut fails: Vec<&ForceError> = self.fails.iter().collect();
+        let mut fails = self.fails();
         let clarity = |fail: &ForceError| (fail.force_error / fail.se).abs();
         fails.sort_by(|a, b| clarity(b).total_cmp(&clarity(a)));
         let mut names = Vec::new();
@@ -136,139 +131,32 @@ impl ForceErrors {
                 names.push(fail.over);
             }
         }
+        names.extend(self.drifts());
         names
     }
-}
 
-pub(crate) type Covariate = (&'static str, fn(&Condition) -> Option<f64>);
-
-/// What a condition has that a force error may depend on.
-pub(crate) const COVARIATES: [Covariate; 7] = [
-    ("speed", |condition| Some(condition.speed)),
-    ("angle_deg", |condition| Some(condition.angle_deg)),
-    ("diameter", |condition| Some(condition.diameter)),
-    ("mass", |condition| Some(condition.mass)),
-    ("spin", |condition| Some(condition.spin)),
-    ("packing", |condition| condition.packing),
-    ("bed_depth", |condition| condition.bed_depth),
-];
-
-/// Normal equations for the force factors of one condition.
-struct Normal {
-    condition: usize,
-    reach: f64,
-    /// Whether there are enough numbers to tell the depths apart.
-    resolved: bool,
-    information: DMatrix<f64>,
-    score: DVector<f64>,
-}
-
-impl Normal {
-    /// Depth of node `index` (m).
-    fn depth(&self, index: usize) -> f64 {
-        self.reach * index as f64 / (NODES - 1) as f64
-    }
-
-    fn cells(&self) -> Vec<ForceCell> {
-        let groups = if self.resolved { NODES } else { 1 };
-        let group = |node: usize| if self.resolved { node } else { 0 };
-        let half = 0.5 * self.reach / (NODES - 1) as f64;
-        let range = |index: usize| match self.resolved {
-            true => {
-                ((self.depth(index) - half).max(0.0), (self.depth(index) + half).min(self.reach))
-            }
-            false => (0.0, self.reach),
-        };
-        let solved = solve(std::slice::from_ref(self), groups, |_, node| Some(group(node)));
-        let cell = |(index, (force_error, se)): (usize, (f64, f64))| {
-            let (from, to) = range(index);
-            let condition = self.condition;
-            ForceCell { condition, from, to, force_error, se, significant: false }
-        };
-        solved.into_iter().enumerate().map(cell).collect()
+    /// `order` where the force drifts from run to run, `previous_run` where a run resembles the one
+    /// before it under the same condition; each at 1 % over both.
+    #[must_use]
+    pub fn drifts(&self) -> Vec<&'static str> {
+        chronology::beyond_chance(&self.trends)
     }
 }
 
-/// Generalised least squares of one factor per group, each with its standard error; `group` says to
-/// which a node of a condition belongs.
-fn solve(
-    normals: &[Normal],
-    groups: usize,
-    group: impl Fn(&Normal, usize) -> Option<usize>,
-) -> Vec<(f64, f64)> {
-    let mut information = DMatrix::<f64>::zeros(groups, groups);
-    let mut score = DVector::<f64>::zeros(groups);
-    for normal in normals {
-        for i in 0..NODES {
-            let Some(row) = group(normal, i) else { continue };
-            score[row] += normal.score[i];
-            for j in 0..NODES {
-                if let Some(column) = group(normal, j) {
-                    information[(row, column)] += normal.information[(i, j)];
-                }
-            }
-        }
-    }
-    let ridge = RIDGE * information.diagonal().max();
-    let factor = Cholesky::new(information + DMatrix::identity(groups, groups) * ridge);
-    factor.map_or_else(Vec::new, |factor| {
-        let inverse = factor.inverse();
-        let estimate = &inverse * score;
-        (0..groups).map(|g| (estimate[g], inverse[(g, g)].sqrt())).collect()
-    })
+fn marked(errors: Vec<ForceError>) -> Vec<Group> {
+    let found = believed(errors.iter().map(|error| p_value(error.force_error, error.se)));
+    let pairs = errors.into_iter().zip(found);
+    pairs.map(|(error, significant)| Group { error, significant }).collect()
 }
 
-fn over_depth(normals: &[Normal]) -> Vec<ForceError> {
-    let resolved: Vec<&Normal> = normals.iter().filter(|normal| normal.resolved).collect();
-    if resolved.is_empty() || resolved.len() < normals.len() {
-        return Vec::new();
-    }
-    let deepest = resolved.iter().fold(0.0_f64, |deepest, normal| deepest.max(normal.reach));
-    let width = deepest / GROUPS as f64;
-    let group = |normal: &Normal, node: usize| {
-        Some(((normal.depth(node) / width).floor() as usize).min(GROUPS - 1))
-    };
-    let solved = solve(normals, GROUPS, group).into_iter().enumerate();
-    solved
-        .map(|(at, (force_error, se))| {
-            let from = at as f64 * width;
-            ForceError { over: "z", from, to: from + width, force_error, se }
-        })
-        .collect()
+fn marked_cells(mut cells: Vec<ForceCell>) -> Vec<ForceCell> {
+    let found = believed(cells.iter().map(|cell| p_value(cell.force_error, cell.se)));
+    cells.iter_mut().zip(found).for_each(|(cell, found)| cell.significant = found);
+    cells
 }
 
-fn over_conditions(
-    normals: &[Normal],
-    over: &'static str,
-    value: impl Fn(usize) -> Option<f64>,
-) -> Vec<ForceError> {
-    let mut values: Vec<f64> = normals.iter().filter_map(|n| value(n.condition)).collect();
-    values.sort_by(f64::total_cmp);
-    values.dedup();
-    if values.len() < 2 {
-        return Vec::new();
-    }
-    let groups = values.len().min(GROUPS);
-    let group_of = |place: usize| place * groups / values.len();
-    let group = |normal: &Normal, _: usize| {
-        let value = value(normal.condition)?;
-        values.iter().position(|other| *other >= value).map(group_of)
-    };
-    let bound = |index: usize, last: bool| {
-        let mut inside = (0..values.len()).filter(|&place| group_of(place) == index);
-        let place = if last { inside.next_back() } else { inside.next() };
-        place.map_or(0.0, |place| values[place])
-    };
-    let solved = solve(normals, groups, group).into_iter().enumerate();
-    solved
-        .map(|(at, (force_error, se))| ForceError {
-            over,
-            from: bound(at, false),
-            to: bound(at, true),
-            force_error,
-            se,
-        })
-        .collect()
+fn believed(p: impl Iterator<Item = f64>) -> Vec<bool> {
+    discoveries(&p.collect::<Vec<_>>(), FALSE_DISCOVERIES)
 }
 
 /// Two-sided, of a normal number.

@@ -8,6 +8,7 @@ use crate::errors::{Errors, Sums};
 use crate::fit::Data;
 use crate::measurement::Kind;
 use crate::noise::log_determinant;
+use crate::observed::Observed;
 use crate::rounding::six_digits;
 
 /// Errors on held-out conditions without and with what is proposed.
@@ -92,7 +93,7 @@ impl HeldOut {
         Ok(Self {
             before: error(|(condition, before, _)| (*condition, before)),
             after: error(|(condition, _, after)| (*condition, after)),
-            noise_floor: pick(&noise_floor(bench, &compared)).unwrap_or(0.0),
+            noise_floor: pick(&noise_floor(bench.observed, &compared)).unwrap_or(0.0),
             unit,
             conditions,
             log_density_gain: both.iter().map(|(_, b, a)| a.log_density - b.log_density).sum(),
@@ -198,10 +199,10 @@ fn density(residual: &DVector<f64>, predicted: &DMatrix<f64>) -> f64 {
 }
 
 /// Standard error of the means of runs, from their scatter; of readings, where there is one run.
-fn noise_floor(bench: &Bench<'_>, conditions: &[usize]) -> Errors {
+pub(crate) fn noise_floor(observed: &Observed, conditions: &[usize]) -> Errors {
     let mut sums = Sums::default();
     for &condition in conditions {
-        let observed = &bench.observed.conditions[condition];
+        let observed = &observed.conditions[condition];
         let runs = observed.runs.len();
         let error = if runs > 1 {
             let squares = (0..runs).map(|run| observed.deviation(run).map(|d| d * d));

@@ -10,7 +10,8 @@
 //! 2. [`sensitivity`], [`noise`] and [`weights`] learn from repeats how much they scatter;
 //! 3. [`mod@bench`] fits a model under that noise, by [`fit`];
 //! 4. [`compare::compare`] says how wrong each revision of a model is and where
-//!    ([`errors`], [`lack_of_fit`], [`force_error`], [`residual`]);
+//!    ([`errors`], [`lack_of_fit`], [`force_error`], [`residual`]), and [`where_it_fails`] writes that
+//!    as tables and [`mod@picture`]s;
 //! 5. [`diagnose::diagnose`] says which effect is missing, as a [`verdict`].
 //!
 //! [`runs`] holds a run against a run.
@@ -21,6 +22,7 @@ pub mod case;
 mod cases;
 mod chord;
 pub mod compare;
+pub mod covariate;
 pub mod diagnose;
 mod directions;
 mod discovery;
@@ -55,6 +57,7 @@ mod significance;
 mod test_sets;
 pub mod verdict;
 pub mod weights;
+pub mod where_it_fails;
 
 pub use case::{Case, Expected, Outcome};
 pub use cases::CASES;

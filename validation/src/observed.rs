@@ -40,6 +40,8 @@ pub struct ObservedCondition {
     pub layout: Layout,
     /// One vector per run, in an order that their values alone decide.
     pub runs: Vec<DVector<f64>>,
+    /// Place in time of each run among all runs, where the set says it.
+    pub order: Vec<Option<i64>>,
     /// Mean over the runs.
     pub mean: DVector<f64>,
     /// Standard deviation of one reading of each number (in its own unit).
@@ -165,18 +167,24 @@ impl ObservedCondition {
             final_z: weighed(common(|run| run.final_z), Observable::FinalDepth),
             final_x: weighed(common(|run| run.final_x), Observable::FinalRange),
         };
-        let mut vectors: Vec<DVector<f64>> = (0..runs.len())
-            .map(|at| vector(&layout, runs[at], frames.depth.get(at), frames.range.get(at)))
+        let mut numbered: Vec<(DVector<f64>, Option<i64>)> = (0..runs.len())
+            .map(|at| {
+                let numbers = vector(&layout, runs[at], frames.depth.get(at), frames.range.get(at));
+                (numbers, runs[at].order)
+            })
             .collect();
-        vectors.sort_by(|a, b| {
+        numbered.sort_by(|(a, first), (b, second)| {
             let pairs = a.iter().zip(b.iter());
             pairs
                 .map(|(a, b)| a.total_cmp(b))
                 .find(|order| order.is_ne())
                 .unwrap_or(a.len().cmp(&b.len()))
+                .then(first.cmp(second))
         });
+        let (mut vectors, mut order): (Vec<_>, Vec<_>) = numbered.into_iter().unzip();
         if layout.is_empty() {
             vectors.clear();
+            order.clear();
             notes.push(format!("condition {} has nothing to compare", condition.id));
         }
         let mean = mean(&vectors, layout.len());
@@ -191,6 +199,7 @@ impl ObservedCondition {
             reach: if deepest > 0.0 { deepest } else { condition.diameter },
             layout,
             runs: vectors,
+            order,
             mean,
         }
     }

@@ -1,16 +1,33 @@
-//! A comparison as one picture: measured numbers with their errors, and what each revision predicts.
+//! Pictures of a report, as SVG: the same input gives the same bytes.
+
+mod comparison;
+mod covariates;
+mod depth;
+mod errors;
+mod legend;
+mod multiples;
+mod residuals;
+mod signatures;
+mod signed;
+mod speed_angle;
 
 use plotters::coord::Shift;
-use plotters::element::DashedPathElement;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 use thiserror::Error;
 
-use crate::compare::Comparison;
-use crate::measurement::{MeasurementSet, Role};
-use crate::observable::Observable;
+pub use self::comparison::comparison;
+pub(crate) use self::covariates::covariates;
+pub(crate) use self::depth::depth;
+pub(crate) use self::errors::errors;
+pub(crate) use self::residuals::residuals;
+pub(crate) use self::signatures::signatures;
+pub(crate) use self::speed_angle::speed_angle;
 
-/// Size of one panel (pixels).
-const PANEL: (u32, u32) = (420, 330);
+/// Why there is no picture.
+#[derive(Debug, Error)]
+#[error("cannot draw: {0}")]
+pub struct PictureError(pub(crate) String);
 
 /// Colours that stay apart for most colour-blind eyes (Okabe & Ito 2008).
 const COLOURS: [RGBColor; 7] = [
@@ -23,165 +40,76 @@ const COLOURS: [RGBColor; 7] = [
     RGBColor(0, 0, 0),
 ];
 
-/// Dashes of the revisions, in pixels on and off.
-const DASHES: [(u32, u32); 4] = [(4, 3), (1, 0), (9, 3), (2, 2)];
+/// Bands, and what is not known.
+const GREY: RGBColor = RGBColor(222, 222, 222);
 
-/// Why there is no picture.
-#[derive(Debug, Error)]
-#[error("cannot draw: {0}")]
-pub struct PictureError(String);
+/// Standard errors to either side that 95 % of normal numbers lie within.
+const TWO_SIDED_95: f64 = 1.96;
 
-impl PictureError {
-    pub(crate) fn new(why: String) -> Self {
-        Self(why)
-    }
-}
+/// Letters of titles, labels and legends (pixels).
+const LETTERS: f64 = 13.0;
 
-/// A number of one condition, measured and predicted.
-struct Point {
-    angle_deg: f64,
-    speed: f64,
-    measured: f64,
-    error: f64,
-    held_out: bool,
-    predicted: Vec<f64>,
-}
+/// Width of a letter of that size, on average (pixels).
+const LETTER: f64 = 6.6;
 
-/// A panel: its title, what its numbers are multiplied with, and the numbers.
-struct Panel {
-    title: &'static str,
-    scale: f64,
-    points: Vec<Point>,
-}
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// Scalars over speed, a colour per angle and a dash per revision, as SVG; `None` where a set has
-/// trajectories alone.
-///
-/// # Errors
-/// If the drawing fails.
-pub fn comparison(
-    set: &MeasurementSet,
-    comparison: &Comparison,
-) -> Result<Option<String>, PictureError> {
-    let panels = panels(set, comparison);
-    if panels.is_empty() {
-        return Ok(None);
-    }
-    let names: Vec<&str> = comparison.models.iter().map(|model| model.model.as_str()).collect();
+type Drawn = Result<(), DrawingAreaErrorKind<<SVGBackend<'static> as DrawingBackend>::ErrorType>>;
+
+/// A picture of `size` (pixels) on white.
+fn svg(
+    size: (u32, u32),
+    draw: impl for<'a> FnOnce(&Area<'a>) -> Drawn,
+) -> Result<String, PictureError> {
     let mut text = String::new();
-    let size = (PANEL.0 * panels.len() as u32, PANEL.1 + 22 * (1 + names.len() as u32));
     {
         let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
-        draw(&area, &panels, &names).map_err(|error| PictureError(error.to_string()))?;
+        area.fill(&WHITE)
+            .and_then(|()| draw(&area))
+            .and_then(|()| area.present())
+            .map_err(|error| PictureError(error.to_string()))?;
     }
-    Ok(Some(text))
+    Ok(text)
 }
 
-fn panels(set: &MeasurementSet, comparison: &Comparison) -> Vec<Panel> {
-    let kinds = [
-        (Observable::StopTime, "stopping time (ms)", 1e3),
-        (Observable::FinalDepth, "final depth (mm)", 1e3),
-        (Observable::FinalRange, "final range (mm)", 1e3),
-    ];
-    let Some(first) = comparison.models.first() else { return Vec::new() };
-    let mut panels: Vec<Panel> =
-        kinds.iter().map(|&(_, title, scale)| Panel { title, scale, points: Vec::new() }).collect();
-    for (place, number) in first.residuals.iter().enumerate() {
-        let Some(panel) = kinds.iter().position(|(kind, ..)| *kind == number.observable) else {
-            continue;
-        };
-        let condition = &set.conditions[number.condition];
-        panels[panel].points.push(Point {
-            angle_deg: condition.angle_deg,
-            speed: condition.speed,
-            measured: number.measured,
-            error: number.standard_error,
-            held_out: condition.role == Role::Holdout,
-            predicted: comparison
-                .models
-                .iter()
-                .map(|model| model.residuals[place].predicted)
-                .collect(),
-        });
-    }
-    panels.retain(|panel| !panel.points.is_empty());
-    panels
+/// The colour of model, effect or series `index`.
+fn colour(index: usize) -> RGBColor {
+    COLOURS[index % COLOURS.len()]
 }
 
-type Drawn<'a> = Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>>;
-
-fn draw<'a>(
-    area: &DrawingArea<SVGBackend<'a>, Shift>,
-    panels: &[Panel],
-    names: &[&str],
-) -> Drawn<'a> {
-    area.fill(&WHITE)?;
-    let (charts, legend) = area.split_vertically(PANEL.1);
-    for (panel, chart) in panels.iter().zip(charts.split_evenly((1, panels.len()))) {
-        draw_panel(&chart, panel)?;
-    }
-    let font = ("sans-serif", 14).into_font();
-    for (row, name) in names.iter().enumerate() {
-        let y = 12 + 20 * row as i32;
-        let line = vec![(20, y), (70, y)];
-        let (on, off) = DASHES[row % DASHES.len()];
-        let line = DashedPathElement::new(line, on, off, BLACK.stroke_width(2));
-        legend.draw(&line)?;
-        legend.draw(&Text::new((*name).to_owned(), (80, y - 7), font.clone()))?;
-    }
-    let y = 12 + 20 * names.len() as i32;
-    legend.draw(&Circle::new((45, y), 4, BLACK.filled()))?;
-    let note = "measured, with its error; open: held out. Colour: angle from the horizontal";
-    legend.draw(&Text::new(note, (80, y - 7), font))?;
-    area.present()
+/// Letters that begin at their place.
+fn letters() -> TextStyle<'static> {
+    ("sans-serif", LETTERS).into_font().into()
 }
 
-fn draw_panel<'a>(area: &DrawingArea<SVGBackend<'a>, Shift>, panel: &Panel) -> Drawn<'a> {
-    let mut angles: Vec<f64> = panel.points.iter().map(|point| point.angle_deg).collect();
-    angles.sort_by(f64::total_cmp);
-    angles.dedup();
-    let highest = |of: fn(&Point) -> f64| panel.points.iter().map(of).fold(0.0_f64, f64::max);
-    let top = highest(|point| {
-        point.predicted.iter().copied().fold(point.measured + point.error, f64::max)
-    });
-    let right = 1.05 * highest(|point| point.speed);
-    let mut chart = ChartBuilder::on(area)
-        .caption(panel.title, ("sans-serif", 17))
-        .margin(8)
-        .x_label_area_size(36)
-        .y_label_area_size(48)
-        .build_cartesian_2d(0.0..right, 0.0..1.1 * top * panel.scale)?;
-    chart.configure_mesh().x_desc("impact speed (m/s)").light_line_style(WHITE).draw()?;
-    for (number, angle) in angles.iter().enumerate() {
-        let colour = COLOURS[number % COLOURS.len()];
-        let mut points: Vec<&Point> = panel
-            .points
-            .iter()
-            .filter(|point| point.angle_deg.to_bits() == angle.to_bits())
-            .collect();
-        points.sort_by(|a, b| a.speed.total_cmp(&b.speed));
-        for revision in 0..points.first().map_or(0, |point| point.predicted.len()) {
-            let (on, off) = DASHES[revision % DASHES.len()];
-            let line =
-                points.iter().map(|point| (point.speed, panel.scale * point.predicted[revision]));
-            chart.draw_series(DashedLineSeries::new(line, on, off, colour.stroke_width(2)))?;
-        }
-        for point in &points {
-            let at = |value: f64| (point.speed, panel.scale * value);
-            let bar = vec![at(point.measured - point.error), at(point.measured + point.error)];
-            chart.draw_series([PathElement::new(bar, colour.stroke_width(1))])?;
-            let fill = if point.held_out { WHITE.filled() } else { colour.filled() };
-            chart.draw_series([Circle::new(at(point.measured), 4, fill)])?;
-            chart.draw_series([Circle::new(at(point.measured), 4, colour.stroke_width(1))])?;
-        }
-        if angles.len() > 1
-            && let Some(last) = points.last()
-        {
-            let label = format!("{angle}\u{b0}");
-            let style = ("sans-serif", 12).into_font().color(&colour);
-            let place = (last.speed * 1.01, panel.scale * last.measured);
-            chart.draw_series([Text::new(label, place, style)])?;
-        }
+/// Letters around their place.
+fn centred() -> TextStyle<'static> {
+    letters().pos(Pos::new(HPos::Center, VPos::Center))
+}
+
+/// Letters that run upwards and end at their place.
+fn upright() -> TextStyle<'static> {
+    letters().transform(FontTransform::Rotate270).pos(Pos::new(HPos::Right, VPos::Center))
+}
+
+/// A number as labels have it: three digits, no zeros behind the point.
+fn short(value: f64) -> String {
+    let text = format!("{value:.2e}");
+    text.parse::<f64>().map_or(text, |value| value.to_string())
+}
+
+/// As much of `text` as fits `width` pixels, with a mark where some is missing.
+fn fitting(text: &str, width: u32) -> String {
+    let room = (f64::from(width) / LETTER) as usize;
+    if text.chars().count() <= room {
+        return text.to_owned();
     }
-    Ok(())
+    text.chars().take(room.saturating_sub(1)).chain(['\u{2026}']).collect()
+}
+
+/// `low` and `high` with a ninth of their distance beyond either.
+fn padded(low: f64, high: f64) -> std::ops::Range<f64> {
+    let distance = high - low;
+    let pad = if distance > 0.0 { distance / 9.0 } else { low.abs().max(1.0) / 9.0 };
+    low - pad..high + pad
 }

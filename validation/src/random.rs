@@ -12,6 +12,8 @@ pub(crate) enum Purpose {
     Resampling = 2,
     /// How far off a noise model is that was learned from few numbers.
     NoiseScale = 3,
+    /// Runs in another order.
+    Order = 4,
 }
 
 /// The random numbers of condition (or other thing) `index` for `purpose`.

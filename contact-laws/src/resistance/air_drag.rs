@@ -38,7 +38,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     signature: "the flight is slower than free fall, the more so the faster",
     source: "drag coefficient at large Reynolds number; air at 20 C and 1 atm",
     params: &[amplitude(
-        Range::closed(0.0, 1000.0),
+        Range::closed(0.0, 1e5),
         Range::closed(0.0, 5.0),
         "drag coefficient in air",
     )],

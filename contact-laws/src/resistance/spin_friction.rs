@@ -29,7 +29,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     signature: "a sideways drift in proportion to the spin and the depth, at any speed",
     source: "Carvalho et al., arXiv:2405.05394 (2024), to first order in the spin",
     params: &[amplitude(
-        Range::closed(0.0, 200.0),
+        Range::closed(-200.0, 200.0),
         Range::closed(0.0, 10.0),
         "force in units of rho g A z (R omega/sqrt(g D))",
     )],

@@ -33,7 +33,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     signature: "depth falls by the same fraction at all speeds, stopping time hardly moves, soft landing",
     source: "term of the resistance law between the quasi-static and the quadratic regime",
     params: &[amplitude(
-        Range::closed(0.0, 20.0),
+        Range::closed(0.0, 200.0),
         Range::closed(0.0, 10.0),
         "drag in units of rho A sqrt(g D) v",
     )],

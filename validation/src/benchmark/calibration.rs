@@ -58,7 +58,7 @@ pub fn rows(bins: &[Bin]) -> Vec<Score> {
 /// If the drawing fails.
 pub fn picture(bins: &[Bin]) -> Result<String, PictureError> {
     let mut text = String::new();
-    draw(&mut text, bins).map_err(|error| PictureError::new(error.to_string()))?;
+    draw(&mut text, bins).map_err(|error| PictureError(error.to_string()))?;
     Ok(text)
 }
 

@@ -4,4 +4,5 @@ mod comparison;
 mod diagnosis;
 mod laboratory;
 mod noise;
+mod where_it_fails;
 mod world;

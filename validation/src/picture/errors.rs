@@ -1,0 +1,140 @@
+//! Errors on what was fitted to and on what was held out, model after model, above the noise.
+
+use plotters::prelude::*;
+
+use super::legend::{self, Sign};
+use super::{Area, Drawn, PictureError, centred, fitting, letters, svg};
+use crate::errors::Errors;
+use crate::observable::Observable;
+use crate::where_it_fails::WhereItFails;
+
+/// Size of a panel, and the least width of all (pixels).
+const PANEL: (u32, u32) = (230, 250);
+const WIDTH: u32 = 640;
+
+/// What is fitted to, and what is held out.
+const ROLES: [RGBColor; 2] = [super::COLOURS[0], super::COLOURS[1]];
+
+/// What the errors of a panel are of: a title, what they are multiplied with, and which they are.
+struct Kind {
+    title: &'static str,
+    scale: f64,
+    observable: Option<Observable>,
+}
+
+impl Kind {
+    fn of(&self, errors: &Errors) -> Option<f64> {
+        let error = match self.observable {
+            None => errors.relative,
+            Some(kind) => errors.by_kind.iter().find(|(other, _)| *other == kind).map(|(_, e)| *e),
+        };
+        error.map(|error| self.scale * error)
+    }
+}
+
+/// A panel: the errors of each model, those that were fitted to first, and the noise of each role.
+struct Panel {
+    title: &'static str,
+    bars: Vec<[Option<f64>; 2]>,
+    floors: [Option<f64>; 2],
+}
+
+/// One panel per kind of number.
+pub(crate) fn errors(found: &WhereItFails<'_>) -> Result<Option<String>, PictureError> {
+    let panels = panels(found);
+    if panels.is_empty() {
+        return Ok(None);
+    }
+    let rows = rows(found);
+    let wide = PANEL.0 * panels.len() as u32;
+    svg((wide.max(WIDTH), PANEL.1 + legend::height(rows.len())), |area| {
+        let (charts, below) = area.split_vertically(PANEL.1);
+        let (charts, _) = charts.split_horizontally(wide);
+        for (panel, chart) in panels.iter().zip(charts.split_evenly((1, panels.len()))) {
+            draw_panel(&chart, panel)?;
+        }
+        legend::draw(&below, &rows)
+    })
+    .map(Some)
+}
+
+fn panels(found: &WhereItFails<'_>) -> Vec<Panel> {
+    let kind = |title, scale, observable| Kind { title, scale, observable };
+    let kinds = [
+        kind("depth over time (mm)", 1e3, Some(Observable::Depth)),
+        kind("range over time (mm)", 1e3, Some(Observable::Range)),
+        kind("stopping time (ms)", 1e3, Some(Observable::StopTime)),
+        kind("final depth (mm)", 1e3, Some(Observable::FinalDepth)),
+        kind("final range (mm)", 1e3, Some(Observable::FinalRange)),
+        kind("scalars, relative (%)", 1e2, None),
+    ];
+    let floors = found.noise_floors();
+    let panel = |kind: &Kind| Panel {
+        title: kind.title,
+        bars: found
+            .models
+            .iter()
+            .map(|model| [&model.fit, &model.holdout].map(|errors| kind.of(errors.as_ref()?)))
+            .collect(),
+        floors: floors.each_ref().map(|errors| kind.of(errors)),
+    };
+    let drawn = |panel: &Panel| panel.bars.iter().flatten().any(Option::is_some);
+    kinds.iter().map(panel).filter(drawn).collect()
+}
+
+fn rows(found: &WhereItFails<'_>) -> Vec<(Sign, String)> {
+    let mut rows =
+        vec![(Sign::Square(ROLES[0]), "root mean square where it was fitted".to_owned())];
+    if found.models.iter().any(|model| model.holdout.is_some()) {
+        rows.push((Sign::Square(ROLES[1]), "where it was not: held-out conditions".to_owned()));
+    }
+    rows.push((Sign::Dashed(BLACK), "what the noise of the means alone would give".to_owned()));
+    let names = found.models.iter().enumerate();
+    rows.extend(
+        names.map(|(at, model)| (Sign::Dot(WHITE), format!("{}: {}", at + 1, model.model))),
+    );
+    rows
+}
+
+fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
+    let title = fitting(panel.title, PANEL.0 - 50);
+    area.draw(&Text::new(title, (48, 8), letters()))?;
+    let heights = panel.bars.iter().flatten().chain(&panel.floors).flatten();
+    let highest = heights.fold(0.0_f64, |highest, height| highest.max(*height)).max(1e-9);
+    let n = panel.bars.len();
+    let mut chart = ChartBuilder::on(area)
+        .margin_top(30)
+        .margin_right(8)
+        .x_label_area_size(24)
+        .y_label_area_size(48)
+        .build_cartesian_2d(0.0..n as f64, 0.0..1.08 * highest)?;
+    chart
+        .configure_mesh()
+        .disable_x_mesh()
+        .x_labels(0)
+        .y_labels(6)
+        .light_line_style(WHITE)
+        .bold_line_style(super::GREY)
+        .draw()?;
+    for (model, bars) in panel.bars.iter().enumerate() {
+        let roles = bars.iter().zip(panel.floors).enumerate();
+        for (role, (height, floor)) in roles {
+            let Some(height) = height else { continue };
+            let left = model as f64 + 0.12 + 0.38 * role as f64;
+            let bar = [(left, 0.0), (left + 0.36, *height)];
+            chart.draw_series([Rectangle::new(bar, ROLES[role].filled())])?;
+            if let Some(floor) = floor {
+                let line = [(left - 0.02, floor), (left + 0.38, floor)];
+                chart.draw_series(DashedLineSeries::new(line, 5, 3, BLACK.stroke_width(2)))?;
+            }
+        }
+    }
+    let plot = chart.plotting_area();
+    for model in 0..n {
+        let (x, _) = plot.map_coordinate(&(model as f64 + 0.5, 0.0));
+        let left = area.get_pixel_range().0.start;
+        let place = (x - left, PANEL.1 as i32 - 14);
+        area.draw(&Text::new((model + 1).to_string(), place, centred()))?;
+    }
+    Ok(())
+}

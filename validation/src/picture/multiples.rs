@@ -1,0 +1,131 @@
+//! Small panels of numbers over time, each with its band of noise.
+
+use plotters::prelude::*;
+
+use super::legend::{self, Sign};
+use super::{Area, Drawn, GREY, PictureError, TWO_SIDED_95, fitting, letters, padded, svg};
+use crate::observable::Observable;
+use crate::residual::Residual;
+use crate::where_it_fails::WhereItFails;
+
+/// Size of a panel (pixels).
+const PANEL: (u32, u32) = (270, 200);
+
+/// One kind of number along the path of one condition.
+pub(super) struct Track {
+    /// Index of the condition in the set.
+    condition: usize,
+    observable: Observable,
+    /// Places among the residuals, in the order of time.
+    pub(super) places: Vec<usize>,
+}
+
+/// A track with what is drawn of it.
+pub(super) struct Panel {
+    pub(super) title: String,
+    /// Time (s) and standard error (m).
+    pub(super) band: Vec<(f64, f64)>,
+    /// Time (s) and length (m).
+    pub(super) points: Vec<(f64, f64)>,
+    /// Likewise, each in a colour.
+    pub(super) lines: Vec<(RGBColor, Vec<(f64, f64)>)>,
+}
+
+/// The tracks among `residuals`.
+pub(super) fn tracks(residuals: &[Residual]) -> Vec<Track> {
+    let mut tracks: Vec<Track> = Vec::new();
+    for (place, one) in residuals.iter().enumerate().filter(|(_, one)| one.time.is_some()) {
+        let Residual { condition, observable, .. } = *one;
+        let of =
+            |track: &&mut Track| (track.condition, track.observable) == (condition, observable);
+        match tracks.iter_mut().find(of) {
+            Some(track) => track.places.push(place),
+            None => tracks.push(Track { condition, observable, places: vec![place] }),
+        }
+    }
+    tracks
+}
+
+impl Track {
+    /// What it is and under which condition.
+    pub(super) fn title(&self, found: &WhereItFails<'_>) -> String {
+        let condition = &found.set.conditions[self.condition];
+        let axis = if self.observable == Observable::Depth { "z" } else { "x" };
+        let (id, speed, angle) = (&condition.id, condition.speed, condition.angle_deg);
+        format!("{axis}, {id}: {speed} m/s, {angle}\u{b0}")
+    }
+
+    /// Standard errors over time.
+    pub(super) fn band(&self, residuals: &[Residual]) -> Vec<(f64, f64)> {
+        self.over_time(residuals, |_, one| one.standard_error)
+    }
+
+    /// What `of` a place is, over time.
+    pub(super) fn over_time(
+        &self,
+        residuals: &[Residual],
+        of: impl Fn(usize, &Residual) -> f64,
+    ) -> Vec<(f64, f64)> {
+        let numbers = self.places.iter().map(|&place| (place, &residuals[place]));
+        numbers.filter_map(|(place, one)| Some((one.time?, of(place, one)))).collect()
+    }
+}
+
+/// `panels` in `columns`, with what their lines mean.
+pub(super) fn picture(
+    panels: &[Panel],
+    columns: usize,
+    rows: &[(Sign, String)],
+) -> Result<String, PictureError> {
+    let columns = columns.min(panels.len()).max(2);
+    let height = PANEL.1 * panels.len().div_ceil(columns) as u32;
+    svg((PANEL.0 * columns as u32, height + legend::height(rows.len())), |area| {
+        let (charts, below) = area.split_vertically(height);
+        let charts = charts.split_evenly((panels.len().div_ceil(columns), columns));
+        for (panel, chart) in panels.iter().zip(&charts) {
+            draw_panel(chart, panel)?;
+        }
+        legend::draw(&below, rows)
+    })
+}
+
+fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
+    let title = fitting(&panel.title, PANEL.0 - 50);
+    area.draw(&Text::new(title, (46, 5), letters()))?;
+    let numbers = panel.lines.iter().flat_map(|(_, line)| line).chain(&panel.points);
+    let band = panel.band.iter().map(|(t, se)| (*t, TWO_SIDED_95 * se));
+    let most =
+        numbers.copied().chain(band.clone()).fold(1e-6, |most: f64, (_, y)| most.max(y.abs()));
+    let times = panel.band.iter().map(|(t, _)| 1e3 * t);
+    let (first, last) = (times.clone().fold(0.0, f64::min), times.fold(0.0, f64::max));
+    let mut chart = ChartBuilder::on(area)
+        .margin_top(24)
+        .margin_left(6)
+        .margin_right(10)
+        .x_label_area_size(34)
+        .y_label_area_size(46)
+        .build_cartesian_2d(padded(first, last), padded(-1e3 * most, 1e3 * most))?;
+    let outline: Vec<(f64, f64)> = band
+        .clone()
+        .map(|(t, half)| (1e3 * t, 1e3 * half))
+        .chain(band.rev().map(|(t, half)| (1e3 * t, -1e3 * half)))
+        .collect();
+    chart.draw_series([Polygon::new(outline, GREY.filled())])?;
+    chart
+        .configure_mesh()
+        .disable_mesh()
+        .x_labels(5)
+        .y_labels(5)
+        .x_desc("time (ms)")
+        .y_desc("(mm)")
+        .draw()?;
+    let range = [(1e3 * first, 0.0), (1e3 * last, 0.0)];
+    chart.draw_series([PathElement::new(range, BLACK.stroke_width(1))])?;
+    for (colour, line) in &panel.lines {
+        let line = line.iter().map(|(t, y)| (1e3 * t, 1e3 * y));
+        chart.draw_series(LineSeries::new(line, colour.stroke_width(2)))?;
+    }
+    let points = panel.points.iter().map(|(t, y)| (1e3 * t, 1e3 * y));
+    chart.draw_series(points.map(|place| Circle::new(place, 2, BLACK.filled())))?;
+    Ok(())
+}

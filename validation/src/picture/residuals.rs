@@ -1,0 +1,67 @@
+//! Residual trajectories beside the noise of the means.
+
+use super::legend::Sign;
+use super::multiples::{self, Panel, Track, tracks};
+use super::{PictureError, colour};
+use crate::residual::Residual;
+use crate::where_it_fails::WhereItFails;
+
+/// Most panels.
+const PANELS: usize = 16;
+
+const COLUMNS: usize = 4;
+
+/// Those tracks that the first model misses most; `None` without trajectories.
+pub(crate) fn residuals(found: &WhereItFails<'_>) -> Result<Option<String>, PictureError> {
+    let Some(first) = found.models.first() else { return Ok(None) };
+    let mut worst: Vec<(f64, Track)> = tracks(&first.residuals)
+        .into_iter()
+        .map(|track| (misfit(&track, &first.residuals), track))
+        .collect();
+    if worst.is_empty() {
+        return Ok(None);
+    }
+    worst.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    let all = worst.len();
+    worst.truncate(PANELS);
+    let panels: Vec<Panel> = worst
+        .iter()
+        .map(|(_, track)| Panel {
+            title: track.title(found),
+            band: track.band(&first.residuals),
+            points: Vec::new(),
+            lines: found
+                .models
+                .iter()
+                .enumerate()
+                .map(|(at, model)| {
+                    let left = |_: usize, one: &Residual| one.measured - one.predicted;
+                    (colour(at), track.over_time(&model.residuals, left))
+                })
+                .collect(),
+        })
+        .collect();
+    let mut rows: Vec<(Sign, String)> = found
+        .models
+        .iter()
+        .enumerate()
+        .map(|(at, model)| {
+            (Sign::Line(colour(at)), format!("measured less predicted by {}", model.model))
+        })
+        .collect();
+    let shown = panels.len();
+    rows.push((
+        Sign::Band,
+        format!(
+            "95 % of means of so many runs, if the model were right; {shown} of {all}, worst first"
+        ),
+    ));
+    multiples::picture(&panels, COLUMNS, &rows).map(Some)
+}
+
+/// Root mean square of a track in standard errors.
+fn misfit(track: &Track, residuals: &[Residual]) -> f64 {
+    let square = |one: &Residual| ((one.measured - one.predicted) / one.standard_error).powi(2);
+    let sum: f64 = track.places.iter().map(|&place| square(&residuals[place])).sum();
+    (sum / track.places.len() as f64).sqrt()
+}

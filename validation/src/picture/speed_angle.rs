@@ -1,0 +1,127 @@
+//! Force errors of conditions over speed and angle, one panel per intruder and model.
+
+use plotters::prelude::*;
+
+use super::signed::{self, Scale};
+use super::{Area, Drawn, PictureError, fitting, legend, letters, padded, short, svg};
+use crate::force_error::ForceCell;
+use crate::measurement::Condition;
+use crate::where_it_fails::WhereItFails;
+
+/// Size of a panel (pixels).
+const PANEL: (u32, u32) = (330, 270);
+
+/// Most panels side by side.
+const COLUMNS: usize = 4;
+
+/// Least and greatest edge of a cell (pixels).
+const EDGES: (f64, f64) = (8.0, 26.0);
+
+struct Panel<'a> {
+    titles: [String; 2],
+    cells: Vec<(&'a Condition, &'a ForceCell)>,
+}
+
+pub(crate) fn speed_angle(found: &WhereItFails<'_>) -> Result<Option<String>, PictureError> {
+    let (panels, intruders) = panels(found);
+    if panels.is_empty() {
+        return Ok(None);
+    }
+    let scale = Scale::of(found.models.iter().flat_map(|model| &model.force_errors.means));
+    let columns = intruders.min(COLUMNS);
+    let rows = panels.len().div_ceil(columns);
+    let height = PANEL.1 * rows as u32;
+    let width = (PANEL.0 * columns as u32).max(2 * PANEL.0);
+    svg((width, height + signed::HEIGHT), |area| {
+        let (maps, below) = area.split_vertically(height);
+        let (maps, _) = maps.split_horizontally(PANEL.0 * columns as u32);
+        for (panel, map) in panels.iter().zip(maps.split_evenly((rows, columns))) {
+            draw_panel(&map, panel, &scale)?;
+        }
+        scale.draw(&below)
+    })
+    .map(Some)
+}
+
+/// Model by model, intruder by intruder, and how many intruders there are.
+fn panels<'a>(found: &'a WhereItFails<'_>) -> (Vec<Panel<'a>>, usize) {
+    let mut intruders: Vec<String> = Vec::new();
+    let mut panels = Vec::new();
+    let condition = |cell: &ForceCell| &found.set.conditions[cell.condition];
+    for cell in found.models.iter().flat_map(|model| &model.force_errors.means) {
+        let name = intruder(condition(cell));
+        if !intruders.contains(&name) {
+            intruders.push(name);
+        }
+    }
+    for model in &found.models {
+        for name in &intruders {
+            let own = model.force_errors.means.iter().map(|cell| (condition(cell), cell));
+            panels.push(Panel {
+                titles: [model.model.clone(), name.clone()],
+                cells: own.filter(|(condition, _)| intruder(condition) == *name).collect(),
+            });
+        }
+    }
+    (panels, intruders.len())
+}
+
+fn intruder(condition: &Condition) -> String {
+    let (diameter, mass) = (short(1e3 * condition.diameter), short(1e3 * condition.mass));
+    format!("{}, {diameter} mm, {mass} g", condition.shape)
+}
+
+fn draw_panel(area: &Area<'_>, panel: &Panel<'_>, scale: &Scale) -> Drawn {
+    for (row, title) in panel.titles.iter().enumerate() {
+        let place = (56, 6 + 17 * row as i32);
+        area.draw(&Text::new(fitting(title, PANEL.0 - 60), place, letters()))?;
+    }
+    let speeds = values(panel, |condition| condition.speed);
+    let angles = values(panel, |condition| condition.angle_deg);
+    let (Some(slowest), Some(fastest)) = (speeds.first(), speeds.last()) else { return Ok(()) };
+    let (Some(flattest), Some(steepest)) = (angles.first(), angles.last()) else { return Ok(()) };
+    let (across, up) = (padded(*slowest, *fastest), padded(*flattest, *steepest));
+    let mut chart = ChartBuilder::on(area)
+        .margin_top(42)
+        .margin_left(8)
+        .margin_right(12)
+        .x_label_area_size(40)
+        .y_label_area_size(48)
+        .build_cartesian_2d(across.clone(), up.clone())?;
+    chart
+        .configure_mesh()
+        .x_desc("impact speed (m/s)")
+        .y_desc("angle (deg)")
+        .light_line_style(WHITE)
+        .bold_line_style(super::GREY)
+        .draw()?;
+    let plot = chart.plotting_area();
+    let (wide, high) = plot.dim_in_pixel();
+    let edge = |values: &[f64], range: std::ops::Range<f64>, pixels: u32| {
+        let gap = values.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+        let pixels = 0.9 * gap / (range.end - range.start) * f64::from(pixels);
+        (0.5 * pixels.clamp(EDGES.0, EDGES.1)) as i32
+    };
+    let (w, h) = (edge(&speeds, across, wide), edge(&angles, up, high));
+    let inside = plot.strip_coord_spec();
+    let corner = plot.get_base_pixel();
+    for (condition, cell) in &panel.cells {
+        let (x, y) = plot.map_coordinate(&(condition.speed, condition.angle_deg));
+        let (x, y) = (x - corner.0, y - corner.1);
+        let place = [(x - w, y - h), (x + w, y + h)];
+        let colour = scale.colour(cell.force_error, cell.se);
+        inside.draw(&Rectangle::new(place, colour.filled()))?;
+        inside.draw(&Rectangle::new(place, BLACK.stroke_width(1)))?;
+        if cell.significant {
+            legend::mark(&inside, (x, y))?;
+        }
+    }
+    Ok(())
+}
+
+fn values(panel: &Panel<'_>, of: impl Fn(&Condition) -> f64) -> Vec<f64> {
+    let mut values: Vec<f64> = panel.cells.iter().map(|(condition, _)| of(condition)).collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    values
+}

@@ -1,0 +1,126 @@
+//! The tables: one row per cell or number, keys with their units.
+
+use serde::Serialize;
+
+use super::WhereItFails;
+use crate::rounding::{six_digits, six_digits_or_null};
+
+#[derive(Serialize)]
+struct CellRow<'a> {
+    condition: &'a str,
+    #[serde(serialize_with = "six_digits")]
+    speed_m_per_s: f64,
+    #[serde(serialize_with = "six_digits")]
+    angle_deg: f64,
+    shape: &'a str,
+    #[serde(serialize_with = "six_digits")]
+    diameter_m: f64,
+    #[serde(serialize_with = "six_digits")]
+    from_z_m: f64,
+    #[serde(serialize_with = "six_digits")]
+    to_z_m: f64,
+    #[serde(serialize_with = "six_digits")]
+    force_error: f64,
+    #[serde(serialize_with = "six_digits")]
+    se: f64,
+    significant: bool,
+    model: &'a str,
+}
+
+#[derive(Serialize)]
+struct ResidualRow<'a> {
+    condition: &'a str,
+    observable: &'static str,
+    #[serde(serialize_with = "six_digits_or_null")]
+    time_s: Option<f64>,
+    #[serde(serialize_with = "six_digits")]
+    measured: f64,
+    #[serde(serialize_with = "six_digits")]
+    predicted: f64,
+    #[serde(serialize_with = "six_digits")]
+    standard_error: f64,
+    model: &'a str,
+}
+
+#[derive(Serialize)]
+struct SignatureRow<'a> {
+    condition: &'a str,
+    observable: &'static str,
+    #[serde(serialize_with = "six_digits_or_null")]
+    time_s: Option<f64>,
+    #[serde(serialize_with = "six_digits")]
+    residual: f64,
+    #[serde(serialize_with = "six_digits")]
+    standard_error: f64,
+    effect: &'a str,
+    #[serde(serialize_with = "six_digits")]
+    signature: f64,
+}
+
+/// Force errors by model, condition and depth.
+pub(super) fn force_errors(found: &WhereItFails<'_>) -> Result<String, csv::Error> {
+    let models = found.models.iter();
+    table(models.flat_map(|model| {
+        model.force_errors.cells.iter().map(|cell| {
+            let condition = &found.set.conditions[cell.condition];
+            CellRow {
+                condition: &condition.id,
+                speed_m_per_s: condition.speed,
+                angle_deg: condition.angle_deg,
+                shape: &condition.shape,
+                diameter_m: condition.diameter,
+                from_z_m: cell.from,
+                to_z_m: cell.to,
+                force_error: cell.force_error,
+                se: cell.se,
+                significant: cell.significant,
+                model: &model.model,
+            }
+        })
+    }))
+}
+
+/// Every number by model, measured and predicted.
+pub(super) fn residuals(found: &WhereItFails<'_>) -> Result<String, csv::Error> {
+    let models = found.models.iter();
+    table(models.flat_map(|model| {
+        model.residuals.iter().map(|one| ResidualRow {
+            condition: &found.set.conditions[one.condition].id,
+            observable: one.observable.key(),
+            time_s: one.time,
+            measured: one.measured,
+            predicted: one.predicted,
+            standard_error: one.standard_error,
+            model: &model.model,
+        })
+    }))
+}
+
+/// What the best candidates would do, beside what the first model leaves over; `None` without any.
+pub(super) fn signatures(found: &WhereItFails<'_>) -> Result<Option<String>, csv::Error> {
+    let Some(model) = found.models.first().filter(|_| !found.signatures.is_empty()) else {
+        return Ok(None);
+    };
+    let rows = found.signatures.iter().flat_map(|signature| {
+        model.residuals.iter().zip(&signature.change).map(|(one, change)| SignatureRow {
+            condition: &found.set.conditions[one.condition].id,
+            observable: one.observable.key(),
+            time_s: one.time,
+            residual: one.measured - one.predicted,
+            standard_error: one.standard_error,
+            effect: &signature.effect,
+            signature: *change,
+        })
+    });
+    table(rows).map(Some)
+}
+
+fn table(rows: impl Iterator<Item = impl Serialize>) -> Result<String, csv::Error> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        table.serialize(row)?;
+    }
+    let bytes = table.into_inner().map_err(|error| csv::Error::from(error.into_error()))?;
+    // Every field was a string or a number.
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
