@@ -7,17 +7,16 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::fit::{Data, Fit, Scale, point_of, unknowns, value};
-use crate::forward::PredictError;
 use crate::sensitivity::Point;
 
-/// A step that promises a smaller fall of χ² than this ends the search.
+/// A step that promises a smaller share of the fall of χ² so far, and of one, ends the search.
 const PROMISE: f64 = 1e-3;
 
-/// Steps after which a search with fresh derivatives is the better choice.
+/// Steps after which the search ends anyway.
 const STEPS: usize = 12;
 
 /// How often a step that does not lower χ² is halved.
-const HALVINGS: u32 = 4;
+const HALVINGS: u32 = 6;
 
 /// A fit with more effects, without its derivatives.
 #[derive(Clone, Debug)]
@@ -29,49 +28,43 @@ pub(crate) struct Extended {
     pub(crate) standard_error: f64,
 }
 
-/// Refits `fit` with the effects whose amplitudes are the last of `start`, from there; `slopes` are the
-/// whitened derivatives of the prediction by them. `None` if the search does not come to its end.
-///
-/// # Errors
-/// If the model cannot be integrated at `start`.
-pub(crate) fn extend(
-    data: &Data<'_>,
-    fit: &Fit,
-    start: &Point,
-    slopes: &[&DVector<f64>],
-) -> Result<Option<Extended>, PredictError> {
-    let scales = data.scales(start);
-    let mut search = Search::new(fit, start, slopes, &scales);
-    let mut residual = data.residual(start)?;
+/// Refits `fit` with the effects `added`, as (index of the candidate, whitened derivative of the
+/// prediction by its amplitude), from where they are absent; no worse than `fit`.
+pub(crate) fn extend(data: &Data<'_>, fit: &Fit, added: &[(usize, &DVector<f64>)]) -> Extended {
+    let mut start = fit.point.clone();
+    start.effects.extend(added.iter().map(|&(candidate, _)| (candidate, 0.0)));
+    let scales = data.scales(&start);
+    let slopes: Vec<&DVector<f64>> = added.iter().map(|&(_, slope)| slope).collect();
+    let mut search = Search::new(fit, &start, &slopes, &scales);
+    let mut residual = fit.residual.clone();
     for _ in 0..STEPS {
-        let Some(mut step) = search.step(&residual) else { return Ok(None) };
-        if step.promise < PROMISE {
-            let chi2 = residual.norm_squared();
-            let point = point_of(&search.unknowns, &scales, start);
-            return Ok(Some(Extended {
-                point,
-                chi2,
-                standard_error: search.standard_error(&step),
-            }));
+        let Some(mut change) = search.step(&residual) else { break };
+        let fall = fit.chi2 - residual.norm_squared();
+        if (&search.jacobian * &change).norm_squared() < PROMISE * (1.0 + fall) {
+            break;
         }
         let mut halvings = 0;
         let moved = loop {
-            let unknowns = search.moved(&step.change);
-            let there = data.residual(&point_of(&unknowns, &scales, start));
+            let unknowns = search.moved(&change);
+            let there = data.residual(&point_of(&unknowns, &scales, &start));
             let better = there.ok().filter(|there| there.norm_squared() <= residual.norm_squared());
             match better {
                 Some(there) => break Some((unknowns, there)),
                 None if halvings == HALVINGS => break None,
-                None => step.change *= 0.5,
+                None => change *= 0.5,
             }
             halvings += 1;
         };
-        let Some((unknowns, there)) = moved else { return Ok(None) };
+        let Some((unknowns, there)) = moved else { break };
         search.learn(&unknowns, &(&residual - &there));
         search.unknowns = unknowns;
         residual = there;
     }
-    Ok(None)
+    Extended {
+        point: point_of(&search.unknowns, &scales, &start),
+        chi2: residual.norm_squared(),
+        standard_error: search.standard_error(),
+    }
 }
 
 /// Unknowns in units in which each moves the prediction by one standard deviation.
@@ -84,14 +77,6 @@ struct Search {
     jacobian: DMatrix<f64>,
     /// Least and greatest amplitudes.
     bounds: Vec<(f64, f64)>,
-}
-
-struct Step {
-    /// In the units of the columns.
-    change: DVector<f64>,
-    promise: f64,
-    /// Whether the last amplitude stays at its bound.
-    held: bool,
 }
 
 impl Search {
@@ -120,9 +105,8 @@ impl Search {
         }
     }
 
-    /// The step that lowers χ² most, within the ranges of the amplitudes.
-    fn step(&self, residual: &DVector<f64>) -> Option<Step> {
-        let parameters = self.free.len() - self.bounds.len();
+    /// The step that lowers χ² most, within the ranges of the amplitudes, in the units of the columns.
+    fn step(&self, residual: &DVector<f64>) -> Option<DVector<f64>> {
         let mut kept: Vec<usize> = (0..self.free.len()).collect();
         loop {
             let part = self.jacobian.select_columns(&kept);
@@ -132,23 +116,22 @@ impl Search {
             for (&column, solved) in kept.iter().zip(solved.iter()) {
                 change[column] = *solved;
             }
-            let outward = |column: usize| {
-                let Some((least, greatest)) =
-                    column.checked_sub(parameters).map(|k| self.bounds[k])
-                else {
-                    return false;
-                };
-                let here = self.unknowns[self.free[column]];
-                here == least && change[column] < 0.0 || here == greatest && change[column] > 0.0
-            };
             let before = kept.len();
-            kept.retain(|&column| !outward(column));
+            kept.retain(|&column| !self.leaves(column, change[column]));
             if kept.len() == before {
-                let promise = (&self.jacobian * &change).norm_squared();
-                let held = kept.last() != Some(&(self.free.len() - 1));
-                return Some(Step { change, promise, held });
+                return Some(change);
             }
         }
+    }
+
+    /// Whether `change` would take an amplitude out of its range at once.
+    fn leaves(&self, column: usize, change: f64) -> bool {
+        let parameters = self.free.len() - self.bounds.len();
+        let bounds = column.checked_sub(parameters).map(|amplitude| self.bounds[amplitude]);
+        let here = self.unknowns[self.free[column]];
+        bounds.is_some_and(|(least, greatest)| {
+            here <= least && change < 0.0 || here >= greatest && change > 0.0
+        })
     }
 
     fn moved(&self, change: &DVector<f64>) -> Vec<f64> {
@@ -175,12 +158,16 @@ impl Search {
         }
     }
 
-    fn standard_error(&self, last: &Step) -> f64 {
-        if last.held {
+    fn standard_error(&self) -> f64 {
+        let last = self.free.len() - 1;
+        let (Some(amplitude), Some((least, greatest))) = (self.unknowns.last(), self.bounds.last())
+        else {
+            return 0.0;
+        };
+        if amplitude <= least || amplitude >= greatest {
             return 0.0;
         }
-        let n = self.free.len() - 1;
         let inverse = Cholesky::new(self.jacobian.tr_mul(&self.jacobian)).map(|f| f.inverse());
-        inverse.map_or(0.0, |inverse| inverse[(n, n)].sqrt() * self.units[n])
+        inverse.map_or(0.0, |inverse| inverse[(last, last)].sqrt() * self.units[last])
     }
 }

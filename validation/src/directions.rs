@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::bench::{Bench, Fitted};
+use crate::bench::Bench;
 use crate::covariate::OF_CONDITIONS;
 use crate::projection::Basis;
 
@@ -24,7 +24,7 @@ pub(crate) struct Directions {
 pub(crate) struct Within {
     /// Its first row, and how many.
     rows: (usize, usize),
-    /// What the parameters can do, over all conditions.
+    /// What the model can do, over all conditions.
     parameters: DMatrix<f64>,
     /// What forces can do that change in all conditions together, smooth ones first.
     coherent: DMatrix<f64>,
@@ -44,11 +44,15 @@ pub(crate) struct Along {
 }
 
 impl Directions {
-    /// Beside what the parameters of `fitted` can do; `responses` are, for every condition, the
-    /// whitened changes by forces around depths against the motion and normal to it.
-    pub(crate) fn new(bench: &Bench<'_>, fitted: &Fitted, responses: &[[DMatrix<f64>; 2]]) -> Self {
-        let rows = fitted.fit.residual.len();
-        let parameters = Basis::of(&fitted.fit.jacobian);
+    /// Beside the columns of `imitated`, which the model can do; `responses` are, for every condition,
+    /// the whitened changes by forces around depths against the motion and normal to it.
+    pub(crate) fn new(
+        bench: &Bench<'_>,
+        imitated: &DMatrix<f64>,
+        responses: &[[DMatrix<f64>; 2]],
+    ) -> Self {
+        let rows = imitated.nrows();
+        let parameters = Basis::of(imitated);
         let smooth = stacked(responses, rows, &smooth_factors(bench), MODES);
         let sharp = stacked(responses, rows, &factors(bench), [usize::MAX; 2]);
         let mut coherent = Basis::beside(&smooth, &parameters);

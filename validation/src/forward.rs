@@ -92,6 +92,10 @@ pub struct Scatter {
     /// Force normal to the velocity, in units of the resistance, at nodes likewise; in the plane of
     /// motion, positive out of the bed.
     pub sideways: Vec<f64>,
+    /// Relative change of the strength of every effect of the request, from the surface to
+    /// [`Scatter::reach`] and from rest to the impact speed, zero at half of each: an effect of the same
+    /// kind and another form.
+    pub bend: [f64; 2],
     /// Depth of the last node (m); beyond it the last value holds.
     pub reach: f64,
 }

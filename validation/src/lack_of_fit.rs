@@ -7,13 +7,14 @@
 //! The smallest of their probabilities is held against the smallest of every resampled residual, so
 //! that looking in several ways costs no more than it must (Westfall & Young 1993).
 
+use nalgebra::DMatrix;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::directions::Directions;
 use crate::noise::NoiseSource;
 use crate::redraw::Redraw;
-use crate::sensitivity::{Direction, force_response};
+use crate::sensitivity::{Direction, bend_response, force_response};
 
 /// Resampled sets of means.
 const DRAWS: usize = 1999;
@@ -61,11 +62,30 @@ pub fn lack_of_fit(
         let sideways = response(Direction::Sideways, nodes.div_ceil(2))?;
         responses.push([along, sideways].map(|response| weight.whiten_columns(&response)));
     }
-    let directions = Directions::new(bench, fitted, &responses);
+    let imitated = imitated(bench, fitted, reach)?;
+    let directions = Directions::new(bench, &imitated, &responses);
     let mut noise = Redraw::new(bench, fitted, &directions, seed);
     let drawn: Vec<Vec<f64>> = (0..DRAWS).map(|_| directions.sizes(&noise.draw())).collect();
     let measured = directions.sizes(&directions.of(residual));
     Ok(Some(smallest_probability(&measured, &drawn)))
+}
+
+/// Whitened directions that are no lack of fit: what the parameters and amplitudes of `fitted` can do,
+/// and, since nature does not use our formulas, what its effects do whose strength changes with depth
+/// or with speed.
+fn imitated(bench: &Bench<'_>, fitted: &Fitted, reach: f64) -> Result<DMatrix<f64>, BenchError> {
+    let mut bends = DMatrix::zeros(fitted.fit.residual.len(), 2);
+    if !fitted.fit.point.effects.is_empty() {
+        let mut start = 0;
+        for (&condition, weight) in bench.observed.fit.iter().zip(&fitted.weights) {
+            let response = bend_response(&fitted.fit.point, bench.forward, condition, reach)?;
+            let response = weight.whiten_columns(&response);
+            bends.view_mut((start, 0), response.shape()).copy_from(&response);
+            start += response.nrows();
+        }
+    }
+    let columns: Vec<_> = fitted.fit.jacobian.column_iter().chain(bends.column_iter()).collect();
+    Ok(DMatrix::from_columns(&columns))
 }
 
 /// Probability that the smallest probability of several sizes is as small as that of `measured`,

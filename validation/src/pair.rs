@@ -1,13 +1,19 @@
 //! Two effects at once, for when no single one is enough.
 
 use crate::bench::{Bench, BenchError, Fitted};
-use crate::chord::extend;
-use crate::score::{Ranking, Score, by_chance};
-use crate::sensitivity::Point;
+use crate::chord::{Extended, extend};
+use crate::forward::Candidate;
+use crate::score::{Ranking, Score, by_chance, signatures};
 use crate::signature::Signature;
 
 /// How many of all pairs are refitted, those with the largest fall of χ² to first order.
-const REFITTED: usize = 10;
+const REFITTED: usize = 6;
+
+/// How many of the best singles are refitted with each other effect that promises to help them.
+const FIRST: usize = 2;
+
+/// How many such effects.
+const SECOND: usize = 4;
 
 /// Effects more alike than this cannot both be seen.
 const ALIKE: f64 = 0.995;
@@ -29,21 +35,24 @@ pub(crate) fn best_pair(
     seed: u64,
 ) -> Result<Option<Pair>, BenchError> {
     let data = bench.data(&baseline.weights);
-    let mut best: Option<(f64, Point)> = None;
-    for guess in promising(singles, bench) {
-        let [a, b] = guess.members;
-        let mut start = baseline.fit.point.clone();
-        start
-            .effects
-            .extend([(a.candidate, guess.amplitudes[0]), (b.candidate, guess.amplitudes[1])]);
-        let extended = extend(&data, &baseline.fit, &start, &[&a.slope, &b.slope]);
-        let Ok(Some(extended)) = extended else { continue };
-        if best.as_ref().is_none_or(|(least, _)| extended.chi2 < *least) {
-            best = Some((extended.chi2, extended.point));
+    let mut tried: Vec<Extended> = promising(singles, bench)
+        .iter()
+        .map(|[a, b]| {
+            extend(&data, &baseline.fit, &[(a.candidate, &a.slope), (b.candidate, &b.slope)])
+        })
+        .collect();
+    for first in singles.scores.iter().take(FIRST) {
+        let with_first = Fitted { fit: data.fit(&first.point)?, ..baseline.clone() };
+        let others = singles.scores.iter().map(Score::candidate);
+        let others: Vec<usize> = others.filter(|&other| other != first.candidate()).collect();
+        for second in promising_beside(bench, &with_first, &others) {
+            let added = [(second.candidate, &second.slope)];
+            tried.push(extend(&data, &with_first.fit, &added));
         }
     }
-    let Some((_, best)) = best else { return Ok(None) };
-    let fitted = bench.fit_once(&best, &baseline.noise)?;
+    let best = tried.into_iter().min_by(|a, b| a.chi2.total_cmp(&b.chi2));
+    let Some(best) = best else { return Ok(None) };
+    let fitted = bench.fit_once(&best.point, &baseline.noise)?;
     let mut candidates: Vec<usize> = singles.scores.iter().map(Score::candidate).collect();
     candidates.sort_unstable();
     let mut p = 0.0_f64;
@@ -61,29 +70,31 @@ pub(crate) fn best_pair(
     Ok(Some(Pair { fitted, p }))
 }
 
-/// Two effects with amplitudes to first order.
-struct Guess<'a> {
-    members: [&'a Signature; 2],
-    amplitudes: [f64; 2],
-    fall: f64,
-}
-
-/// The pairs that lower χ² most to first order, within the ranges of the amplitudes.
-fn promising<'a>(singles: &'a Ranking, bench: &Bench<'_>) -> Vec<Guess<'a>> {
+/// The pairs that lower χ² most to first order.
+fn promising<'a>(singles: &'a Ranking, bench: &Bench<'_>) -> Vec<[&'a Signature; 2]> {
     let scores = &singles.scores;
-    let mut guesses = Vec::new();
+    let mut pairs = Vec::new();
     for (at, a) in scores.iter().enumerate() {
         for b in &scores[at + 1..] {
-            guesses.extend(guess([&a.signature, &b.signature], bench));
+            let members = [&a.signature, &b.signature];
+            pairs.extend(fall(members, bench).map(|fall| (fall, members)));
         }
     }
-    guesses.sort_by(|a, b| b.fall.total_cmp(&a.fall));
-    guesses.truncate(REFITTED);
-    guesses
+    pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
+    pairs.into_iter().take(REFITTED).map(|(_, members)| members).collect()
 }
 
-/// `None` for two that look the same, or of which one would have to be absent.
-fn guess<'a>(members: [&'a Signature; 2], bench: &Bench<'_>) -> Option<Guess<'a>> {
+/// The effects of `others` that lower the χ² of `fitted` most to first order.
+fn promising_beside(bench: &Bench<'_>, fitted: &Fitted, others: &[usize]) -> Vec<Signature> {
+    let (mut signatures, _) = signatures(bench, fitted, others);
+    signatures.sort_by(|a, b| b.score.abs().total_cmp(&a.score.abs()));
+    signatures.truncate(SECOND);
+    signatures
+}
+
+/// The fall of χ² by both of `members` to first order, within the ranges of their amplitudes; `None`
+/// for two that look the same, or of which one would have to be absent.
+fn fall(members: [&Signature; 2], bench: &Bench<'_>) -> Option<f64> {
     let [a, b] = members;
     let cosine = a.unit.dot(&b.unit);
     if cosine.abs() > ALIKE {
@@ -92,14 +103,12 @@ fn guess<'a>(members: [&'a Signature; 2], bench: &Bench<'_>) -> Option<Guess<'a>
     let own = 1.0 - cosine * cosine;
     let along = [(a.score - cosine * b.score) / own, (b.score - cosine * a.score) / own];
     let candidates = bench.forward.candidates();
-    let amplitudes: [f64; 2] = std::array::from_fn(|at| {
-        let candidate = &candidates[members[at].candidate];
-        (along[at] / members[at].norm).clamp(candidate.min, candidate.max)
+    let within: [f64; 2] = std::array::from_fn(|at| {
+        let Signature { candidate, norm, .. } = members[at];
+        let Candidate { min, max, .. } = candidates[*candidate];
+        (along[at] / norm).clamp(min, max) * norm
     });
-    if amplitudes.contains(&0.0) {
-        return None;
-    }
-    let [x, y] = std::array::from_fn(|at| amplitudes[at] * members[at].norm);
+    let [x, y] = within;
     let fall = 2.0 * (x * a.score + y * b.score) - (x * x + y * y + 2.0 * cosine * x * y);
-    Some(Guess { members, amplitudes, fall })
+    (x != 0.0 && y != 0.0).then_some(fall)
 }

@@ -1,7 +1,7 @@
 //! Refits of a model with one more effect, and which of them the measurements tell apart.
 
 use crate::bench::{Bench, BenchError, Fitted};
-use crate::chord::{Extended, extend};
+use crate::chord::extend;
 use crate::forward::{Candidate, PredictError};
 use crate::sensitivity::Point;
 use crate::signature::{Signature, collinearity, signature, variance_along};
@@ -9,6 +9,9 @@ use crate::significance::NullScores;
 
 /// Effects whose χ² falls by less than this behind the best are not told apart: odds 20 to 1.
 const SEPARATE: f64 = 6.0;
+
+/// How many of the best are refitted with derivatives of their own.
+const POLISHED: usize = 3;
 
 /// Nor are those that would be mistaken for one another more often than once in twenty.
 const CONFUSED: f64 = 0.95;
@@ -19,10 +22,13 @@ pub(crate) struct Score {
     pub(crate) signature: Signature,
     /// Parameters and amplitudes, that of the effect last.
     pub(crate) point: Point,
-    /// Standard error of its amplitude, enlarged like the fall of χ² is reduced; 0 at a bound.
+    /// Standard error of its amplitude, enlarged as the fall of χ² is reduced; 0 at a bound.
     pub(crate) standard_error: f64,
-    /// Fall of χ², over the variance that the repeats show along the signature where that is larger.
+    /// Fall of χ², over the variance that the repeats show along the signature of the best effect, where
+    /// that is larger than one.
     pub(crate) delta: f64,
+    /// Amplitude in standard errors.
+    strength: f64,
     /// Predicted probability that it is ranked first, if it is there as fitted.
     pub(crate) ranked_first: f64,
 }
@@ -36,10 +42,6 @@ impl Score {
     /// Fitted amplitude.
     pub(crate) fn amplitude(&self) -> f64 {
         self.point.effects.last().map_or(0.0, |(_, q)| *q)
-    }
-
-    fn strength(&self) -> f64 {
-        self.amplitude().abs() * self.signature.norm
     }
 }
 
@@ -57,6 +59,9 @@ pub(crate) struct Ranking {
 
 impl Ranking {
     /// Adds each of `candidates` (indices) to `fitted` and refits, under its weights.
+    ///
+    /// All falls of χ² are measured in the variance that the repeats show along the signature of the
+    /// best: each in its own would rank by how well that variance happens to be known.
     pub(crate) fn of(
         bench: &Bench<'_>,
         fitted: &Fitted,
@@ -65,15 +70,24 @@ impl Ranking {
     ) -> Result<Self, BenchError> {
         let (signatures, failed) = signatures(bench, fitted, candidates);
         let null = NullScores::new(collinearity(&signatures), seed);
-        let mut scores = signatures
-            .into_iter()
-            .map(|signature| refit(bench, fitted, signature))
-            .collect::<Result<Vec<_>, _>>()?;
-        for (row, score) in scores.iter_mut().enumerate() {
-            score.ranked_first = null.ranked_first(row, score.strength());
+        let mut scores: Vec<Score> =
+            signatures.into_iter().map(|signature| refit(bench, fitted, signature)).collect();
+        let mut rows = best_first(&scores);
+        for &row in rows.iter().take(POLISHED) {
+            if scores[row].delta > 0.0 {
+                polish(bench, fitted, &mut scores[row])?;
+            }
         }
-        let mut rows: Vec<usize> = (0..scores.len()).collect();
         rows.sort_by(|&a, &b| scores[b].delta.total_cmp(&scores[a].delta));
+        let scale = rows.first().map_or(1.0, |&best| {
+            variance_along(bench, fitted, &scores[best].signature.unit).max(1.0)
+        });
+        for (row, score) in scores.iter_mut().enumerate() {
+            score.delta /= scale;
+            score.standard_error *= scale.sqrt();
+            score.strength = score.amplitude().abs() * score.signature.norm / scale.sqrt();
+            score.ranked_first = null.ranked_first(row, score.strength);
+        }
         let mut scores: Vec<Option<Score>> = scores.into_iter().map(Some).collect();
         let scores: Vec<Score> = rows.iter().filter_map(|&row| scores[row].take()).collect();
         let p = scores.first().map_or(1.0, |best| null.family_wise_p(best.delta));
@@ -88,7 +102,7 @@ impl Ranking {
         let confused = |place: usize| {
             twins.contains(&candidates[self.scores[place].candidate()].id)
                 || best.delta - self.scores[place].delta < SEPARATE
-                || self.null.beats(self.rows[0], self.rows[place], best.strength()) < CONFUSED
+                || self.null.beats(self.rows[0], self.rows[place], best.strength) < CONFUSED
         };
         (0..self.scores.len()).filter(|&place| place == 0 || confused(place)).collect()
     }
@@ -112,7 +126,7 @@ pub(crate) fn by_chance(
 }
 
 /// The signatures that exist, and the candidates whose failed.
-fn signatures(
+pub(crate) fn signatures(
     bench: &Bench<'_>,
     fitted: &Fitted,
     candidates: &[usize],
@@ -127,44 +141,31 @@ fn signatures(
     (found, failed)
 }
 
-/// The fall of χ² that the score promises, within the range of the amplitude.
-fn first_order(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Score {
-    let amplitude = signature.first_guess(&bench.forward.candidates()[signature.candidate]);
-    let along = amplitude * signature.norm;
-    let delta = (2.0 * signature.score - along) * along;
-    let mut point = fitted.fit.point.clone();
-    point.effects.push((signature.candidate, amplitude));
-    let held = (amplitude - signature.score / signature.norm).abs() > 0.0;
-    let scale = variance_along(bench, fitted, &signature.unit).max(1.0);
-    let standard_error = if held { 0.0 } else { scale.sqrt() / signature.norm };
-    let delta = delta.max(0.0) / scale;
-    Score { signature, point, standard_error, delta, ranked_first: 0.0 }
+/// The fall of χ² by a refit with derivatives that are kept.
+fn refit(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Score {
+    let data = bench.data(&fitted.weights);
+    let extended = extend(&data, &fitted.fit, &[(signature.candidate, &signature.slope)]);
+    Score {
+        delta: (fitted.fit.chi2 - extended.chi2).max(0.0),
+        point: extended.point,
+        standard_error: extended.standard_error,
+        signature,
+        strength: 0.0,
+        ranked_first: 0.0,
+    }
 }
 
-/// The fall of χ² by a refit.
-fn refit(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Result<Score, BenchError> {
-    let first = first_order(bench, fitted, signature);
-    let data = bench.data(&fitted.weights);
-    let absent = || {
-        let mut point = first.point.clone();
-        if let Some(last) = point.effects.last_mut() {
-            last.1 = 0.0;
-        }
-        point
-    };
-    let slopes = [&first.signature.slope];
-    // A first guess may lie beyond what the effect is linear in; absent, it is no worse than before.
-    let guessed = extend(&data, &fitted.fit, &first.point, &slopes).ok().flatten();
-    let extended = match guessed.filter(|one| one.chi2 <= fitted.fit.chi2) {
-        Some(extended) => extended,
-        None => {
-            let fit = data.fit(&absent())?;
-            let standard_error = fit.standard_error(fit.covariance.nrows() - 1);
-            Extended { chi2: fit.chi2, standard_error, point: fit.point }
-        }
-    };
-    let scale = variance_along(bench, fitted, &first.signature.unit).max(1.0);
-    let delta = (fitted.fit.chi2 - extended.chi2).max(0.0) / scale;
-    let standard_error = extended.standard_error * scale.sqrt();
-    Ok(Score { point: extended.point, standard_error, delta, ..first })
+/// The same with derivatives of its own, from there.
+fn polish(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) -> Result<(), BenchError> {
+    let fit = bench.data(&fitted.weights).fit(&score.point)?;
+    score.delta = (fitted.fit.chi2 - fit.chi2).max(0.0);
+    score.standard_error = fit.standard_error(fit.covariance.nrows() - 1);
+    score.point = fit.point;
+    Ok(())
+}
+
+fn best_first(scores: &[Score]) -> Vec<usize> {
+    let mut rows: Vec<usize> = (0..scores.len()).collect();
+    rows.sort_by(|&a, &b| scores[b].delta.total_cmp(&scores[a].delta));
+    rows
 }

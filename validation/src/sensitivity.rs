@@ -221,3 +221,29 @@ pub fn force_response(
     }
     Ok(DMatrix::from_columns(&columns))
 }
+
+/// Change of the observables by a change of the strength of the effects of `point` with depth, to
+/// `reach` (m), and with speed ([`Scatter::bend`]); one column each, none where there are no effects.
+///
+/// # Errors
+/// If the model cannot be integrated there.
+pub fn bend_response(
+    point: &Point,
+    forward: &dyn Forward,
+    condition: usize,
+    reach: f64,
+) -> Result<DMatrix<f64>, PredictError> {
+    const STEP: f64 = 0.05;
+    let coefficients = vec![0.0; forward.n_scattering_coefficients()];
+    let still = Scatter { coefficients, reach, ..Scatter::default() };
+    let mean = point.predict(forward, condition)?;
+    let columns = if point.effects.is_empty() { 0 } else { 2 };
+    let mut response = DMatrix::zeros(mean.len(), columns);
+    for (at, mut column) in response.column_iter_mut().enumerate() {
+        let mut bend = [0.0; 2];
+        bend[at] = STEP;
+        let bent = point.predict_run(forward, condition, &Scatter { bend, ..still.clone() })?;
+        column.copy_from(&((bent - &mean) / STEP));
+    }
+    Ok(response)
+}

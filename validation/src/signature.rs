@@ -33,11 +33,6 @@ impl Signature {
     pub(crate) fn detection_limit(&self) -> f64 {
         DETECTION / self.norm
     }
-
-    /// The amplitude to first order, within the range of the candidate.
-    pub(crate) fn first_guess(&self, candidate: &Candidate) -> f64 {
-        (self.score / self.norm).clamp(candidate.min, candidate.max)
-    }
 }
 
 /// The signature of `candidate` around `fitted`; `None` if the model can imitate it entirely.

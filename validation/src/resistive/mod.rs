@@ -1,5 +1,6 @@
 //! Resistive-force models as the statistics see them: a prediction is an impact integrated anew.
 
+mod bent;
 mod candidates;
 mod needs;
 mod prepared;

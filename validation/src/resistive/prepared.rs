@@ -14,6 +14,7 @@ use engine::resistance::{
 use intruders::{Casting, ShapeEntry};
 
 use super::ForwardError;
+use super::bent::Bent;
 use super::scatter::PathScatter;
 use crate::forward::Scatter;
 use crate::measurement::{Condition, FinalDefinition, Geometry, MeasurementSet, StopDefinition};
@@ -61,6 +62,8 @@ struct Law {
     coefficients: Vec<Affine>,
     functions: Vec<(&'static str, Expression)>,
     effects: Vec<(&'static ResistanceEntry, Affine)>,
+    /// Impact speed (m/s).
+    speed: f64,
 }
 
 /// A number that depends on the free parameters: a coefficient that is a table over angle is a weighted
@@ -78,7 +81,7 @@ impl Affine {
 }
 
 impl Law {
-    fn new(medium: &ResistiveMedium, free: &[FreeParameter], angle: f64) -> Self {
+    fn new(medium: &ResistiveMedium, free: &[FreeParameter], (angle, speed): (f64, f64)) -> Self {
         let baseline = medium.resistance.entry;
         let here = medium.coefficients_at(angle);
         let (functions, numbers): (Vec<_>, Vec<_>) =
@@ -124,6 +127,7 @@ impl Law {
                 .filter_map(|key| Some((key, here.function(key)?.clone())))
                 .collect(),
             effects,
+            speed,
         }
     }
 
@@ -162,18 +166,29 @@ impl Law {
             .fold(Coefficients::new(numbers), |all, (key, f)| all.with_function(key, f.clone()));
         let mut laws = vec![(self.baseline.build)(&coefficients)];
         for entry in RESISTANCE_LAWS {
-            let own = self.effects.iter().map(|(entry, q)| (*entry, q.at(parameters)));
-            let amplitudes = own.chain(added.iter().copied());
-            for (_, q) in amplitudes.filter(|(one, q)| one.name == entry.name && *q != 0.0) {
+            let made = |q: f64| {
                 let mut numbers = ParamTable::new();
                 numbers.set("q", q);
-                laws.push((entry.build)(&Coefficients::new(numbers)));
-            }
+                (entry.build)(&Coefficients::new(numbers))
+            };
+            let present = |(one, q): &(&ResistanceEntry, f64)| one.name == entry.name && *q != 0.0;
+            let own = self.effects.iter().map(|(entry, q)| (*entry, q.at(parameters)));
+            laws.extend(own.filter(present).map(|(_, q)| made(q)));
+            let added = added.iter().copied().filter(present);
+            laws.extend(added.map(|(_, q)| self.bent(made(q), scatter)));
         }
         if let Some(path) = PathScatter::of(scatter) {
             laws.push(Box::new(path));
         }
         laws
+    }
+
+    fn bent(&self, law: Box<dyn ResistanceLaw>, scatter: &Scatter) -> Box<dyn ResistanceLaw> {
+        let Scatter { bend, reach, .. } = *scatter;
+        match bend {
+            [0.0, 0.0] => law,
+            by => Box::new(Bent { law, by, reach, speed: self.speed }),
+        }
     }
 }
 
@@ -225,7 +240,7 @@ impl Prepared {
             angle,
             spin: condition.spin,
             bed,
-            law: Law::new(&there, free, angle),
+            law: Law::new(&there, free, (angle, condition.speed)),
         })
     }
 
