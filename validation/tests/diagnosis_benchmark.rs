@@ -22,7 +22,7 @@ fn answers(row: Row, most: usize, wanted: impl Fn(&[Hidden], f64) -> bool) -> Ve
 
 #[test]
 fn strong_effects_of_clear_signature_are_detected_and_ranked_first() {
-    let clear = [Hidden::AddedMass, Hidden::RailFriction, Hidden::Buoyancy];
+    let clear = [Hidden::Magnus, Hidden::RailFriction, Hidden::Buoyancy];
     let strong = |hidden: &[Hidden], strength: f64| clear.contains(&hidden[0]) && strength > 0.1;
     for (trial, answer) in answers(Row::Singles, 3, strong) {
         let hidden = trial.plan.hidden[0].id();

@@ -4,6 +4,9 @@
 //! [`hidden`] says what can be hidden, `forces`, `path` and `field` are the world, [`design`] and
 //! [`laboratory`] measure in it, [`strength`] says how much an effect matters. They share nothing
 //! with the models that are diagnosed: neither laws nor integrator nor noise.
+//!
+//! [`plan`] lists the worlds of every row, [`trial`] has one diagnosed, [`scores`] and
+//! [`calibration`] say how often it was right, [`table`] and [`json`] write that down.
 
 pub mod calibration;
 pub mod chance;

@@ -289,7 +289,7 @@ fn instrument(
     };
     for error in CAMERAS {
         let share = here(camera, &|trial| trial.plan.design.camera.total_cmp(&error).is_eq());
-        let metric = format!("camera {} mm (8 %): ranked first", 1e3 * error);
+        let metric = format!("camera {:.2} mm (8 %): ranked first", 1e3 * error);
         rows.push(row(metric, share, Target::None, Target::None));
     }
     for (name, low, least) in [("halved", true, 0.95), ("doubled", false, 0.4)] {
