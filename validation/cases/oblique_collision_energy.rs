@@ -170,9 +170,9 @@ fn collide(stages: Vec<Box<dyn ContactStage>>, angle: f64, phase: f64, dt: f64) 
     Collision { energy: balance.initial, unaccounted: balance.unaccounted.abs(), channels }
 }
 
-fn dissipated(ledger: &Ledger) -> impl Iterator<Item = (&'static str, f64)> + '_ {
+fn dissipated(ledger: &Ledger) -> impl Iterator<Item = (&str, f64)> {
     let terms = ledger.terms().iter().zip(&ledger.balance().values);
     terms
         .filter(|(term, _)| term.kind == TermKind::Channel(ChannelKind::Dissipated))
-        .map(|(term, &value)| (term.name, value))
+        .map(|(term, &value)| (term.name.as_ref(), value))
 }

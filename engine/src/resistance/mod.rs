@@ -154,6 +154,12 @@ pub trait ResistanceLaw: Send + Sync {
     /// What it books: at most one account per flow.
     fn accounts(&self) -> &'static [Account];
 
+    /// What its accounts are called in the ledger where that is not known in advance: a law that a model
+    /// file defines. kebab-case, and unlike every other account.
+    fn own_name(&self) -> Option<&str> {
+        None
+    }
+
     /// Changes what the terms of all laws see of a part that is in the medium.
     fn expose(&self, _at: &mut Immersion, _motion: &Motion, _bed: &Surroundings) {}
 
