@@ -1,6 +1,8 @@
 //! One smooth stretch of an impact: an adaptive Runge–Kutta pair of order 8 with dense output of
 //! order 7 (Dormand & Prince 1980; Hairer, Nørsett & Wanner, II.10).
 
+use std::cell::Cell;
+
 use differential_equations::interpolate::{Interpolation, cubic_hermite_interpolate};
 use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
@@ -21,24 +23,27 @@ const MOST_STEPS: usize = 200_000;
 struct Equations<'a> {
     system: &'a System<'a>,
     modes: &'a Modes,
+    /// The last state of a trial in which a force was not finite.
+    fault: Cell<Option<State>>,
 }
 
 impl ODE<f64, Flat> for Equations<'_> {
-    fn diff(&self, _: f64, flat: &Flat, rates: &mut Flat) {
-        let state = State::from(*flat);
+    fn diff(&self, time: f64, flat: &Flat, rates: &mut Flat) {
+        let state = state(time, flat);
         let (acceleration, _) = accelerate(self.system, &state, self.modes);
+        if acceleration.iter().any(|value| !value.is_finite()) {
+            self.fault.set(Some(state));
+        }
         rates[..COORDINATES].copy_from_slice(&state.rate);
         rates[COORDINATES..].copy_from_slice(&acceleration);
     }
 }
 
-impl From<Flat> for State {
-    fn from(flat: Flat) -> Self {
-        let mut state = Self::default();
-        state.position.copy_from_slice(&flat[..COORDINATES]);
-        state.rate.copy_from_slice(&flat[COORDINATES..]);
-        state
-    }
+fn state(time: f64, flat: &Flat) -> State {
+    let mut state = State { time, ..State::default() };
+    state.position.copy_from_slice(&flat[..COORDINATES]);
+    state.rate.copy_from_slice(&flat[COORDINATES..]);
+    state
 }
 
 impl From<State> for Flat {
@@ -68,28 +73,39 @@ pub(super) struct Solver<'a> {
 }
 
 impl<'a> Solver<'a> {
-    /// Starts as `plan` says. Nothing if the equations give no step to start with.
+    /// Starts as `plan` says.
+    ///
+    /// # Errors
+    /// If the equations give no step to start with: the state in which they have no value, if there is one.
     pub(super) fn start(
         system: &'a System<'a>,
         modes: &'a Modes,
         plan: Plan,
         state: &State,
         tolerance: &Tolerance,
-    ) -> Option<Self> {
+    ) -> Result<Self, Option<State>> {
         let mut method = ExplicitRungeKutta::dop853()
             .rtol(tolerance.relative)
             .atol(tolerance.absolute)
             .max_steps(MOST_STEPS)
             .h0(plan.first_step.min(plan.to - plan.from).max(0.0));
-        let equations = Equations { system, modes };
-        method.init(&equations, plan.from, plan.to, &(*state).into()).ok()?;
+        let equations = Equations { system, modes, fault: Cell::default() };
+        method
+            .init(&equations, plan.from, plan.to, &(*state).into())
+            .map_err(|_| equations.fault.get())?;
         method.set_status(Status::Solving);
-        Some(Self { method, equations, end: plan.to, slopes: None })
+        Ok(Self { method, equations, end: plan.to, slopes: None })
+    }
+
+    /// The state in which the equations have no value, where that is why no step is small enough.
+    pub(super) fn fault(&self) -> Option<State> {
+        self.equations.fault.get()
     }
 
     /// Takes a step; its start and end (s). Nothing if no step is small enough.
     pub(super) fn step(&mut self) -> Option<(f64, f64)> {
         self.slopes = None;
+        self.equations.fault.set(None);
         loop {
             let left = self.end - self.method.t();
             if self.method.h().abs() > left.abs() {
@@ -111,26 +127,24 @@ impl<'a> Solver<'a> {
     pub(super) fn at(&mut self, time: f64) -> State {
         let (from, to) = (self.method.t_prev(), self.method.t());
         if time - to == 0.0 {
-            return (*self.method.y()).into();
+            return state(to, self.method.y());
         }
         let time = time.clamp(from.min(to), from.max(to));
         let mirrored = (from + (to - time)).clamp(from.min(to), from.max(to));
         // Within the step, the library has no reason to refuse.
         let theirs = self.method.interpolate(mirrored).unwrap_or(*self.method.y());
         let [start, end] = *self.slopes.get_or_insert_with(|| {
-            [*self.method.y_prev(), *self.method.y()].map(|flat| {
+            [(from, self.method.y_prev()), (to, self.method.y())].map(|(time, flat)| {
                 let mut rates = [0.0; 2 * COORDINATES];
-                self.equations.diff(0.0, &flat, &mut rates);
+                self.equations.diff(time, flat, &mut rates);
                 rates
             })
         });
         let (before, after) = (self.method.y_prev(), self.method.y());
         let cubic = |time| cubic_hermite_interpolate(from, to, before, after, &start, &end, time);
         let (here, there) = (cubic(time), cubic(mirrored));
-        std::array::from_fn::<f64, { 2 * COORDINATES }, _>(|index| {
-            here[index] + theirs[index] - there[index]
-        })
-        .into()
+        let flat = std::array::from_fn(|index| here[index] + theirs[index] - there[index]);
+        state(time, &flat)
     }
 
     /// When `value` of the state comes to zero within the last step, given its values at both ends of
