@@ -5,6 +5,8 @@ mod added_mass;
 mod buoyancy;
 mod coefficients;
 mod depth_exponent;
+mod effect;
+mod expression;
 mod facts;
 mod janssen;
 mod link;
@@ -18,7 +20,12 @@ mod two_term_vector;
 mod viscous_drag;
 mod yield_stress;
 
-pub use coefficients::{Coefficients, Expression, ExpressionError};
+pub use coefficients::{Coefficients, Expression};
+pub use effect::Effect;
+pub use expression::{
+    Acts, Direction, Draft, ForceError, OwnEffect, OwnEffectError, OwnParameter, STATE_VARIABLES,
+    StateVariable,
+};
 pub use facts::{Facts, Needs, Twin};
 pub use registry::{ResistanceEntry, Role};
 
