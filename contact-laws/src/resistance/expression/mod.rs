@@ -108,6 +108,9 @@ pub enum OwnEffectError {
     /// The range of the amplitude leaves out what it is without the effect.
     #[error("the range of `q` leaves out 0, which it is without the effect")]
     NeverAbsent,
+    /// The amplitude cannot be positive.
+    #[error("the range of `q` has nothing above 0; turn the sign of the force around")]
+    NeverPresent,
     /// The formula cannot be read.
     #[error(transparent)]
     Formula(#[from] FormulaError),
@@ -169,6 +172,9 @@ impl OwnEffect {
         let q = own(AMPLITUDE).ok_or(OwnEffectError::NoAmplitude)?;
         if !q.range.contains(0.0) {
             return Err(OwnEffectError::NeverAbsent);
+        }
+        if q.range.max <= 0.0 {
+            return Err(OwnEffectError::NeverPresent);
         }
         let amplitude = ParamSpec {
             key: AMPLITUDE,
@@ -273,8 +279,7 @@ impl OwnEffect {
             return Ok(());
         }
         let seen = Seen { at, motion, bed, speed: motion.speed, angle };
-        let top = self.amplitude.allowed.max;
-        let q = self.parameter_value().unwrap_or(if top > 0.0 { top.min(1.0) } else { -1.0 });
+        let q = self.value_in_file().unwrap_or(self.amplitude.allowed.max);
         let (force, without) = (self.value(q, &seen), self.value(0.0, &seen));
         let is_still = motion.velocity.norm() == 0.0;
         match self.draft.direction {
@@ -286,7 +291,7 @@ impl OwnEffect {
         }
     }
 
-    fn parameter_value(&self) -> Option<f64> {
+    fn value_in_file(&self) -> Option<f64> {
         let q = self.draft.parameters.iter().find(|one| one.name == AMPLITUDE)?;
         q.value.filter(|value| *value != 0.0)
     }
