@@ -23,7 +23,7 @@ const MOST_STEPS: usize = 200_000;
 struct Equations<'a> {
     system: &'a System<'a>,
     modes: &'a Modes,
-    /// The last state of a trial in which a force was not finite.
+    /// The last state of a trial in which a force was not finite, though the state was.
     fault: Cell<Option<State>>,
 }
 
@@ -31,7 +31,9 @@ impl ODE<f64, Flat> for Equations<'_> {
     fn diff(&self, time: f64, flat: &Flat, rates: &mut Flat) {
         let state = state(time, flat);
         let (acceleration, _) = accelerate(self.system, &state, self.modes);
-        if acceleration.iter().any(|value| !value.is_finite()) {
+        // Later stages of a trial begin where an earlier one had no value.
+        let is_cause = flat.iter().all(|value| value.is_finite());
+        if is_cause && acceleration.iter().any(|value| !value.is_finite()) {
             self.fault.set(Some(state));
         }
         rates[..COORDINATES].copy_from_slice(&state.rate);

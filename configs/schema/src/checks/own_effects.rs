@@ -67,7 +67,7 @@ fn fault(
         if let Err(error) = effect.check(&part.immersion, &motion, impact.bed(), angle) {
             let depth = format_si(rounded(depth, 5), Dimension::LENGTH);
             let speed = format_si(rounded(speed, 5), Dimension::SPEED);
-            return Some(format!("{error} at a depth of {depth} and a speed of {speed}"));
+            return Some(format!("at a depth of {depth} and a speed of {speed} it {error}"));
         }
     }
     None

@@ -129,13 +129,13 @@ pub enum ForceError {
     #[error("is not finite")]
     NotFinite,
     /// It is there without the effect.
-    #[error("does not vanish with q = 0: it is {0} N there")]
+    #[error("does not vanish with q = 0: {0:.3e} N are left")]
     WithoutAmplitude(f64),
     /// A drag that is there at rest.
-    #[error("is {0} N at rest: only a friction is there without motion")]
+    #[error("is {0:.3e} N at rest: only a friction is there without motion")]
     AtRest(f64),
     /// A friction that pushes.
-    #[error("is {0} N: a friction cannot be negative")]
+    #[error("is {0:.3e} N: a friction cannot be negative")]
     NegativeFriction(f64),
 }
 
