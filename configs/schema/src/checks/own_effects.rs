@@ -22,9 +22,9 @@ pub(super) fn check(resistive: &ResistiveModel<'_>, common: &Common<'_>) {
         Effect::Listed(_) => None,
     });
     for effect in own.chain(&medium.candidates) {
-        let conditions = resistive.model.conditions().into_iter().take(limits::DIAGNOSTICS);
-        let fault = conditions.filter_map(|one| fault(resistive, effect, &one)).next();
-        if let Some(fault) = fault {
+        let conditions = resistive.model.conditions();
+        let mut tried = conditions.iter().take(limits::DIAGNOSTICS);
+        if let Some(fault) = tried.find_map(|one| fault(resistive, effect, one)) {
             let places = &common.places.own_forces;
             let place = places.iter().find(|(id, _)| id == effect.id());
             common.reader.report(
