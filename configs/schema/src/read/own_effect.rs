@@ -219,7 +219,7 @@ impl Declaration<'_> {
         if let Some(unknown) =
             own.entries.iter().find(|entry| !Self::KEYS.contains(&entry.key.as_str()))
         {
-            let near = nearest(&unknown.key, Self::KEYS.into_iter());
+            let near = nearest(&unknown.key, Self::KEYS);
             let label =
                 near.map_or("unknown key".to_owned(), |near| format!("did you mean `{near}`?"));
             return self.fail(unknown.key_span, label, "keys: value, unit, range");
