@@ -98,7 +98,7 @@ fn of_grains(grains: GrainModel<'_>) -> Facts {
 fn of_resistance(resistive: ResistiveModel<'_>) -> Facts {
     let ResistiveModel { model, medium } = resistive;
     let law = medium.resistance.entry;
-    let effects: Vec<&str> = medium.effects.iter().map(|effect| effect.entry.name).collect();
+    let effects: Vec<&str> = medium.effects.iter().map(|effect| effect.effect.name()).collect();
     let integrated = match effects.as_slice() {
         [] => law.name.to_owned(),
         effects => format!("{} with {}", law.name, effects.join(", ")),

@@ -1,5 +1,7 @@
 //! `plunge effects`: the library of laws and effects.
 
+use std::path::PathBuf;
+
 use configs::contact_laws::{
     ActsOn, LAWS, LawEntry, RESISTANCE_LAWS, ResistanceEntry, Role, Twin, twins,
 };
@@ -10,12 +12,16 @@ use configs::{describe_range, nearest};
 use serde_json::{Value, json};
 
 use crate::output::{self, CommandError, CommandResult};
+use crate::own_effects::{self, OwnInModel};
 
 /// Arguments of `plunge effects`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// The law or effect to describe; all are listed without it.
     name: Option<String>,
+    /// List and describe the effects that this model defines too: a file, or the name of a shipped model.
+    #[arg(long, value_name = "MODEL")]
+    model: Option<PathBuf>,
     /// Print one JSON object to stdout.
     #[arg(long)]
     json: bool,
@@ -99,9 +105,19 @@ fn library() -> Vec<Described> {
 
 pub(crate) fn run(args: &Args) -> CommandResult {
     let library = library();
-    let Some(name) = &args.name else {
-        return list(&library, args.json);
+    let own = match &args.model {
+        Some(model) => own_effects::of(model)?,
+        None => Vec::new(),
     };
+    let Some(name) = &args.name else {
+        return list(&library, &own, args.json);
+    };
+    if name == "expression" {
+        return own_effects::describe_formulas(args.json);
+    }
+    if let Some(own) = own.iter().find(|one| one.effect.id() == name) {
+        return own.describe(args.json);
+    }
     let found = library.iter().find(|law| law.name == name);
     let law = found.ok_or_else(|| unknown(name, &library))?;
     match args.json {
@@ -122,12 +138,14 @@ fn unknown(name: &str, library: &[Described]) -> CommandError {
     ))
 }
 
-fn list(library: &[Described], as_object: bool) -> CommandResult {
+fn list(library: &[Described], own: &[OwnInModel], as_object: bool) -> CommandResult {
     if as_object {
-        let laws: Vec<Value> = library.iter().map(as_json).collect();
+        let own = own.iter().map(OwnInModel::as_json);
+        let laws: Vec<Value> = library.iter().map(as_json).chain(own).collect();
         return output::json_to_stdout(&json!({ "effects": laws }));
     }
-    let width = library.iter().map(|law| law.name.len()).max().unwrap_or(0) + 2;
+    let names = library.iter().map(|law| law.name).chain(own.iter().map(|one| one.effect.id()));
+    let width = names.map(str::len).max().unwrap_or(0) + 2;
     let mut text = String::new();
     let mut medium = "";
     for law in library {
@@ -137,6 +155,17 @@ fn list(library: &[Described], as_object: bool) -> CommandResult {
             text.push_str(&format!("{gap}medium of the kind \"{medium}\"\n"));
         }
         text.push_str(&format!("  {:<width$}{:<15}{}\n", law.name, law.table, law.summary));
+    }
+    text.push_str(&format!(
+        "  {:<width$}{:<15}a force of your own, as a formula\n",
+        "expression", "[[effect]]"
+    ));
+    if !own.is_empty() {
+        text.push_str("\ndefined by the model\n");
+    }
+    for one in own {
+        let summary = &one.effect.draft().summary;
+        text.push_str(&format!("  {:<width$}{:<15}{summary}\n", one.effect.id(), one.table()));
     }
     text.push_str("\n`plunge effects NAME` gives law, parameters, ranges and source.\n");
     output::to_stdout(&text)

@@ -13,6 +13,7 @@ mod diagnose;
 mod effects;
 mod new;
 mod output;
+mod own_effects;
 mod recover;
 mod run;
 mod workbench;

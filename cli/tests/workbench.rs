@@ -263,3 +263,40 @@ fn what_cannot_be_compared_is_answered_with_what_could_be() {
     let nothing = message(&["add", "two-term-vector", "-o", "new.toml"]);
     assert!(nothing.contains("--from"), "{nothing}");
 }
+
+#[test]
+fn a_candidate_in_the_model_is_listed_ranked_and_made_a_part_of_it() {
+    let here = tempfile::tempdir().unwrap();
+    let here = here.path();
+    let baseline =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/two-term-components.toml");
+    let candidate = "\n# grains that stick\n[[candidate]]\nname = \"expression\"\nid = \"stickiness\"\n\
+                     force = \"q * rho * g * A * D\"\nkind = \"friction\"\n\
+                     parameters.q = { unit = \"1\", range = [0, 50] }\n";
+    let text_of_model = format!("{}{candidate}", fs::read_to_string(baseline).unwrap());
+    fs::write(here.join("mine.toml"), &text_of_model).unwrap();
+    let listed = json(here, &["effects", "--model", "mine.toml", "--json"]);
+    let own = listed["effects"].as_array().unwrap().last().unwrap().clone();
+    assert_eq!((&own["name"], &own["table"]), (&"stickiness".into(), &"[[candidate]]".into()));
+
+    let set = shipped("s1-tables-vertical");
+    let args =
+        ["diagnose", text(&set), "--model", "mine.toml", "--json", "--quiet", "--out", "out"];
+    let found = json(here, &args);
+    let ranking = found["ranking"].as_array().unwrap();
+    let q = |id: &str| ranking.iter().find(|one| one["id"] == id).unwrap()["q"].as_f64().unwrap();
+    // The formula is that of an effect of the table: only the places where derivatives are taken differ.
+    assert!((q("stickiness") / q("yield-stress") - 1.0).abs() < 1e-3, "{ranking:?}");
+
+    let from = ["--from", "out/diagnosis.json", "--effect", "stickiness", "-o", "with.toml"];
+    let add = plunge(here, &[&["add", "mine.toml"], &from[..]].concat());
+    assert!(add.status.success(), "{}", String::from_utf8_lossy(&add.stderr));
+    let with = fs::read_to_string(here.join("with.toml")).unwrap();
+    assert!(with.contains("# grains that stick\n[[effect]]\nname = \"expression\"\n"), "{with}");
+    let listed = json(here, &["effects", "stickiness", "--model", "with.toml", "--json"]);
+    let value = listed["parameters"][0]["value"].as_f64().unwrap();
+    // Nine digits are written.
+    assert!((value / q("stickiness") - 1.0).abs() < 1e-8, "{value}");
+    let again = ["compare", text(&set), "--model", "with.toml", "--json", "--quiet"];
+    assert!(relative(&json(here, &again)["models"][0], "fit") < 0.036);
+}

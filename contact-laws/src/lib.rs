@@ -1,5 +1,6 @@
 //! The contact laws and effects of plunge, each in a file of its own and one line of [`LAWS`].
 
+pub mod formula;
 mod linear_spring_dashpot;
 mod registry;
 mod resistance;
@@ -7,8 +8,9 @@ mod rolling_resistance;
 
 pub use registry::{ActsOn, FromParams, LawEntry};
 pub use resistance::{
-    Coefficients, Expression, ExpressionError, Facts, Needs, RESISTANCE_LAWS, ResistanceEntry,
-    Role, Twin, find_resistance, twins,
+    Acts, Coefficients, Direction, Draft, Effect, Expression, Facts, ForceError, Needs, OwnEffect,
+    OwnEffectError, OwnParameter, RESISTANCE_LAWS, ResistanceEntry, Role, STATE_VARIABLES,
+    StateVariable, Twin, find_resistance, twins,
 };
 
 /// Every law and effect, in the order of the docs.

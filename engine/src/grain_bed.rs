@@ -281,8 +281,8 @@ impl GrainBed {
     /// The terms of the ledger of this bed: motion, gravity, then the channels of the laws.
     #[must_use]
     pub fn terms(&self) -> Vec<Term> {
-        let kinetic = |name| Term { name, kind: TermKind::Kinetic };
-        let potential = |name| Term { name, kind: TermKind::Potential };
+        let kinetic = |name: &'static str| Term { name: name.into(), kind: TermKind::Kinetic };
+        let potential = |name: &'static str| Term { name: name.into(), kind: TermKind::Potential };
         let mut terms = vec![
             kinetic("intruder-translation"),
             kinetic("intruder-rotation"),
@@ -291,13 +291,11 @@ impl GrainBed {
             potential("intruder"),
             potential("grains"),
         ];
-        terms.extend(
-            self.stages()
-                .iter()
-                .flat_map(|stage| stage.channels())
-                .map(|channel| Term { name: channel.name, kind: TermKind::Channel(channel.kind) }),
-        );
-        terms.push(Term { name: "walls", kind: TermKind::Channel(ChannelKind::Dissipated) });
+        terms.extend(self.stages().iter().flat_map(|stage| stage.channels()).map(|channel| Term {
+            name: channel.name.into(),
+            kind: TermKind::Channel(channel.kind),
+        }));
+        terms.push(Term { name: "walls".into(), kind: TermKind::Channel(ChannelKind::Dissipated) });
         terms
     }
 

@@ -6,6 +6,8 @@
 //! stored and dissipated energy from the laws, where the force is computed. So `unaccounted` is a
 //! measure of the integration, and goes to zero as the square of the time step.
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 /// How a channel enters the closure identity
@@ -41,10 +43,10 @@ pub enum TermKind {
 }
 
 /// One term of the ledger.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Term {
     /// kebab-case.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// What it is.
     pub kind: TermKind,
 }

@@ -6,7 +6,7 @@ use std::fmt;
 
 mod parse;
 
-pub use parse::{UnitError, UnitFault, parse};
+pub use parse::{UnitError, UnitFault, dimension_of, parse};
 
 /// The physical dimension of a quantity: powers of kilogram, metre and second, doubled so that
 /// `N/m^1.5` has whole numbers, and a flag for plane angles.
@@ -64,6 +64,34 @@ impl Dimension {
     pub const PRESSURE: Self = Self::of(1, -1, -2, 0);
     /// Energy (J).
     pub const ENERGY: Self = Self::of(1, 2, -2, 0);
+
+    /// The dimension with these powers of kilogram, metre and second, if they are halves of small whole
+    /// numbers but for round-off.
+    #[must_use]
+    pub fn from_powers(powers: [f64; 3]) -> Option<Self> {
+        let doubled = |power: f64| {
+            let twice = (2.0 * power).round();
+            let fits = (2.0 * power - twice).abs() < 1e-9 && twice.abs() <= f64::from(i8::MAX);
+            fits.then_some(twice as i8)
+        };
+        let [kilogram, metre, second] = powers.map(doubled);
+        Some(Self { kilogram_2: kilogram?, metre_2: metre?, second_2: second?, radian_2: 0 })
+    }
+
+    /// The same with angles as pure numbers.
+    #[must_use]
+    pub const fn without_angle(self) -> Self {
+        Self { radian_2: 0, ..self }
+    }
+
+    /// What it is called, and its unit: `a speed (m/s)`.
+    #[must_use]
+    pub fn describe(self) -> String {
+        match KINDS.iter().find(|kind| kind.dimension == self) {
+            Some(kind) if self != Self::NONE => format!("{} ({})", kind.name, kind.si_unit()),
+            _ => self.name(),
+        }
+    }
 
     /// What it is called, with its article, such as `a length`.
     #[must_use]
@@ -202,6 +230,17 @@ mod tests {
     fn ninety_degrees_is_half_pi() {
         assert_eq!(bits("90 deg", Dimension::ANGLE), std::f64::consts::FRAC_PI_2.to_bits());
         assert_eq!(bits("180 °", Dimension::ANGLE), std::f64::consts::PI.to_bits());
+    }
+
+    #[test]
+    fn a_unit_says_its_dimension() {
+        assert_eq!(dimension_of("cm/s"), Some(Dimension::SPEED));
+        assert_eq!(dimension_of("1"), Some(Dimension::NONE));
+        assert_eq!(dimension_of("furlong"), None);
+        assert_eq!(Dimension::from_powers([1.0, 1.0, -2.0]), Some(Dimension::FORCE));
+        assert_eq!(Dimension::from_powers([0.0, 0.3, 0.0]), None);
+        assert_eq!(Dimension::FORCE.describe(), "a force (N)");
+        assert_eq!(Dimension::SPIN.without_angle(), Dimension::RATE);
     }
 
     #[test]

@@ -44,6 +44,7 @@ fn assembly(casting: &Casting) -> Launchable {
     let start = State {
         position: [centre.x, centre.z, angle, 0.0],
         rate: [velocity.x + spin * arm * cos, velocity.z - spin * arm * sin, spin, 0.0],
+        ..State::default()
     };
     Launchable { assembly: Box::new(link), start }
 }

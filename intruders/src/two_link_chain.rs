@@ -45,6 +45,7 @@ fn assembly(casting: &Casting) -> Launchable {
     let start = State {
         position: [arm * sin, arm * cos, angles[0], angles[1]],
         rate: [velocity.x + spin * arm * cos, velocity.z - spin * arm * sin, spin, spin],
+        ..State::default()
     };
     Launchable { assembly: Box::new(chain), start }
 }

@@ -132,7 +132,7 @@ struct Collision {
     /// (J).
     unaccounted: f64,
     /// Per dissipated channel: its name, how much it holds and how much it has given back (J).
-    channels: Vec<(&'static str, f64, f64)>,
+    channels: Vec<(String, f64, f64)>,
 }
 
 impl Collision {
@@ -140,7 +140,7 @@ impl Collision {
     fn returned(&self, with_dashpots: bool) -> f64 {
         self.channels
             .iter()
-            .filter(|(name, ..)| !(with_dashpots && *name == "sliding"))
+            .filter(|(name, ..)| !(with_dashpots && name == "sliding"))
             // A channel that holds next to nothing has no share to lose.
             .map(|(_, held, lost)| lost / held.max(1e-3 * self.energy))
             .fold(0.0, f64::max)
@@ -153,8 +153,9 @@ fn collide(stages: Vec<Box<dyn ContactStage>>, angle: f64, phase: f64, dt: f64) 
     let motion = (Vec3::new(cos, 0.0, sin) * SPEED, Vec3::y() * SPIN);
     let pair = (SMALL, Target::Grain(LARGE));
     let mut encounter = Encounter::new(pair, gap, motion, stages, dt);
-    let mut channels: Vec<(&str, f64, f64)> =
-        dissipated(encounter.world.ledger()).map(|(name, held)| (name, held, 0.0)).collect();
+    let mut channels: Vec<(String, f64, f64)> = dissipated(encounter.world.ledger())
+        .map(|(name, held)| (name.to_owned(), held, 0.0))
+        .collect();
     let mut touched = false;
     while !touched || encounter.overlap() > -2.0 * SPEED * dt {
         run(&mut encounter.world, 1);
@@ -170,9 +171,9 @@ fn collide(stages: Vec<Box<dyn ContactStage>>, angle: f64, phase: f64, dt: f64) 
     Collision { energy: balance.initial, unaccounted: balance.unaccounted.abs(), channels }
 }
 
-fn dissipated(ledger: &Ledger) -> impl Iterator<Item = (&'static str, f64)> + '_ {
+fn dissipated(ledger: &Ledger) -> impl Iterator<Item = (&str, f64)> {
     let terms = ledger.terms().iter().zip(&ledger.balance().values);
     terms
         .filter(|(term, _)| term.kind == TermKind::Channel(ChannelKind::Dissipated))
-        .map(|(term, &value)| (term.name, value))
+        .map(|(term, &value)| (term.name.as_ref(), value))
 }

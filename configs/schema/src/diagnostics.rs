@@ -59,6 +59,18 @@ impl Sources {
         &self.texts[source.0].text
     }
 
+    /// The bytes `part` of the string `value` that stands at `span`; all of it where escapes move them.
+    #[must_use]
+    pub fn within(&self, span: Option<Span>, value: &str, part: Range<usize>) -> Option<Span> {
+        let span = span?;
+        let written = self.text(span.source).get(span.start..span.end).unwrap_or_default();
+        let Some(offset) = written.find(value).filter(|_| !value.is_empty()) else {
+            return Some(span);
+        };
+        let start = span.start + offset;
+        Some(Span { start: start + part.start, end: start + part.end, ..span })
+    }
+
     /// What stands at `span`, shortened for use inside a message.
     #[must_use]
     pub fn quote(&self, span: Span) -> String {

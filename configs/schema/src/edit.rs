@@ -1,5 +1,7 @@
 //! Adds effects to the text of a model, with everything else left as its author wrote it.
 
+mod candidates;
+
 use contact_laws::{ActsOn, Role};
 use engine::params::ParamSpec;
 use engine::units::{self, Dimension};
@@ -73,6 +75,12 @@ pub enum EditError {
         /// What there is.
         known: Vec<&'static str>,
     },
+    /// A candidate is to become an effect, and nothing says how strong.
+    #[error("`{name}` needs an amplitude, a number in SI: q=0.4")]
+    NoAmplitude {
+        /// The candidate.
+        name: String,
+    },
     /// The model has no such number.
     #[error("the model has no number `{path}` to give a fitted value")]
     UnknownNumber {
@@ -106,6 +114,10 @@ pub fn add_effects(text: &str, addition: &Addition) -> Result<String, EditError>
 }
 
 fn add(document: &mut DocumentMut, effect: &AddedEffect) -> Result<(), EditError> {
+    if candidates::adopt(document, effect)? {
+        push_free(document, &effect.name);
+        return Ok(());
+    }
     let is_resistive = text_at(document.as_item(), &["medium", "kind"]) == Some("resistive-force");
     let params = match is_resistive {
         true => resistance_effect(&effect.name)?,
@@ -137,11 +149,18 @@ fn add(document: &mut DocumentMut, effect: &AddedEffect) -> Result<(), EditError
     } else if let Some(list) = list.as_array_mut() {
         list.push(table.into_inline_table());
     }
-    let free = document.get_mut("fit").and_then(|fit| fit.get_mut("free"));
-    if let (true, Some(free)) = (is_resistive, free.and_then(Item::as_array_mut)) {
-        push(free, &format!("effect.{}.q", effect.name));
+    if is_resistive {
+        push_free(document, &effect.name);
     }
     Ok(())
+}
+
+/// Lets a fit change the amplitude of a new effect, if the model says what a fit may change.
+fn push_free(document: &mut DocumentMut, effect: &str) {
+    let free = document.get_mut("fit").and_then(|fit| fit.get_mut("free"));
+    if let Some(free) = free.and_then(Item::as_array_mut) {
+        push(free, &format!("effect.{effect}.q"));
+    }
 }
 
 /// Appends to a list in the style of its last entry.
@@ -209,8 +228,11 @@ fn effects(document: &DocumentMut) -> impl Iterator<Item = &dyn toml_edit::Table
         .chain(inline.map(|table| table as &dyn toml_edit::TableLike))
 }
 
+/// What an effect is called: an own one by its `id`.
 fn name_of(table: &dyn toml_edit::TableLike) -> Option<&str> {
-    table.get("name").and_then(Item::as_str)
+    let text = |key| table.get(key).and_then(Item::as_str);
+    text("name")
+        .map(|name| if name == candidates::EXPRESSION { text("id").unwrap_or(name) } else { name })
 }
 
 /// Gives the number at `path` a new SI value, in the unit that it was written in; `None` if it is not
@@ -219,7 +241,11 @@ fn set_number(document: &mut DocumentMut, path: &str, si: f64) -> Option<()> {
     let (table, key) = path.split_once('.')?;
     if table == "effect" {
         let (name, key) = key.split_once('.')?;
-        return replace(effect_mut(document, name)?.get_mut(key)?.as_value_mut()?, None, si);
+        let effect = effect_mut(document, name)?;
+        if effect.contains_key("parameters") {
+            return candidates::set_value(effect, key, si);
+        }
+        return replace(effect.get_mut(key)?.as_value_mut()?, None, si);
     }
     if table != "resistance" {
         return None;

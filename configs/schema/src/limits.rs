@@ -8,6 +8,8 @@ pub const DATA_FILE_BYTES: u64 = 512_000_000;
 pub const STRING_BYTES: usize = 4096;
 /// Most `[[effect]]` tables.
 pub const EFFECTS: usize = 1000;
+/// Most `[[candidate]]` tables.
+pub const CANDIDATES: usize = 100;
 /// Most `[[bed.grains]]` tables.
 pub const GRAIN_KINDS: usize = 1000;
 /// Most grains of one kind that a file may write down; memory refuses far fewer.

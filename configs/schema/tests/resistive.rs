@@ -143,7 +143,7 @@ fn an_effect_added_to_the_text_of_a_model_is_in_the_model() {
     let text = find_shipped("two-term-vector").expect("a shipped model").text;
     let edited = add_effects(text, &addition("janssen", "q", "0.4")).expect("an effect");
     let model = load(&edited, &[]).unwrap_or_else(|error| panic!("{error}")).model;
-    assert_eq!(medium(&model).effects[0].entry.name, "janssen");
+    assert_eq!(medium(&model).effects[0].effect.name(), "janssen");
     assert!(paths(medium(&model)).contains(&"effect.janssen.q".to_owned()));
     let kept = edited.replace("\n[[effect]]\nname = \"janssen\"\nq = 0.4\n", "");
     assert_eq!(kept.replace(", \"effect.janssen.q\"]", "]"), text, "all else is as it was");

@@ -1,10 +1,8 @@
 //! The coefficients of a law: numbers, or expressions of what an impact is made with.
 
-use std::sync::Arc;
-
 use engine::params::ParamTable;
-use exmex::{Express, FlatEx};
-use thiserror::Error;
+
+use crate::formula::{Formula, FormulaError};
 
 /// SI values of a law's parameters; some may be functions of depth.
 #[derive(Clone, Debug, std::default::Default)]
@@ -75,58 +73,32 @@ impl OfDepth {
     }
 }
 
-/// A formula of named variables, in SI.
+/// A formula of named variables, in SI, some of which may have values already.
 #[derive(Clone, Debug)]
 pub struct Expression {
-    text: String,
-    parsed: Arc<FlatEx<f64>>,
+    formula: Formula,
     bound: Vec<(&'static str, f64)>,
-}
-
-/// Why a text is no expression.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum ExpressionError {
-    /// It does not parse.
-    #[error("{0}")]
-    Syntax(String),
-    /// It uses something that is not there.
-    #[error("`{unknown}` is not known here; known: {}", known.join(", "))]
-    UnknownVariable {
-        /// What it uses.
-        unknown: String,
-        /// What it may use.
-        known: Vec<String>,
-    },
 }
 
 impl Expression {
     /// Reads `text`, which may use `variables`.
     ///
     /// # Errors
-    /// If it does not parse, or uses anything else.
-    pub fn parse(text: &str, variables: &[&str]) -> Result<Self, ExpressionError> {
-        let parsed: FlatEx<f64> =
-            exmex::parse(text).map_err(|error| ExpressionError::Syntax(error.to_string()))?;
-        let stranger = parsed.var_names().iter().find(|name| !variables.contains(&name.as_str()));
-        match stranger {
-            Some(unknown) => Err(ExpressionError::UnknownVariable {
-                unknown: unknown.clone(),
-                known: variables.iter().map(|&name| name.to_owned()).collect(),
-            }),
-            None => Ok(Self { text: text.to_owned(), parsed: Arc::new(parsed), bound: Vec::new() }),
-        }
+    /// If it is no formula, or uses anything else.
+    pub fn parse(text: &str, variables: &[&str]) -> Result<Self, FormulaError> {
+        Ok(Self { formula: Formula::parse(text, variables)?, bound: Vec::new() })
     }
 
     /// As it was written.
     #[must_use]
     pub fn text(&self) -> &str {
-        &self.text
+        self.formula.text()
     }
 
     /// Whether it uses `variable`.
     #[must_use]
     pub fn uses(&self, variable: &str) -> bool {
-        self.parsed.var_names().iter().any(|name| name == variable)
+        self.formula.variables().iter().any(|name| name == variable)
     }
 
     /// The same with a value for `variable` wherever it is not given one.
@@ -142,15 +114,15 @@ impl Expression {
     #[must_use]
     pub fn eval(&self, variables: &[(&str, f64)]) -> f64 {
         let values: Vec<f64> = self
-            .parsed
-            .var_names()
+            .formula
+            .variables()
             .iter()
             .map(|name| {
                 let found = variables.iter().chain(&self.bound).find(|(known, _)| known == name);
                 found.map_or(f64::NAN, |(_, value)| *value)
             })
             .collect();
-        self.parsed.eval(&values).unwrap_or(f64::NAN)
+        self.formula.value(&values)
     }
 }
 

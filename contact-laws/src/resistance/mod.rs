@@ -12,6 +12,8 @@ mod coefficients;
 mod depth_drag;
 mod depth_exponent;
 mod depth_zero;
+mod effect;
+mod expression;
 mod facts;
 mod immersion;
 mod janssen;
@@ -32,7 +34,12 @@ mod two_term_vector;
 mod viscous_drag;
 mod yield_stress;
 
-pub use coefficients::{Coefficients, Expression, ExpressionError};
+pub use coefficients::{Coefficients, Expression};
+pub use effect::Effect;
+pub use expression::{
+    Acts, Direction, Draft, ForceError, OwnEffect, OwnEffectError, OwnParameter, STATE_VARIABLES,
+    StateVariable,
+};
 pub use facts::{Facts, Needs, Twin};
 pub use registry::{ResistanceEntry, Role};
 

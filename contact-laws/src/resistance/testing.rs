@@ -51,6 +51,7 @@ pub(super) fn sinking(speed: f64) -> Motion {
         direction: Vec3::new(0.0, 0.0, -1.0),
         sense: [0.0, -1.0],
         spin: 0.0,
+        time: 0.0,
     }
 }
 

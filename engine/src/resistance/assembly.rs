@@ -19,6 +19,8 @@ pub struct State {
     pub position: [f64; COORDINATES],
     /// (m/s or rad/s).
     pub rate: [f64; COORDINATES],
+    /// Since the start (s).
+    pub time: f64,
 }
 
 /// One immersed part at one instant.
@@ -116,7 +118,7 @@ impl Compact {
     /// turning with `spin` about y (rad/s).
     #[must_use]
     pub fn at_surface(velocity: Vec3, spin: f64) -> State {
-        State { position: [0.0; COORDINATES], rate: [velocity.x, velocity.z, spin, 0.0] }
+        State { rate: [velocity.x, velocity.z, spin, 0.0], ..State::default() }
     }
 }
 

@@ -39,7 +39,7 @@ impl Default for Tolerance {
 }
 
 /// Why an impact could not be integrated.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[derive(Clone, Debug, Error, PartialEq)]
 pub enum ImpactError {
     /// The solver found no step small enough.
     #[error(
@@ -47,6 +47,21 @@ pub enum ImpactError {
     )]
     Stalled {
         /// Where (s).
+        time: f64,
+    },
+    /// A force has no value.
+    #[error(
+        "the force `{law}` is not finite, or a friction that pushes, {depth:e} m deep at {speed:e} m/s, \
+         {time:e} s after the start"
+    )]
+    NotFinite {
+        /// The law, by its first account in the ledger.
+        law: String,
+        /// Of the lowest point (m).
+        depth: f64,
+        /// (m/s).
+        speed: f64,
+        /// (s).
         time: f64,
     },
     /// The body chatters between two modes.
@@ -197,10 +212,10 @@ impl Impact {
                 return Ok(self.ending(time, &state, progress));
             }
             let modes = progress.modes;
-            let stalled = ImpactError::Stalled { time };
+            let broken = |fault| system.broken(fault, &modes, time);
             let plan = Plan { from: time, to: duration, first_step: hint };
             let mut solver =
-                Solver::start(&system, &modes, plan, &state, &self.tolerance).ok_or(stalled)?;
+                Solver::start(&system, &modes, plan, &state, &self.tolerance).map_err(broken)?;
             let mut before =
                 Before { margins: self.margins(&system, &state, &progress), fresh: true };
             let mut rest_of_step = None;
@@ -208,7 +223,9 @@ impl Impact {
                 let (from, to) = match rest_of_step.take() {
                     Some(rest) => rest,
                     None => {
-                        let (from, to) = solver.step().ok_or(ImpactError::Stalled { time })?;
+                        let Some((from, to)) = solver.step() else {
+                            return Err(system.broken(solver.fault(), &modes, time));
+                        };
                         hint = to - from;
                         progress.steps += 1;
                         (from, to)
@@ -250,14 +267,16 @@ impl Impact {
         let Some(&last) = times.last() else { return Ok(Vec::new()) };
         let modes = Modes::at(&system, &self.start, [false; PARTS], [[false; 2]; PARTS]);
         let plan = Plan { from: 0.0, to: last, first_step: 0.0 };
-        let stalled = ImpactError::Stalled { time: 0.0 };
-        let mut solver =
-            Solver::start(&system, &modes, plan, &self.start, &self.tolerance).ok_or(stalled)?;
+        let mut solver = Solver::start(&system, &modes, plan, &self.start, &self.tolerance)
+            .map_err(|fault| system.broken(fault, &modes, 0.0))?;
         let mut states = Vec::with_capacity(times.len());
         let mut reached = 0.0;
         for &time in times {
             while reached > time {
-                reached = solver.step().ok_or(ImpactError::Stalled { time })?.1;
+                let Some((_, to)) = solver.step() else {
+                    return Err(system.broken(solver.fault(), &modes, time));
+                };
+                reached = to;
             }
             states.push(solver.at(time));
         }
@@ -422,6 +441,7 @@ impl Impact {
         if speed > 0.0 && deceleration > 0.0 {
             let left = speed / deceleration;
             *time += left;
+            state.time = *time;
             for index in 0..COORDINATES {
                 state.position[index] += 0.5 * left * state.rate[index];
             }

@@ -96,6 +96,8 @@ pub struct Motion {
     pub sense: [f64; 2],
     /// Angular velocity about y (rad/s): positive when the body rolls towards +x.
     pub spin: f64,
+    /// Since the start (s).
+    pub time: f64,
 }
 
 /// What the medium does to one part.
@@ -116,6 +118,21 @@ pub struct Load {
     pub added_mass: f64,
     /// Rate at which that mass is set in motion (kg/s): the force is −rate·velocity.
     pub recruitment: f64,
+}
+
+impl Load {
+    /// Whether every number of it is finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        let Self { dynamic, friction, grip, couple, added_mass, recruitment, .. } = self;
+        let grips = grip.iter().flat_map(|grip| [grip.positive, grip.negative]);
+        dynamic
+            .iter()
+            .chain(friction.iter())
+            .chain([couple, added_mass, recruitment])
+            .copied()
+            .chain(grips)
+            .all(f64::is_finite)
+    }
 }
 
 /// Limits of a friction on one component (N), both positive.
@@ -153,6 +170,12 @@ pub enum Flow {
 pub trait ResistanceLaw: Send + Sync {
     /// What it books: at most one account per flow.
     fn accounts(&self) -> &'static [Account];
+
+    /// What its accounts are called in the ledger where that is not known in advance: a law that a model
+    /// file defines. kebab-case, and unlike every other account.
+    fn own_name(&self) -> Option<&str> {
+        None
+    }
 
     /// Changes what the terms of all laws see of a part that is in the medium.
     fn expose(&self, _at: &mut Immersion, _motion: &Motion, _bed: &Surroundings) {}

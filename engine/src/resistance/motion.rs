@@ -1,6 +1,7 @@
 //! The forces of the medium on the parts of an assembly, in a given mode of motion.
 
 use super::assembly::{Assembly, PARTS, Part, PartLoad, State};
+use super::impact::ImpactError;
 use super::modes::{AXES, Modes, Sense};
 use super::{Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use crate::math::Vec3;
@@ -70,7 +71,7 @@ impl System<'_> {
         mut each: impl FnMut(usize, &Load, &Load),
     ) -> Loaded {
         let part = self.assembly.part(index, state);
-        let motion = motion(&part, index, modes);
+        let motion = Motion { time: state.time, ..motion(&part, index, modes) };
         // Made where it is returned: it is too large to be moved in the innermost loop of all.
         let mut loaded = Loaded { part, motion, load: Load::default() };
         let Loaded { part, motion, load } = &mut loaded;
@@ -111,6 +112,30 @@ impl System<'_> {
         }
         loads
     }
+
+    /// Why there is no step after `time` (s): the law that has no value in the state `fault`, if it is
+    /// one.
+    pub(super) fn broken(&self, fault: Option<State>, modes: &Modes, time: f64) -> ImpactError {
+        let Some(state) = fault else { return ImpactError::Stalled { time } };
+        for index in 0..self.assembly.n_parts() {
+            let mut culprit = None;
+            let Loaded { part, .. } = self.visit(index, &state, modes, |number, _, after| {
+                if culprit.is_none() && !after.is_finite() {
+                    culprit = Some(number);
+                }
+            });
+            if let Some(law) = culprit.map(|number| &self.laws[number]) {
+                let account = law.accounts().first().map_or("", |account| account.channel.name);
+                return ImpactError::NotFinite {
+                    law: law.own_name().unwrap_or(account).to_owned(),
+                    depth: part.immersion.depth,
+                    speed: part.velocity.norm(),
+                    time: state.time,
+                };
+            }
+        }
+        ImpactError::Stalled { time }
+    }
 }
 
 /// A friction against the direction of motion, beside frictions that hold each component for itself:
@@ -140,5 +165,5 @@ fn motion(part: &Part, index: usize, modes: &Modes) -> Motion {
         }
     };
     let sense = modes.sense[index].map(Sense::sign);
-    Motion { velocity, speed, direction, sense, spin: part.spin }
+    Motion { velocity, speed, direction, sense, spin: part.spin, time: 0.0 }
 }

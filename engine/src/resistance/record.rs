@@ -1,5 +1,7 @@
 //! The energy ledger of an impact on a resistive medium, and samples for its log.
 
+use std::borrow::Cow;
+
 use super::assembly::{PARTS, Part, State};
 use super::modes::{AXES, Modes, accelerate};
 use super::motion::System;
@@ -275,20 +277,22 @@ fn entries(system: &System<'_>) -> (Vec<Entry>, Vec<Term>) {
     ];
     let n_parts = system.assembly.n_parts();
     let (mut entries, mut terms) = (Vec::new(), Vec::new());
-    let mut add = |entry, name, kind| {
+    let mut add = |entry, name: Cow<'static, str>, kind| {
         entries.push(entry);
         terms.push(Term { name, kind });
     };
     for part in 0..n_parts {
         let [translation, rotation, height] = NAMES[if n_parts == 1 { 0 } else { part + 1 }];
-        add(Entry::Translation(part), translation, TermKind::Kinetic);
-        add(Entry::Rotation(part), rotation, TermKind::Kinetic);
-        add(Entry::Height(part), height, TermKind::Potential);
+        add(Entry::Translation(part), translation.into(), TermKind::Kinetic);
+        add(Entry::Rotation(part), rotation.into(), TermKind::Kinetic);
+        add(Entry::Height(part), height.into(), TermKind::Potential);
     }
-    for (law, accounts) in system.laws.iter().map(|law| law.accounts()).enumerate() {
-        for account in accounts {
-            let entry = Entry::Account { law, flow: account.flow };
-            add(entry, account.channel.name, TermKind::Channel(account.channel.kind));
+    for (number, law) in system.laws.iter().enumerate() {
+        for account in law.accounts() {
+            let entry = Entry::Account { law: number, flow: account.flow };
+            let own = law.own_name().map(|name| Cow::Owned(name.to_owned()));
+            let name = own.unwrap_or(account.channel.name.into());
+            add(entry, name, TermKind::Channel(account.channel.kind));
         }
     }
     (entries, terms)

@@ -6,6 +6,8 @@
 
 mod tableau;
 
+use std::cell::Cell;
+
 use roots::{SimpleConvergency, find_root_brent};
 
 use super::assembly::{COORDINATES, State};
@@ -34,13 +36,11 @@ const LEAST_ERROR: f64 = 1e-2;
 /// Least and greatest ratio of a step to the one before.
 const RATIOS: (f64, f64) = (1.0 / 3.0, 6.0);
 
-impl From<Flat> for State {
-    fn from(flat: Flat) -> Self {
-        let mut state = Self::default();
-        state.position.copy_from_slice(&flat[..COORDINATES]);
-        state.rate.copy_from_slice(&flat[COORDINATES..]);
-        state
-    }
+fn state(time: f64, flat: &Flat) -> State {
+    let mut state = State { time, ..State::default() };
+    state.position.copy_from_slice(&flat[..COORDINATES]);
+    state.rate.copy_from_slice(&flat[COORDINATES..]);
+    state
 }
 
 impl From<State> for Flat {
@@ -79,17 +79,22 @@ pub(super) struct Solver<'a> {
     slopes: [Flat; SLOPES],
     /// What dense output adds to the cubic over the last step, once it was asked for.
     beyond_cubic: Option<[Flat; 4]>,
+    /// The last state of a trial in which a force was not finite, though the state was.
+    fault: Cell<Option<State>>,
 }
 
 impl<'a> Solver<'a> {
-    /// Starts as `plan` says. Nothing if the equations give no step to start with.
+    /// Starts as `plan` says.
+    ///
+    /// # Errors
+    /// If the equations give no step to start with: the state in which they have no value, if there is one.
     pub(super) fn start(
         system: &'a System<'a>,
         modes: &'a Modes,
         plan: Plan,
         state: &State,
         tolerance: &Tolerance,
-    ) -> Option<Self> {
+    ) -> Result<Self, Option<State>> {
         let numbers = Flat::from(*state);
         let mut solver = Self {
             system,
@@ -104,18 +109,30 @@ impl<'a> Solver<'a> {
             after: numbers,
             slopes: [[0.0; NUMBERS]; SLOPES],
             beyond_cubic: None,
+            fault: Cell::default(),
         };
-        solver.slopes[END] = solver.slope(&numbers);
+        solver.slopes[END] = solver.slope(plan.from, &numbers);
         if solver.next == 0.0 {
             solver.next = solver.first_step().copysign(plan.to - plan.from);
         }
-        (solver.next.is_finite() && solver.next != 0.0).then_some(solver)
+        match solver.next.is_finite() && solver.next != 0.0 {
+            true => Ok(solver),
+            false => Err(solver.fault.get()),
+        }
+    }
+
+    /// The state in which the equations have no value, where that is why no step is small enough.
+    pub(super) fn fault(&self) -> Option<State> {
+        self.fault.get()
     }
 
     /// Takes a step; its start and end (s). Nothing if no step is small enough.
     pub(super) fn step(&mut self) -> Option<(f64, f64)> {
         self.beyond_cubic = None;
         let from = self.times.1;
+        // The last evaluation of a step is where the next one begins; it may lack a value, unnoticed.
+        let begins_here = |fault: &State| (fault.time - from).abs() <= f64::EPSILON * from.abs();
+        self.fault.set(self.fault.get().filter(begins_here));
         self.before = self.after;
         self.slopes[0] = self.slopes[END];
         let mut largest_ratio = RATIOS.1;
@@ -125,7 +142,7 @@ impl<'a> Solver<'a> {
             let last = self.next.abs() >= left.abs();
             let step = if last { left } else { self.next };
             for (stage, row) in STAGES.iter().enumerate() {
-                self.slopes[stage + 1] = self.slope(&self.moved(row, step));
+                self.slopes[stage + 1] = self.slope_at((from, row), step);
             }
             let taken = self.combined(STEP);
             let tried = self.displaced(&taken, step);
@@ -136,7 +153,7 @@ impl<'a> Solver<'a> {
                 self.times = (from, if last { self.end } else { from + step });
                 self.after = tried;
                 self.accepted = Some((step, error.max(LEAST_ERROR)));
-                self.slopes[END] = self.slope(&tried);
+                self.slopes[END] = self.slope(self.times.1, &tried);
                 return self.after.iter().all(|number| number.is_finite()).then_some(self.times);
             }
             if self.next.abs() < SHORTEST {
@@ -151,7 +168,7 @@ impl<'a> Solver<'a> {
     /// The state at `time` (s) within the last step.
     pub(super) fn at(&mut self, time: f64) -> State {
         if time - self.times.1 == 0.0 {
-            return self.after.into();
+            return state(self.times.1, &self.after);
         }
         let beyond = match self.beyond_cubic {
             Some(known) => known,
@@ -184,10 +201,21 @@ impl<'a> Solver<'a> {
         find_root_brent(from, to, at, &mut convergence).unwrap_or(to)
     }
 
-    fn slope(&self, numbers: &Flat) -> Flat {
-        let state = State::from(*numbers);
+    fn slope(&self, time: f64, numbers: &Flat) -> Flat {
+        let state = state(time, numbers);
         let (acceleration, _) = accelerate(self.system, &state, self.modes);
-        State { position: state.rate, rate: acceleration }.into()
+        // Later stages of a trial begin where an earlier one had no value.
+        let is_cause = numbers.iter().all(|value| value.is_finite());
+        if is_cause && acceleration.iter().any(|value| !value.is_finite()) {
+            self.fault.set(Some(state));
+        }
+        State { position: state.rate, rate: acceleration, time }.into()
+    }
+
+    /// The slope at a stage of a step of length `step` (s), whose weights also sum to its time.
+    fn slope_at(&self, (from, row): (f64, Row), step: f64) -> Flat {
+        let share: f64 = row.iter().map(|(_, weight)| weight).sum();
+        self.slope(from + share * step, &self.displaced(&self.combined(row), step))
     }
 
     /// Ratio of the next step to one of length `step` (s) with this error. On the way to rest errors grow
@@ -203,11 +231,6 @@ impl<'a> Solver<'a> {
             }
             _ => ratio,
         }
-    }
-
-    /// The numbers at the start of the step, moved by `step` (s) along the slopes of `row`.
-    fn moved(&self, row: Row, step: f64) -> Flat {
-        self.displaced(&self.combined(row), step)
     }
 
     fn displaced(&self, slope: &Flat, step: f64) -> Flat {
@@ -254,7 +277,7 @@ impl<'a> Solver<'a> {
         let (size, first) = (self.norm(&self.after), self.norm(&slope));
         let short = if size <= 1e-5 || first <= 1e-5 { 1e-6 } else { 0.01 * size / first };
         let moved = std::array::from_fn(|i| self.after[i] + direction * short * slope[i]);
-        let there = self.slope(&moved);
+        let there = self.slope(self.times.0 + direction * short, &moved);
         let second = self.norm(&std::array::from_fn(|i| there[i] - slope[i])) / short;
         let steepest = first.max(second);
         let allowed = if steepest <= 1e-15 {
@@ -268,7 +291,7 @@ impl<'a> Solver<'a> {
     fn finish_dense_output(&mut self) -> [Flat; 4] {
         let step = self.times.1 - self.times.0;
         for (stage, row) in DENSE_STAGES.iter().enumerate() {
-            self.slopes[END + 1 + stage] = self.slope(&self.moved(row, step));
+            self.slopes[END + 1 + stage] = self.slope_at((self.times.0, row), step);
         }
         DENSE.map(|row| self.combined(row).map(|slope| step * slope))
     }
@@ -286,7 +309,7 @@ impl<'a> Solver<'a> {
             let rest = b0[i] + s * (b1[i] + r * (b2[i] + s * b3[i]));
             self.before[i] + s * (rise + r * (start + s * (end + r * rest)))
         };
-        State::from(std::array::from_fn::<f64, NUMBERS, _>(number))
+        state(time, &std::array::from_fn(number))
     }
 }
 

@@ -157,6 +157,17 @@ pub fn parse(text: &str, wanted: Dimension) -> Result<f64, UnitError> {
     Ok(value)
 }
 
+/// The dimension of the unit `text`, such as `kg/m`; `1` is that of a pure number. Nothing if it is no
+/// unit.
+#[must_use]
+pub fn dimension_of(text: &str) -> Option<Dimension> {
+    let text = text.trim();
+    match text.is_empty() {
+        true => None,
+        false => Unit::parse(text).ok()?.dimension(),
+    }
+}
+
 /// Splits off the leading decimal number: its digits without exponent, the exponent, the rest.
 fn split_number(text: &str) -> (&str, i64, &str) {
     let bytes = text.as_bytes();

@@ -8,7 +8,7 @@ const GRAVITY: f64 = 9.81;
 
 /// A chain that turns, high above the bed.
 fn tumbling() -> State {
-    State { position: [0.0, 1000.0, 0.8, -0.4], rate: [0.3, 0.2, 6.0, -4.0] }
+    State { position: [0.0, 1000.0, 0.8, -0.4], rate: [0.3, 0.2, 6.0, -4.0], ..State::default() }
 }
 
 fn flight(gravity: f64, start: State) -> Impact {

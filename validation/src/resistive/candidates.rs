@@ -1,6 +1,6 @@
 //! What a diagnosis is told of the effects that could be added.
 
-use contact_laws::{ResistanceEntry, Role, Twin, twins};
+use contact_laws::{Effect, Twin, twins};
 
 use super::needs::{contains, missing};
 use crate::forward::Candidate;
@@ -10,9 +10,9 @@ use crate::measurement::MeasurementSet;
 const STEP: f64 = 1e-3;
 
 /// `effects` as candidates before `set`, in their order.
-pub(super) fn of(effects: &[&'static ResistanceEntry], set: &MeasurementSet) -> Vec<Candidate> {
+pub(super) fn of(effects: &[Effect], set: &MeasurementSet) -> Vec<Candidate> {
     let mut candidates: Vec<Candidate> =
-        effects.iter().map(|entry| candidate(entry, set)).collect();
+        effects.iter().map(|effect| candidate(effect, set)).collect();
     let testable: Vec<String> = candidates
         .iter()
         .filter(|candidate| candidate.not_testable.is_none())
@@ -28,20 +28,19 @@ pub(super) fn of(effects: &[&'static ResistanceEntry], set: &MeasurementSet) -> 
     candidates
 }
 
-fn candidate(entry: &ResistanceEntry, set: &MeasurementSet) -> Candidate {
-    let Role::Effect(facts) = entry.role else { unreachable!("only effects are candidates") };
-    let spec = &entry.params[0];
+fn candidate(effect: &Effect, set: &MeasurementSet) -> Candidate {
+    let spec = effect.amplitude();
     let lacks: Vec<&str> =
-        missing(facts.visible, set).into_iter().map(|need| need.describe()).collect();
+        missing(&effect.visible(), set).into_iter().map(|need| need.describe()).collect();
     let from = |twin: Twin| format!("from {}", twin.describe());
     Candidate {
-        id: entry.name.to_owned(),
-        unit: facts.unit.to_owned(),
+        id: effect.name().to_owned(),
+        unit: effect.unit(),
         min: spec.allowed.min,
         max: spec.allowed.max,
         step: STEP * spec.plausible.max,
         not_testable: (!lacks.is_empty()).then(|| format!("needs {}", lacks.join(" and "))),
-        separable_from: twins(entry.name).map(from).collect::<Vec<_>>().join(", "),
+        separable_from: twins(effect.name()).map(from).collect::<Vec<_>>().join(", "),
         unresolved: Vec::new(),
     }
 }

@@ -7,7 +7,9 @@ mod prepared;
 mod scatter;
 
 use configs::{FreeParameter, Medium, Model};
-use contact_laws::{RESISTANCE_LAWS, ResistanceEntry, Role};
+use std::sync::Arc;
+
+use contact_laws::{Effect, RESISTANCE_LAWS};
 use thiserror::Error;
 
 use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
@@ -84,7 +86,7 @@ pub struct ResistiveForward {
     active: Vec<usize>,
     idle: Vec<String>,
     candidates: Vec<Candidate>,
-    effects: Vec<&'static ResistanceEntry>,
+    effects: Vec<Effect>,
     scattering: Vec<&'static str>,
 }
 
@@ -105,14 +107,12 @@ impl ResistiveForward {
         let conditions = (0..set.conditions.len())
             .map(|index| Prepared::new(medium, &free, set, index, &layouts[index]))
             .collect::<Result<_, _>>()?;
-        let present = |entry: &ResistanceEntry| {
-            medium.effects.iter().any(|effect| effect.entry.name == entry.name)
-        };
-        let effects: Vec<&'static ResistanceEntry> = RESISTANCE_LAWS
-            .iter()
-            .copied()
-            .filter(|entry| matches!(entry.role, Role::Effect(_)) && !present(entry))
-            .collect();
+        let is_present =
+            |name: &str| medium.effects.iter().any(|choice| choice.effect.name() == name);
+        let listed = RESISTANCE_LAWS.iter().filter_map(|entry| Effect::listed(entry.name));
+        let own = medium.candidates.iter().map(|own| Effect::Own(Arc::clone(own)));
+        let effects: Vec<Effect> =
+            listed.chain(own).filter(|effect| !is_present(effect.name())).collect();
         let is_scattering = |key: &str| {
             let (whole, node) = (format!("resistance.{key}"), format!("resistance.{key}@"));
             free.iter().any(|one| one.path == whole || one.path.starts_with(&node))
@@ -166,9 +166,9 @@ impl ResistiveForward {
         &self.idle
     }
 
-    /// The entries of the candidates, in their order.
+    /// The effects that are candidates, in their order: those of the table, then those of the model.
     #[must_use]
-    pub fn effects(&self) -> &[&'static ResistanceEntry] {
+    pub fn effects(&self) -> &[Effect] {
         &self.effects
     }
 }
@@ -187,8 +187,8 @@ impl Forward for ResistiveForward {
     }
 
     fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError> {
-        let added: Vec<(&'static ResistanceEntry, f64)> =
-            at.effects.iter().map(|&(index, q)| (self.effects[index], q)).collect();
+        let added: Vec<(&Effect, f64)> =
+            at.effects.iter().map(|&(index, q)| (&self.effects[index], q)).collect();
         let mut values = self.start.clone();
         for (&index, &value) in self.active.iter().zip(at.parameters) {
             values[index] = value;

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::{Mutex, PoisonError};
 
 use configs::{FreeParameter, ResistiveMedium};
-use contact_laws::{Coefficients, Expression, RESISTANCE_LAWS, ResistanceEntry};
+use contact_laws::{Coefficients, Effect, Expression, ResistanceEntry};
 use engine::math::Vec3;
 use engine::params::{Default, ParamTable};
 use engine::resistance::{
@@ -52,7 +52,7 @@ pub(super) struct Prepared {
 #[derive(Clone, PartialEq)]
 struct Inputs {
     numbers: Vec<f64>,
-    effects: Vec<(&'static str, f64)>,
+    effects: Vec<(String, f64)>,
     scatter: Scatter,
 }
 
@@ -61,7 +61,8 @@ struct Law {
     baseline: &'static ResistanceEntry,
     coefficients: Vec<Affine>,
     functions: Vec<(&'static str, Expression)>,
-    effects: Vec<(&'static ResistanceEntry, Affine)>,
+    effects: Vec<(Effect, Affine)>,
+    angle: f64,
     /// Impact speed (m/s).
     speed: f64,
 }
@@ -111,12 +112,12 @@ impl Law {
             .effects
             .iter()
             .map(|effect| {
-                let path = format!("effect.{}.q", effect.entry.name);
+                let path = format!("effect.{}.q", effect.effect.name());
                 let q = match free.iter().position(|one| one.path == path) {
                     Some(index) => Affine { key: "q", constant: 0.0, weights: vec![(index, 1.0)] },
                     None => Affine { key: "q", constant: effect.q, weights: Vec::new() },
                 };
-                (effect.entry, q)
+                (effect.effect.clone(), q)
             })
             .collect();
         Self {
@@ -127,20 +128,17 @@ impl Law {
                 .filter_map(|key| Some((key, here.function(key)?.clone())))
                 .collect(),
             effects,
+            angle,
             speed,
         }
     }
 
-    fn inputs(
-        &self,
-        parameters: &[f64],
-        added: &[(&'static ResistanceEntry, f64)],
-        scatter: &Scatter,
-    ) -> Inputs {
-        let own = self.effects.iter().map(|(entry, q)| (entry.name, q.at(parameters)));
+    fn inputs(&self, parameters: &[f64], added: &[(&Effect, f64)], scatter: &Scatter) -> Inputs {
+        let own = self.effects.iter().map(|(effect, q)| (effect, q.at(parameters)));
+        let all = own.chain(added.iter().copied());
         Inputs {
             numbers: self.coefficients.iter().map(|one| one.at(parameters)).collect(),
-            effects: own.chain(added.iter().map(|(entry, q)| (entry.name, *q))).collect(),
+            effects: all.map(|(effect, q)| (effect.name().to_owned(), q)).collect(),
             scatter: scatter.clone(),
         }
     }
@@ -149,7 +147,7 @@ impl Law {
     fn laws(
         &self,
         parameters: &[f64],
-        added: &[(&'static ResistanceEntry, f64)],
+        added: &[(&Effect, f64)],
         scatter: &Scatter,
         scattering: &[&str],
     ) -> Vec<Box<dyn ResistanceLaw>> {
@@ -165,18 +163,15 @@ impl Law {
             .iter()
             .fold(Coefficients::new(numbers), |all, (key, f)| all.with_function(key, f.clone()));
         let mut laws = vec![(self.baseline.build)(&coefficients)];
-        for entry in RESISTANCE_LAWS {
-            let made = |q: f64| {
-                let mut numbers = ParamTable::new();
-                numbers.set("q", q);
-                (entry.build)(&Coefficients::new(numbers))
-            };
-            let present = |(one, q): &(&ResistanceEntry, f64)| one.name == entry.name && *q != 0.0;
-            let own = self.effects.iter().map(|(entry, q)| (*entry, q.at(parameters)));
-            laws.extend(own.filter(present).map(|(_, q)| made(q)));
-            let added = added.iter().copied().filter(present);
-            laws.extend(added.map(|(_, q)| self.bent(made(q), scatter)));
-        }
+        let own = self.effects.iter().map(|(effect, q)| (effect, q.at(parameters), false));
+        let added = added.iter().map(|&(effect, q)| (effect, q, true));
+        let mut effects: Vec<(&Effect, f64, bool)> =
+            own.chain(added).filter(|(_, q, _)| *q != 0.0).collect();
+        effects.sort_by_key(|(effect, ..)| effect.rank());
+        laws.extend(effects.iter().map(|&(effect, q, bends)| {
+            let law = effect.build(q, self.angle);
+            if bends { self.bent(law, scatter) } else { law }
+        }));
         if let Some(path) = PathScatter::of(scatter) {
             laws.push(Box::new(path));
         }
@@ -248,7 +243,7 @@ impl Prepared {
     pub(super) fn predict(
         &self,
         parameters: &[f64],
-        added: &[(&'static ResistanceEntry, f64)],
+        added: &[(&Effect, f64)],
         scatter: &Scatter,
         scattering: &[&str],
     ) -> Result<Vec<f64>, String> {
@@ -268,7 +263,7 @@ impl Prepared {
     fn integrate(
         &self,
         parameters: &[f64],
-        added: &[(&'static ResistanceEntry, f64)],
+        added: &[(&Effect, f64)],
         scatter: &Scatter,
         scattering: &[&str],
     ) -> Result<Vec<f64>, String> {

@@ -2,6 +2,11 @@
 
 mod closed_forms;
 mod effects;
+mod formulas;
+#[path = "../../examples/late_drag.rs"]
+mod late_drag;
 mod ledger;
+mod own_candidates;
+mod own_effects;
 mod rest;
 mod rig;

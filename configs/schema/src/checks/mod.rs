@@ -1,6 +1,7 @@
 //! What no single value can tell: values that contradict each other, and what follows from them.
 
 mod grains;
+mod own_effects;
 mod resistive;
 
 use engine::units::{Dimension, format_si};

@@ -1,10 +1,10 @@
 //! What only a model of a resistive force is checked for.
 
-use contact_laws::{Expression, Needs, Role};
+use contact_laws::{Expression, Needs};
 use engine::params::ParamSpec;
 use engine::units::{Dimension, format_si};
 
-use super::{Common, rounded, seconds};
+use super::{Common, own_effects, rounded, seconds};
 use crate::diagnostics::{Diagnostic, Span};
 use crate::limits;
 use crate::model::{AngleTable, Coefficient, ResistiveModel, degrees};
@@ -23,6 +23,7 @@ impl ResistiveChecks<'_> {
         self.effects();
         if !self.common.reader.failed() {
             self.coefficients();
+            own_effects::check(&self.resistive, &self.common);
         }
     }
 
@@ -60,15 +61,15 @@ impl ResistiveChecks<'_> {
     fn effects(&self) {
         let medium = self.resistive.medium;
         for effect in &medium.effects {
-            let Role::Effect(facts) = effect.entry.role else { continue };
-            let lacks = |needs: Needs, given: bool| facts.visible.contains(&needs) && !given;
+            let visible = effect.effect.visible();
+            let lacks = |needs: Needs, given: bool| visible.contains(&needs) && !given;
             let missing = [
                 ("packing", lacks(Needs::Packings, medium.packing.is_some())),
                 ("bed_depth", lacks(Needs::BedDepth, medium.bed_depth.is_some())),
             ];
             for (key, _) in missing.into_iter().filter(|(_, lacks)| *lacks) {
                 self.common.reader.report(
-                    Diagnostic::warning(format!("`{}` does nothing here", effect.entry.name))
+                    Diagnostic::warning(format!("`{}` does nothing here", effect.effect.name()))
                         .at(effect.span, format!("it depends on `{key}` of [medium]"))
                         .help(format!("give `{key}`")),
                 );

@@ -86,9 +86,8 @@ impl ResistiveMedium {
 
     fn amplitudes(&self) -> impl Iterator<Item = (Place, FreeParameter)> {
         self.effects.iter().enumerate().map(|(index, effect)| {
-            let path = format!("effect.{}.q", effect.entry.name);
-            // An effect has its amplitude and no other parameter.
-            (Place::Effect(index), parameter(path, &effect.entry.params[0], effect.q))
+            let path = format!("effect.{}.q", effect.effect.name());
+            (Place::Effect(index), parameter(path, effect.effect.amplitude(), effect.q))
         })
     }
 

@@ -1,6 +1,8 @@
 //! A medium that is a force law, in SI.
 
-use contact_laws::{Coefficients, Expression, ResistanceEntry};
+use std::sync::Arc;
+
+use contact_laws::{Coefficients, Effect, Expression, OwnEffect, ResistanceEntry};
 use engine::params::{ParamSpec, ParamTable};
 use engine::resistance::{Impact, ResistanceLaw, Space, Surroundings};
 use intruders::Casting;
@@ -25,6 +27,8 @@ pub struct ResistiveMedium {
     pub resistance: ResistanceChoice,
     /// `[[effect]]`, in the order of the file.
     pub effects: Vec<EffectChoice>,
+    /// `[[candidate]]`: effects that are no part of the model and that a diagnosis tries.
+    pub candidates: Vec<Arc<OwnEffect>>,
     /// Paths of the parameters that a fit may change, each node of a table by itself.
     pub free: Vec<String>,
     /// Time between two samples of the log (s).
@@ -43,11 +47,11 @@ pub struct ResistanceChoice {
 }
 
 /// An effect and its amplitude.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct EffectChoice {
-    /// The registry's entry.
-    pub entry: &'static ResistanceEntry,
-    /// Amplitude, in the units that the entry defines; 0 without the effect.
+    /// The effect.
+    pub effect: Effect,
+    /// Amplitude, in the units that the effect defines (SI); 0 without the effect.
     pub q: f64,
     /// Where the file names it.
     pub span: Span,
@@ -113,17 +117,13 @@ impl ResistiveMedium {
         Surroundings { bulk_density, gravity, packing, bed_depth }
     }
 
-    /// The baseline for an impact at `angle_rad`, then the effects in the order of the registry.
+    /// The baseline for an impact at `angle_rad`, then the effects in their order.
     #[must_use]
     pub fn laws_at(&self, angle_rad: f64) -> Vec<Box<dyn ResistanceLaw>> {
         let mut laws = vec![(self.resistance.entry.build)(&self.coefficients_at(angle_rad))];
-        for entry in contact_laws::RESISTANCE_LAWS {
-            for effect in self.effects.iter().filter(|one| one.entry.name == entry.name) {
-                let mut numbers = ParamTable::new();
-                numbers.set("q", effect.q);
-                laws.push((entry.build)(&Coefficients::new(numbers)));
-            }
-        }
+        let mut effects: Vec<&EffectChoice> = self.effects.iter().collect();
+        effects.sort_by_key(|one| one.effect.rank());
+        laws.extend(effects.iter().map(|one| one.effect.build(one.q, angle_rad)));
         laws
     }
 
@@ -208,13 +208,7 @@ impl std::fmt::Debug for ResistanceChoice {
 
 impl PartialEq for EffectChoice {
     fn eq(&self, other: &Self) -> bool {
-        self.entry.name == other.entry.name && self.q.to_bits() == other.q.to_bits()
-    }
-}
-
-impl std::fmt::Debug for EffectChoice {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_tuple("EffectChoice").field(&self.entry.name).field(&self.q).finish()
+        self.effect == other.effect && self.q.to_bits() == other.q.to_bits()
     }
 }
 

@@ -80,7 +80,7 @@ fn paths(
         known.push(whole);
         known.extend(nodes);
     }
-    known.extend(effects.iter().map(|effect| format!("effect.{}.q", effect.entry.name)));
+    known.extend(effects.iter().map(|effect| format!("effect.{}.q", effect.effect.name())));
     if known.iter().any(|one| one == path) {
         return Ok(vec![path.to_owned()]);
     }

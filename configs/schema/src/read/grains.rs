@@ -32,7 +32,7 @@ pub(super) fn model(
     let foreign = Foreign { home: "resistive-force", here: ("grains", places.kind) };
     foreign.keys(&tables.log, "log", &["interval"]);
     foreign.keys(&tables.medium, "medium", &["bulk_density", "packing", "bed_depth"]);
-    foreign.tables(root, &["resistance", "fit"]);
+    foreign.tables(root, &["resistance", "fit", "candidate"]);
     let run = run(tables.run, places);
     let log = log(tables.log);
     let energy = energy(tables.energy);

@@ -14,9 +14,11 @@ mod foreign;
 mod grains;
 mod impact;
 mod laws;
+mod own_effect;
 mod resistive;
 
 pub(crate) use bed_file::DataFolder;
+pub(crate) use own_effect::formula_fault;
 
 /// Where the values stand that semantic checks compare.
 #[derive(Default)]
@@ -45,6 +47,8 @@ pub(crate) struct Places {
     pub(crate) positions: Option<Span>,
     pub(crate) interval: Option<Span>,
     pub(crate) coefficients: Vec<Option<Span>>,
+    /// The formulas of own effects, by their names.
+    pub(crate) own_forces: Vec<(String, Option<Span>)>,
 }
 
 /// Where the size, the mass (or density) and the count of a body stand.

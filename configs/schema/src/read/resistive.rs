@@ -1,11 +1,14 @@
 //! What only a model of a resistive force has.
 
-use contact_laws::{RESISTANCE_LAWS, ResistanceEntry, Role};
+use std::sync::Arc;
+
+use contact_laws::{Effect, OwnEffect, RESISTANCE_LAWS, ResistanceEntry, Role};
 use engine::grains::Space;
 
 use super::fit::free;
 use super::foreign::Foreign;
 use super::laws::given_twice;
+use super::own_effect::{EXPRESSION, Purpose, own_effect};
 use super::{CommonTables, IMPACT_EXAMPLE, INTRUDER_EXAMPLE, KINDS, Places, energy, impact};
 use crate::diagnostics::{Diagnostic, Span, nearest, shorten};
 use crate::limits;
@@ -33,10 +36,14 @@ pub(super) fn model(
     let energy = energy(tables.energy);
     let bed = bed(tables.medium, places);
     let resistance = resistance(root.table("resistance", Some(RESISTANCE_EXAMPLE)), places);
-    let effects = effects(root.tables("effect", limits::EFFECTS));
+    let space = bed.as_ref().map(|bed| bed.space);
+    let effects =
+        space.and_then(|space| effects(root.tables("effect", limits::EFFECTS), space, places));
+    let candidates = root.tables("candidate", limits::CANDIDATES);
+    let candidates =
+        space.and_then(|space| own_candidates(candidates, space, effects.as_deref(), places));
     let free = free(root.table("fit", None), resistance.as_ref(), effects.as_deref());
     let intruder_table = root.table("intruder", Some(INTRUDER_EXAMPLE));
-    let space = bed.as_ref().map(|bed| bed.space);
     let intruder = space.and_then(|space| impact::in_resistance(intruder_table, space, places));
     let impact_table = root.table("impact", Some(IMPACT_EXAMPLE));
     foreign.keys(&impact_table, "impact", &["x", "position", "x_range"]);
@@ -60,6 +67,7 @@ pub(super) fn model(
             bed_depth,
             resistance: resistance?,
             effects: effects?,
+            candidates: candidates?,
             free: free?,
             log_interval,
         }),
@@ -156,21 +164,74 @@ fn resistance(table: TableReader<'_>, places: &mut Places) -> Option<ResistanceC
     Some(ResistanceChoice { entry, coefficients, span })
 }
 
-fn effects(tables: Vec<TableReader<'_>>) -> Option<Vec<EffectChoice>> {
+fn effects(
+    tables: Vec<TableReader<'_>>,
+    space: Space,
+    places: &mut Places,
+) -> Option<Vec<EffectChoice>> {
     let wanted = tables.len();
     let mut effects: Vec<EffectChoice> = Vec::new();
     for table in tables {
-        let Some((entry, span)) = entry(&table, Slot::Effect) else { continue };
-        let params = table.params(entry.params);
-        if let Some(first) = effects.iter().find(|other| other.entry.name == entry.name) {
-            table.reader.report(given_twice(entry.name, span, first.span));
+        let Some(choice) = effect(&table, space, places) else { continue };
+        let name = choice.effect.name();
+        if let Some(first) = effects.iter().find(|other| other.effect.name() == name) {
+            table.reader.report(given_twice(name, choice.span, first.span));
         }
         table.finish();
-        if let Some(params) = params {
-            effects.push(EffectChoice { entry, q: params.get("q"), span });
-        }
+        effects.push(choice);
     }
     (effects.len() == wanted).then_some(effects)
+}
+
+fn effect(table: &TableReader<'_>, space: Space, places: &mut Places) -> Option<EffectChoice> {
+    if table.peek_text("name") == Some(EXPRESSION) {
+        let name = table.text("name", None, EXPRESSION, "the effect")?;
+        let (own, span) = own_effect(table, space, Purpose::Part, places)?;
+        let values = own.draft().parameters.iter().find(|one| one.name == "q");
+        let q = values.and_then(|q| q.value)?;
+        return Some(EffectChoice {
+            effect: Effect::Own(own.into()),
+            q,
+            span: span.or(name.span)?,
+        });
+    }
+    let (entry, span) = entry(table, Slot::Effect)?;
+    let params = table.params(entry.params)?;
+    Some(EffectChoice { effect: Effect::Listed(entry), q: params.get("q"), span })
+}
+
+/// The effects that a diagnosis tries beside those of the table.
+fn own_candidates(
+    tables: Vec<TableReader<'_>>,
+    space: Space,
+    effects: Option<&[EffectChoice]>,
+    places: &mut Places,
+) -> Option<Vec<Arc<OwnEffect>>> {
+    let wanted = tables.len();
+    let mut candidates: Vec<(Arc<OwnEffect>, Span)> = Vec::new();
+    for table in tables {
+        let name = table.text("name", None, EXPRESSION, "the effect");
+        let Some(name) = name else { continue };
+        if name.value != EXPRESSION {
+            table.reader.report(
+                Diagnostic::error("a candidate of a model file is an expression")
+                    .at(name.span, "effects that come with the program are candidates anyway")
+                    .help("write name = \"expression\", with id, force and parameters"),
+            );
+            continue;
+        }
+        let read = own_effect(&table, space, Purpose::Candidate, places);
+        let Some((own, Some(span))) = read else { continue };
+        let among = effects.into_iter().flatten().map(|one| (one.effect.name(), one.span));
+        let earlier = candidates.iter().map(|(other, span)| (other.id(), *span));
+        if let Some((_, first)) = among.chain(earlier).find(|(name, _)| *name == own.id()) {
+            table.reader.report(given_twice(own.id(), span, first));
+        }
+        table.finish();
+        candidates.push((own.into(), span));
+    }
+    let complete = candidates.len() == wanted;
+    complete.then(|| candidates.into_iter().map(|(own, _)| own).collect())
 }
 
 /// The law that `name` says.
@@ -190,7 +251,8 @@ fn entry(table: &TableReader<'_>, slot: Slot) -> Option<(&'static ResistanceEntr
 fn explain(name: &str, span: Span, slot: Slot, known: &[&str]) -> Diagnostic {
     let shown = shorten(name);
     let kind = slot.name();
-    let list = format!("{kind}s: {}; `plunge effects` describes them", known.join(", "));
+    let own = if slot == Slot::Effect { ", expression" } else { "" };
+    let list = format!("{kind}s: {}{own}; `plunge effects` describes them", known.join(", "));
     match (contact_laws::find_resistance(name), slot) {
         (None, _) => {}
         (Some(_), Slot::Baseline) => {

@@ -7,6 +7,7 @@ use super::{Found, TableReader};
 use crate::diagnostics::Diagnostic;
 use crate::document::Value;
 use crate::model::{AngleTable, Coefficient};
+use crate::read::formula_fault;
 use crate::specs;
 
 impl TableReader<'_> {
@@ -49,11 +50,9 @@ impl TableReader<'_> {
         match Expression::parse(&text.value, variables) {
             Ok(expression) => Some(expression),
             Err(error) => {
-                self.reader.report(
-                    Diagnostic::error("this is not an expression")
-                        .at(text.span, error.to_string())
-                        .help(format!("it may use {}, in SI", variables.join(", "))),
-                );
+                let fault = formula_fault(self, &text, &error);
+                let help = format!("it may use {}, in SI", variables.join(", "));
+                self.reader.report(fault.help(help));
                 None
             }
         }

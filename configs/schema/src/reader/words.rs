@@ -193,6 +193,11 @@ impl TableReader<'_> {
         None
     }
 
+    /// Writes TOML that was derived from what was read.
+    pub(crate) fn note_toml(&self, key: &str, value: String) {
+        self.write(key, value);
+    }
+
     /// Writes a string that was derived from what was read.
     pub(crate) fn note_text(&self, key: &str, value: &str) {
         self.write(key, quoted(value));
