@@ -59,7 +59,7 @@ mod tests {
         let velocity = Vec3::new(x, 0.0, z);
         let speed = velocity.norm();
         let sense = [x.signum(), z.signum()];
-        Motion { velocity, speed, direction: velocity / speed, sense, spin: 0.0 }
+        Motion { velocity, speed, direction: velocity / speed, sense, spin: 0.0, time: 0.0 }
     }
 
     #[test]
