@@ -169,7 +169,7 @@ fn every_effect_can_be_written_in_a_model_and_added_to_one() {
         let added = added.unwrap_or_else(|error| panic!("{}: {error}", entry.name));
         let model = load(&added, &[]).unwrap_or_else(|error| panic!("{error}")).model;
         let effect = &medium(&model).effects[0];
-        assert_eq!(effect.entry.name, entry.name);
+        assert_eq!(effect.effect.name(), entry.name);
         assert_eq!(effect.q.to_bits(), entry.params[0].plausible.max.to_bits(), "{}", entry.name);
     }
 }
