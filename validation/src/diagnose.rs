@@ -45,19 +45,33 @@ pub fn diagnose(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
         .filter(|&index| bench.forward.candidates()[index].not_testable.is_none())
         .collect();
     let mut weighed = baseline.clone();
-    let mut ranking = Ranking::of(bench, &weighed, &candidates, seed)?;
+    let mut ranking = Ranking::of(bench, &weighed, &candidates, seed);
     for _ in 1..ROUNDS {
-        let Some(best) = ranking.scores.first() else { break };
-        let leader = bench.fit_once(&best.point, &weighed.noise)?;
+        let Some(leader) = lead(bench, &mut ranking, &weighed)? else { break };
         let fit = bench.data(&leader.weights).fit(&baseline.fit.point)?;
         weighed = Fitted { fit, ..leader };
-        ranking = Ranking::of(bench, &weighed, &candidates, seed)?;
+        ranking = Ranking::of(bench, &weighed, &candidates, seed);
     }
-    let Some(best) = ranking.scores.first() else {
+    let Some(leader) = lead(bench, &mut ranking, &weighed)? else {
         return Ok(cannot_tell(bench, "no effect can be tested with these data".to_owned()));
     };
-    let leader = bench.fit_once(&best.point, &weighed.noise)?;
     Judge { bench, seed, baseline, weighed, ranking, leader }.verdict()
+}
+
+/// The model with the best effect under its own noise; effects around whose fit the model cannot be
+/// integrated are taken out on the way.
+fn lead(
+    bench: &Bench<'_>,
+    ranking: &mut Ranking,
+    weighed: &Fitted,
+) -> Result<Option<Fitted>, BenchError> {
+    while let Some(best) = ranking.scores.first() {
+        match bench.fit_once(&best.point, &weighed.noise) {
+            Err(BenchError::Predict(why)) => ranking.give_up_first(why),
+            other => return other.map(Some),
+        }
+    }
+    Ok(None)
 }
 
 /// All that a verdict is made of.

@@ -16,7 +16,9 @@ const OWN_MODES: [usize; 2] = [2, 1];
 /// lack of fit, and is left out of all of them.
 pub(crate) struct Directions {
     conditions: Vec<Within>,
-    /// How many of the coherent directions are smooth.
+    /// How many of the coherent directions are changes of the whole force with what was varied.
+    plain: usize,
+    /// How many of them are smooth, those included.
     smooth: usize,
 }
 
@@ -53,11 +55,12 @@ impl Directions {
     ) -> Self {
         let rows = imitated.nrows();
         let parameters = Basis::of(imitated);
-        let smooth = stacked(responses, rows, &smooth_factors(bench), MODES);
-        let sharp = stacked(responses, rows, &factors(bench), [usize::MAX; 2]);
-        let mut coherent = Basis::beside(&smooth, &parameters);
+        let mut coherent =
+            Basis::beside(&stacked(responses, rows, &varied(bench), [1, 0]), &parameters);
+        let plain = coherent.len();
+        coherent.extend(&stacked(responses, rows, &factors(bench), MODES), &parameters);
         let n_smooth = coherent.len();
-        coherent.extend(&sharp, &parameters);
+        coherent.extend(&stacked(responses, rows, &factors(bench), [usize::MAX; 2]), &parameters);
         let (coherent, parameters) = (coherent.to_matrix(rows), parameters.to_matrix(rows));
         let mut start = 0;
         let conditions = responses.iter().map(|response| {
@@ -71,7 +74,7 @@ impl Directions {
             let coherent = coherent.rows(rows.0, rows.1).into_owned();
             Within { rows, smooth, shared: own.tr_mul(&parameters), parameters, coherent, own }
         });
-        Self { conditions: conditions.collect(), smooth: n_smooth }
+        Self { conditions: conditions.collect(), plain, smooth: n_smooth }
     }
 
     /// One per condition that was fitted to.
@@ -89,8 +92,8 @@ impl Directions {
         .collect()
     }
 
-    /// Squared lengths of a residual along the directions: coherent smooth, coherent, smooth in each
-    /// condition, any in each condition.
+    /// Squared lengths of a residual along the directions: of the whole force, coherent smooth, coherent,
+    /// smooth in each condition, any in each condition.
     pub(crate) fn sizes(&self, residual: &[Along]) -> Vec<f64> {
         let sum = |part: fn(&Along) -> &DMatrix<f64>| {
             let mut columns = residual.iter().map(|along| part(along).column(0).into_owned());
@@ -99,14 +102,15 @@ impl Directions {
         };
         let parameters = sum(|along| &along.parameters);
         let coherent = sum(|along| &along.coherent);
-        let mut sizes =
-            vec![coherent.rows(0, self.smooth).norm_squared(), coherent.norm_squared(), 0.0, 0.0];
+        let coherent = [self.plain, self.smooth, coherent.len()]
+            .map(|columns| coherent.rows(0, columns).norm_squared());
+        let (mut smooth, mut any) = (0.0, 0.0);
         for (within, along) in self.conditions.iter().zip(residual) {
             let own = along.own.column(0) - &within.shared * &parameters;
-            sizes[2] += own.rows(0, within.smooth).norm_squared();
-            sizes[3] += own.norm_squared();
+            smooth += own.rows(0, within.smooth).norm_squared();
+            any += own.norm_squared();
         }
-        sizes
+        coherent.into_iter().chain([smooth, any]).collect()
     }
 }
 
@@ -125,12 +129,11 @@ impl Within {
 fn stacked(
     responses: &[[DMatrix<f64>; 2]],
     rows: usize,
-    factors: &[(Vec<f64>, [usize; 2])],
-    most: [usize; 2],
+    factors: &[Vec<f64>],
+    count: [usize; 2],
 ) -> DMatrix<f64> {
     let mut columns = Vec::new();
-    for (factor, limit) in factors {
-        let count = [most[0].min(limit[0]), most[1].min(limit[1])];
+    for factor in factors {
         let blocks: Vec<DMatrix<f64>> = responses.iter().map(|r| modes(r, count)).collect();
         let mut all = DMatrix::zeros(rows, blocks.first().map_or(0, DMatrix::ncols));
         let mut start = 0;
@@ -166,22 +169,29 @@ fn modes(response: &[DMatrix<f64>; 2], count: [usize; 2]) -> DMatrix<f64> {
 }
 
 /// By what a coherent change may differ between conditions: not at all, with the speed, with the angle.
-fn factors(bench: &Bench<'_>) -> Vec<(Vec<f64>, [usize; 2])> {
+fn factors(bench: &Bench<'_>) -> Vec<Vec<f64>> {
     let conditions = bench.observed.fit.iter().map(|&index| &bench.set.conditions[index]);
     let one = vec![1.0; bench.observed.fit.len()];
     let speed = standardised(conditions.clone().map(|condition| condition.speed).collect());
     let angle = standardised(conditions.map(|condition| condition.angle_deg).collect());
-    [one, speed, angle].into_iter().map(|factor| (factor, [usize::MAX; 2])).collect()
+    vec![one, speed, angle]
 }
 
-/// The same, and a change of the whole force with anything else that was varied.
-fn smooth_factors(bench: &Bench<'_>) -> Vec<(Vec<f64>, [usize; 2])> {
-    let others = OF_CONDITIONS.iter().filter_map(|(_, value)| {
-        let conditions = bench.observed.fit.iter().map(|&index| &bench.set.conditions[index]);
-        let values: Option<Vec<f64>> = conditions.map(value).collect();
-        Some((standardised(values?), [1, 0]))
+/// Everything that was varied and the place in the campaign, one value per condition.
+fn varied(bench: &Bench<'_>) -> Vec<Vec<f64>> {
+    let fit = || bench.observed.fit.iter();
+    let of_conditions = OF_CONDITIONS.iter().filter_map(|(_, value)| {
+        fit().map(|&index| value(&bench.set.conditions[index])).collect::<Option<Vec<f64>>>()
     });
-    factors(bench).into_iter().chain(others).collect()
+    let order: Option<Vec<f64>> = fit()
+        .map(|&index| {
+            let orders = bench.observed.conditions[index].order.iter().copied();
+            let orders: Vec<i64> = orders.collect::<Option<_>>()?;
+            let n = orders.len().max(1) as f64;
+            Some(orders.iter().sum::<i64>() as f64 / n)
+        })
+        .collect();
+    of_conditions.chain(order).map(standardised).collect()
 }
 
 /// Values less their mean, over their standard deviation; zero if they are all the same.

@@ -42,7 +42,8 @@ pub(crate) fn best_pair(
         })
         .collect();
     for first in singles.scores.iter().take(FIRST) {
-        let with_first = Fitted { fit: data.fit(&first.point)?, ..baseline.clone() };
+        let Ok(fit) = data.fit(&first.point) else { continue };
+        let with_first = Fitted { fit, ..baseline.clone() };
         let others = singles.scores.iter().map(Score::candidate);
         let others: Vec<usize> = others.filter(|&other| other != first.candidate()).collect();
         for second in promising_beside(bench, &with_first, &others) {
@@ -52,15 +53,24 @@ pub(crate) fn best_pair(
     }
     let best = tried.into_iter().min_by(|a, b| a.chi2.total_cmp(&b.chi2));
     let Some(best) = best else { return Ok(None) };
-    let fitted = bench.fit_once(&best.point, &baseline.noise)?;
+    let fitted = match bench.fit_once(&best.point, &baseline.noise) {
+        // A pair around which the model cannot be integrated explains nothing.
+        Err(BenchError::Predict(_)) => return Ok(None),
+        other => other?,
+    };
     let mut candidates: Vec<usize> = singles.scores.iter().map(Score::candidate).collect();
     candidates.sort_unstable();
+    let data = bench.data(&fitted.weights);
     let mut p = 0.0_f64;
     for member in 0..2 {
         // The model without one member, under the weights of the pair; what does it explain?
         let mut alone = fitted.fit.point.clone();
         let (removed, _) = alone.effects.remove(member);
-        let fit = bench.data(&fitted.weights).fit(&alone)?;
+        // The amplitude that goes with the other may be too much for one.
+        let fit = data.fit(&alone).or_else(|_| {
+            alone.effects[0].1 = 0.0;
+            data.fit(&alone)
+        })?;
         let fall = fit.chi2 - fitted.fit.chi2;
         let without_it = Fitted { fit, ..fitted.clone() };
         let others: Vec<usize> =

@@ -1,6 +1,6 @@
 //! Refits of a model with one more effect, and which of them the measurements tell apart.
 
-use crate::bench::{Bench, BenchError, Fitted};
+use crate::bench::{Bench, Fitted};
 use crate::chord::extend;
 use crate::forward::{Candidate, PredictError};
 use crate::sensitivity::Point;
@@ -62,12 +62,7 @@ impl Ranking {
     ///
     /// All falls of χ² are measured in the variance that the repeats show along the signature of the
     /// best: each in its own would rank by how well that variance happens to be known.
-    pub(crate) fn of(
-        bench: &Bench<'_>,
-        fitted: &Fitted,
-        candidates: &[usize],
-        seed: u64,
-    ) -> Result<Self, BenchError> {
+    pub(crate) fn of(bench: &Bench<'_>, fitted: &Fitted, candidates: &[usize], seed: u64) -> Self {
         let (signatures, failed) = signatures(bench, fitted, candidates);
         let null = NullScores::new(collinearity(&signatures), seed);
         let mut scores: Vec<Score> =
@@ -75,7 +70,7 @@ impl Ranking {
         let mut rows = best_first(&scores);
         for &row in rows.iter().take(POLISHED) {
             if scores[row].delta > 0.0 {
-                polish(bench, fitted, &mut scores[row])?;
+                polish(bench, fitted, &mut scores[row]);
             }
         }
         rows.sort_by(|&a, &b| scores[b].delta.total_cmp(&scores[a].delta));
@@ -91,7 +86,15 @@ impl Ranking {
         let mut scores: Vec<Option<Score>> = scores.into_iter().map(Some).collect();
         let scores: Vec<Score> = rows.iter().filter_map(|&row| scores[row].take()).collect();
         let p = scores.first().map_or(1.0, |best| null.family_wise_p(best.delta));
-        Ok(Self { scores, p, rows, null, failed })
+        Self { scores, p, rows, null, failed }
+    }
+
+    /// Takes the best out, since the model cannot be integrated around its fit.
+    pub(crate) fn give_up_first(&mut self, why: PredictError) {
+        let first = self.scores.remove(0);
+        self.rows.remove(0);
+        self.failed.push((first.candidate(), why));
+        self.p = self.scores.first().map_or(1.0, |best| self.null.family_wise_p(best.delta));
     }
 
     /// Places of the effects that cannot be told from the best, itself included: by the numbers, or
@@ -155,13 +158,13 @@ fn refit(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Score {
     }
 }
 
-/// The same with derivatives of its own, from there.
-fn polish(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) -> Result<(), BenchError> {
-    let fit = bench.data(&fitted.weights).fit(&score.point)?;
-    score.delta = (fitted.fit.chi2 - fit.chi2).max(0.0);
-    score.standard_error = fit.standard_error(fit.covariance.nrows() - 1);
-    score.point = fit.point;
-    Ok(())
+/// The same with derivatives of its own, from there, if the model can be integrated around it.
+fn polish(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) {
+    if let Ok(fit) = bench.data(&fitted.weights).fit(&score.point) {
+        score.delta = (fitted.fit.chi2 - fit.chi2).max(0.0);
+        score.standard_error = fit.standard_error(fit.covariance.nrows() - 1);
+        score.point = fit.point;
+    }
 }
 
 fn best_first(scores: &[Score]) -> Vec<usize> {

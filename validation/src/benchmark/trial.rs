@@ -198,7 +198,7 @@ fn pair_found(bench: &Bench<'_>) -> Result<Option<Vec<String>>, BenchError> {
     let candidates = bench.forward.candidates();
     let testable: Vec<usize> =
         (0..candidates.len()).filter(|&at| candidates[at].not_testable.is_none()).collect();
-    let singles = Ranking::of(bench, &baseline, &testable, DEFAULT_SEED)?;
+    let singles = Ranking::of(bench, &baseline, &testable, DEFAULT_SEED);
     let pair = best_pair(bench, &baseline, &singles, DEFAULT_SEED)?;
     Ok(pair.map(|pair| {
         let effects = &pair.fitted.fit.point.effects;
