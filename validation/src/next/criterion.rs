@@ -8,14 +8,13 @@ use crate::noise::Noise;
 use crate::sensitivity::Sensitivity;
 use crate::weights::Weight;
 
-/// The least expected difference of χ² between two of `rivals`, and which two: the first of them among
-/// the leading `named`, since those that only follow need not be told from one another. `None` if a
-/// model cannot be integrated there.
+/// The least expected difference of χ² between two of `rivals`, and which two. One of them must explain
+/// the measurements that there are: which of two that do not is no question. `None` if a model cannot be
+/// integrated there.
 pub(super) fn least(
     foreseen: &Foreseen,
     noise: &Noise,
     rivals: &[Rival],
-    named: usize,
 ) -> Option<(f64, [usize; 2])> {
     let forward = foreseen.forward();
     let leader = rivals.first()?.before(forward)?;
@@ -32,8 +31,11 @@ pub(super) fn least(
         })
         .collect::<Option<_>>()?;
     let mut least: Option<(f64, [usize; 2])> = None;
-    for k in 0..named.min(rivals.len()) {
+    for k in 0..rivals.len() {
         for l in k + 1..rivals.len() {
+            if !rivals[k].explains && !rivals[l].explains {
+                continue;
+            }
             let delta = expected(&predicted[k], &predicted[l])?;
             if least.is_none_or(|(smallest, _)| delta < smallest) {
                 least = Some((delta, [k, l]));

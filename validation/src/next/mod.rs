@@ -2,8 +2,8 @@
 //!
 //! Every feasible condition is held against the rivals: the effects that cannot be told apart, and the
 //! two that follow them. Each rival predicts what would be measured, with the uncertainty of its fit;
-//! a condition is worth as much as it separates the two of them that it separates least (Hunter &
-//! Reiner 1965, Technometrics 7, 307; with the covariance of the predictions, Buzzi-Ferraris & Forzatti
+//! a condition is worth as much as it separates the two of them that it separates least, one of which
+//! explains what was measured (Hunter & Reiner 1965, Technometrics 7, 307; with the covariance of the predictions, Buzzi-Ferraris & Forzatti
 //! 1983, Chem. Eng. Sci. 38, 225).
 
 mod criterion;
@@ -102,7 +102,6 @@ pub fn judged(
     let (Verdict::NotSeparable, Some(proposed)) = (diagnosis.verdict, &diagnosis.proposed) else {
         return Ok(Vec::new());
     };
-    let set_of = diagnosis.not_separable.len();
     let rivals = rivals(bench, diagnosis)?;
     let repeats = repeats(bench);
     let noise = &proposed.noise;
@@ -110,7 +109,7 @@ pub fn judged(
         .into_par_iter()
         .filter_map(|condition| {
             let foreseen = Foreseen::of(bench, designs, (condition, repeats), &rivals[0])?;
-            let (delta, [k, l]) = criterion::least(&foreseen, noise, &rivals, set_of)?;
+            let (delta, [k, l]) = criterion::least(&foreseen, noise, &rivals)?;
             let separates = [k, l].map(|at| rivals[at].id.clone());
             let condition = foreseen.condition().clone();
             Some(Recommendation { condition, repeats, expected_delta: delta, separates })
@@ -140,14 +139,18 @@ pub fn recommend(
 /// first.
 fn rivals(bench: &Bench<'_>, diagnosis: &Diagnosis) -> Result<Vec<Rival>, BenchError> {
     let Some(proposed) = &diagnosis.proposed else { return Ok(Vec::new()) };
+    let best = diagnosis.ranking.first().and_then(|effect| effect.delta).unwrap_or(0.0);
     let is_named = |id: &String| diagnosis.not_separable.contains(id);
     let ranked = || diagnosis.ranking.iter();
     let named = ranked().filter(|effect| is_named(&effect.id));
     let followers = ranked().filter(|effect| !is_named(&effect.id)).take(FOLLOWERS);
     named
         .chain(followers)
-        .filter_map(|effect| Some((effect.id.clone(), effect.point.as_ref()?)))
-        .map(|(id, point)| Rival::fitted(bench, &proposed.weights, id, point))
+        .filter_map(|effect| {
+            let behind = best - effect.delta?;
+            Some(((effect.id.clone(), behind), effect.point.as_ref()?))
+        })
+        .map(|(which, point)| Rival::fitted(bench, &proposed.weights, which, point))
         .collect()
 }
 

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::bench::{Bench, BenchError};
 use crate::fit::value_mut;
 use crate::forward::{Forward, PredictError};
+use crate::score::SEPARATE;
 use crate::sensitivity::Point;
 use crate::weights::Weight;
 
@@ -15,6 +16,8 @@ const STEP: f64 = 0.1;
 pub(super) struct Rival {
     /// Of the effect.
     pub(super) id: String,
+    /// Whether it explains about as much as the best.
+    pub(super) explains: bool,
     /// Parameters with their names and values.
     parameters: Vec<(String, f64)>,
     amplitude: f64,
@@ -29,17 +32,19 @@ pub(super) struct Placed {
 }
 
 impl Rival {
-    /// The model with the effect `id`, refitted from `point` under `weights`.
+    /// The model with the effect `id`, refitted from `point` under `weights`; its χ² was `behind` that
+    /// of the best.
     pub(super) fn fitted(
         bench: &Bench<'_>,
         weights: &[Weight],
-        id: String,
+        (id, behind): (String, f64),
         point: &Point,
     ) -> Result<Self, BenchError> {
         let fit = bench.data(weights).fit(point)?;
         let names = bench.forward.parameters().iter().map(|parameter| parameter.name.clone());
         Ok(Self {
             id,
+            explains: behind < SEPARATE,
             parameters: names.zip(fit.point.parameters.iter().copied()).collect(),
             amplitude: fit.point.effects.last().map_or(0.0, |(_, q)| *q),
             covariance: fit.covariance,

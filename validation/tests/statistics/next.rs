@@ -36,7 +36,7 @@ fn next(set: &MeasurementSet) -> (Diagnosis, Vec<Recommendation>) {
 
 #[test]
 fn what_one_sphere_straight_down_does_not_separate_another_mass_or_angle_does() {
-    for (effect, amplitude) in [(Effect::Buoyancy, 4.0), (Effect::Yield, 4.0)] {
+    for (effect, amplitude) in [(Effect::Buoyancy, 4.0), (Effect::Yield, 2.0)] {
         let set = vertical(effect, amplitude).measure(1);
         let (diagnosis, grid) = next(&set);
         assert_eq!(diagnosis.verdict, Verdict::NotSeparable, "{:?}", diagnosis.unexplained);
