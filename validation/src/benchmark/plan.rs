@@ -124,7 +124,6 @@ impl Row {
     ];
 
     /// Every row: those of the tables, and what is drawn only where it is asked for.
-    #[must_use]
     pub fn all() -> impl Iterator<Item = Self> {
         Self::TABLES.into_iter().chain([Self::Next])
     }

@@ -103,12 +103,13 @@ pub fn judged(
         return Ok(Vec::new());
     };
     let rivals = rivals(bench, diagnosis)?;
+    let Some(leader) = rivals.first() else { return Ok(Vec::new()) };
     let repeats = repeats(bench);
     let noise = &proposed.noise;
     let mut judged: Vec<Recommendation> = grid::feasible(bench.set)
         .into_par_iter()
         .filter_map(|condition| {
-            let foreseen = Foreseen::of(bench, designs, (condition, repeats), &rivals[0])?;
+            let foreseen = Foreseen::of(bench, designs, (condition, repeats), leader)?;
             let (delta, [k, l]) = criterion::least(&foreseen, noise, &rivals)?;
             let separates = [k, l].map(|at| rivals[at].id.clone());
             let condition = foreseen.condition().clone();
