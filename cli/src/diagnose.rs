@@ -7,11 +7,13 @@ use configs::edit::add_effects;
 use serde_json::Value;
 use validation::bench::Bench;
 use validation::diagnose::diagnose;
+use validation::next::recommend;
 use validation::verdict::{Diagnosis, RankedEffect, Verdict};
 use validation::where_it_fails::WhereItFails;
 
 use crate::add::from_diagnosis;
 use crate::compare::{lines, noise_words, probability, table};
+use crate::next;
 use crate::output::{self, CommandError, CommandResult};
 use crate::workbench::{Candidate, Flags, failed};
 
@@ -35,7 +37,9 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let forward = model.forward(&measured, flags)?;
     let results = flags.results(&measured, "diagnose", &models)?;
     let bench = Bench { set: &measured.set, observed: &measured.observed, forward: &forward };
-    let diagnosis = diagnose(&bench, flags.seed).map_err(|error| failed(error, &model.name))?;
+    let mut diagnosis = diagnose(&bench, flags.seed).map_err(|error| failed(error, &model.name))?;
+    let next = recommend(&bench, &model.loaded.model, &mut diagnosis)
+        .map_err(|error| failed(error, &model.name))?;
     flags.notes(&measured.set.notes);
     flags.notes(&measured.observed.notes);
     let object = diagnosis.to_json().map_err(anyhow::Error::new)?;
@@ -51,6 +55,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     }
     let n = [&measured.observed.fit, &measured.observed.holdout].map(Vec::len);
     let mut text = as_text(&model.name, &diagnosis, n);
+    text.push_str(&next::as_text(&diagnosis, &next));
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     text.push_str(&format!("\nwritten to {}: {}\n", results.shown(), names.join(", ")));
     output::to_stdout(&text)

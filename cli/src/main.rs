@@ -12,6 +12,7 @@ mod control;
 mod diagnose;
 mod effects;
 mod new;
+mod next;
 mod output;
 mod own_effects;
 mod recover;

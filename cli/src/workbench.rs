@@ -174,9 +174,19 @@ impl Flags {
         let mut hash = blake3::Hasher::new();
         hash.update(env!("CARGO_PKG_VERSION").as_bytes());
         // Names of runs and the order of rows are no inputs: the observables are in an order of their own.
-        let MeasurementSet { id, kind, instrument, bed, stated, stop, last, conditions, .. } =
-            &measured.set;
-        let set = (id, kind, instrument, bed, stated, stop, last, conditions);
+        let MeasurementSet {
+            id,
+            kind,
+            instrument,
+            bed,
+            stated,
+            stop,
+            last,
+            feasible,
+            conditions,
+            ..
+        } = &measured.set;
+        let set = (id, kind, instrument, bed, stated, stop, last, feasible, conditions);
         hash.update(format!("{command} {} {set:?}", self.seed).as_bytes());
         hash.update(format!("{:?}", measured.observed.conditions).as_bytes());
         for model in models {

@@ -248,7 +248,7 @@ pub(crate) fn value(point: &Point, at: usize) -> f64 {
     if at < n { point.parameters[at] } else { point.effects[at - n].1 }
 }
 
-fn value_mut(point: &mut Point, at: usize) -> &mut f64 {
+pub(crate) fn value_mut(point: &mut Point, at: usize) -> &mut f64 {
     let n = point.parameters.len();
     if at < n { &mut point.parameters[at] } else { &mut point.effects[at - n].1 }
 }

@@ -12,7 +12,8 @@
 //! 4. [`compare::compare`] says how wrong each revision of a model is and where
 //!    ([`errors`], [`lack_of_fit`], [`force_error`], [`residual`]), and [`where_it_fails`] writes that
 //!    as tables and [`mod@picture`]s;
-//! 5. [`diagnose::diagnose`] says which effect is missing, as a [`verdict`].
+//! 5. [`diagnose::diagnose`] says which effect is missing, as a [`verdict`];
+//! 6. [`next::recommend`] says what to measure next where several effects remain.
 //!
 //! [`runs`] holds a run against a run.
 
@@ -35,6 +36,7 @@ pub mod forward;
 pub mod held_out;
 pub mod lack_of_fit;
 pub mod measurement;
+pub mod next;
 pub mod noise;
 pub mod observable;
 pub mod observed;

@@ -11,14 +11,14 @@ use crate::resampling::{STOPPED, common_grid, depth_and_range, stopped_at};
 pub const POSITION_FLOOR: f64 = 1e-4;
 
 /// Most frames of the penetration that are compared; neighbours in time tell the same.
-const PENETRATION_FRAMES: usize = 24;
+pub(crate) const PENETRATION_FRAMES: usize = 24;
 
 /// Most frames before first contact that are compared: they carry speed and friction of a guide.
 const FLIGHT_FRAMES: usize = 6;
 
 /// Share of the time to the stop whose frames are compared where the resting point is measured too:
 /// later, some runs have stopped and others not, and a prediction has a kink in every parameter.
-const BEFORE_STOP: f64 = 0.9;
+pub(crate) const BEFORE_STOP: f64 = 0.9;
 
 /// The observables of all conditions, in the order of the set.
 #[derive(Clone, Debug, PartialEq)]
@@ -189,14 +189,10 @@ impl ObservedCondition {
         }
         let mean = mean(&vectors, layout.len());
         let kinds = layout.kinds();
-        let depths = kinds.iter().zip(mean.iter());
-        let deepest = depths
-            .filter(|(kind, _)| matches!(kind, Observable::Depth | Observable::FinalDepth))
-            .fold(0.0_f64, |deepest, (_, z)| deepest.max(*z));
         Self {
             reading: reading(set, &layout, condition, &frames.sigma),
             stated: kinds.iter().map(|kind| stated(&set.stated, *kind)).collect(),
-            reach: if deepest > 0.0 { deepest } else { condition.diameter },
+            reach: reach(&kinds, &mean, condition),
             layout,
             runs: vectors,
             order,
@@ -293,7 +289,17 @@ fn mean(vectors: &[DVector<f64>], len: usize) -> DVector<f64> {
     sum / vectors.len().max(1) as f64
 }
 
-fn reading(
+/// Greatest depth (m) among the numbers `mean`; a diameter where none is measured.
+pub(crate) fn reach(kinds: &[Observable], mean: &DVector<f64>, condition: &Condition) -> f64 {
+    let depths = kinds.iter().zip(mean.iter());
+    let deepest = depths
+        .filter(|(kind, _)| matches!(kind, Observable::Depth | Observable::FinalDepth))
+        .fold(0.0_f64, |deepest, (_, z)| deepest.max(*z));
+    if deepest > 0.0 { deepest } else { condition.diameter }
+}
+
+/// Standard deviation of one reading of each number of `layout`, where frames may state their own.
+pub(crate) fn reading(
     set: &MeasurementSet,
     layout: &Layout,
     condition: &Condition,
@@ -320,7 +326,8 @@ fn reading(
     )
 }
 
-fn stated(stated: &StatedError, kind: Observable) -> Option<f64> {
+/// Stated relative error of a number.
+pub(crate) fn stated(stated: &StatedError, kind: Observable) -> Option<f64> {
     match kind {
         Observable::StopTime => stated.stop_time,
         Observable::Depth | Observable::FinalDepth => stated.final_z,

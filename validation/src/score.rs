@@ -8,7 +8,7 @@ use crate::signature::{Signature, collinearity, signature, variance_along};
 use crate::significance::NullScores;
 
 /// Effects whose χ² falls by less than this behind the best are not told apart: odds 20 to 1.
-const SEPARATE: f64 = 6.0;
+pub(crate) const SEPARATE: f64 = 6.0;
 
 /// How many of the best are refitted with derivatives of their own.
 const POLISHED: usize = 3;

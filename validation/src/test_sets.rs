@@ -1,8 +1,8 @@
 //! Small measurement sets for the tests of this crate.
 
 use crate::measurement::{
-    Bed, Condition, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet, Role, Run,
-    StatedError, StopDefinition,
+    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
+    Role, Run, StatedError, StopDefinition,
 };
 
 /// A sphere of an inch at `speed` (m/s) and `angle_deg` (deg), to be fitted to.
@@ -64,6 +64,7 @@ pub(crate) fn set(kind: Kind, conditions: Vec<Condition>, runs: Vec<Run>) -> Mea
         stated: StatedError::default(),
         stop: StopDefinition::SpeedFivePercent,
         last: FinalDefinition::Resting,
+        feasible: Feasible::default(),
         conditions,
         runs,
         notes: Vec::new(),

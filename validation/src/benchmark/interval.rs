@@ -37,6 +37,22 @@ impl Share {
     }
 }
 
+/// Probability that two methods which are equally good differ as much as here or more, where the first
+/// alone is right `first` times and the second alone `second` times (McNemar 1947, Psychometrika 12,
+/// 153, with the binomial distribution itself).
+#[must_use]
+pub fn mcnemar(first: usize, second: usize) -> f64 {
+    let n = first + second;
+    // The first term is 1/2ⁿ, each next one is larger by (n − k)/(k + 1).
+    let mut term = 0.5_f64.powi(i32::try_from(n).unwrap_or(i32::MAX));
+    let mut tail = 0.0;
+    for k in 0..=first.min(second) {
+        tail += term;
+        term *= (n - k) as f64 / (k + 1) as f64;
+    }
+    f64::min(1.0, 2.0 * tail)
+}
+
 /// The quantile `share` of `values`, linear between two; none of none.
 #[must_use]
 pub fn quantile(values: &[f64], share: f64) -> Option<f64> {
@@ -64,6 +80,14 @@ mod tests {
             assert!((found[0] - low).abs() < 5.1e-5, "{found:?}");
             assert!((found[1] - high).abs() < 5.1e-5, "{found:?}");
         }
+    }
+
+    #[test]
+    fn the_test_of_pairs_is_the_two_sided_binomial_one() {
+        // (1 + 10)/2¹⁰ twice; a tie says nothing, nor do no pairs. Sums of powers of two are exact.
+        assert_eq!(mcnemar(9, 1), 22.0 / 1024.0);
+        assert_eq!(mcnemar(1, 9), mcnemar(9, 1));
+        assert_eq!((mcnemar(3, 3), mcnemar(0, 0)), (1.0, 1.0));
     }
 
     #[test]

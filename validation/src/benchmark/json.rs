@@ -70,6 +70,9 @@ fn said(answer: &Answer) -> Value {
         "q_hidden": answer.hidden,
         "resting_error_m": answer.endpoint,
         "pair_found": answer.pair,
+        "truth_alone": answer.resolved.map(|resolved| json!({
+            "after_recommended": resolved.recommended, "after_drawn": resolved.drawn,
+        })),
         "cost": { "wall_s": answer.seconds },
     })
 }

@@ -7,8 +7,8 @@ use super::forces::{DENSITY, GRAVITY, Setting, Sphere};
 use super::hidden::{Amplitudes, COUNT, Hidden};
 use super::path::{COARSE, FINE, Path, WorldError};
 use crate::measurement::{
-    Bed, Condition, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet, Role, Run,
-    StatedError, StopDefinition,
+    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
+    Role, Run, StatedError, StopDefinition,
 };
 
 /// Frames per second (1/s).
@@ -129,6 +129,7 @@ pub fn measure(
         stated: StatedError::default(),
         stop: StopDefinition::SpeedFivePercent,
         last: FinalDefinition::Resting,
+        feasible: Feasible::default(),
         conditions: conditions(design),
         runs,
         notes: Vec::new(),

@@ -18,6 +18,7 @@ pub mod hidden;
 pub mod interval;
 pub mod json;
 pub mod laboratory;
+pub mod next;
 pub mod path;
 mod peers;
 pub mod plan;

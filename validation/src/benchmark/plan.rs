@@ -31,6 +31,20 @@ const SAMPLE: [Hidden; 12] = [
     Hidden::Lift,
 ];
 
+/// What straight or single-sphere impacts hardly tell apart.
+const TWINS: [Hidden; 10] = [
+    Hidden::ViscousDrag,
+    Hidden::YieldStress,
+    Hidden::Janssen,
+    Hidden::DepthExponent,
+    Hidden::Buoyancy,
+    Hidden::AddedMass,
+    Hidden::RateFriction,
+    Hidden::RailFriction,
+    Hidden::Immersion,
+    Hidden::DepthDrag,
+];
+
 /// A row of the benchmark: one thing is varied in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Row {
@@ -56,6 +70,8 @@ pub enum Row {
     Beds,
     /// Two runs of each condition.
     Repeats,
+    /// Sets that leave several effects, with one and two more conditions.
+    Next,
 }
 
 /// Which random numbers a benchmark is drawn with.
@@ -92,8 +108,8 @@ pub struct Plan {
 }
 
 impl Row {
-    /// Every row.
-    pub const ALL: [Self; 11] = [
+    /// Every row of the tables.
+    pub const TABLES: [Self; 11] = [
         Self::Singles,
         Self::Nulls,
         Self::Unlisted,
@@ -106,6 +122,11 @@ impl Row {
         Self::Beds,
         Self::Repeats,
     ];
+
+    /// Every row: those of the tables, and what is drawn only where it is asked for.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::TABLES.into_iter().chain([Self::Next])
+    }
 
     /// Name on the command line.
     #[must_use]
@@ -122,6 +143,7 @@ impl Row {
             Self::Camera => "camera",
             Self::Beds => "beds",
             Self::Repeats => "repeats",
+            Self::Next => "next",
         }
     }
 }
@@ -130,7 +152,7 @@ impl Size {
     /// The grid of the tables.
     #[must_use]
     pub fn full() -> Self {
-        Self { draws: 3, rows: Row::ALL.to_vec() }
+        Self { draws: 3, rows: Row::TABLES.to_vec() }
     }
 
     /// A third of the main rows: a first impression in two minutes.
@@ -194,6 +216,17 @@ impl Size {
             }
             Row::Repeats => {
                 self.variants(drawer, [2, 5].map(|repeats| Design { repeats, ..full.clone() }))
+            }
+            Row::Next => {
+                let designs = [Design::vertical(), Design::one_intruder()];
+                let draws = 0..self.share(2);
+                // Every set is a world of its own, whichever design it is seen through.
+                draws
+                    .flat_map(|draw| designs.iter().enumerate().map(move |two| (draw, two)))
+                    .flat_map(|(draw, (at, design))| {
+                        drawer.each(2 * draw + at, TWINS.into_iter(), design)
+                    })
+                    .collect()
             }
         }
     }
@@ -314,6 +347,14 @@ mod tests {
         let quick = Size::quick().plans(Seeds::Development);
         assert!(quick.iter().all(|plan| full.contains(plan)));
         assert!(quick.len() < full.len() && full.len() <= 900, "{}", full.len());
+    }
+
+    #[test]
+    fn forty_sets_are_drawn_to_be_extended_and_only_where_they_are_asked_for() {
+        let size = Size { draws: 3, rows: vec![Row::Next] };
+        assert_eq!(size.plans(Seeds::Development).len(), 40);
+        let tables = Size::full().plans(Seeds::Development);
+        assert!(tables.iter().all(|plan| plan.row != Row::Next));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Rows of the tables: what was measured beside what is asked for.
 
-use super::interval::{Share, quantile};
+use super::interval::{Share, mcnemar, quantile};
+use super::next::Resolved;
 use super::plan::{CAMERAS, Row, STRENGTHS};
 use super::trial::{Answer, Trial};
 use crate::diagnose::ALPHA;
@@ -88,6 +89,7 @@ pub fn scores(trials: &[Trial]) -> Vec<Score> {
     nulls(&mut rows, &answered(Row::ScalarNulls), "scalars only, ");
     instrument(&mut rows, &answered(Row::Camera), &answered(Row::Beds), &answered(Row::Repeats));
     amplitudes(&mut rows, &singles);
+    next(&mut rows, &answered(Row::Next));
     rows.retain(|row| match &row.measured {
         Measured::Share(share) => share.n > 0,
         Measured::Spread { n, .. } => *n > 0,
@@ -335,6 +337,32 @@ fn amplitudes(rows: &mut Vec<Score>, singles: &[Answered<'_>]) {
             percent(strength)
         );
         rows.push(spread(metric, &ratios, [Target::AtMost(required), Target::AtMost(stretch)]));
+    }
+}
+
+fn next(rows: &mut Vec<Score>, extended: &[Answered<'_>]) {
+    let unseparated: Vec<Resolved> =
+        extended.iter().filter_map(|(_, answer)| answer.resolved).collect();
+    let label = |what: &str| format!("several effects left (8 %): {what}");
+    for (at, number) in ["one", "two"].into_iter().enumerate() {
+        let by_both = [
+            Share::of(&unseparated, |one| one.recommended[at]),
+            Share::of(&unseparated, |one| one.drawn[at]),
+        ];
+        // Unresolved sets halved, by two.
+        let target = if at == 1 { Target::AtLeast(0.5) } else { Target::None };
+        for (share, (which, target)) in
+            by_both.into_iter().zip([("recommended", target), ("drawn", Target::None)])
+        {
+            let what = format!("truth alone after {number} {which}");
+            rows.push(row(label(&what), share, target, Target::None));
+        }
+        let one_alone: Vec<&Resolved> =
+            unseparated.iter().filter(|one| one.recommended[at] != one.drawn[at]).collect();
+        let share = Share::of(&one_alone, |one| one.recommended[at]);
+        let p = mcnemar(share.hits, share.n - share.hits);
+        let what = format!("after {number}, resolved by the recommended alone (McNemar p {p:.3})");
+        rows.push(row(label(&what), share, Target::None, Target::None));
     }
 }
 

@@ -8,8 +8,9 @@ use nalgebra::DVector;
 
 use super::chance::Chance;
 use super::laboratory::{Nature, measure, resting_points};
+use super::next::Resolved;
 use super::path::WorldError;
-use super::plan::Plan;
+use super::plan::{Plan, Row};
 use super::strength::amplitude;
 use crate::bench::{Bench, BenchError, DEFAULT_SEED, Fitted};
 use crate::diagnose::diagnose;
@@ -73,6 +74,9 @@ pub struct Answer {
     pub endpoint: Option<[f64; 2]>,
     /// The pair that a search finds, whatever the verdict; none where it is not asked for.
     pub pair: Option<Vec<String>>,
+    /// Whether more conditions leave the truth alone; none where that is not asked, or where the set does
+    /// not leave several effects.
+    pub resolved: Option<Resolved>,
     /// Time that the diagnosis took (s).
     pub seconds: f64,
 }
@@ -155,15 +159,20 @@ fn answer(
         2 => pair_found(&bench).map_err(|error| error.to_string())?,
         _ => None,
     };
+    let resolved = match plan.row {
+        Row::Next => Resolved::of(plan, nature, set, model)?,
+        _ => None,
+    };
     let rest = resting_points(&plan.design, nature).map_err(|error| error.to_string())?;
     let endpoint = endpoints(&bench, &diagnosis, &rest).map_err(|error| error.to_string())?;
-    Ok(Answer::new(diagnosis, nature, Apart { pair, endpoint, seconds }))
+    Ok(Answer::new(diagnosis, nature, Apart { pair, endpoint, resolved, seconds }))
 }
 
 /// What is learned beside a diagnosis.
 struct Apart {
     pair: Option<Vec<String>>,
     endpoint: Option<[f64; 2]>,
+    resolved: Option<Resolved>,
     seconds: f64,
 }
 
@@ -187,6 +196,7 @@ impl Answer {
             named: diagnosis.effects,
             endpoint: apart.endpoint,
             pair: apart.pair,
+            resolved: apart.resolved,
             seconds: apart.seconds,
         }
     }

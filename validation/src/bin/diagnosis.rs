@@ -24,7 +24,7 @@ Usage: cargo xtask bench diagnosis [--seeds development|release] [--only ROW]...
   --seeds WHICH  random numbers for work on the diagnosis (default), or those of the tables
   --only ROW     one row; may be given several times
                  (singles, nulls, unlisted, pairs, one-intruder, vertical, scalars, scalar-nulls,
-                 camera, beds, repeats)
+                 camera, beds, repeats; and next, which is drawn only where it is asked for)
   --sets N       worlds per effect and strength (3); all rows grow with it
   --quick        a third of singles, nulls and unlisted
   --threads N    sets diagnosed at a time (one per core)
@@ -103,8 +103,8 @@ fn parse(mut args: impl Iterator<Item = String>) -> Result<Option<Wish>, String>
 }
 
 fn row(name: &str) -> Result<Row, String> {
-    let row = Row::ALL.into_iter().find(|row| row.name() == name);
-    let known = || Row::ALL.map(Row::name).join(", ");
+    let row = Row::all().find(|row| row.name() == name);
+    let known = || Row::all().map(Row::name).collect::<Vec<_>>().join(", ");
     row.ok_or_else(|| format!("no row is called `{name}`; there are {}", known()))
 }
 

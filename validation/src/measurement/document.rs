@@ -11,7 +11,8 @@ use super::keys;
 use super::table::Format;
 use super::unstated::Unstated;
 use super::{
-    Bed, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, StatedError, StopDefinition,
+    Bed, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, StatedError,
+    StopDefinition,
 };
 
 /// What `measurement.toml` says.
@@ -61,6 +62,7 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
         files(root.table("files", Some(FILES_EXAMPLE)), head.as_ref().map(|head| head.kind));
     let columns = ColumnNames::read(root.table("columns", None));
     let stated = stated(root.table("noise", None), &mut unstated);
+    let feasible = Feasible::read(root.table("feasible", None));
     let bed_table = root.table("bed", None);
     let model = root.table("model", None);
     let baseline = optional_text(&model, "baseline", "two-term-vector", "the model to start from");
@@ -94,6 +96,7 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
         stated,
         stop: head.stop,
         last: head.last,
+        feasible,
         conditions,
         runs: Vec::new(),
         notes,

@@ -13,6 +13,7 @@ mod conditions;
 mod describe;
 mod dialect;
 mod document;
+mod feasible;
 mod findings;
 mod header;
 mod keys;
@@ -28,6 +29,7 @@ mod trajectories;
 mod unstated;
 mod write;
 
+pub use feasible::Feasible;
 pub use load::{Loaded, SetError};
 pub use write::WriteError;
 
@@ -52,6 +54,8 @@ pub struct MeasurementSet {
     pub stop: StopDefinition,
     /// Which depth and range a run gives.
     pub last: FinalDefinition,
+    /// What could be measured next.
+    pub feasible: Feasible,
     /// In the order of the file.
     pub conditions: Vec<Condition>,
     /// By condition, and within it in an order that names and rows of the file do not decide.

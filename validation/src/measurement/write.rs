@@ -9,7 +9,7 @@ use configs::toml_string as quoted;
 use thiserror::Error;
 
 use super::{
-    Condition, FinalDefinition, Geometry, Kind, MeasurementSet, Role, Run, StopDefinition,
+    Condition, Feasible, FinalDefinition, Geometry, Kind, MeasurementSet, Role, Run, StopDefinition,
 };
 
 /// Why a set cannot be written.
@@ -89,6 +89,7 @@ impl MeasurementSet {
         file.number("stop_time_rel", self.stated.stop_time);
         file.number("final_z_rel", self.stated.final_z);
         file.number("final_x_rel", self.stated.final_x);
+        file.feasible(&self.feasible);
         file.table("[files]");
         file.word("runs", "runs.csv");
         file.text("trajectories", (!scalar).then_some("trajectories.csv"));
@@ -180,6 +181,23 @@ impl Toml {
     fn number(&mut self, key: &str, value: Option<f64>) {
         if let Some(value) = value {
             self.line(key, &format!("{value:?}"));
+        }
+    }
+
+    fn numbers(&mut self, key: &str, values: &[f64]) {
+        if !values.is_empty() {
+            self.line(key, &format!("{values:?}"));
+        }
+    }
+
+    fn feasible(&mut self, feasible: &Feasible) {
+        if *feasible == Feasible::default() {
+            return;
+        }
+        self.table("[feasible]");
+        self.numbers("speed", feasible.speed.as_ref().map_or(&[], |range| &range[..]));
+        for (key, values) in feasible.lists() {
+            self.numbers(key, values);
         }
     }
 

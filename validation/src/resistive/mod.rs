@@ -14,6 +14,7 @@ use thiserror::Error;
 
 use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
 use crate::measurement::MeasurementSet;
+use crate::next::Designs;
 use crate::observable::Layout;
 use prepared::Prepared;
 
@@ -170,6 +171,13 @@ impl ResistiveForward {
     #[must_use]
     pub fn effects(&self) -> &[Effect] {
         &self.effects
+    }
+}
+
+impl Designs for Model {
+    fn forward(&self, set: &MeasurementSet, layouts: &[Layout]) -> Option<Box<dyn Forward>> {
+        let forward = ResistiveForward::new(self, set, layouts).ok()?;
+        Some(Box::new(forward))
     }
 }
 

@@ -98,7 +98,8 @@ fn is_vertical(condition: &Condition) -> bool {
 mod tests {
     use super::*;
     use crate::measurement::{
-        Bed, FinalDefinition, Frame, Geometry, Instrument, Kind, StatedError, StopDefinition,
+        Bed, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, StatedError,
+        StopDefinition,
     };
 
     fn condition() -> Condition {
@@ -156,6 +157,7 @@ mod tests {
             stated: StatedError::default(),
             stop: StopDefinition::ComponentZero,
             last: FinalDefinition::Deepest,
+            feasible: Feasible::default(),
             conditions,
             runs,
             notes: Vec::new(),

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
 use validation::forward::{Forward, Request, Scatter};
 use validation::measurement::{
-    Bed, Condition, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet, Role, Run,
-    StatedError, StopDefinition,
+    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
+    Role, Run, StatedError, StopDefinition,
 };
 use validation::observable::Layout;
 use validation::resistive::ResistiveForward;
@@ -93,6 +93,7 @@ fn set(conditions: Vec<Condition>) -> MeasurementSet {
         stated: StatedError::default(),
         stop: StopDefinition::ComponentZero,
         last: FinalDefinition::Resting,
+        feasible: Feasible::default(),
         runs: runs.collect(),
         conditions,
         notes: Vec::new(),

@@ -3,8 +3,8 @@
 use rand::RngExt;
 use rand_pcg::Pcg64;
 use validation::measurement::{
-    Bed, Condition, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet, Role, Run,
-    StatedError, StopDefinition,
+    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
+    Role, Run, StatedError, StopDefinition,
 };
 
 use crate::world::{Effect, GRAVITY, Impact, Setting, TRUTH};
@@ -95,6 +95,7 @@ impl Laboratory {
             stated: StatedError::default(),
             stop: StopDefinition::SpeedFivePercent,
             last: FinalDefinition::Resting,
+            feasible: Feasible::default(),
             conditions: conditions
                 .map(|(at, setting)| {
                     condition(at, setting, if at < fit { Role::Fit } else { Role::Holdout })

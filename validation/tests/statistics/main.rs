@@ -3,6 +3,7 @@
 mod comparison;
 mod diagnosis;
 mod laboratory;
+mod next;
 mod noise;
 mod where_it_fails;
 mod world;

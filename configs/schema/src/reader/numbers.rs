@@ -56,7 +56,7 @@ impl TableReader<'_> {
     }
 
     /// A list of quantities, each as its specification says.
-    pub(crate) fn numbers(&self, spec: &ParamSpec) -> Option<Option<Vec<Found<f64>>>> {
+    pub fn numbers(&self, spec: &ParamSpec) -> Option<Option<Vec<Found<f64>>>> {
         let Some(entry) = self.entry(spec.key) else {
             return Some(None);
         };

@@ -1,0 +1,112 @@
+//! A condition that was not measured, as it would be measured.
+
+use nalgebra::DVector;
+
+use super::Designs;
+use super::rival::Rival;
+use crate::bench::Bench;
+use crate::forward::Forward;
+use crate::measurement::{Condition, Kind, MeasurementSet, Role};
+use crate::observable::{Layout, Observable};
+use crate::observed::{BEFORE_STOP, ObservedCondition, PENETRATION_FRAMES};
+
+/// A condition with a model before it, and the errors that it would be measured with.
+pub(super) struct Foreseen {
+    set: MeasurementSet,
+    forward: Box<dyn Forward>,
+    observed: ObservedCondition,
+}
+
+impl Foreseen {
+    /// `condition` with so many repeats, as `leader` predicts it; frames up to the predicted stop.
+    /// `None` if the model cannot say.
+    pub(super) fn of(
+        bench: &Bench<'_>,
+        designs: &dyn Designs,
+        (condition, repeats): (Condition, usize),
+        leader: &Rival,
+    ) -> Option<Self> {
+        let set = alone(bench.set, condition);
+        let predict = |layout: &Layout| -> Option<(Box<dyn Forward>, DVector<f64>)> {
+            let forward = designs.forward(&set, std::slice::from_ref(layout))?;
+            let point = leader.before(forward.as_ref())?.point;
+            let mean = point.predict(forward.as_ref(), 0).ok()?;
+            (mean.len() == layout.len()).then_some((forward, mean))
+        };
+        let stop = predict(&Layout { stop_time: true, ..Layout::default() })?.1[0];
+        let layout = layout(bench, &set.conditions[0], stop);
+        let (forward, mean) = predict(&layout)?;
+        let observed = ObservedCondition::foreseen(&set, layout, (mean, repeats));
+        Some(Self { set, forward, observed })
+    }
+
+    pub(super) fn condition(&self) -> &Condition {
+        &self.set.conditions[0]
+    }
+
+    pub(super) fn forward(&self) -> &dyn Forward {
+        self.forward.as_ref()
+    }
+
+    pub(super) fn observed(&self) -> &ObservedCondition {
+        &self.observed
+    }
+}
+
+/// `set` with `condition` and nothing measured.
+fn alone(set: &MeasurementSet, condition: Condition) -> MeasurementSet {
+    MeasurementSet {
+        id: set.id.clone(),
+        source: None,
+        baseline: None,
+        conditions: vec![Condition { role: Role::Fit, ..condition }],
+        runs: Vec::new(),
+        notes: Vec::new(),
+        feasible: set.feasible.clone(),
+        ..*set
+    }
+}
+
+/// What would be measured of `condition`, whose intruder stops at `stop` (s): frames as far as the set
+/// has them, and the scalars that it has of any condition.
+fn layout(bench: &Bench<'_>, condition: &Condition, stop: f64) -> Layout {
+    let layouts = || bench.observed.fit.iter().map(|&at| &bench.observed.conditions[at].layout);
+    let oblique = condition.angle_deg < 90.0;
+    let scalars = |is: fn(&Layout) -> bool| layouts().any(is);
+    let (final_z, final_x) = (scalars(|one| one.final_z), scalars(|one| one.final_z) && oblique);
+    if bench.set.kind == Kind::Scalar || layouts().all(|one| one.times.is_empty()) {
+        let stop_time = scalars(|one| one.stop_time);
+        return Layout { final_z, final_x, stop_time, ..Layout::default() };
+    }
+    let flight = layouts().map(|one| one.times.iter().filter(|t| **t < 0.0));
+    let flight = flight.max_by_key(|times| times.clone().count());
+    // Where the resting point is measured too, frames of the set end as much earlier.
+    let last = if final_z { BEFORE_STOP * stop } else { stop };
+    let n = PENETRATION_FRAMES;
+    let frames = (0..n).map(|frame| last * frame as f64 / (n - 1) as f64);
+    let times = flight.into_iter().flatten().copied().chain(frames).collect();
+    Layout { times, along_x: oblique, stop_time: false, final_z, final_x }
+}
+
+impl ObservedCondition {
+    /// The one condition of `set` as it would be measured: every one of so many runs like `mean`, whose
+    /// numbers are those of `layout`.
+    fn foreseen(
+        set: &MeasurementSet,
+        layout: Layout,
+        (mean, repeats): (DVector<f64>, usize),
+    ) -> Self {
+        let condition = &set.conditions[0];
+        let frames = vec![None; layout.times.len()];
+        let kinds: Vec<Observable> = layout.kinds();
+        Self {
+            reading: crate::observed::reading(set, &layout, condition, &frames),
+            stated: kinds.iter().map(|kind| crate::observed::stated(&set.stated, *kind)).collect(),
+            reach: crate::observed::reach(&kinds, &mean, condition),
+            runs: vec![mean.clone(); repeats],
+            order: vec![None; repeats],
+            layout,
+            mean,
+        }
+    }
+}

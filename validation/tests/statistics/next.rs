@@ -1,0 +1,72 @@
+//! The next experiment.
+
+use validation::bench::{Bench, DEFAULT_SEED};
+use validation::benchmark::trial::baseline;
+use validation::diagnose::diagnose;
+use validation::measurement::{Feasible, MeasurementSet};
+use validation::next::{Recommendation, judged, recommend};
+use validation::observed::Observed;
+use validation::resistive::ResistiveForward;
+use validation::verdict::{Diagnosis, Verdict};
+
+use crate::laboratory::Laboratory;
+use crate::world::{Effect, Setting};
+
+/// One sphere straight down at six speeds, and what is hidden.
+fn vertical(effect: Effect, amplitude: f64) -> Laboratory {
+    let setting = |speed| Setting { speed, angle: 90.0, mass: 0.0667, diameter: 0.0254 };
+    Laboratory {
+        settings: [0.6, 1.2, 1.8, 2.4, 3.0, 3.6].map(setting).to_vec(),
+        holdout: 0,
+        ..Laboratory::hiding(effect, amplitude)
+    }
+}
+
+/// The diagnosis of `set` with recommendations, and the whole grid.
+fn next(set: &MeasurementSet) -> (Diagnosis, Vec<Recommendation>) {
+    let model = baseline().expect("the shipped model loads");
+    let observed = Observed::of(set);
+    let forward = ResistiveForward::new(&model, set, &observed.layouts()).expect("it has spheres");
+    let bench = Bench { set, observed: &observed, forward: &forward };
+    let mut diagnosis = diagnose(&bench, DEFAULT_SEED).expect("spheres stop");
+    recommend(&bench, &model, &mut diagnosis).expect("spheres stop");
+    let grid = judged(&bench, &model, &diagnosis).expect("spheres stop");
+    (diagnosis, grid)
+}
+
+#[test]
+fn what_one_sphere_straight_down_does_not_separate_another_mass_or_angle_does() {
+    for (effect, amplitude) in [(Effect::Buoyancy, 4.0), (Effect::Yield, 2.0)] {
+        let set = vertical(effect, amplitude).measure(1);
+        let (diagnosis, grid) = next(&set);
+        assert_eq!(diagnosis.verdict, Verdict::NotSeparable, "{:?}", diagnosis.unexplained);
+        assert!(grid.len() > 20, "{}", grid.len());
+        let best = &grid[0].condition;
+        let measured = &set.conditions[0];
+        assert!(best.mass != measured.mass || best.angle_deg < 90.0, "{best:?}");
+        // Half of the grid lacks what the best has, by the claim above.
+        let median = grid[grid.len() / 2].expected_delta;
+        assert!(grid[0].expected_delta > median, "{} {median}", grid[0].expected_delta);
+        for one in &grid[0].separates {
+            assert!(diagnosis.ranking.iter().any(|effect| effect.id == *one), "{one}");
+        }
+        let json = &diagnosis.next;
+        assert_eq!(json.len(), 3);
+        assert_eq!(json[0]["mass_kg"], best.mass);
+        let p = json[0]["probability_separated"].as_f64().expect("a probability");
+        // Half a chance where as much is expected as is needed, whichever way it differs.
+        assert_eq!(p > 0.5, grid[0].expected_delta > 6.0, "{p} {}", grid[0].expected_delta);
+    }
+}
+
+#[test]
+fn equal_input_gives_equal_bytes_within_the_limits_of_the_set() {
+    let mut set = vertical(Effect::Buoyancy, 4.0).measure(1);
+    set.feasible = Feasible { angle_deg: vec![75.0], mass: vec![0.05], ..Feasible::default() };
+    let (first, second) = (next(&set), next(&set));
+    assert_eq!(first.0.to_json().expect("JSON"), second.0.to_json().expect("JSON"));
+    assert!(!first.1.is_empty());
+    for one in &first.1 {
+        assert_eq!((one.condition.angle_deg, one.condition.mass), (75.0, 0.05));
+    }
+}
