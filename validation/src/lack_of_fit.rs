@@ -12,6 +12,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::directions::Directions;
+use crate::forward::PredictError;
 use crate::noise::NoiseSource;
 use crate::redraw::Redraw;
 use crate::sensitivity::{Direction, bend_response, force_response};
@@ -62,7 +63,7 @@ pub fn lack_of_fit(
         let sideways = response(Direction::Sideways, nodes.div_ceil(2))?;
         responses.push([along, sideways].map(|response| weight.whiten_columns(&response)));
     }
-    let imitated = imitated(bench, fitted, reach)?;
+    let imitated = imitated(bench, fitted, reach);
     let directions = Directions::new(bench, &imitated, &responses);
     let mut noise = Redraw::new(bench, fitted, &directions, seed);
     let drawn: Vec<Vec<f64>> = (0..DRAWS).map(|_| directions.sizes(&noise.draw())).collect();
@@ -73,19 +74,30 @@ pub fn lack_of_fit(
 /// Whitened directions that are no lack of fit: what the parameters and amplitudes of `fitted` can do,
 /// and, since nature does not use our formulas, what its effects do whose strength changes with depth
 /// or with speed.
-fn imitated(bench: &Bench<'_>, fitted: &Fitted, reach: f64) -> Result<DMatrix<f64>, BenchError> {
-    let mut bends = DMatrix::zeros(fitted.fit.residual.len(), 2);
-    if !fitted.fit.point.effects.is_empty() {
-        let mut start = 0;
-        for (&condition, weight) in bench.observed.fit.iter().zip(&fitted.weights) {
-            let response = bend_response(&fitted.fit.point, bench.forward, condition, reach)?;
-            let response = weight.whiten_columns(&response);
-            bends.view_mut((start, 0), response.shape()).copy_from(&response);
-            start += response.nrows();
-        }
+fn imitated(bench: &Bench<'_>, fitted: &Fitted, reach: f64) -> DMatrix<f64> {
+    let bends = bends(bench, fitted, reach);
+    let columns = fitted.fit.jacobian.column_iter();
+    match &bends {
+        Ok(bends) => DMatrix::from_columns(&columns.chain(bends.column_iter()).collect::<Vec<_>>()),
+        // An effect that no body comes to rest under when it is bent is of its formula or not at all.
+        Err(_) => fitted.fit.jacobian.clone(),
     }
-    let columns: Vec<_> = fitted.fit.jacobian.column_iter().chain(bends.column_iter()).collect();
-    Ok(DMatrix::from_columns(&columns))
+}
+
+fn bends(bench: &Bench<'_>, fitted: &Fitted, reach: f64) -> Result<DMatrix<f64>, PredictError> {
+    let mut blocks = Vec::with_capacity(fitted.weights.len());
+    for (&condition, weight) in bench.observed.fit.iter().zip(&fitted.weights) {
+        let response = bend_response(&fitted.fit.point, bench.forward, condition, reach)?;
+        blocks.push(weight.whiten_columns(&response));
+    }
+    let mut all =
+        DMatrix::zeros(fitted.fit.residual.len(), blocks.first().map_or(0, DMatrix::ncols));
+    let mut start = 0;
+    for block in blocks {
+        all.view_mut((start, 0), block.shape()).copy_from(&block);
+        start += block.nrows();
+    }
+    Ok(all)
 }
 
 /// Probability that the smallest probability of several sizes is as small as that of `measured`,
