@@ -114,6 +114,10 @@ fn as_text(model: &str, diagnosis: &Diagnosis, [n_fit, n_holdout]: [usize; 2]) -
         let on = diagnosis.unexplained.depends_on.join(", ");
         text.push_str(&format!("What remains of the force depends on {on}.\n"));
     }
+    if let Some(table) = &diagnosis.unexplained.suggestion {
+        let intro = "A suggestion, not a finding: put this into the model file and diagnose again.";
+        text.push_str(&format!("\n{intro}\n\n{table}"));
+    }
     text.push_str(&held_out(diagnosis));
     text
 }

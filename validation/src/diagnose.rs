@@ -17,6 +17,7 @@ use crate::pair::{Pair, best_pair};
 use crate::rounding::rounded;
 use crate::score::Ranking;
 use crate::sensitivity::Point;
+use crate::suggestion::suggestion;
 use crate::verdict::{Amplitude, Diagnosis, RankedEffect, Strength, Unexplained, Verdict};
 
 /// Probability of error at which something counts as found, or a model as rejected.
@@ -167,6 +168,10 @@ impl Judge<'_> {
             Verdict::NoneOfTheCandidates | Verdict::Pair => remaining.depends_on(),
             _ => remaining.drifts(),
         };
+        let suggestion = match verdict {
+            Verdict::NoneOfTheCandidates => suggestion(bench.set, &remaining),
+            _ => None,
+        };
         let before = if proposed.fit.point.effects.is_empty() { proposed } else { &self.weighed };
         let amplitudes: Vec<Amplitude> = proposed
             .fit
@@ -197,7 +202,7 @@ impl Judge<'_> {
             p_lof_with,
             noise: proposed.noise.to_json(&bench.set.instrument),
             holdout: Some(held_out),
-            unexplained: Unexplained { depends_on, hint },
+            unexplained: Unexplained { depends_on, hint, suggestion },
             next: Vec::new(),
             parameters: parameters(bench.forward, &proposed.fit),
             amplitudes,
@@ -240,7 +245,7 @@ fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {
         p_lof_with: None,
         noise: serde_json::Value::Null,
         holdout: None,
-        unexplained: Unexplained { depends_on: Vec::new(), hint: why },
+        unexplained: Unexplained { hint: why, ..Unexplained::default() },
         next: Vec::new(),
         parameters: Map::new(),
         amplitudes: Vec::new(),

@@ -139,6 +139,9 @@ pub struct Unexplained {
     pub depends_on: Vec<&'static str>,
     /// One sentence; empty if nothing remains.
     pub hint: String,
+    /// A candidate of one's own to try, as a table for the model file: a guess, not a finding.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub suggestion: Option<String>,
 }
 
 impl Diagnosis {

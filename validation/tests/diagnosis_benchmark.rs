@@ -1,8 +1,14 @@
 //! A few worlds of the benchmark of the diagnosis, with claims that can fail.
 
+use validation::bench::{Bench, DEFAULT_SEED};
+use validation::benchmark::design::Design;
 use validation::benchmark::hidden::Hidden;
-use validation::benchmark::plan::{Row, Seeds, Size};
-use validation::benchmark::trial::{Answer, Trial, baseline};
+use validation::benchmark::plan::{Plan, Row, Seeds, Size};
+use validation::benchmark::trial::{Answer, Trial, baseline, draw};
+use validation::diagnose::diagnose;
+use validation::measurement::MeasurementSet;
+use validation::observed::Observed;
+use validation::resistive::ResistiveForward;
 use validation::verdict::Verdict;
 
 /// The answers to the first `most` sets of `row` that `wanted` picks.
@@ -48,4 +54,28 @@ fn what_the_data_cannot_show_is_refused_not_ranked() {
             assert!(!answer.ranked.iter().any(|id| id == blind.id()), "{answer:?}");
         }
     }
+}
+
+#[test]
+fn without_frames_before_impact_friction_of_the_guide_is_one_of_several() {
+    let hidden = vec![Hidden::RailFriction];
+    let design = Design::one_intruder();
+    let plan = Plan { row: Row::OneIntruder, seed: 77, design, hidden, strength: 0.08 };
+    let (_, with_frames) = draw(&plan).expect("it can be drawn");
+    let mut without = with_frames.clone();
+    for run in &mut without.runs {
+        run.frames.retain(|frame| frame.t >= 0.0);
+    }
+    let model = baseline().expect("the shipped model loads");
+    let diagnosed = |set: &MeasurementSet| {
+        let observed = Observed::of(set);
+        let forward = ResistiveForward::new(&model, set, &observed.layouts()).expect("it fits");
+        let bench = Bench { set, observed: &observed, forward: &forward };
+        diagnose(&bench, DEFAULT_SEED).expect("spheres stop")
+    };
+    let told = diagnosed(&with_frames);
+    assert_eq!(told.effects, ["rail-friction"], "{:?} {:?}", told.verdict, told.unexplained);
+    let left = diagnosed(&without);
+    assert_eq!(left.verdict, Verdict::NotSeparable, "{:?}", left.unexplained);
+    assert!(left.not_separable.iter().any(|id| id == "rail-friction"), "{:?}", left.not_separable);
 }

@@ -88,6 +88,7 @@ fn empty_set() -> MeasurementSet {
         last: FinalDefinition::Deepest,
         runs: (0..conditions.len() * REPEATS).map(run).collect(),
         conditions,
+        feasible: Default::default(),
         notes: Vec::new(),
     }
 }

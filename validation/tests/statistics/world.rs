@@ -283,7 +283,7 @@ impl Forward for TwoTerm {
     }
 
     fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError> {
-        let Scatter { coefficients, speed, level, along, sideways, reach } = at.scatter;
+        let Scatter { coefficients, speed, level, along, sideways, reach, .. } = at.scatter;
         let mut effects = self.adopted.clone();
         effects.extend(at.effects.iter().map(|&(index, q)| (self.effects[index], q)));
         let impact = Impact {
