@@ -132,7 +132,7 @@ impl<'a> WhereItFails<'a> {
             let name = format!("{name} + {}", diagnosis.effects.join(" + "));
             models.push(Failing::of(bench, &name, proposed, seed)?);
         }
-        let signatures = signature::best_two(bench, baseline, &models[0].residuals, diagnosis)?;
+        let signatures = signature::best_two(bench, baseline, &models[0].residuals, diagnosis);
         Ok(Self { set, observed, models, signatures })
     }
 

@@ -30,7 +30,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     signature: "all positions are off by the same fraction, in the flight too; stopping times are right",
     source: "magnification of a camera",
     params: &[amplitude(
-        Range::closed(-0.5, 0.5),
+        Range::closed(-0.25, 0.25),
         Range::closed(-0.05, 0.05),
         "relative error of every length that is read",
     )],

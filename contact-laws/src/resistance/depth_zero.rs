@@ -26,7 +26,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     signature: "all depths are off by the same length, in the flight too; ranges and stopping times are right",
     source: "level of the surface as it is set in a picture",
     params: &[amplitude(
-        Range::closed(-50.0, 50.0),
+        Range::closed(-20.0, 20.0),
         Range::closed(-2.0, 2.0),
         "offset of every depth that is read, in millimetres",
     )],

@@ -92,7 +92,7 @@ impl Look {
             .map_err(|error| error.to_string())?;
         let bench = Bench { set, observed: &observed, forward: &forward };
         let diagnosis = diagnose(&bench, DEFAULT_SEED).map_err(|error| error.to_string())?;
-        let grid = judged(&bench, model, &diagnosis).map_err(|error| error.to_string())?;
+        let grid = judged(&bench, model, &diagnosis);
         Ok(Self { diagnosis, grid })
     }
 }

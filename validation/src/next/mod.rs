@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use crate::bench::{Bench, BenchError};
+use crate::bench::Bench;
 use crate::forward::Forward;
 use crate::measurement::{Condition, MeasurementSet};
 use crate::observable::Layout;
@@ -91,19 +91,16 @@ impl Recommendation {
 
 /// Every feasible condition that can be predicted, best first; nothing unless `diagnosis` names
 /// several effects that it does not tell apart. Equal input gives equal bytes.
-///
-/// # Errors
-/// If the model fails where it was fitted.
 pub fn judged(
     bench: &Bench<'_>,
     designs: &dyn Designs,
     diagnosis: &Diagnosis,
-) -> Result<Vec<Recommendation>, BenchError> {
+) -> Vec<Recommendation> {
     let (Verdict::NotSeparable, Some(proposed)) = (diagnosis.verdict, &diagnosis.proposed) else {
-        return Ok(Vec::new());
+        return Vec::new();
     };
-    let rivals = rivals(bench, diagnosis)?;
-    let Some(leader) = rivals.first() else { return Ok(Vec::new()) };
+    let rivals = rivals(bench, diagnosis);
+    let Some(leader) = rivals.first() else { return Vec::new() };
     let repeats = repeats(bench);
     let noise = &proposed.noise;
     let mut judged: Vec<Recommendation> = grid::feasible(bench.set)
@@ -118,28 +115,25 @@ pub fn judged(
         .collect();
     // Stable: among equals the order of the grid decides.
     judged.sort_by(|a, b| b.expected_delta.total_cmp(&a.expected_delta));
-    Ok(judged)
+    judged
 }
 
 /// Puts the best of [`judged`] into `diagnosis`, and gives them.
-///
-/// # Errors
-/// If the model fails where it was fitted.
 pub fn recommend(
     bench: &Bench<'_>,
     designs: &dyn Designs,
     diagnosis: &mut Diagnosis,
-) -> Result<Vec<Recommendation>, BenchError> {
-    let mut best = judged(bench, designs, diagnosis)?;
+) -> Vec<Recommendation> {
+    let mut best = judged(bench, designs, diagnosis);
     best.truncate(BEST);
     diagnosis.next = best.iter().map(Recommendation::to_json).collect();
-    Ok(best)
+    best
 }
 
 /// The effects that are not told apart, in the order of the ranking, and those that follow; the leader
-/// first.
-fn rivals(bench: &Bench<'_>, diagnosis: &Diagnosis) -> Result<Vec<Rival>, BenchError> {
-    let Some(proposed) = &diagnosis.proposed else { return Ok(Vec::new()) };
+/// first. One around whose fit the model cannot be integrated is left out.
+fn rivals(bench: &Bench<'_>, diagnosis: &Diagnosis) -> Vec<Rival> {
+    let Some(proposed) = &diagnosis.proposed else { return Vec::new() };
     let best = diagnosis.ranking.first().and_then(|effect| effect.delta).unwrap_or(0.0);
     let is_named = |id: &String| diagnosis.not_separable.contains(id);
     let ranked = || diagnosis.ranking.iter();
@@ -151,7 +145,7 @@ fn rivals(bench: &Bench<'_>, diagnosis: &Diagnosis) -> Result<Vec<Rival>, BenchE
             let behind = best - effect.delta?;
             Some(((effect.id.clone(), behind), effect.point.as_ref()?))
         })
-        .map(|(which, point)| Rival::fitted(bench, &proposed.weights, which, point))
+        .filter_map(|(which, point)| Rival::fitted(bench, &proposed.weights, which, point).ok())
         .collect()
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::bench::{Bench, BenchError};
+use crate::bench::Bench;
 use crate::fit::value_mut;
 use crate::forward::{Forward, PredictError};
 use crate::score::SEPARATE;
@@ -39,7 +39,7 @@ impl Rival {
         weights: &[Weight],
         (id, behind): (String, f64),
         point: &Point,
-    ) -> Result<Self, BenchError> {
+    ) -> Result<Self, PredictError> {
         let fit = bench.data(weights).fit(point)?;
         let names = bench.forward.parameters().iter().map(|parameter| parameter.name.clone());
         Ok(Self {

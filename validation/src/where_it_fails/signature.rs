@@ -1,6 +1,6 @@
 //! What the best candidates would do to the predictions.
 
-use crate::bench::{Bench, BenchError, Fitted};
+use crate::bench::{Bench, Fitted};
 use crate::residual::{Residual, residuals};
 use crate::verdict::Diagnosis;
 
@@ -17,22 +17,23 @@ pub struct Signature {
 }
 
 /// Of the best of the ranking: predictions of the model refitted with the effect, less those of the
-/// model as it is, which has left `found`.
+/// model as it is, which has left `found`. Effects around which the model cannot be integrated are passed
+/// over.
 pub(super) fn best_two(
     bench: &Bench<'_>,
     baseline: &Fitted,
     found: &[Residual],
     diagnosis: &Diagnosis,
-) -> Result<Vec<Signature>, BenchError> {
+) -> Vec<Signature> {
     let ranked =
         diagnosis.ranking.iter().filter_map(|effect| Some((effect, effect.point.as_ref()?)));
     ranked
-        .take(SHOWN)
-        .map(|(effect, point)| {
-            let with = residuals(bench, point, &baseline.noise)?;
+        .filter_map(|(effect, point)| {
+            let with = residuals(bench, point, &baseline.noise).ok()?;
             let pairs = with.iter().zip(found);
             let change = pairs.map(|(with, without)| with.predicted - without.predicted).collect();
-            Ok(Signature { effect: effect.id.clone(), change })
+            Some(Signature { effect: effect.id.clone(), change })
         })
+        .take(SHOWN)
         .collect()
 }
