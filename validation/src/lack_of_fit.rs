@@ -1,9 +1,9 @@
 //! Whether a fitted model leaves something behind that is not noise.
 //!
 //! The residual is held against changes of the force over depth, against the motion and normal to it:
-//! smooth and sharp ones, coherent over conditions and free in every one ([`crate::directions`]). How
+//! smooth and sharp ones, coherent over conditions and free in every one (`directions`). How
 //! large noise alone makes each is learned by resampling the deviations of runs within conditions
-//! ([`crate::redraw`]); a theoretical distribution with one pooled scale rejects too many true models.
+//! (`redraw`); a theoretical distribution with one pooled scale rejects too many true models.
 //! The smallest of their probabilities is held against the smallest of every resampled residual, so
 //! that looking in several ways costs no more than it must (Westfall & Young 1993).
 

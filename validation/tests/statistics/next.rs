@@ -43,7 +43,8 @@ fn what_one_sphere_straight_down_does_not_separate_another_mass_or_angle_does() 
         assert!(grid.len() > 20, "{}", grid.len());
         let best = &grid[0].condition;
         let measured = &set.conditions[0];
-        assert!(best.mass != measured.mass || best.angle_deg < 90.0, "{best:?}");
+        let other_mass = (best.mass - measured.mass).abs() > 0.0;
+        assert!(other_mass || best.angle_deg < 90.0, "{best:?}");
         // Half of the grid lacks what the best has, by the claim above.
         let median = grid[grid.len() / 2].expected_delta;
         assert!(grid[0].expected_delta > median, "{} {median}", grid[0].expected_delta);
