@@ -9,6 +9,8 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use engine::parallel::with_threads;
+use lexopt::Parser;
+use lexopt::prelude::{Long, Short, ValueExt};
 use validation::benchmark::calibration::{calibration, picture};
 use validation::benchmark::interval::quantile;
 use validation::benchmark::plan::{Row, Seeds, Size};
@@ -49,7 +51,7 @@ struct Wish {
 }
 
 fn main() -> ExitCode {
-    let wish = match parse(std::env::args().skip(1)) {
+    let wish = match parse(Parser::from_env()) {
         Ok(Some(wish)) => wish,
         Ok(None) => {
             print!("{HELP}");
@@ -70,29 +72,28 @@ fn main() -> ExitCode {
 }
 
 /// `None` for help.
-fn parse(mut args: impl Iterator<Item = String>) -> Result<Option<Wish>, String> {
+fn parse(mut args: Parser) -> Result<Option<Wish>, lexopt::Error> {
     let (mut seeds, mut size, mut only, mut draws) =
         (Seeds::Development, Size::full(), Vec::new(), None);
     let (mut threads, mut json, mut write, mut export) = (0, false, false, None);
-    while let Some(arg) = args.next() {
-        let mut value = || args.next().ok_or(format!("`{arg}` needs a value"));
-        match arg.as_str() {
-            "--seeds" => {
-                seeds = match value()?.as_str() {
-                    "development" => Seeds::Development,
-                    "release" => Seeds::Release,
-                    other => return Err(format!("there are no seeds `{other}`")),
-                }
+    while let Some(arg) = args.next()? {
+        match arg {
+            Long("seeds") => {
+                seeds = args.value()?.parse_with(|name| match name {
+                    "development" => Ok(Seeds::Development),
+                    "release" => Ok(Seeds::Release),
+                    other => Err(format!("there are no seeds `{other}`")),
+                })?;
             }
-            "--only" => only.push(row(&value()?)?),
-            "--sets" => draws = Some(count(&value()?)?),
-            "--threads" => threads = count(&value()?)?,
-            "--quick" => size = Size::quick(),
-            "--json" => json = true,
-            "--write" => write = true,
-            "--export" => export = Some(PathBuf::from(value()?)),
-            "-h" | "--help" => return Ok(None),
-            other => return Err(format!("`{other}` is not understood")),
+            Long("only") => only.push(args.value()?.parse_with(row)?),
+            Long("sets") => draws = Some(args.value()?.parse_with(count)?),
+            Long("threads") => threads = args.value()?.parse_with(count)?,
+            Long("quick") => size = Size::quick(),
+            Long("json") => json = true,
+            Long("write") => write = true,
+            Long("export") => export = Some(PathBuf::from(args.value()?)),
+            Short('h') | Long("help") => return Ok(None),
+            other => return Err(other.unexpected()),
         }
     }
     if !only.is_empty() {

@@ -32,7 +32,7 @@ const ONLY: [(&str, &[&str]); 26] = [
     ("foxglove", &["engine"]),
     ("indicatif", &["plunge"]),
     ("levenberg-marquardt", &["validation"]),
-    ("lexopt", &["xtask"]),
+    ("lexopt", &["validation", "xtask"]),
     ("mcap", &["engine", "exchange"]),
     // The fits of `validation` speak the version that `levenberg-marquardt` is built on.
     ("nalgebra", &["engine", "validation"]),
