@@ -3,7 +3,7 @@
 mod closed_forms;
 mod effects;
 mod formulas;
-#[path = "../../examples/late_drag.rs"]
+#[path = "../../examples/late_drag/effect.rs"]
 mod late_drag;
 mod ledger;
 mod own_candidates;

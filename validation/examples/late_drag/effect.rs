@@ -1,6 +1,5 @@
 //! The effect of `docs/own-effects.md` as a Rust type: what would be one new file in
-//! `contact-laws/src/resistance` and one line in the table there. Run it with
-//! `cargo run -p validation --example late_drag`.
+//! `contact-laws/src/resistance` and one line in the table there.
 
 use configs::{LoadOptions, Model, ModelSource};
 use contact_laws::{Coefficients, Facts, Needs, ResistanceEntry, Role};
@@ -117,14 +116,4 @@ pub(crate) fn impacts() -> [Impact; 2] {
     });
     let by_type = Impact::new(made.assembly, laws, plain.surroundings(), made.start);
     [by_formula, by_type]
-}
-
-#[allow(clippy::print_stdout, reason = "an example shows what it found")]
-#[allow(dead_code, reason = "a test takes everything but this")]
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    for (impact, how) in impacts().iter().zip(["as a formula", "as a Rust type"]) {
-        let depth = impact.run(1.0, &mut ())?.parts[0].depth;
-        println!("{how}: {:.9} mm deep", 1e3 * depth);
-    }
-    Ok(())
 }
