@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::activity::Activity;
 use crate::body::Mechanism;
 use crate::clock::{Clock, steps_in};
 use crate::error::StepError;
@@ -26,6 +27,7 @@ pub struct Simulation {
     world: World,
     settings: Settings,
     stopping: Stopping,
+    activity: Activity,
     surface: f64,
     impact_energy: f64,
     energy_scale: f64,
@@ -36,6 +38,7 @@ pub struct Simulation {
 pub struct Snapshot {
     world: SavedWorld,
     stopping: Stopping,
+    activity: Activity,
     surface: f64,
     impact_energy: f64,
 }
@@ -64,7 +67,8 @@ impl Simulation {
         // An intruder let go from rest has no energy of impact to compare with.
         let fall = body.mass * world.bed.gravity.norm() * 2.0 * body.surface().bounding_radius();
         let energy_scale = if impact_energy > 0.0 { impact_energy } else { fall };
-        Self { world, settings, stopping, surface, impact_energy, energy_scale }
+        let activity = Activity::default();
+        Self { world, settings, stopping, activity, surface, impact_energy, energy_scale }
     }
 
     /// Moves on by one step.
@@ -74,7 +78,10 @@ impl Simulation {
     pub fn advance(&mut self) -> Result<(), StepError> {
         self.world.advance()?;
         let body = &self.world.intruder.bodies()[0];
-        self.stopping.observe(self.world.clock.time(), body.position, body.velocity);
+        let time = self.world.clock.time();
+        self.stopping.observe(time, body.position, body.velocity);
+        let bed = &self.world.bed;
+        self.activity.observe(time, bed.moving_share(), bed.kinetic_energy());
         self.check_budget()
     }
 
@@ -151,6 +158,12 @@ impl Simulation {
         &self.stopping
     }
 
+    /// How much of the bed took part.
+    #[must_use]
+    pub fn activity(&self) -> &Activity {
+        &self.activity
+    }
+
     /// Height of the undisturbed surface (m): where the lowest point of the intruder was at the
     /// start.
     #[must_use]
@@ -164,6 +177,7 @@ impl Simulation {
         Snapshot {
             world: self.world.save(),
             stopping: self.stopping,
+            activity: self.activity,
             surface: self.surface,
             impact_energy: self.impact_energy,
         }
@@ -174,6 +188,7 @@ impl Simulation {
     #[must_use]
     pub fn restore(&mut self, saved: Snapshot) -> bool {
         self.stopping = saved.stopping;
+        self.activity = saved.activity;
         self.surface = saved.surface;
         self.impact_energy = saved.impact_energy;
         self.world.restore(saved.world)
