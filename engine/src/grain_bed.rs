@@ -210,25 +210,25 @@ impl GrainBed {
             .map(|part| part.placement.max_speed(part.surface.bounding_radius()))
             .fold(self.fastest, |fastest, speed| fastest.max(self.fastest + speed));
         if self.intruder_list.spend(approach * dt) {
+            let largest = self.grains.radius.iter().fold(0.0_f64, |largest, &r| largest.max(r));
+            let reach = self.contacts.reach(Partner::Intruder, largest);
+            let margin = self.intruder_list.margin() + reach;
             for (k, part) in parts.iter().enumerate() {
                 let index = self.walls.len() + k;
-                self.contacts.list_surface(
-                    &self.grains,
-                    (index, part),
-                    self.intruder_list.margin(),
-                );
+                self.contacts.list_surface(&self.grains, (index, part), margin);
             }
             self.intruder_list.renew();
         }
     }
 
     fn list_pairs_and_walls(&mut self) {
-        let margin = self.pair_list.margin();
         let largest = self.grains.radius.iter().fold(0.0_f64, |largest, &r| largest.max(r));
+        let margin = self.pair_list.margin() + self.contacts.reach(Partner::Grain, 0.5 * largest);
+        let wall_margin = self.pair_list.margin() + self.contacts.reach(Partner::Wall, largest);
         self.grid.fill(&self.grains, 2.0 * largest + margin);
         self.contacts.list_pairs(&self.grains, &self.grid, margin);
         for (index, wall) in self.walls.iter().enumerate() {
-            self.contacts.list_surface(&self.grains, (index, wall), margin);
+            self.contacts.list_surface(&self.grains, (index, wall), wall_margin);
         }
         self.pair_list.renew();
     }

@@ -116,9 +116,10 @@ impl Bench {
             };
             stage.sweep(batch, dt, history, own);
         }
-        for (contact, &row) in self.contacts.iter().zip(&self.rows) {
+        let evaluated = self.contacts.iter().zip(&self.responses);
+        for ((contact, response), &row) in evaluated.zip(&self.rows) {
             let row = row as usize;
-            touching[row] = contact.overlap > 0.0;
+            touching[row] = contact.overlap > 0.0 || response.holds;
             if !touching[row] {
                 for (stage, rows) in stages.iter().zip(history.iter_mut()) {
                     let len = stage.history_len();
@@ -247,7 +248,7 @@ impl Block {
                 let (on_grain, on_part) =
                     loads_on_grain_and_part(contact, response, grains.radius[i], apart);
                 load[i - self.first].add(&on_grain);
-                if contact.overlap > 0.0 {
+                if contact.overlap > 0.0 || response.holds {
                     self.tally.wrenches[index].add(&on_part);
                     if !is_wall {
                         let radius = grains.radius[i];

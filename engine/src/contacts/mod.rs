@@ -11,8 +11,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::body::Part;
-use crate::contact::ContactStage;
 use crate::contact::table::ContactTable;
+use crate::contact::{ContactStage, Partner};
 use crate::footprint::Footprint;
 use crate::grains::{Grains, Load};
 use crate::neighbours::CellGrid;
@@ -69,6 +69,12 @@ impl Contacts {
 
     pub(crate) fn stages(&self) -> &[Box<dyn ContactStage>] {
         &self.stages
+    }
+
+    /// The widest gap (m) of a contact that a law still holds together, of bodies of radius `radius_eff`
+    /// (m) or less.
+    pub(crate) fn reach(&self, partner: Partner, radius_eff: f64) -> f64 {
+        self.stages.iter().fold(0.0, |reach, stage| reach.max(stage.reach(partner, radius_eff)))
     }
 
     /// Lists again which grains are nearer to each other than `margin` (m).
