@@ -6,12 +6,14 @@
 //! ([`stage`]).
 
 pub mod geometry;
+mod rebound;
 pub mod stage;
 pub mod table;
 
 use crate::ledger::Channel;
 use crate::math::Vec3;
 
+pub use rebound::restitution;
 pub use stage::{ContactStage, Stage};
 
 /// What a grain touches; each kind has its own parameters of a law.

@@ -3,6 +3,7 @@
 
 use engine::clock::steps_in;
 use engine::coarse_graining::{Plane, fields};
+use engine::contact::{Encounter, Partner, restitution};
 use engine::crater::crater;
 use engine::grains::Space;
 use engine::record::{BodyEstimate, RecordError, RunLog, Stamp};
@@ -31,7 +32,17 @@ impl Observables {
     pub(super) fn new(grains: GrainModel<'_>, simulation: &Simulation) -> Self {
         let dt = simulation.clock().dt;
         let field_steps = grains.medium.log.fields_at.iter().map(|&time| steps_in(time, dt));
-        Self { rebound: 1.0, field_steps: field_steps.collect() }
+        let bed = simulation.bed();
+        let n = bed.grains.len() as f64;
+        let mean = |of: &[f64]| of.iter().sum::<f64>() / n;
+        let encounter = Encounter {
+            // The intruder is much heavier, and its faces are flat to a grain.
+            mass_eff: mean(&bed.grains.mass),
+            radius_eff: mean(&bed.grains.radius),
+            speed: simulation.intruder().bodies()[0].velocity.norm(),
+        };
+        let restitution = restitution(bed.stages(), Partner::Intruder, &encounter);
+        Self { rebound: 1.0 + restitution.unwrap_or(1.0), field_steps: field_steps.collect() }
     }
 
     /// Writes what belongs to every step, and the fields where they are due.
