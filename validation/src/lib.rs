@@ -58,6 +58,7 @@ mod significance;
 pub mod suggestion;
 #[cfg(test)]
 mod test_sets;
+pub mod three_shapes;
 pub mod verdict;
 pub mod weights;
 pub mod where_it_fails;
