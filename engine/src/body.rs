@@ -271,7 +271,7 @@ mod tests {
     struct Nothing;
     impl Surface for Nothing {
         fn closest(&self, _: Vec3) -> SurfacePoint {
-            SurfacePoint { normal: Vec3::z(), gap: 1.0, curvature: 0.0 }
+            SurfacePoint { normal: Vec3::z(), gap: 1.0, curvature: 0.0, felt: true }
         }
         fn support(&self, _: Vec3) -> f64 {
             0.0

@@ -29,10 +29,11 @@ pub(super) fn in_resistance(
     places: &mut Places,
 ) -> Option<Intruder> {
     intruder(table, space, places, |table| {
-        let (medium, fits): (_, fn(&ShapeEntry) -> bool) = match space {
-            Space::Planar => ("a planar medium", |shape| shape.planar),
-            Space::Spatial => ("a medium of dimension 3", |shape| shape.spatial),
+        let medium = match space {
+            Space::Planar => "a planar medium",
+            Space::Spatial => "a medium of dimension 3",
         };
+        let fits = |shape: &ShapeEntry| shape.is_of_resistance(space);
         let fitting = intruders::SHAPES.iter().filter(|shape| fits(shape));
         let here = names(&fitting.copied().collect::<Vec<_>>());
         let named = table.peek_text("shape").and_then(intruders::find);
