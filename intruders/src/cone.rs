@@ -21,10 +21,10 @@ pub(crate) const CONE: ShapeEntry = ShapeEntry {
     spatial: true,
     planar_in_resistance: true,
     params: PARAMS,
-    build: Some(|params, space| {
+    build: |params, space| {
         let shape = Wedge::new(params, space);
         Body::revolved(shape.surface(None), shape.inertia_per_mass())
-    }),
+    },
     under_shaft: Some(|params, space, length| {
         Arc::new(Wedge::new(params, space).surface(Some(length)))
     }),

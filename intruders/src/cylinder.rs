@@ -20,10 +20,10 @@ pub(crate) const CYLINDER: ShapeEntry = ShapeEntry {
     spatial: true,
     planar_in_resistance: true,
     params: PARAMS,
-    build: Some(|params, space| {
+    build: |params, space| {
         let shape = Flat::new(params, space);
         Body::revolved(shape.surface(None), shape.inertia_per_mass())
-    }),
+    },
     under_shaft: Some(|params, space, length| {
         Arc::new(Flat::new(params, space).surface(Some(length)))
     }),

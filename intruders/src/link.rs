@@ -18,7 +18,7 @@ pub(crate) const LINK: ShapeEntry = ShapeEntry {
     spatial: true,
     planar_in_resistance: false,
     params: PARAMS,
-    build: Some(|params, space| Link::new(params, 1.0).0.body(space)),
+    build: |params, space| Link::new(params, 1.0).0.body(space),
     under_shaft: None,
     volume: |params, space| Rod::volume(params.get("length"), params.get("diameter"), space),
     assembly,

@@ -24,9 +24,8 @@ pub struct ShapeEntry {
     pub planar_in_resistance: bool,
     /// The parameters it takes, besides the mass or density that every intruder has.
     pub params: &'static [ParamSpec],
-    /// Makes it for a bed of grains from SI values that fill `params`; `None` where only a resistive
-    /// medium knows it.
-    pub build: Option<fn(&ParamTable, Space) -> Body>,
+    /// Makes a body of it from SI values that fill `params`; of a chain, one of its equal links.
+    pub build: fn(&ParamTable, Space) -> Body,
     /// Its surface with a shaft of its top cross-section, of this length (m), upward from its top
     /// plane, which keeps grains off its top and is not felt; `None` for a shape without top plane.
     pub under_shaft: Option<fn(&ParamTable, Space, f64) -> Arc<dyn Surface>>,

@@ -12,8 +12,8 @@ fn body(name: &str, params: &[(&'static str, f64)]) -> Body {
     for &(key, value) in params {
         table.set(key, value);
     }
-    let build = intruders::find(name).and_then(|entry| entry.build).expect("a shape for grains");
-    build(&table, Space::Spatial)
+    let entry = intruders::find(name).expect("a registered shape");
+    (entry.build)(&table, Space::Spatial)
 }
 
 /// Of a shape of parry: its reflection in the plane that exchanges −y and z, moved up by `shift`.
