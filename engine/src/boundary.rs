@@ -43,6 +43,24 @@ pub struct Container {
 }
 
 impl Container {
+    /// Area of the floor (m²), or its width (m) in a plane.
+    #[must_use]
+    pub fn base(&self, space: Space) -> f64 {
+        match space {
+            Space::Planar => self.width,
+            Space::Spatial => self.width * self.depth,
+        }
+    }
+
+    /// The smaller distance of two opposite sides (m).
+    #[must_use]
+    pub fn narrowest(&self, space: Space) -> f64 {
+        match space {
+            Space::Planar => self.width,
+            Space::Spatial => self.width.min(self.depth),
+        }
+    }
+
     /// The floor, then the sides.
     #[must_use]
     pub fn walls(&self, space: Space) -> Vec<HalfSpace> {

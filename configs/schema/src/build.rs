@@ -5,13 +5,13 @@ use engine::body::{Mechanism, RigidBody};
 use engine::boundary::Container;
 use engine::contact::ContactStage;
 use engine::grain_bed::{GrainBed, RestingBed};
-use engine::grains::{Grain, Space};
+use engine::grains::Grain;
 use engine::launch::height_in_touch;
 use engine::math::Vec3;
 use engine::simulation::{Settings, Simulation};
 use thiserror::Error;
 
-use crate::model::{BedSource, Condition, GrainModel, LawChoice, Settle, StartX};
+use crate::model::{self, BedSource, Condition, GrainModel, LawChoice, Settle, StartX};
 use crate::stability;
 
 /// Why a model that reads well cannot be built.
@@ -46,7 +46,8 @@ impl GrainModel<'_> {
     /// The container.
     #[must_use]
     pub fn box_container(&self) -> Container {
-        Container { width: self.medium.container.width, depth: 0.0 }
+        let model::Container { width, depth } = self.medium.container;
+        Container { width, depth }
     }
 
     fn gravity(&self) -> Vec3 {
@@ -95,9 +96,10 @@ impl GrainModel<'_> {
             })
             .collect();
         let container = self.box_container();
-        let grains = fill(&kinds, &container, self.model.run.seed);
+        let space = self.medium.space;
+        let grains = fill(&kinds, (space, &container), self.model.run.seed);
         let stages = self.preparation_stages(settle);
-        Ok(Some(Settling::new(&grains, container, self.gravity(), stages, dt)))
+        Ok(Some(Settling::new(&grains, (space, container), self.gravity(), stages, dt)))
     }
 
     /// The laws while the bed settles: the contact law with the friction of the preparation between
@@ -121,7 +123,7 @@ impl GrainModel<'_> {
         let grains: Vec<Grain> = (0..)
             .zip(csv.grains.iter())
             .map(|(id, grain)| Grain {
-                position: Vec3::new(grain.x, 0.0, grain.y),
+                position: Vec3::new(grain.x, grain.y, grain.z),
                 velocity: Vec3::zeros(),
                 spin: Vec3::zeros(),
                 radius: grain.radius,
@@ -129,7 +131,7 @@ impl GrainModel<'_> {
                 id,
             })
             .collect();
-        Some(RestingBed::without_history(Space::Planar, &grains))
+        Some(RestingBed::without_history(self.medium.space, &grains))
     }
 
     /// `resting` in the container under the laws of the run, ready for the intruder.
@@ -165,19 +167,21 @@ impl GrainModel<'_> {
         let intruder = &self.model.intruder;
         let shape = (intruder.shape.build.expect("a model of grains has a shape for grains"))(
             &intruder.params,
-            Space::Planar,
+            self.medium.space,
         );
         let inertia = shape.inertia_per_mass * intruder.mass;
         let mut body = RigidBody::new(&intruder.name, shape.surface, intruder.mass, inertia);
         let x = self.start_x(condition);
-        let (width, reach) = (self.medium.container.width, body.surface().bounding_radius());
+        let model::Container { width, depth } = self.medium.container;
+        let reach = body.surface().bounding_radius();
         if x < reach || x > width - reach {
             return Err(BuildError::StartTouchesSide { x, width });
         }
-        let z = height_in_touch(&bed.grains, body.surface(), body.orientation, (x, 0.0));
+        let y = 0.5 * depth;
+        let z = height_in_touch(&bed.grains, body.surface(), body.orientation, (x, y));
         let launch = self.model.launch(condition);
         let spin = Vec3::new(0.0, launch.spin_about_y(), 0.0);
-        body.launch(Vec3::new(x, 0.0, z), launch.velocity(), spin);
+        body.launch(Vec3::new(x, y, z), launch.velocity(), spin);
         Ok(Box::new(body))
     }
 

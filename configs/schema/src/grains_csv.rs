@@ -1,6 +1,10 @@
-//! A bed from a table of grains: `x_m,y_m[,z_m],radius_m,mass_kg` (in a planar bed y is up).
+//! A bed from a table of grains: `x_m,y_m,radius_m,mass_kg` in a plane, where y is up, and
+//! `x_m,y_m,z_m,radius_m,mass_kg` in space, where z is.
 
+use std::f64::consts::PI;
 use std::fmt;
+
+use engine::grains::Space;
 
 use crate::diagnostics::{nearest, shorten};
 
@@ -9,8 +13,10 @@ use crate::diagnostics::{nearest, shorten};
 pub struct CsvGrain {
     /// Centre, from the left side (m).
     pub x: f64,
-    /// Centre, up from the bottom (m).
+    /// Centre, from the front side (m); 0 in a plane.
     pub y: f64,
+    /// Centre, up from the bottom (m).
+    pub z: f64,
     /// Radius (m).
     pub radius: f64,
     /// Mass (kg).
@@ -57,11 +63,56 @@ const KNOWN: [&str; 7] =
 /// How deep a grain may reach into a wall, over its radius; deeper counts as outside.
 const DEEPEST_IN_WALL: f64 = 0.5;
 
-/// Reads the grains of a planar bed in a box of `width` (m).
+/// What the grains of a table lie in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Room {
+    /// Discs in a plane or spheres in space.
+    pub space: Space,
+    /// Inner width of the box (m).
+    pub width: f64,
+    /// Inner depth of the box (m).
+    pub depth: f64,
+}
+
+/// What a table has to say in one kind of space.
+struct Names {
+    up: &'static str,
+    density: &'static str,
+    /// The density of the other kind of space.
+    other_density: &'static str,
+    refusal: &'static str,
+}
+
+const PLANAR: Names = Names {
+    up: "y_m",
+    density: "density_kg_per_m2",
+    other_density: "density_kg_per_m3",
+    refusal: "`density_kg_per_m3` gives a disc no mass: a planar bed wants `mass_kg` or \
+              `density_kg_per_m2`",
+};
+
+const SPATIAL: Names = Names {
+    up: "z_m",
+    density: "density_kg_per_m3",
+    other_density: "density_kg_per_m2",
+    refusal: "`density_kg_per_m2` gives a sphere no mass: a bed in space wants `mass_kg` or \
+              `density_kg_per_m3`",
+};
+
+impl Names {
+    fn of(space: Space) -> &'static Self {
+        match space {
+            Space::Planar => &PLANAR,
+            Space::Spatial => &SPATIAL,
+        }
+    }
+}
+
+/// Reads the grains of a bed in `room`.
 ///
 /// # Errors
 /// Everything wrong with it, up to ten faults.
-pub fn read_planar(bytes: &[u8], width: f64) -> Result<GrainTable, Vec<CsvFault>> {
+pub fn read(bytes: &[u8], room: Room) -> Result<GrainTable, Vec<CsvFault>> {
     let whole =
         |message: &str| vec![CsvFault { line: 0, column: None, message: message.to_owned() }];
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
@@ -80,12 +131,12 @@ pub fn read_planar(bytes: &[u8], width: f64) -> Result<GrainTable, Vec<CsvFault>
     if names.len() == 1 && names[0].contains([';', '\t']) {
         return Err(whole("the columns are separated by ; or tab; separate them by commas"));
     }
-    let columns = Columns::find(&names)?;
+    let columns = Columns::find(&names, room.space)?;
     let mut faults = Vec::new();
     let mut grains = Vec::new();
     for record in reader.records() {
         match record {
-            Ok(record) => match columns.grain(&record, width) {
+            Ok(record) => match columns.grain(&record, room) {
                 Ok(grain) => grains.push(grain),
                 Err(fault) => faults.push(fault),
             },
@@ -115,16 +166,17 @@ pub fn read_planar(bytes: &[u8], width: f64) -> Result<GrainTable, Vec<CsvFault>
 
 struct Columns {
     x: usize,
-    y: usize,
+    y: Option<usize>,
+    up: usize,
     radius: usize,
     mass: usize,
-    /// Whether the column `mass` is a density per area.
+    /// Whether the column `mass` is a density.
     is_density: bool,
     warnings: Vec<String>,
 }
 
 impl Columns {
-    fn find(names: &[&str]) -> Result<Self, Vec<CsvFault>> {
+    fn find(names: &[&str], space: Space) -> Result<Self, Vec<CsvFault>> {
         let mut faults = Vec::new();
         let mut fault = |message: String| {
             faults.push(CsvFault { line: 1, column: None, message });
@@ -134,7 +186,7 @@ impl Columns {
         for (at, name) in names.iter().enumerate() {
             if names[..at].contains(name) {
                 fault(format!("the column `{}` stands twice", shorten(name)));
-            } else if *name == "z_m" {
+            } else if *name == "z_m" && space == Space::Planar {
                 warnings.push("the column `z_m` is ignored: the bed is planar".to_owned());
             } else if !KNOWN.contains(name) && warnings.len() < FAULTS {
                 warnings.push(format!("the column `{}` is ignored", shorten(name)));
@@ -153,31 +205,32 @@ impl Columns {
                 0
             })
         };
-        let (x, y, radius) = (need("x_m"), need("y_m"), need("radius_m"));
-        let (mass, is_density) = match (at("mass_kg"), at("density_kg_per_m2")) {
+        let wanted = Names::of(space);
+        let x = need("x_m");
+        let y = (space == Space::Spatial).then(|| need("y_m"));
+        let (up, radius) = (need(wanted.up), need("radius_m"));
+        let (mass, is_density) = match (at("mass_kg"), at(wanted.density)) {
             (Some(_), Some(_)) => {
-                fault("both `mass_kg` and `density_kg_per_m2` are given; keep one".to_owned());
+                fault(format!("both `mass_kg` and `{}` are given; keep one", wanted.density));
                 (0, false)
             }
             (Some(mass), None) => (mass, false),
             (None, Some(density)) => (density, true),
             (None, None) => {
-                fault(match at("density_kg_per_m3") {
-                    Some(_) => "`density_kg_per_m3` gives a disc no mass: a planar bed wants \
-                                `mass_kg` or `density_kg_per_m2`"
-                        .to_owned(),
+                fault(match at(wanted.other_density) {
+                    Some(_) => wanted.refusal.to_owned(),
                     None => format!("the column `mass_kg` is missing; found: {found}"),
                 });
                 (0, false)
             }
         };
         match faults.is_empty() {
-            true => Ok(Self { x, y, radius, mass, is_density, warnings }),
+            true => Ok(Self { x, y, up, radius, mass, is_density, warnings }),
             false => Err(faults),
         }
     }
 
-    fn grain(&self, record: &csv::StringRecord, width: f64) -> Result<CsvGrain, CsvFault> {
+    fn grain(&self, record: &csv::StringRecord, room: Room) -> Result<CsvGrain, CsvFault> {
         let line = record.position().map_or(0, csv::Position::line);
         let fault = |column: &str, message: String| CsvFault {
             line,
@@ -195,29 +248,39 @@ impl Columns {
                 })
         };
         let x = number(self.x, "x_m", false)?;
-        let y = number(self.y, "y_m", false)?;
+        let y = self.y.map(|at| number(at, "y_m", false)).transpose()?;
+        let names = Names::of(room.space);
+        let z = number(self.up, names.up, false)?;
         let radius = number(self.radius, "radius_m", true)?;
         let mass = match self.is_density {
             false => number(self.mass, "mass_kg", true)?,
             true => {
-                let density = number(self.mass, "density_kg_per_m2", true)?;
-                density * std::f64::consts::PI * radius * radius
+                let density = number(self.mass, names.density, true)?;
+                match room.space {
+                    Space::Planar => density * PI * radius * radius,
+                    Space::Spatial => density * 4.0 / 3.0 * PI * radius * radius * radius,
+                }
             }
         };
-        if !mass.is_normal() || !(0.5 * mass * radius * radius).is_normal() {
+        if !mass.is_normal() || !room.space.grain_inertia(mass, radius).is_normal() {
             return Err(fault("radius_m", "mass or moment of inertia out of range".to_owned()));
         }
         let inner = radius * (1.0 - DEEPEST_IN_WALL);
-        if x < inner || x > width - inner {
-            return Err(fault(
-                "x_m",
-                format!("the grain at {x} m is outside of the box, 0 to {width} m"),
-            ));
+        let inside = |column: &str, at: f64, length: f64| match at < inner || at > length - inner {
+            true => Err(fault(
+                column,
+                format!("the grain at {at} m is outside of the box, 0 to {length} m"),
+            )),
+            false => Ok(()),
+        };
+        inside("x_m", x, room.width)?;
+        if let Some(y) = y {
+            inside("y_m", y, room.depth)?;
         }
-        if y < inner {
-            return Err(fault("y_m", format!("the grain at {y} m is below the bottom, 0 m")));
+        if z < inner {
+            return Err(fault(names.up, format!("the grain at {z} m is below the bottom, 0 m")));
         }
-        Ok(CsvGrain { x, y, radius, mass })
+        Ok(CsvGrain { x, y: y.unwrap_or(0.0), z, radius, mass })
     }
 }
 
@@ -225,17 +288,36 @@ impl Columns {
 mod tests {
     use super::*;
 
+    const PLANE: Room = Room { space: Space::Planar, width: 1.0, depth: 0.0 };
+    const CUBE: Room = Room { space: Space::Spatial, width: 1.0, depth: 1.0 };
+
     fn faults(text: &str) -> String {
-        let faults = read_planar(text.as_bytes(), 1.0).expect_err("a faulty table");
+        let faults = read(text.as_bytes(), PLANE).expect_err("a faulty table");
         faults.iter().map(|fault| format!("{fault}\n")).collect()
     }
 
     #[test]
     fn byte_order_mark_and_crlf_are_accepted() {
         let text = "\u{feff}x_m,y_m,radius_m,mass_kg,colour\r\n0.5,0.1,0.01,1e-3,red\r\n";
-        let table = read_planar(text.as_bytes(), 1.0).expect("a good table");
-        assert_eq!(table.grains, [CsvGrain { x: 0.5, y: 0.1, radius: 0.01, mass: 1e-3 }]);
+        let table = read(text.as_bytes(), PLANE).expect("a good table");
+        assert_eq!(table.grains, [CsvGrain { x: 0.5, y: 0.0, z: 0.1, radius: 0.01, mass: 1e-3 }]);
         assert_eq!(table.warnings, ["the column `colour` is ignored"]);
+    }
+
+    #[test]
+    fn in_space_z_is_up_and_a_density_is_that_of_a_volume() {
+        let text = "x_m,y_m,z_m,radius_m,density_kg_per_m3\n0.5,0.25,0.1,0.01,2500\n";
+        let table = read(text.as_bytes(), CUBE).expect("a good table");
+        let grain = table.grains[0];
+        assert_eq!([grain.x, grain.y, grain.z], [0.5, 0.25, 0.1]);
+        // A few roundings apart.
+        assert!((grain.mass / (2500.0 * PI / 6.0 * 0.02_f64.powi(3)) - 1.0).abs() < 1e-15);
+        let text = "x_m,y_m,z_m,radius_m,density_kg_per_m2\n";
+        let faults = read(text.as_bytes(), CUBE).expect_err("a density of a plane");
+        assert!(faults[0].to_string().contains("gives a sphere no mass"));
+        let text = "x_m,y_m,z_m,radius_m,mass_kg\n0.5,1.2,0.1,0.01,1e-3\n";
+        let faults = read(text.as_bytes(), CUBE).expect_err("a grain outside");
+        assert!(faults[0].to_string().contains("column y_m: the grain at 1.2 m is outside"));
     }
 
     #[test]

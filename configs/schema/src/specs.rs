@@ -82,6 +82,9 @@ pub(crate) const GRAVITY: ParamSpec = required(
 pub(crate) const WIDTH: ParamSpec =
     required("width", LENGTH, POSITIVE, Range::closed(1e-3, 100.0), "the inner width of the box");
 
+pub(crate) const DEPTH: ParamSpec =
+    ParamSpec { key: "depth", meaning: "the inner depth of the box, along y", ..WIDTH };
+
 pub(crate) const PREPARATION_FRICTION: ParamSpec = required(
     "preparation_friction",
     NUMBER,

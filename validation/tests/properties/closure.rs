@@ -27,8 +27,9 @@ fn resting_bed() -> &'static RestingBed {
             radius: size.radius,
             mass: size.mass,
         });
-        let grains = fill(&kinds, &BOX, 1);
-        let mut settling = Settling::new(&grains, BOX, GRAVITY, vec![S1.stage()], 1e-5);
+        let grains = fill(&kinds, (Space::Planar, &BOX), 1);
+        let mut settling =
+            Settling::new(&grains, (Space::Planar, BOX), GRAVITY, vec![S1.stage()], 1e-5);
         while settling.clock().step < 1_000 || settling.restlessness() > 100.0 {
             settling.advance().expect("a sound step");
         }
@@ -78,7 +79,7 @@ fn without_dissipation_the_energy_of_a_box_of_grains_does_not_drift() {
     });
     let mut rng = random(1, "velocities");
     let mut number = || 2.0 * rng.random::<f64>() - 1.0;
-    let grains: Vec<Grain> = fill(&kinds, &room, 1)
+    let grains: Vec<Grain> = fill(&kinds, (Space::Planar, &room), 1)
         .into_iter()
         .map(|grain| Grain { velocity: Vec3::new(number(), 0.0, number()), ..grain })
         .collect();

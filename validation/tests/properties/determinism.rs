@@ -22,7 +22,7 @@ fn impact(n: usize, width: f64) -> Simulation {
     });
     let mut rng = random(1, "velocities");
     let mut number = || 4.0 * rng.random::<f64>() - 2.0;
-    let grains: Vec<Grain> = fill(&kinds, &container, 1)
+    let grains: Vec<Grain> = fill(&kinds, (Space::Planar, &container), 1)
         .into_iter()
         .map(|grain| Grain { velocity: Vec3::new(number(), 0.0, number()), ..grain })
         .collect();

@@ -64,7 +64,7 @@ fn the_pairs_that_touch_in_a_plane_are_those_of_all_pairs_at_a_size_ratio_of_twe
             KINDS.map(|(count, radius)| GrainKind { count, radius, mass: size(radius).mass });
         let mut rng = random(seed, "velocities");
         let mut number = || 2.0 * rng.random::<f64>() - 1.0;
-        let grains: Vec<Grain> = fill(&kinds, &container, seed)
+        let grains: Vec<Grain> = fill(&kinds, (Space::Planar, &container), seed)
             .into_iter()
             .map(|grain| Grain { velocity: Vec3::new(number(), 0.0, number()), ..grain })
             .collect();

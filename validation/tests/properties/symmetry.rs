@@ -94,7 +94,7 @@ fn heap() -> Vec<Grain> {
         radius: size.radius,
         mass: size.mass,
     });
-    fill(&kinds, &BOX, 4)
+    fill(&kinds, (Space::Planar, &BOX), 4)
 }
 
 /// Where `grains` and a disc that falls among them are after `steps` of 10 µs, computed in `units`

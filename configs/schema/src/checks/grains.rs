@@ -1,12 +1,12 @@
 //! What only a model of grains is checked for.
 
-use std::f64::consts::FRAC_PI_4;
+use engine::grains::Space;
 
 use super::{Common, metres, seconds};
 use crate::diagnostics::{Diagnostic, Span};
 use crate::limits;
-use crate::model::{BedSource, GrainModel, StartX};
-use crate::read::BodyPlaces;
+use crate::model::{BedSource, Container, GrainModel, StartX};
+use crate::read::{BodyPlaces, disc_area, sphere_volume};
 use crate::stability;
 
 pub(super) struct GrainChecks<'a> {
@@ -27,17 +27,20 @@ impl GrainChecks<'_> {
     }
 
     fn sizes(&self) {
-        let width = self.grains.medium.container.width;
+        let Container { width, depth } = self.grains.medium.container;
+        let in_space = self.grains.medium.space == Space::Spatial;
         let too_wide = |what: &str, diameter: f64, places: BodyPlaces| {
-            if diameter >= width {
+            let does_not_fit = |length: f64, side: Option<Span>, which: &str| {
                 self.common.reader.report(
                     Diagnostic::error(format!("the {what} does not fit into the box"))
                         .at(places.diameter, format!("{} wide", metres(diameter)))
-                        .with(
-                            self.common.places.width,
-                            format!("the box is {} wide", metres(width)),
-                        ),
+                        .with(side, format!("the box is {} {which}", metres(length))),
                 );
+            };
+            if diameter >= width {
+                does_not_fit(width, self.common.places.width, "wide");
+            } else if in_space && diameter >= depth {
+                does_not_fit(depth, self.common.places.depth, "deep");
             }
         };
         if let Some(diameter) = self.common.intruder_diameter() {
@@ -70,7 +73,7 @@ impl GrainChecks<'_> {
         }
         for (name, diameter, mass, places) in bodies {
             let inputs = [("diameter", places.diameter), ("mass", places.mass)];
-            let inertia = 0.125 * mass * diameter * diameter;
+            let inertia = medium.space.grain_inertia(mass, 0.5 * diameter);
             self.common.derived(&format!("the moment of inertia of the {name}"), inertia, inputs);
             self.common.derived(&format!("the mass of the {name}"), mass, inputs);
             if medium.gravity > 0.0 {
@@ -242,12 +245,14 @@ impl GrainChecks<'_> {
         else {
             return;
         };
-        let area: f64 = settle
-            .grains
-            .iter()
-            .map(|kind| kind.count as f64 * FRAC_PI_4 * kind.diameter * kind.diameter)
-            .sum();
-        let implied = area / (self.grains.medium.container.width * height);
+        let Container { width, depth } = self.grains.medium.container;
+        let (size, base): (fn(f64) -> f64, _) = match self.grains.medium.space {
+            Space::Planar => (disc_area, width),
+            Space::Spatial => (sphere_volume, width * depth),
+        };
+        let content: f64 =
+            settle.grains.iter().map(|kind| kind.count as f64 * size(kind.diameter)).sum();
+        let implied = content / (base * height);
         if (implied / fraction - 1.0).abs() > 0.03 {
             self.common.reader.report(
                 Diagnostic::warning("the two targets of the bed contradict each other")

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use contact_laws::LawEntry;
+use engine::grains::Space;
 use engine::params::ParamTable;
 
 use super::Model;
@@ -13,8 +14,8 @@ use crate::grains_csv::CsvGrain;
 /// A bed of grains in a container, under a contact law.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GrainMedium {
-    /// Number of space dimensions: 2.
-    pub dimension: u8,
+    /// Discs in a plane or spheres in space.
+    pub space: Space,
     /// Magnitude of gravity, downward (m/s²).
     pub gravity: f64,
     /// `[container]`.
@@ -71,11 +72,13 @@ pub struct GrainLog {
     pub grains: bool,
 }
 
-/// The box: x from 0 to `width`, y up from its bottom at 0.
+/// The box: x from 0 to `width`, in three dimensions y from 0 to `depth`, and up from its bottom at 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Container {
     /// Inner width (m).
     pub width: f64,
+    /// Inner depth (m); 0 in a plane.
+    pub depth: f64,
 }
 
 /// The grains at the start of the impact.

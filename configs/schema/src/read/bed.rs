@@ -1,11 +1,12 @@
 //! `[bed]` and its `[[bed.grains]]`.
 
+use engine::grains::Space;
 use engine::params::{Default as ParamDefault, ParamSpec};
 
 use super::bed_file::{DataFolder, csv_bed};
 use super::grains::time_step;
 use super::laws::effects;
-use super::{BodyPlaces, Places, disc_area, mass};
+use super::{BodyPlaces, Places, disc_area, mass, sphere_volume};
 use crate::diagnostics::Diagnostic;
 use crate::limits;
 use crate::model::{Bed, BedSource, Container, GrainKind, LawChoice, Settle};
@@ -15,7 +16,7 @@ use crate::specs;
 pub(super) fn bed(
     table: TableReader<'_>,
     law: Option<&LawChoice>,
-    container: Option<&Container>,
+    (space, container): (Space, Option<&Container>),
     folder: &DataFolder<'_>,
     places: &mut Places,
 ) -> Option<Bed> {
@@ -25,8 +26,8 @@ pub(super) fn bed(
     places.target_packing_fraction = table.span_of("target_packing_fraction");
     places.target_height = table.span_of("target_height");
     let source = match source_name {
-        Some("csv") => csv_bed(&table, container, folder).map(BedSource::Csv),
-        Some(_) => settle(&table, law, places).map(BedSource::Settle),
+        Some("csv") => csv_bed(&table, (space, container), folder).map(BedSource::Csv),
+        Some(_) => settle(&table, (space, law), places).map(BedSource::Settle),
         None => return None,
     };
     table.finish();
@@ -37,7 +38,11 @@ pub(super) fn bed(
     })
 }
 
-fn settle(table: &TableReader<'_>, law: Option<&LawChoice>, places: &mut Places) -> Option<Settle> {
+fn settle(
+    table: &TableReader<'_>,
+    (space, law): (Space, Option<&LawChoice>),
+    places: &mut Places,
+) -> Option<Settle> {
     let friction = preparation_friction(table, law);
     let step = time_step(table, &specs::PREPARATION_TIME_STEP, Some("auto"));
     places.preparation_time_step = table.span_of("preparation_time_step");
@@ -53,7 +58,7 @@ fn settle(table: &TableReader<'_>, law: Option<&LawChoice>, places: &mut Places)
     }
     let wanted = kinds.len().max(1);
     let grains: Vec<GrainKind> =
-        kinds.into_iter().filter_map(|kind| grain_kind(kind, places)).collect();
+        kinds.into_iter().filter_map(|kind| grain_kind(kind, space, places)).collect();
     let effects = effects(table.tables("effect", limits::EFFECTS));
     let grains = (grains.len() == wanted).then_some(grains)?;
     if grains.iter().all(|kind| kind.count == 0) {
@@ -95,7 +100,7 @@ fn preparation_friction(table: &TableReader<'_>, law: Option<&LawChoice>) -> Opt
     }
 }
 
-fn grain_kind(table: TableReader<'_>, places: &mut Places) -> Option<GrainKind> {
+fn grain_kind(table: TableReader<'_>, space: Space, places: &mut Places) -> Option<GrainKind> {
     let count = table.integer(
         "count",
         None,
@@ -103,8 +108,12 @@ fn grain_kind(table: TableReader<'_>, places: &mut Places) -> Option<GrainKind> 
         "the number of grains of this kind",
     );
     let diameter = table.number(&specs::GRAIN_DIAMETER);
-    let area = diameter.map(|found| disc_area(found.value));
-    let mass = mass(&table, &specs::GRAIN_MASS, &specs::AREA_DENSITY, area);
+    let (content, density): (fn(f64) -> f64, _) = match space {
+        Space::Planar => (disc_area, &specs::AREA_DENSITY),
+        Space::Spatial => (sphere_volume, &specs::DENSITY),
+    };
+    let content = diameter.map(|found| content(found.value));
+    let mass = mass(&table, &specs::GRAIN_MASS, density, content);
     places.grains.push(BodyPlaces {
         count: table.span_of("count"),
         diameter: table.span_of("diameter"),

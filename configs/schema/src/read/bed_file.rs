@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use engine::grains::Space;
+
 use crate::diagnostics::Diagnostic;
-use crate::grains_csv;
+use crate::grains_csv::{self, Room};
 use crate::model::{Container, CsvBed};
 use crate::paths;
 use crate::reader::TableReader;
@@ -19,7 +21,7 @@ pub(crate) struct DataFolder<'a> {
 /// `file`, read whole and checked against the container.
 pub(crate) fn csv_bed(
     table: &TableReader<'_>,
-    container: Option<&Container>,
+    (space, container): (Space, Option<&Container>),
     folder: &DataFolder<'_>,
 ) -> Option<CsvBed> {
     let mut settles = false;
@@ -40,11 +42,14 @@ pub(crate) fn csv_bed(
         false => None,
     };
     let fault = |message: String| {
-        table.reader.report(
-            Diagnostic::error(message)
-                .at(named.span, "this file")
-                .help("columns: x_m, y_m, radius_m, and mass_kg or density_kg_per_m2"),
-        );
+        table.reader.report(Diagnostic::error(message).at(named.span, "this file").help(
+            match space {
+                Space::Planar => "columns: x_m, y_m, radius_m, and mass_kg or density_kg_per_m2",
+                Space::Spatial => {
+                    "columns: x_m, y_m, z_m, radius_m, and mass_kg or density_kg_per_m3"
+                }
+            },
+        ));
     };
     let read = paths::resolve(&named.value, folder.folder, folder.allow_paths)
         .and_then(|file| paths::read_data(&file, &named.value).map(|bytes| (file, bytes)));
@@ -68,7 +73,8 @@ pub(crate) fn csv_bed(
         );
         return None;
     }
-    match grains_csv::read_planar(&bytes, container?.width) {
+    let &Container { width, depth } = container?;
+    match grains_csv::read(&bytes, Room { space, width, depth }) {
         Ok(read) => {
             for warning in read.warnings {
                 table.reader.report(Diagnostic::warning(warning).at(named.span, "in this file"));

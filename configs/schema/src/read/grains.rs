@@ -1,5 +1,6 @@
 //! What only a model of grains has.
 
+use engine::grains::Space;
 use engine::params::ParamSpec;
 
 use super::bed::bed;
@@ -12,7 +13,7 @@ use crate::limits;
 use crate::model::{
     Container, GrainLog, GrainMedium, LogSettings, Medium, Model, RunSettings, Stepping, TimeStep,
 };
-use crate::reader::{Found, TableReader};
+use crate::reader::TableReader;
 use crate::specs;
 
 const CONTAINER_EXAMPLE: &str =
@@ -36,18 +37,20 @@ pub(super) fn model(
     let run = run(tables.run, places);
     let log = log(tables.log);
     let energy = energy(tables.energy);
-    let gravity = gravity(tables.medium, places);
-    let container = container(root.table("container", Some(CONTAINER_EXAMPLE)), places);
+    let medium = medium(tables.medium, places);
+    // What follows is read as for a plane where the dimension is missing, which has been said.
+    let space = medium.map_or(Space::Planar, |(space, _)| space);
+    let container = container(root.table("container", Some(CONTAINER_EXAMPLE)), space, places);
     let contact_law = laws::contact_law(root.table("contact_law", Some(LAW_EXAMPLE)), places);
     let bed = bed(
         root.table("bed", Some(BED_EXAMPLE)),
         contact_law.as_ref(),
-        container.as_ref(),
+        (space, container.as_ref()),
         folder,
         places,
     );
     let effects = laws::effects(root.tables("effect", limits::EFFECTS));
-    let intruder = impact::in_grains(root.table("intruder", Some(INTRUDER_EXAMPLE)), places);
+    let intruder = impact::in_grains(root.table("intruder", Some(INTRUDER_EXAMPLE)), space, places);
     let impact_table = root.table("impact", Some(IMPACT_EXAMPLE));
     let impact = impact::impact(&impact_table, places);
     let start = impact::start_positions(&impact_table, container.as_ref(), places);
@@ -60,8 +63,8 @@ pub(super) fn model(
         log,
         energy: energy?,
         medium: Medium::Grains(GrainMedium {
-            dimension: 2,
-            gravity: gravity?,
+            space: medium?.0,
+            gravity: medium?.1,
             container: container?,
             bed: bed?,
             contact_law: contact_law?,
@@ -118,37 +121,51 @@ fn log(table: TableReader<'_>) -> Option<(LogSettings, GrainLog)> {
     Some((settings, GrainLog { flush_every: flush_every?.value, grains: grains? }))
 }
 
-/// Reads `[medium]`, of which only gravity is free.
-fn gravity(table: TableReader<'_>, places: &mut Places) -> Option<f64> {
+/// `[medium]`: discs or spheres, and the magnitude of gravity (m/s²).
+fn medium(table: TableReader<'_>, places: &mut Places) -> Option<(Space, f64)> {
     let kind = table.choice("kind", KINDS, &[], "the kind of medium");
     let dimension = table.integer("dimension", None, 2..=3, "the number of space dimensions");
-    if let Some(Found { value: 3, span }) = dimension {
-        table.reader.report(
-            Diagnostic::error("dimension = 3 comes with a later version")
-                .at(span, "not available yet")
-                .help("available now: 2"),
-        );
-    }
     let gravity = table.number(&specs::GRAVITY);
     places.gravity = table.span_of("gravity");
     table.finish();
     kind?;
-    dimension.filter(|found| found.value == 2)?;
-    Some(gravity?.value)
+    let space = match dimension?.value {
+        2 => Space::Planar,
+        _ => Space::Spatial,
+    };
+    Some((space, gravity?.value))
 }
 
-fn container(table: TableReader<'_>, places: &mut Places) -> Option<Container> {
+fn container(table: TableReader<'_>, space: Space, places: &mut Places) -> Option<Container> {
     let shape = table.choice("shape", &["box"], &["cylinder"], "the shape of the container");
     let width = table.number(&specs::WIDTH);
+    let depth = depth(&table, space);
     let sides = table.choice("sides", &["wall"], &["periodic", "absorbing"], "what the sides are");
     let bottom = table.choice("bottom", &["wall"], &["absorbing"], "what the bottom is");
     places.width = table.span_of("width");
+    places.depth = table.span_of("depth");
     // The keys of a shape that is yet to come are not worth a second message.
     if shape.is_some() {
         table.finish();
     }
     shape.and(sides).and(bottom)?;
-    Some(Container { width: width?.value })
+    Some(Container { width: width?.value, depth: depth? })
+}
+
+/// The depth of a box in space (m); 0 in a plane, which has none.
+fn depth(table: &TableReader<'_>, space: Space) -> Option<f64> {
+    match space {
+        Space::Spatial => table.number(&specs::DEPTH).map(|found| found.value),
+        Space::Planar if table.has("depth") => {
+            table.reader.report(
+                Diagnostic::error("a planar bed has no depth")
+                    .at(table.span_of("depth"), "is for dimension = 3")
+                    .help("remove it, or write dimension = 3 in [medium]"),
+            );
+            None
+        }
+        Space::Planar => Some(0.0),
+    }
 }
 
 /// A fixed step or `"auto"`.

@@ -12,10 +12,20 @@ use crate::model::{ConditionLists, Container, Impact, Intruder, StartPositions};
 use crate::reader::{Found, TableReader};
 use crate::specs;
 
-/// The intruder of a planar bed of grains.
-pub(super) fn in_grains(table: TableReader<'_>, places: &mut Places) -> Option<Intruder> {
-    intruder(table, Space::Planar, places, |table| {
-        let fits = |shape: &&&ShapeEntry| shape.planar && shape.build.is_some();
+/// The intruder of a bed of grains.
+pub(super) fn in_grains(
+    table: TableReader<'_>,
+    space: Space,
+    places: &mut Places,
+) -> Option<Intruder> {
+    intruder(table, space, places, |table| {
+        let fits = |shape: &&&ShapeEntry| {
+            let has_dimension = match space {
+                Space::Planar => shape.planar,
+                Space::Spatial => shape.spatial,
+            };
+            has_dimension && shape.build.is_some()
+        };
         let (here, later): (Vec<&ShapeEntry>, Vec<_>) = intruders::SHAPES.iter().partition(fits);
         let [here, later] = [here, later].map(|shapes| names(&shapes));
         intruders::find(table.choice("shape", &here, &later, "the shape of the intruder")?)

@@ -30,6 +30,7 @@ pub(crate) struct Places {
     pub(crate) preparation_time_step: Option<Span>,
     pub(crate) gravity: Option<Span>,
     pub(crate) width: Option<Span>,
+    pub(crate) depth: Option<Span>,
     pub(crate) target_packing_fraction: Option<Span>,
     pub(crate) target_height: Option<Span>,
     pub(crate) grains: Vec<BodyPlaces>,
@@ -105,8 +106,14 @@ fn energy(table: TableReader<'_>) -> Option<EnergySettings> {
     Some(EnergySettings { abort_above: abort_above?.value })
 }
 
-fn disc_area(diameter: f64) -> f64 {
+/// (m²) from a diameter (m).
+pub(crate) fn disc_area(diameter: f64) -> f64 {
     std::f64::consts::FRAC_PI_4 * diameter * diameter
+}
+
+/// (m³) from a diameter (m).
+pub(crate) fn sphere_volume(diameter: f64) -> f64 {
+    std::f64::consts::PI / 6.0 * diameter * diameter * diameter
 }
 
 /// `mass`, or `density` times `size`, an area or a volume.

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use engine::checkpoint;
 use engine::error::StepError;
+use engine::grains::Space;
 use engine::math::Vec3;
 use engine::parallel::n_threads;
 use engine::record::{
@@ -20,7 +21,7 @@ use super::{
     BedSummary, Control, CostSummary, FinalEnergy, PreparedBed, Progress, RunError, Summary, Task,
     bed_key, result_key,
 };
-use crate::model::{Condition, GrainModel};
+use crate::model::{Condition, Container, GrainModel};
 
 /// Steps between two looks at the control.
 const LOOK_EVERY: u64 = 50;
@@ -177,6 +178,7 @@ impl Setting<'_> {
         let bodies = simulation.intruder().bodies();
         let radius = bodies[0].surface().bounding_radius();
         let weight = model.intruder.mass * medium.gravity;
+        let Container { width, depth } = medium.container;
         let top = simulation.surface() + 2.0 * radius;
         let mut metadata = metadata(model, condition);
         let bed_key = blake3::Hash::from_bytes(bed_key(self.grains));
@@ -197,10 +199,13 @@ impl Setting<'_> {
                 .iter()
                 .map(|body| LoggedBody {
                     name: body.name.clone(),
-                    shape: LoggedShape::Disc { radius, thickness: 0.2 * radius },
+                    shape: match medium.space {
+                        Space::Planar => LoggedShape::Disc { radius, thickness: 0.2 * radius },
+                        Space::Spatial => LoggedShape::Sphere { radius },
+                    },
                 })
                 .collect(),
-            container: Some((Vec3::zeros(), Vec3::new(medium.container.width, 0.0, top))),
+            container: Some((Vec3::zeros(), Vec3::new(width, depth, top))),
             energy_terms: simulation.ledger().terms().iter().map(|term| term.key()).collect(),
             force_origins: vec!["contact".to_owned(), "gravity".to_owned()],
             arrow_m_per_newton: arrow_m_per_newton(2.0 * radius, weight),

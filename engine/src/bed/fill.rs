@@ -1,0 +1,177 @@
+//! Grains at random places, none touching another.
+
+use std::f64::consts::PI;
+
+use rand::RngExt;
+
+use super::random;
+use crate::boundary::Container;
+use crate::grains::{Grain, Space};
+use crate::math::Vec3;
+
+/// Grains of one size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GrainKind {
+    /// How many.
+    pub count: usize,
+    /// (m).
+    pub radius: f64,
+    /// (kg).
+    pub mass: f64,
+}
+
+/// Share of the area or volume that grains fill when they are placed at random, well below the one
+/// at which no further grain finds a place: 0.547 for equal discs, 0.38 for equal spheres.
+fn fill_fraction(space: Space) -> f64 {
+    match space {
+        Space::Planar => 0.5,
+        Space::Spatial => 0.3,
+    }
+}
+
+/// Grains of all kinds at random places in `container`, discs or spheres as `space` says, none
+/// touching another or a wall; the container is filled as high as it takes.
+#[must_use]
+pub fn fill(kinds: &[GrainKind], (space, container): (Space, &Container), seed: u64) -> Vec<Grain> {
+    let mut rng = random(seed, "fill");
+    let largest = kinds.iter().fold(0.0_f64, |largest, kind| largest.max(kind.radius));
+    let height = fill_height(kinds, space, container);
+    let mut free = FreeSpace::new(space, container, height, 2.0 * largest);
+    // Large grains first: later they would find no place.
+    let mut kinds = kinds.to_vec();
+    kinds.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+    let mut grains = Vec::new();
+    for kind in kinds {
+        for _ in 0..kind.count {
+            let mut tries = 0;
+            let position = loop {
+                let mut between =
+                    |length: f64| kind.radius + (length - 2.0 * kind.radius) * rng.random::<f64>();
+                let x = between(container.width);
+                let y = match space {
+                    Space::Planar => 0.0,
+                    Space::Spatial => between(container.depth),
+                };
+                let z = kind.radius + (free.height - kind.radius) * rng.random::<f64>();
+                let place = Vec3::new(x, y, z);
+                if free.fits(place, kind.radius, &grains) {
+                    break place;
+                }
+                tries += 1;
+                if tries % 10_000 == 0 {
+                    free.grow();
+                }
+            };
+            free.take(position, grains.len());
+            grains.push(Grain {
+                position,
+                velocity: Vec3::zeros(),
+                spin: Vec3::zeros(),
+                radius: kind.radius,
+                mass: kind.mass,
+                id: grains.len() as u32,
+            });
+        }
+    }
+    grains
+}
+
+/// How high (m) the grains reach when they are placed.
+fn fill_height(kinds: &[GrainKind], space: Space, container: &Container) -> f64 {
+    let content = |kind: &GrainKind| {
+        let squares = kind.count as f64 * kind.radius * kind.radius;
+        match space {
+            Space::Planar => squares,
+            Space::Spatial => 4.0 / 3.0 * squares * kind.radius,
+        }
+    };
+    let content: f64 = kinds.iter().map(content).sum();
+    PI * content / (fill_fraction(space) * container.base(space))
+}
+
+/// Which grains have been placed where, in square (cubic) cells as wide as the largest grain.
+struct FreeSpace {
+    height: f64,
+    cell: f64,
+    n_x: usize,
+    n_y: usize,
+    cells: Vec<Vec<usize>>,
+}
+
+impl FreeSpace {
+    fn new(space: Space, container: &Container, height: f64, cell: f64) -> Self {
+        let n_x = (container.width / cell) as usize + 1;
+        let n_y = match space {
+            Space::Planar => 1,
+            Space::Spatial => (container.depth / cell) as usize + 1,
+        };
+        let n_z = (height / cell) as usize + 2;
+        Self { height, cell, n_x, n_y, cells: vec![Vec::new(); n_x * n_y * n_z] }
+    }
+
+    fn grow(&mut self) {
+        self.height *= 1.1;
+        let n_z = (self.height / self.cell) as usize + 2;
+        self.cells.resize(self.n_x * self.n_y * n_z, Vec::new());
+    }
+
+    fn cell_of(&self, place: Vec3) -> [usize; 3] {
+        [place.x, place.y, place.z].map(|coordinate| (coordinate / self.cell) as usize)
+    }
+
+    fn fits(&self, place: Vec3, radius: f64, grains: &[Grain]) -> bool {
+        let cell = self.cell_of(place);
+        let n = [self.n_x, self.n_y, self.cells.len() / (self.n_x * self.n_y)];
+        let span = |axis: usize| cell[axis].saturating_sub(1)..=(cell[axis] + 1).min(n[axis] - 1);
+        span(2).all(|z| {
+            span(1).all(|y| {
+                span(0).all(|x| {
+                    self.cells[(z * self.n_y + y) * self.n_x + x].iter().all(|&other| {
+                        let Grain { position, radius: other, .. } = &grains[other];
+                        let near = other + radius;
+                        (position - place).norm_squared() > near * near
+                    })
+                })
+            })
+        })
+    }
+
+    fn take(&mut self, place: Vec3, grain: usize) {
+        let [x, y, z] = self.cell_of(place);
+        self.cells[(z * self.n_y + y) * self.n_x + x].push(grain);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KINDS: [GrainKind; 2] = [
+        GrainKind { count: 300, radius: 2.28e-3, mass: 4.9e-5 },
+        GrainKind { count: 60, radius: 3.175e-3, mass: 9.7e-5 },
+    ];
+
+    #[test]
+    fn random_grains_overlap_neither_each_other_nor_a_wall() {
+        let container = Container { width: 0.1, depth: 0.03 };
+        for space in [Space::Planar, Space::Spatial] {
+            let grains = fill(&KINDS, (space, &container), 7);
+            assert_eq!(grains.len(), 360);
+            for (i, a) in grains.iter().enumerate() {
+                assert!(a.position.x >= a.radius && a.position.x <= 0.1 - a.radius);
+                match space {
+                    Space::Planar => assert_eq!(a.position.y, 0.0),
+                    Space::Spatial => {
+                        assert!(a.position.y >= a.radius && a.position.y <= 0.03 - a.radius);
+                    }
+                }
+                assert!(a.position.z >= a.radius);
+                for b in &grains[..i] {
+                    assert!((a.position - b.position).norm() > a.radius + b.radius);
+                }
+            }
+            assert_eq!(grains, fill(&KINDS, (space, &container), 7));
+            assert_ne!(grains, fill(&KINDS, (space, &container), 8));
+        }
+    }
+}

@@ -1,0 +1,22 @@
+//! How a bed is made: grains at random without overlap, settled under gravity until at rest; and
+//! what can be said of a bed that is.
+
+mod fill;
+mod report;
+mod settling;
+
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
+
+pub use fill::{GrainKind, fill};
+pub use report::BedReport;
+pub use settling::{SavedSettling, Settling};
+
+/// A generator of random numbers for one purpose: the same for the same seed and name, whatever
+/// else a run draws.
+#[must_use]
+pub fn random(seed: u64, purpose: &str) -> Pcg64 {
+    let hash =
+        blake3::Hasher::new().update(&seed.to_le_bytes()).update(purpose.as_bytes()).finalize();
+    Pcg64::from_seed(*hash.as_bytes())
+}

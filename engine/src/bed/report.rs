@@ -1,0 +1,201 @@
+//! What can be said of a bed at rest.
+
+use std::f64::consts::PI;
+
+use crate::boundary::Container;
+use crate::grain_bed::GrainBed;
+use crate::grains::{Grains, Space};
+
+/// How far from walls, floor and surface the inside of a bed begins, in mean grain diameters.
+const INSIDE: f64 = 5.0;
+
+/// What a bed at rest looks like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BedReport {
+    /// How many grains.
+    pub grains: usize,
+    /// Area (volume) of the grains over base times mean surface height (–): the packing fraction as
+    /// a text that gives grains, width and height can be read.
+    pub packing_fraction: f64,
+    /// Packing fraction five grain diameters away from walls, floor and surface (–); none in a bed
+    /// too small for that.
+    pub packing_fraction_inside: Option<f64>,
+    /// Mean height of the surface (m).
+    pub height: f64,
+    /// Mean diameter of a grain (m).
+    pub mean_diameter: f64,
+    /// Mean number of contacts of a grain, walls counted (–).
+    pub coordination: f64,
+}
+
+impl BedReport {
+    /// Measures `bed`.
+    #[must_use]
+    pub fn of(bed: &GrainBed) -> Self {
+        let grains = &bed.grains;
+        let container = bed.container();
+        let mean_diameter = 2.0 * grains.radius.iter().sum::<f64>() / grains.len() as f64;
+        let spacing = spacing(grains.space) * mean_diameter;
+        let height = Columns::over(grains.space, container, 0.0, spacing).mean_height(grains);
+        let margin = INSIDE * mean_diameter;
+        let has_inside = container.narrowest(grains.space) - 2.0 * margin > margin
+            && height - 2.0 * margin > margin;
+        let inside = has_inside.then(|| {
+            Columns::over(grains.space, container, margin, spacing)
+                .covered(grains, (margin, height - margin))
+        });
+        Self {
+            grains: grains.len(),
+            packing_fraction: content(grains) / (container.base(grains.space) * height),
+            packing_fraction_inside: inside,
+            height,
+            mean_diameter,
+            coordination: bed.coordination(),
+        }
+    }
+}
+
+/// Area (m²) or volume (m³) of all grains.
+fn content(grains: &Grains) -> f64 {
+    let one = |r: &f64| match grains.space {
+        Space::Planar => PI * r * r,
+        Space::Spatial => 4.0 / 3.0 * PI * r * r * r,
+    };
+    grains.radius.iter().map(one).sum()
+}
+
+/// Distance of sampled columns, in mean grain diameters: a plane has room for finer ones.
+fn spacing(space: Space) -> f64 {
+    match space {
+        Space::Planar => 0.02,
+        Space::Spatial => 0.1,
+    }
+}
+
+/// Upright lines through a bed, evenly spread over a part of its base.
+#[derive(Clone, Copy, Debug)]
+struct Columns {
+    x: Axis,
+    y: Axis,
+}
+
+/// Points `from` + (k + ½) `spacing` (m), k < `n`, which fill `length` (m).
+#[derive(Clone, Copy, Debug)]
+struct Axis {
+    from: f64,
+    length: f64,
+    spacing: f64,
+    n: usize,
+}
+
+impl Axis {
+    /// The axis that a plane lacks: one point, at 0.
+    const NONE: Self = Self { from: -0.5, length: 1.0, spacing: 1.0, n: 1 };
+
+    /// Between `from` and `to` (m), at most `spacing` (m) apart.
+    fn new([from, to]: [f64; 2], spacing: f64) -> Self {
+        let n = ((to - from) / spacing).ceil() as usize;
+        Self { from, length: to - from, spacing: (to - from) / n as f64, n }
+    }
+
+    /// Calls `chord(k, half length)` for every point that lies within `radius` (m) of `centre` (m).
+    fn for_each_chord(&self, centre: f64, radius: f64, mut chord: impl FnMut(usize, f64)) {
+        let first = ((centre - radius - self.from) / self.spacing - 0.5).ceil().max(0.0) as usize;
+        for k in first..self.n {
+            let offset = self.from + (k as f64 + 0.5) * self.spacing - centre;
+            if offset >= radius {
+                break;
+            }
+            chord(k, (radius * radius - offset * offset).max(0.0).sqrt());
+        }
+    }
+}
+
+impl Columns {
+    /// Over the base of `container` but for a `margin` (m) along its sides.
+    fn over(space: Space, container: &Container, margin: f64, spacing: f64) -> Self {
+        let along = |length: f64| Axis::new([margin, length - margin], spacing);
+        let y = match space {
+            Space::Planar => Axis::NONE,
+            Space::Spatial => along(container.depth),
+        };
+        Self { x: along(container.width), y }
+    }
+
+    fn len(&self) -> usize {
+        self.x.n * self.y.n
+    }
+
+    /// Mean over all columns of the highest point that grains cover (m).
+    fn mean_height(&self, grains: &Grains) -> f64 {
+        let mut top = vec![0.0_f64; self.len()];
+        self.for_each_chord(grains, |column, z, half_chord| {
+            top[column] = top[column].max(z + half_chord);
+        });
+        top.iter().sum::<f64>() / self.len() as f64
+    }
+
+    /// Share of the columns between two heights (m) that grains cover.
+    fn covered(&self, grains: &Grains, (low, high): (f64, f64)) -> f64 {
+        let mut length = 0.0;
+        self.for_each_chord(grains, |_, z, half_chord| {
+            length += ((z + half_chord).min(high) - (z - half_chord).max(low)).max(0.0);
+        });
+        let volume = length * (self.x.spacing * self.y.spacing);
+        volume / (self.x.length * self.y.length * (high - low))
+    }
+
+    /// Calls `chord(column, height of its middle, half its length)` for every column that cuts a
+    /// grain, and every grain it cuts.
+    fn for_each_chord(&self, grains: &Grains, mut chord: impl FnMut(usize, f64, f64)) {
+        for (position, &radius) in grains.position.iter().zip(&grains.radius) {
+            self.y.for_each_chord(position.y, radius, |row, radius| {
+                self.x.for_each_chord(position.x, radius, |k, half_chord| {
+                    chord(row * self.x.n + k, position.z, half_chord);
+                });
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grains::Grain;
+    use crate::math::Vec3;
+
+    const CUBE: Container = Container { width: 1.0, depth: 1.0 };
+
+    fn one_grain(space: Space, y: f64) -> Grains {
+        let grain = Grain {
+            position: Vec3::new(0.5, y, 0.3),
+            velocity: Vec3::zeros(),
+            spin: Vec3::zeros(),
+            radius: 0.1,
+            mass: 1.0,
+            id: 0,
+        };
+        Grains::new(space, &[grain])
+    }
+
+    #[test]
+    fn one_disc_covers_its_area_and_its_mean_height() {
+        let grains = one_grain(Space::Planar, 0.0);
+        let columns = Columns::over(Space::Planar, &CUBE, 0.0, 1e-4);
+        let area = PI * 0.01;
+        assert!((columns.covered(&grains, (0.0, 1.0)) - area).abs() < 1e-6);
+        assert!((columns.covered(&grains, (0.0, 0.3)) - 0.5 * area / 0.3).abs() < 1e-6);
+        assert!((columns.mean_height(&grains) - (0.2 * 0.3 + 0.5 * area)).abs() < 1e-5);
+    }
+
+    #[test]
+    fn one_sphere_covers_its_volume_and_its_mean_height() {
+        let grains = one_grain(Space::Spatial, 0.4);
+        let columns = Columns::over(Space::Spatial, &CUBE, 0.0, 2e-3);
+        let (section, volume) = (PI * 0.01, 4.0 / 3.0 * PI * 1e-3);
+        // A hundred columns across: the sum over a disc is good to a few times its rim over 100².
+        assert!((columns.covered(&grains, (0.0, 1.0)) - volume).abs() < 2e-3 * volume);
+        let height = section * 0.3 + 0.5 * volume;
+        assert!((columns.mean_height(&grains) - height).abs() < 2e-3 * height);
+    }
+}
