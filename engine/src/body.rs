@@ -108,9 +108,11 @@ impl RigidBody {
         body
     }
 
-    /// Puts the body at `position` (m) with `velocity` (m/s) and `spin` (rad/s).
-    pub fn launch(&mut self, position: Vec3, velocity: Vec3, spin: Vec3) {
+    /// Puts the body at `position` (m), turned by `orientation`, with `velocity` (m/s) and `spin`
+    /// (rad/s).
+    pub fn launch(&mut self, position: Vec3, orientation: Quat, velocity: Vec3, spin: Vec3) {
         self.position = position;
+        self.orientation = orientation;
         self.velocity = velocity;
         self.angular_momentum = self.angular_momentum_of(spin);
         self.place();
@@ -134,8 +136,13 @@ impl RigidBody {
     /// Height of its lowest point (m).
     #[must_use]
     pub fn lowest(&self) -> f64 {
-        let down = self.orientation.inverse_transform_vector(&-Vec3::z());
-        self.position.z - self.part[0].surface.support(down)
+        self.position.z - self.reach_down()
+    }
+
+    /// How far its lowest point lies below its centre of mass (m).
+    #[must_use]
+    pub fn reach_down(&self) -> f64 {
+        self.part[0].surface.support(self.orientation.inverse_transform_vector(&-Vec3::z()))
     }
 
     /// Its surface, in the body frame.
@@ -271,7 +278,7 @@ mod tests {
     struct Nothing;
     impl Surface for Nothing {
         fn closest(&self, _: Vec3) -> SurfacePoint {
-            SurfacePoint { normal: Vec3::z(), gap: 1.0, curvature: 0.0 }
+            SurfacePoint { normal: Vec3::z(), gap: 1.0, curvature: 0.0, felt: true }
         }
         fn support(&self, _: Vec3) -> f64 {
             0.0
@@ -284,7 +291,8 @@ mod tests {
     /// Energy drift of a free tumbling body over 10 s at a step `dt`.
     fn tumbling_energy_error(dt: f64) -> f64 {
         let mut body = RigidBody::new("body", Arc::new(Nothing), 1.0, Vec3::new(1.0, 2.0, 3.0));
-        body.launch(Vec3::zeros(), Vec3::zeros(), Vec3::new(0.3, 2.0, -0.1));
+        let spin = Vec3::new(0.3, 2.0, -0.1);
+        body.launch(Vec3::zeros(), Quat::identity(), Vec3::zeros(), spin);
         let before = body.kinetic_energy()[1];
         let mut worst = 0.0_f64;
         for _ in 0..(10.0 / dt) as usize {
@@ -305,7 +313,7 @@ mod tests {
     #[test]
     fn a_saved_body_is_restored_to_the_bit() {
         let mut body = RigidBody::new("body", Arc::new(Nothing), 1.0, Vec3::new(1.0, 2.0, 3.0));
-        body.launch(Vec3::x(), Vec3::y(), Vec3::new(0.3, 2.0, -0.1));
+        body.launch(Vec3::x(), Quat::identity(), Vec3::y(), Vec3::new(0.3, 2.0, -0.1));
         body.kick_drift(1e-3);
         let mut other = RigidBody::new("body", Arc::new(Nothing), 1.0, Vec3::new(1.0, 2.0, 3.0));
         assert!(other.restore(&body.save()));

@@ -19,6 +19,7 @@ impl Surface for HalfSpace {
             normal: self.normal,
             gap: (point - self.origin).dot(&self.normal),
             curvature: 0.0,
+            felt: true,
         }
     }
 

@@ -21,6 +21,13 @@ pub(crate) fn cayley(angle: Vec3) -> Quat {
     Quat::new_normalize(nalgebra::Quaternion::from_parts(1.0, angle * 0.5))
 }
 
+/// The rotation by `angle` (rad) about y, which takes z towards x.
+#[must_use]
+pub fn turned_about_y(angle: f64) -> Quat {
+    let (sin, cos) = libm::sincos(0.5 * angle);
+    Quat::new_unchecked(nalgebra::Quaternion::new(cos, 0.0, sin, 0.0))
+}
+
 /// Scalar and vector part of a rotation.
 pub(crate) fn quat_parts(rotation: Quat) -> [f64; 4] {
     [rotation.w, rotation.i, rotation.j, rotation.k]

@@ -8,7 +8,7 @@ use crate::clock::{Clock, steps_in};
 use crate::error::StepError;
 use crate::grain_bed::GrainBed;
 use crate::ledger::Ledger;
-use crate::stopping::Stopping;
+use crate::stopping::{Followed, Stopping};
 use crate::world::{SavedWorld, World};
 
 /// What a run is told besides the bed and the intruder.
@@ -61,7 +61,7 @@ impl Simulation {
         let world = World::new(bed, intruder, settings.dt);
         let bodies = world.intruder.bodies();
         let body = bodies.first().expect("an impact has an intruder");
-        let stopping = Stopping::new(body.position, body.velocity);
+        let stopping = Stopping::new(Followed::of(body));
         let surface = body.lowest();
         let impact_energy = bodies.iter().flat_map(|body| body.kinetic_energy()).sum::<f64>();
         // An intruder let go from rest has no energy of impact to compare with.
@@ -79,7 +79,7 @@ impl Simulation {
         self.world.advance()?;
         let body = &self.world.intruder.bodies()[0];
         let time = self.world.clock.time();
-        self.stopping.observe(time, body.position, body.velocity);
+        self.stopping.observe(time, Followed::of(body));
         let bed = &self.world.bed;
         self.activity.observe(time, bed.moving_share(), bed.kinetic_energy());
         self.check_budget()

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::body::RigidBody;
 use crate::math::Vec3;
 
 /// A speed below this share of the greatest so far counts as rest.
@@ -9,6 +10,25 @@ const REST_SPEED: f64 = 0.05;
 
 /// How long (s) an intruder has to be at rest before the impact is over.
 const REST_HOLD: f64 = 0.01;
+
+/// What is followed of an intruder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Followed {
+    /// A point of it: the centre of mass, or the tip of a link (m).
+    pub position: Vec3,
+    /// Velocity there (m/s).
+    pub velocity: Vec3,
+    /// How far its lowest point lies below that point (m).
+    pub reach: f64,
+}
+
+impl Followed {
+    /// A body as a whole.
+    #[must_use]
+    pub fn of(body: &RigidBody) -> Self {
+        Self { position: body.position, velocity: body.velocity, reach: body.reach_down() }
+    }
+}
 
 /// Follows one impact and notes its stopping times, depth and range.
 ///
@@ -24,6 +44,8 @@ pub struct Stopping {
     /// Greatest speed so far.
     speed: f64,
     start: Vec3,
+    /// At the start (m).
+    reach: f64,
     /// Unit vector of the horizontal part of the impact velocity, or zero.
     forward: Vec3,
     before: Sample,
@@ -49,9 +71,10 @@ struct Stop {
 }
 
 impl Stopping {
-    /// An impact that starts at `position` (m) with `velocity` (m/s).
+    /// An impact that starts so.
     #[must_use]
-    pub fn new(position: Vec3, velocity: Vec3) -> Self {
+    pub fn new(followed: Followed) -> Self {
+        let Followed { position, velocity, reach } = followed;
         let speed = velocity.norm();
         let horizontal = Vec3::new(velocity.x, velocity.y, 0.0);
         // A vertical impact has a cosine of round-off size, which is not a horizontal impact.
@@ -60,6 +83,7 @@ impl Stopping {
         Self {
             speed,
             start: position,
+            reach,
             forward,
             before: Sample {
                 time: 0.0,
@@ -76,7 +100,8 @@ impl Stopping {
     }
 
     /// Takes note of the state at `time` (s).
-    pub fn observe(&mut self, time: f64, position: Vec3, velocity: Vec3) {
+    pub fn observe(&mut self, time: f64, followed: Followed) {
+        let Followed { position, velocity, reach } = followed;
         let now = Sample {
             time,
             forward: velocity.dot(&self.forward),
@@ -85,7 +110,8 @@ impl Stopping {
         };
         let before = self.before;
         if self.stopping_time().is_none() {
-            self.deepest = self.deepest.max(self.start.z - position.z);
+            let sunk = (self.start.z - position.z) + (reach - self.reach);
+            self.deepest = self.deepest.max(sunk);
         }
         if self.horizontal.is_none() && now.forward <= 0.0 {
             let share = before.forward / (before.forward - now.forward);
@@ -139,8 +165,8 @@ impl Stopping {
         self.rest_since
     }
 
-    /// Largest depth of the lowest point below where it was at the start (m), up to the stopping
-    /// time. For a body that turns, of its centre.
+    /// Largest depth of the lowest point below where that was at the start (m), up to the stopping
+    /// time.
     #[must_use]
     pub fn depth(&self) -> f64 {
         self.deepest
@@ -158,9 +184,28 @@ impl Stopping {
 mod tests {
     use super::*;
 
+    /// A point that is its own lowest one.
+    fn followed(position: Vec3, velocity: Vec3) -> Followed {
+        Followed { position, velocity, reach: 0.0 }
+    }
+
+    #[test]
+    fn a_body_that_turns_is_as_deep_as_its_lowest_point() {
+        let at = |z: f64, reach: f64, vz: f64| Followed {
+            position: Vec3::new(0.0, 0.0, z),
+            velocity: Vec3::new(0.0, 0.0, vz),
+            reach,
+        };
+        let mut stopping = Stopping::new(at(1.0, 0.5, -1.0));
+        // Half a turn onto the longer end: the centre sinks by 0.25, the lowest point by 0.75.
+        stopping.observe(0.1, at(0.75, 1.0, -0.5));
+        // Sums of powers of two: exact.
+        assert_eq!(stopping.depth().to_bits(), 0.75_f64.to_bits());
+    }
+
     /// Constant deceleration from `velocity` along both axes, sampled every `dt` until 1 s.
     fn decelerate(velocity: Vec3, deceleration: Vec3, dt: f64) -> Stopping {
-        let mut stopping = Stopping::new(Vec3::zeros(), velocity);
+        let mut stopping = Stopping::new(followed(Vec3::zeros(), velocity));
         for step in 1..=(1.0 / dt) as usize {
             let t = step as f64 * dt;
             let each = |axis: usize| {
@@ -169,7 +214,7 @@ mod tests {
                 (v * t + 0.5 * a * t * t, if a == 0.0 { 0.0 } else { v + a * t })
             };
             let ((x, vx), (z, vz)) = (each(0), each(2));
-            stopping.observe(t, Vec3::new(x, 0.0, z), Vec3::new(vx, 0.0, vz));
+            stopping.observe(t, followed(Vec3::new(x, 0.0, z), Vec3::new(vx, 0.0, vz)));
         }
         stopping
     }
@@ -196,14 +241,14 @@ mod tests {
 
     #[test]
     fn an_intruder_let_go_from_rest_stops_when_it_has_fallen_and_not_at_once() {
-        let mut stopping = Stopping::new(Vec3::zeros(), Vec3::zeros());
+        let mut stopping = Stopping::new(followed(Vec3::zeros(), Vec3::zeros()));
         assert!(stopping.stopping_time().is_none());
         for step in 1..=400 {
             let t = f64::from(step) * 1e-3;
             let phase = std::f64::consts::PI * t.min(0.2) / 0.2;
             let z = libm::cos(phase) - 1.0;
             let v = if t < 0.2 { -libm::sin(phase) } else { 0.0 };
-            stopping.observe(t, Vec3::new(0.0, 0.0, z), Vec3::new(0.0, 0.0, v));
+            stopping.observe(t, followed(Vec3::new(0.0, 0.0, z), Vec3::new(0.0, 0.0, v)));
         }
         assert!((stopping.stopping_time().unwrap() - 0.2).abs() < 1e-12);
         assert!((stopping.depth() - 2.0).abs() < 1e-9);

@@ -9,13 +9,17 @@ pub struct SurfacePoint {
     pub normal: Vec3,
     /// Distance of the query point from the surface (m); negative inside.
     pub gap: f64,
-    /// Curvature of the surface there [1/m]: 1/R of a sphere, 0 of a flat face.
+    /// Curvature of the surface there (1/m), as a contact law adds it to that of the grain: 1/R of a
+    /// sphere, 0 of a flat face, and 0 of an edge or a tip, where the radius of the grain rules. Where
+    /// two curvatures differ, what gives with the grain's the geometric mean of Hertz's theory.
     pub curvature: f64,
+    /// Whether the body feels a contact there; grains feel it always.
+    pub felt: bool,
 }
 
 /// A rigid, convex surface in its own (body) frame.
 pub trait Surface: Send + Sync {
-    /// The nearest point to `point` [m, body frame].
+    /// The nearest point to `point` (m, body frame).
     fn closest(&self, point: Vec3) -> SurfacePoint;
 
     /// [`Surface::closest`] of many points: one virtual call for all of them.
@@ -29,6 +33,11 @@ pub trait Surface: Send + Sync {
 
     /// Radius of the smallest sphere about the origin that holds the surface (m).
     fn bounding_radius(&self) -> f64;
+
+    /// Whether contacts at some points are not felt ([`SurfacePoint::felt`]).
+    fn is_recessive(&self) -> bool {
+        false
+    }
 }
 
 /// Where a rigid part is, and how it moves, during one step.

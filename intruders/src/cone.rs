@@ -4,11 +4,13 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use engine::grains::Space;
+use engine::math::Vec3;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::resistance::{Compact, Silhouette};
 use engine::units::Dimension;
 
-use crate::registry::{Casting, Launchable, ShapeEntry};
+use crate::outline::{Draft, Revolved};
+use crate::registry::{Body, Casting, Launchable, ShapeEntry};
 use crate::specs::{DIAMETER, section};
 
 /// The registry's line.
@@ -17,8 +19,15 @@ pub(crate) const CONE: ShapeEntry = ShapeEntry {
     summary: "A cone, tip first; in a planar bed, its mid-plane.",
     planar: true,
     spatial: true,
+    planar_in_resistance: true,
     params: PARAMS,
-    build: None,
+    build: |params, space| {
+        let shape = Wedge::new(params, space);
+        Body::revolved(shape.surface(None), shape.inertia_per_mass())
+    },
+    under_shaft: Some(|params, space, length| {
+        Arc::new(Wedge::new(params, space).surface(Some(length)))
+    }),
     volume: |params, space| Wedge::new(params, space).volume(f64::INFINITY),
     assembly,
 };
@@ -38,12 +47,8 @@ const PARAMS: &[ParamSpec] = &[
 
 fn assembly(casting: &Casting) -> Launchable {
     let shape = Wedge::new(casting.params, casting.space);
-    let (r, h) = (shape.radius, shape.height);
-    let (reach, moment) = match casting.space {
-        Space::Planar => (h / 1.5, h * h / 18.0 + r * r / 6.0),
-        Space::Spatial => (0.75 * h, 3.0 / 80.0 * h * h + 3.0 / 20.0 * r * r),
-    };
-    let body = Compact::new(Arc::new(shape), reach, casting.mass, casting.mass * moment);
+    let (reach, inertia) = (shape.reach(), casting.mass * shape.inertia_per_mass().y);
+    let body = Compact::new(Arc::new(shape), reach, casting.mass, inertia);
     Launchable {
         assembly: Box::new(body),
         start: Compact::at_surface(casting.velocity, casting.spin),
@@ -64,6 +69,34 @@ impl Wedge {
         let radius = 0.5 * params.get("diameter");
         let slope = libm::tan(0.5 * params.get("apex_angle"));
         Self { radius, height: radius / slope, slope, space }
+    }
+
+    /// From the tip to the centre of mass (m).
+    fn reach(&self) -> f64 {
+        match self.space {
+            Space::Planar => self.height / 1.5,
+            Space::Spatial => 0.75 * self.height,
+        }
+    }
+
+    fn surface(&self, shaft: Option<f64>) -> Revolved {
+        let tip = -self.reach();
+        Draft::at(tip).line_to(self.radius, tip + self.height).close(shaft).revolve(self.space)
+    }
+
+    /// Principal moments of inertia of one kilogram (m²).
+    fn inertia_per_mass(&self) -> Vec3 {
+        let (r, h) = (self.radius, self.height);
+        match self.space {
+            Space::Planar => {
+                let (along, width) = (h * h / 18.0, r * r / 6.0);
+                Vec3::new(along, along + width, width)
+            }
+            Space::Spatial => {
+                let across = 3.0 / 80.0 * h * h + 3.0 / 20.0 * r * r;
+                Vec3::new(across, across, 0.3 * r * r)
+            }
+        }
     }
 
     /// Half the width of the body at the surface, or at its base if that is lower (m).

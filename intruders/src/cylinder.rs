@@ -4,10 +4,12 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use engine::grains::Space;
+use engine::math::Vec3;
 use engine::params::{ParamSpec, ParamTable, Range};
 use engine::resistance::{Compact, Silhouette};
 
-use crate::registry::{Casting, Launchable, ShapeEntry};
+use crate::outline::{Draft, Revolved};
+use crate::registry::{Body, Casting, Launchable, ShapeEntry};
 use crate::specs::{DIAMETER, length, section};
 
 /// The registry's line.
@@ -16,8 +18,15 @@ pub(crate) const CYLINDER: ShapeEntry = ShapeEntry {
     summary: "A cylinder, flat face first; in a planar bed, its mid-plane.",
     planar: true,
     spatial: true,
+    planar_in_resistance: true,
     params: PARAMS,
-    build: None,
+    build: |params, space| {
+        let shape = Flat::new(params, space);
+        Body::revolved(shape.surface(None), shape.inertia_per_mass())
+    },
+    under_shaft: Some(|params, space, length| {
+        Arc::new(Flat::new(params, space).surface(Some(length)))
+    }),
     volume: |params, space| Flat::new(params, space).volume(f64::INFINITY),
     assembly,
 };
@@ -27,11 +36,7 @@ const PARAMS: &[ParamSpec] =
 
 fn assembly(casting: &Casting) -> Launchable {
     let shape = Flat::new(casting.params, casting.space);
-    let across = match casting.space {
-        Space::Planar => shape.radius * shape.radius / 3.0,
-        Space::Spatial => shape.radius * shape.radius / 4.0,
-    };
-    let inertia = casting.mass * (across + shape.height * shape.height / 12.0);
+    let inertia = casting.mass * shape.inertia_per_mass().y;
     let reach = 0.5 * shape.height;
     Launchable {
         assembly: Box::new(Compact::new(Arc::new(shape), reach, casting.mass, inertia)),
@@ -49,6 +54,24 @@ struct Flat {
 impl Flat {
     fn new(params: &ParamTable, space: Space) -> Self {
         Self { radius: 0.5 * params.get("diameter"), height: params.get("height"), space }
+    }
+
+    fn surface(&self, shaft: Option<f64>) -> Revolved {
+        let half = 0.5 * self.height;
+        let outline = Draft::at(-half).line_to(self.radius, -half).line_to(self.radius, half);
+        outline.close(shaft).revolve(self.space)
+    }
+
+    /// Principal moments of inertia of one kilogram (m²).
+    fn inertia_per_mass(&self) -> Vec3 {
+        let (width, along) = (self.radius * self.radius, self.height * self.height / 12.0);
+        match self.space {
+            Space::Planar => Vec3::new(along, width / 3.0 + along, width / 3.0),
+            Space::Spatial => {
+                let across = width / 4.0 + along;
+                Vec3::new(across, across, width / 2.0)
+            }
+        }
     }
 }
 

@@ -4,10 +4,12 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use engine::grains::Space;
+use engine::math::Vec3;
 use engine::params::{ParamSpec, ParamTable};
 use engine::resistance::{Compact, Silhouette};
 
-use crate::registry::{Casting, Launchable, ShapeEntry};
+use crate::outline::{Draft, Revolved};
+use crate::registry::{Body, Casting, Launchable, ShapeEntry};
 use crate::specs::{DIAMETER, section};
 use crate::sphere::Cap;
 
@@ -17,8 +19,15 @@ pub(crate) const HEMISPHERE: ShapeEntry = ShapeEntry {
     summary: "A hemisphere, dome first; in a planar bed, its mid-plane.",
     planar: true,
     spatial: true,
+    planar_in_resistance: true,
     params: PARAMS,
-    build: None,
+    build: |params, space| {
+        let shape = Dome::new(params, space);
+        Body::revolved(shape.surface(None), shape.inertia_per_mass())
+    },
+    under_shaft: Some(|params, space, length| {
+        Arc::new(Dome::new(params, space).surface(Some(length)))
+    }),
     volume: |params, space| Dome::new(params, space).volume(f64::INFINITY),
     assembly,
 };
@@ -27,16 +36,10 @@ const PARAMS: &[ParamSpec] = &[DIAMETER];
 
 fn assembly(casting: &Casting) -> Launchable {
     let shape = Dome::new(casting.params, casting.space);
-    let radius = shape.whole.radius;
-    // The centroid lies this far below the flat face; the moment of the whole about the centre of the
-    // sphere is moved to it by Steiner's theorem.
-    let (below, about_centre) = match casting.space {
-        Space::Planar => (4.0 * radius / (3.0 * PI), 0.5 * radius * radius),
-        Space::Spatial => (0.375 * radius, 0.4 * radius * radius),
-    };
-    let inertia = casting.mass * (about_centre - below * below);
+    let (reach, inertia) =
+        (shape.whole.radius - shape.below(), casting.mass * shape.inertia_per_mass().y);
     Launchable {
-        assembly: Box::new(Compact::new(Arc::new(shape), radius - below, casting.mass, inertia)),
+        assembly: Box::new(Compact::new(Arc::new(shape), reach, casting.mass, inertia)),
         start: Compact::at_surface(casting.velocity, casting.spin),
     }
 }
@@ -49,6 +52,32 @@ struct Dome {
 impl Dome {
     fn new(params: &ParamTable, space: Space) -> Self {
         Self { whole: Cap { radius: 0.5 * params.get("diameter"), space } }
+    }
+
+    /// How far the centre of mass lies below the flat face (m).
+    fn below(&self) -> f64 {
+        match self.whole.space {
+            Space::Planar => 4.0 * self.whole.radius / (3.0 * PI),
+            Space::Spatial => 0.375 * self.whole.radius,
+        }
+    }
+
+    fn surface(&self, shaft: Option<f64>) -> Revolved {
+        let Cap { radius, space } = self.whole;
+        Draft::at(self.below() - radius).dome(radius).close(shaft).revolve(space)
+    }
+
+    /// Principal moments of inertia of one kilogram (m²): those of the whole about the centre of the
+    /// sphere, moved to the centre of mass by Steiner's theorem.
+    fn inertia_per_mass(&self) -> Vec3 {
+        let (square, moved) = (self.whole.radius * self.whole.radius, self.below() * self.below());
+        match self.whole.space {
+            Space::Planar => Vec3::new(0.25 * square - moved, 0.5 * square - moved, 0.25 * square),
+            Space::Spatial => {
+                let across = 0.4 * square - moved;
+                Vec3::new(across, across, 0.4 * square)
+            }
+        }
     }
 }
 

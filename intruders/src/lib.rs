@@ -5,6 +5,7 @@ mod cylinder;
 mod equations;
 mod hemisphere;
 mod link;
+mod outline;
 mod parry_surface;
 mod registry;
 mod rod;
@@ -12,7 +13,7 @@ mod specs;
 mod sphere;
 mod two_link_chain;
 
-pub use registry::{Body, Casting, Launchable, ShapeEntry};
+pub use registry::{Body, Casting, Drawing, Launchable, ShapeEntry};
 
 /// Every shape, in the order of the docs.
 pub static SHAPES: &[&ShapeEntry] = &[

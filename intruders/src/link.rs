@@ -14,11 +14,13 @@ use crate::specs::{DIAMETER, length};
 pub(crate) const LINK: ShapeEntry = ShapeEntry {
     name: "link",
     summary: "A straight round link that enters at an angle and turns freely.",
-    planar: false,
+    planar: true,
     spatial: true,
+    planar_in_resistance: false,
     params: PARAMS,
-    build: None,
-    volume: |params, _| Rod::volume(params.get("length"), params.get("diameter")),
+    build: |params, space| Link::new(params, 1.0).0.body(space),
+    under_shaft: None,
+    volume: |params, space| Rod::volume(params.get("length"), params.get("diameter"), space),
     assembly,
 };
 

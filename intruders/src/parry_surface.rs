@@ -1,4 +1,4 @@
-//! Shapes of parry as surfaces: the only file where parry's vectors meet ours.
+//! The ball of parry as a surface: the only file where parry's vectors meet ours.
 
 use engine::math::Vec3;
 use engine::surface::{Surface, SurfacePoint};
@@ -25,6 +25,7 @@ impl Surface for BallSurface {
             normal: from_parry(local.try_normalize().unwrap_or(Vector::Z)),
             gap: self.0.distance_to_local_point(local, false),
             curvature: 1.0 / self.0.radius,
+            felt: true,
         }
     }
 

@@ -8,6 +8,8 @@ use engine::params::{ParamSpec, ParamTable};
 use engine::resistance::{Assembly, State};
 use engine::surface::Surface;
 
+use crate::outline::Revolved;
+
 /// One shape of intruder.
 pub struct ShapeEntry {
     /// The name in TOML, kebab-case.
@@ -18,15 +20,36 @@ pub struct ShapeEntry {
     pub planar: bool,
     /// Whether it is a shape of a spatial (3D) medium.
     pub spatial: bool,
+    /// Whether a planar resistive medium knows it too; a spatial one knows every spatial shape.
+    pub planar_in_resistance: bool,
     /// The parameters it takes, besides the mass or density that every intruder has.
     pub params: &'static [ParamSpec],
-    /// Makes it for a bed of grains from SI values that fill `params`; `None` where only a resistive
-    /// medium knows it.
-    pub build: Option<fn(&ParamTable, Space) -> Body>,
+    /// Makes a body of it from SI values that fill `params`; of a chain, one of its equal links.
+    pub build: fn(&ParamTable, Space) -> Body,
+    /// Its surface with a shaft of its top cross-section, of this length (m), upward from its top
+    /// plane, which keeps grains off its top and is not felt; `None` for a shape without top plane.
+    pub under_shaft: Option<fn(&ParamTable, Space, f64) -> Arc<dyn Surface>>,
     /// Volume (m³), or area (m²) in a planar medium, from SI values that fill `params`.
     pub volume: fn(&ParamTable, Space) -> f64,
     /// Makes it for a resistive medium.
     pub assembly: fn(&Casting) -> Launchable,
+}
+
+impl ShapeEntry {
+    /// Whether it is a shape of this space.
+    #[must_use]
+    pub fn is_of(&self, space: Space) -> bool {
+        match space {
+            Space::Planar => self.planar,
+            Space::Spatial => self.spatial,
+        }
+    }
+
+    /// Whether a resistive medium of this space knows it.
+    #[must_use]
+    pub fn is_of_resistance(&self, space: Space) -> bool {
+        self.is_of(space) && (space == Space::Spatial || self.planar_in_resistance)
+    }
 }
 
 /// What an intruder for a resistive medium is made from.
@@ -53,12 +76,30 @@ pub struct Launchable {
     pub start: State,
 }
 
-/// A shape with its distribution of mass.
+/// A shape with its distribution of mass, in the body frame: the centre of mass at the origin, the
+/// axis of symmetry along z, and what enters first towards −z.
 pub struct Body {
-    /// Surface about the centre of mass, along the principal axes.
+    /// Its surface; in a planar medium, the mid-plane of it is what counts.
     pub surface: Arc<dyn Surface>,
-    /// Principal moments of inertia of one kilogram of it (m²).
+    /// Principal moments of inertia of one kilogram of it (m²); planar, of its mid-plane.
     pub inertia_per_mass: Vec3,
-    /// Volume (m³), or area (m²) of a planar shape.
-    pub volume: f64,
+    /// What it looks like.
+    pub drawing: Drawing,
+}
+
+/// How a shape is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Drawing {
+    /// A ball about the origin, of this radius (m).
+    Ball(f64),
+    /// A body of revolution about z: heights, and the half width there (m), from bottom to top.
+    Revolved(Vec<(f64, f64)>),
+}
+
+impl Body {
+    /// With these moments of inertia per mass (m²).
+    pub(crate) fn revolved(surface: Revolved, inertia_per_mass: Vec3) -> Self {
+        let drawing = Drawing::Revolved(surface.sections());
+        Self { surface: Arc::new(surface), inertia_per_mass, drawing }
+    }
 }

@@ -2,12 +2,15 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use engine::grains::Space;
 use engine::math::{Vec3, Vec4};
 use engine::params::{Default, ParamSpec, Range};
 use engine::resistance::{Immersion, Part, PartLoad};
 use engine::units::Dimension;
 
 use crate::equations::{Equations, Point};
+use crate::outline::Draft;
+use crate::registry::Body;
 
 /// The angle (rad) of a link's axis to the vertical at the start.
 pub(crate) const fn link_angle(
@@ -72,9 +75,26 @@ struct Portion {
 }
 
 impl Rod {
-    /// Volume of a rod (m³) of `length` and `diameter` (m).
-    pub(crate) fn volume(length: f64, diameter: f64) -> f64 {
-        0.25 * PI * diameter * diameter * length
+    /// Volume of a rod (m³) of `length` and `diameter` (m); planar, the area (m²).
+    pub(crate) fn volume(length: f64, diameter: f64, space: Space) -> f64 {
+        match space {
+            Space::Planar => diameter * length,
+            Space::Spatial => 0.25 * PI * diameter * diameter * length,
+        }
+    }
+
+    /// What grains touch: a rod of the same length over all with round ends, and the moments of
+    /// inertia of this one, so that it moves as in a resistive medium.
+    pub(crate) fn body(&self, space: Space) -> Body {
+        let radius = 0.5 * self.diameter;
+        let half = (0.5 * self.length - radius).max(0.0);
+        let outline = Draft::at(-half - radius).dome(radius).line_to(radius, half).dome(radius);
+        let across = self.length * self.length / 12.0;
+        let along = match space {
+            Space::Planar => radius * radius / 3.0,
+            Space::Spatial => 0.5 * radius * radius,
+        };
+        Body::revolved(outline.revolve(space), Vec3::new(across, across, along))
     }
 
     /// Moment of inertia about its centre (kg m²).
@@ -101,7 +121,7 @@ impl Rod {
         let (tip, top) = (self.position(pose, 0.0), self.position(pose, self.length));
         let velocity = self.velocity(pose, portion.middle);
         let speed = velocity.norm();
-        let end = Self::volume(1.0, self.diameter);
+        let end = Self::volume(1.0, self.diameter, Space::Spatial);
         let side = self.diameter * portion.length;
         // What the motion sees of the portion: its side, |sin| of the angle between axis and velocity,
         // and its end. Without motion there is nothing that could see it.
@@ -290,7 +310,7 @@ mod tests {
         for (depth, q) in [(0.0, FRAC_PI_2), (1e-9, FRAC_PI_2), (0.3, 0.2), (0.1, 1.5), (0.0, 1.5)]
         {
             let part = ROD.part(&pose(depth, q, Vec3::new(0.0, 0.0, -1.0), 3.0));
-            let most = Rod::volume(ROD.length, ROD.diameter) * (1.0 + 1e-12);
+            let most = Rod::volume(ROD.length, ROD.diameter, Space::Spatial) * (1.0 + 1e-12);
             assert!(part.immersion.volume <= most, "{depth} {q}");
             assert!(part.velocity.iter().all(|value| value.is_finite()), "{depth} {q}");
         }

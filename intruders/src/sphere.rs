@@ -10,7 +10,7 @@ use engine::resistance::{Compact, Silhouette};
 use parry3d_f64::shape::Ball;
 
 use crate::parry_surface::BallSurface;
-use crate::registry::{Body, Casting, Launchable, ShapeEntry};
+use crate::registry::{Body, Casting, Drawing, Launchable, ShapeEntry};
 use crate::specs::{DIAMETER, section};
 
 const PARAMS: &[ParamSpec] = &[DIAMETER];
@@ -21,8 +21,10 @@ pub(crate) const DISC: ShapeEntry = ShapeEntry {
     summary: "A disc, in a planar bed.",
     planar: true,
     spatial: false,
+    planar_in_resistance: true,
     params: PARAMS,
-    build: Some(disc),
+    build: disc,
+    under_shaft: None,
     volume: |params, _| planar_area(params),
     assembly: |casting| compact(casting, disc),
 };
@@ -33,8 +35,10 @@ pub(crate) const SPHERE: ShapeEntry = ShapeEntry {
     summary: "A sphere; in a planar bed, its mid-plane.",
     planar: true,
     spatial: true,
+    planar_in_resistance: true,
     params: PARAMS,
-    build: Some(sphere),
+    build: sphere,
+    under_shaft: None,
     volume,
     assembly: |casting| compact(casting, sphere),
 };
@@ -45,16 +49,16 @@ fn disc(params: &ParamTable, _: Space) -> Body {
     Body {
         surface: surface(radius),
         inertia_per_mass: Vec3::new(across, 2.0 * across, across),
-        volume: planar_area(params),
+        drawing: Drawing::Ball(radius),
     }
 }
 
-fn sphere(params: &ParamTable, space: Space) -> Body {
+fn sphere(params: &ParamTable, _: Space) -> Body {
     let radius = 0.5 * params.get("diameter");
     Body {
         surface: surface(radius),
         inertia_per_mass: Vec3::repeat(0.4 * radius * radius),
-        volume: volume(params, space),
+        drawing: Drawing::Ball(radius),
     }
 }
 

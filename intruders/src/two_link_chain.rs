@@ -16,9 +16,11 @@ pub(crate) const TWO_LINK_CHAIN: ShapeEntry = ShapeEntry {
     summary: "Two equal round links that enter with their tips, on a joint at their tops.",
     planar: false,
     spatial: true,
+    planar_in_resistance: false,
     params: PARAMS,
-    build: None,
-    volume: |params, _| 2.0 * Rod::volume(params.get("length"), params.get("diameter")),
+    build: |params, space| Chain::new(params, 1.0).links[0].body(space),
+    under_shaft: None,
+    volume: |params, space| 2.0 * Rod::volume(params.get("length"), params.get("diameter"), space),
     assembly,
 };
 

@@ -21,8 +21,7 @@ impl FixedSpheres {
         params.set("diameter", 2.0 * radius);
         let shape = intruders::find("sphere").expect("the sphere is registered");
         let part = |&centre: &Vec3| Part {
-            surface: (shape.build.expect("a shape for beds of grains"))(&params, Space::Spatial)
-                .surface,
+            surface: (shape.build)(&params, Space::Spatial).surface,
             placement: Placement { position: centre, position_half: centre, ..Placement::fixed() },
             partner: Partner::Intruder,
         };

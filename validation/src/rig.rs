@@ -8,7 +8,7 @@ use engine::boundary::Container;
 use engine::contact::ContactStage;
 use engine::grain_bed::{GrainBed, RestingBed};
 use engine::grains::{Grain, Space};
-use engine::math::Vec3;
+use engine::math::{Quat, Vec3};
 use engine::params::ParamTable;
 use engine::world::World;
 
@@ -53,10 +53,10 @@ impl Size {
         let mut params = ParamTable::new();
         params.set("diameter", 2.0 * self.radius);
         let shape = intruders::find("disc").expect("the disc is registered");
-        let body = (shape.build.expect("a shape for beds of grains"))(&params, Space::Planar);
+        let body = (shape.build)(&params, Space::Planar);
         let inertia = body.inertia_per_mass * self.mass;
         let mut disc = RigidBody::new("disc", body.surface, self.mass, inertia);
-        disc.launch(position, velocity, spin);
+        disc.launch(position, Quat::identity(), velocity, spin);
         disc
     }
 }

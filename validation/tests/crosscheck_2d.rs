@@ -9,7 +9,7 @@ use engine::boundary::Container;
 use engine::contact::ContactStage;
 use engine::grain_bed::{GrainBed, RestingBed};
 use engine::grains::{Grain, Space};
-use engine::math::Vec3;
+use engine::math::{Quat, Vec3};
 use engine::params::ParamTable;
 use engine::simulation::{Settings, Simulation};
 use serde::Deserialize;
@@ -97,14 +97,12 @@ fn simulation(impact: &ImpactRow) -> Simulation {
 
     let mut params = ParamTable::new();
     params.set("diameter", 0.03);
-    let shape = (intruders::find("disc").and_then(|shape| shape.build).expect("registered"))(
-        &params,
-        Space::Planar,
-    );
+    let shape = (intruders::find("disc").expect("registered").build)(&params, Space::Planar);
     let mass = 0.0146;
     let mut disc = RigidBody::new("disc", shape.surface, mass, shape.inertia_per_mass * mass);
     disc.launch(
         Vec3::new(impact.x0_m, 0.0, impact.y0_m),
+        Quat::identity(),
         Vec3::new(impact.vx0_m_per_s, 0.0, impact.vy0_m_per_s),
         Vec3::zeros(),
     );

@@ -1,12 +1,10 @@
 //! From a model to a bed and a simulation.
 
 use engine::bed::{GrainKind, Settling, fill, random};
-use engine::body::{Mechanism, RigidBody};
 use engine::boundary::Container;
 use engine::contact::ContactStage;
 use engine::grain_bed::{GrainBed, RestingBed};
 use engine::grains::Grain;
-use engine::launch::height_in_touch;
 use engine::math::Vec3;
 use engine::simulation::{Settings, Simulation};
 use thiserror::Error;
@@ -39,6 +37,14 @@ pub enum BuildError {
         x: f64,
         /// (m).
         width: f64,
+    },
+    /// The start lies too near to the front or the back.
+    #[error("an intruder that starts at y = {y} m touches the container, {depth} m deep")]
+    StartTouchesFront {
+        /// (m).
+        y: f64,
+        /// (m).
+        depth: f64,
     },
 }
 
@@ -157,32 +163,6 @@ impl GrainModel<'_> {
             abort_above: self.model.energy.abort_above,
         };
         Ok(Simulation::new(bed, intruder, settings))
-    }
-
-    fn launched_intruder(
-        &self,
-        bed: &GrainBed,
-        condition: &Condition,
-    ) -> Result<Box<dyn Mechanism>, BuildError> {
-        let intruder = &self.model.intruder;
-        let shape = (intruder.shape.build.expect("a model of grains has a shape for grains"))(
-            &intruder.params,
-            self.medium.space,
-        );
-        let inertia = shape.inertia_per_mass * intruder.mass;
-        let mut body = RigidBody::new(&intruder.name, shape.surface, intruder.mass, inertia);
-        let x = self.start_x(condition);
-        let model::Container { width, depth } = self.medium.container;
-        let reach = body.surface().bounding_radius();
-        if x < reach || x > width - reach {
-            return Err(BuildError::StartTouchesSide { x, width });
-        }
-        let y = 0.5 * depth;
-        let z = height_in_touch(&bed.grains, body.surface(), body.orientation, (x, y));
-        let launch = self.model.launch(condition);
-        let spin = Vec3::new(0.0, launch.spin_about_y(), 0.0);
-        body.launch(Vec3::new(x, y, z), launch.velocity(), spin);
-        Ok(Box::new(body))
     }
 
     /// Where the centre of the intruder starts (m).

@@ -13,6 +13,7 @@ pub mod document;
 pub mod edit;
 pub mod estimate;
 pub mod grains_csv;
+mod launching;
 pub mod limits;
 mod load;
 mod model;

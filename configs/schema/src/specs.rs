@@ -207,6 +207,21 @@ pub(crate) const SPIN: ParamSpec = ParamSpec {
     )
 };
 
+/// One component of it.
+pub(crate) const SPIN_VECTOR: ParamSpec =
+    ParamSpec { meaning: "the angular velocity at first contact, a vector with z up", ..SPIN };
+
+pub(crate) const ATTITUDE: ParamSpec = ParamSpec {
+    default: Default::Value(0.0),
+    ..required(
+        "attitude",
+        Dimension::ANGLE,
+        Range::closed(-PI, PI),
+        Range::closed(-PI, PI),
+        "the angle of the intruder's axis to the vertical; its top leans towards +x",
+    )
+};
+
 pub(crate) const X: ParamSpec = required(
     "x",
     LENGTH,
@@ -214,6 +229,9 @@ pub(crate) const X: ParamSpec = required(
     Range::POSITIVE,
     "where the intruder's centre starts, from the left side",
 );
+
+pub(crate) const Y: ParamSpec =
+    ParamSpec { key: "y", meaning: "where the intruder's centre starts, from the front side", ..X };
 
 pub(crate) const X_RANGE: ParamSpec =
     ParamSpec { key: "x_range", meaning: "where drawn positions lie", ..X };

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use configs::contact_laws::{RESISTANCE_LAWS, Role};
 use configs::edit::{AddedEffect, Addition, add_effects};
 use configs::{
-    Color, Launch, LoadOptions, Model, ModelSource, ParameterError, ResistiveMedium, find_shipped,
+    Color, LoadOptions, Model, ModelSource, ParameterError, ResistiveMedium, find_shipped,
 };
 
 fn load(text: &str, sets: &[&str]) -> Result<configs::Loaded, String> {
@@ -126,9 +126,12 @@ fn laws_act_in_the_order_of_the_registry_whatever_the_order_of_the_file() {
 
 #[test]
 fn straight_down_is_exactly_down_and_spin_is_counter_clockwise() {
-    let launch = Launch { speed: 2.0, angle_rad: 90_f64.to_radians(), spin: 3.0 };
-    assert_eq!(launch.velocity().as_slice(), [0.0, -0.0, -2.0]);
-    assert!((launch.spin_about_y() + 3.0).abs() < 1e-15);
+    let model = good("two-term-vector", &["impact.angle=90 deg", "impact.spin=3 rad/s"]);
+    let launch = model.launch(&model.conditions()[0]);
+    let down = [0.0, -0.0, -launch.speed];
+    assert_eq!(launch.velocity().as_slice(), down);
+    // Counter-clockwise in the x–z plane is a rotation about −y.
+    assert_eq!(launch.spin.as_slice(), [0.0, -3.0, 0.0]);
 }
 
 #[test]

@@ -206,11 +206,7 @@ impl Prepared {
                 shape: condition.shape.clone(),
                 known: intruders::SHAPES.iter().map(|entry| entry.name).collect(),
             })?;
-        let fits = match space {
-            Space::Planar => shape.planar,
-            Space::Spatial => shape.spatial,
-        };
-        if !fits {
+        if !shape.is_of_resistance(space) {
             let condition = condition.id.clone();
             return Err(ForwardError::WrongSpace { condition, shape: shape.name, space: name });
         }

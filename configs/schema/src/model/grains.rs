@@ -39,6 +39,8 @@ pub struct GrainMedium {
 pub struct StartPositions {
     /// Where the centre of the intruder starts (m), if the file says so.
     pub x: Option<f64>,
+    /// The same along the depth (m) of a bed in space.
+    pub y: Option<f64>,
     /// Where drawn positions lie (m).
     pub x_range: (f64, f64),
 }

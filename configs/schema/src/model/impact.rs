@@ -17,6 +17,8 @@ pub struct Intruder {
     pub params: ParamTable,
     /// Mass (kg).
     pub mass: f64,
+    /// Whether a shaft on its top, which it does not feel, keeps grains off that.
+    pub recessive_wall: bool,
 }
 
 impl PartialEq for Intruder {
@@ -25,6 +27,7 @@ impl PartialEq for Intruder {
             && self.shape.name == other.shape.name
             && self.params == other.params
             && self.mass.to_bits() == other.mass.to_bits()
+            && self.recessive_wall == other.recessive_wall
     }
 }
 
@@ -35,6 +38,7 @@ impl std::fmt::Debug for Intruder {
             .field("shape", &self.shape.name)
             .field("params", &self.params)
             .field("mass", &self.mass)
+            .field("recessive_wall", &self.recessive_wall)
             .finish()
     }
 }
@@ -46,8 +50,11 @@ pub struct Impact {
     pub speed: f64,
     /// Angle of the velocity below the horizontal (rad): π/2 is straight down.
     pub angle_rad: f64,
-    /// Angular velocity, counter-clockwise positive (rad/s).
-    pub spin: f64,
+    /// Angular velocity (rad/s).
+    pub spin: Vec3,
+    /// Angle of the axis to the vertical in the x–z plane (rad), positive when the top leans towards
+    /// +x.
+    pub attitude_rad: f64,
 }
 
 /// How a body comes in at first contact.
@@ -57,8 +64,11 @@ pub struct Launch {
     pub speed: f64,
     /// Angle of the velocity below the horizontal (rad).
     pub angle_rad: f64,
-    /// Angular velocity, counter-clockwise positive (rad/s).
-    pub spin: f64,
+    /// Angular velocity (rad/s).
+    pub spin: Vec3,
+    /// Angle of the axis to the vertical in the x–z plane (rad), positive when the top leans towards
+    /// +x.
+    pub attitude_rad: f64,
 }
 
 impl Launch {
@@ -72,12 +82,6 @@ impl Launch {
             (libm::sin(self.angle_rad), libm::cos(self.angle_rad))
         };
         Vec3::new(cosine, 0.0, -sine) * self.speed
-    }
-
-    /// Angular velocity about y (rad/s): counter-clockwise in the x–z plane is a rotation about −y.
-    #[must_use]
-    pub fn spin_about_y(&self) -> f64 {
-        -self.spin
     }
 }
 

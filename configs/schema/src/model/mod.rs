@@ -144,7 +144,8 @@ impl Model {
     #[must_use]
     pub fn launch(&self, condition: &Condition) -> Launch {
         let Condition { speed, angle_rad, .. } = *condition;
-        Launch { speed, angle_rad, spin: self.impact.spin }
+        let Impact { spin, attitude_rad, .. } = self.impact;
+        Launch { speed, angle_rad, spin, attitude_rad }
     }
 
     /// The model as TOML with every value in SI and every default written out. It loads to the

@@ -104,7 +104,7 @@ impl ResistiveMedium {
             space: self.space,
             mass: intruder.mass,
             velocity: launch.velocity(),
-            spin: launch.spin_about_y(),
+            spin: launch.spin.y,
         });
         let laws = self.laws_at(launch.angle_rad);
         Impact::new(launchable.assembly, laws, self.surroundings(), launchable.start)

@@ -52,8 +52,8 @@ pub(super) fn model(
     let effects = laws::effects(root.tables("effect", limits::EFFECTS));
     let intruder = impact::in_grains(root.table("intruder", Some(INTRUDER_EXAMPLE)), space, places);
     let impact_table = root.table("impact", Some(IMPACT_EXAMPLE));
-    let impact = impact::impact(&impact_table, places);
-    let start = impact::start_positions(&impact_table, container.as_ref(), places);
+    let impact = impact::impact_on_grains(&impact_table, space, places);
+    let start = impact::start_positions(&impact_table, (space, container.as_ref()), places);
     impact_table.finish();
     let conditions = impact::conditions_on_grains(root.table("conditions", None), places);
     let (run, stepping) = run?;

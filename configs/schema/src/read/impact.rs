@@ -1,6 +1,7 @@
 //! `[intruder]`, `[impact]` and `[conditions]`.
 
 use engine::grains::Space;
+use engine::math::Vec3;
 use engine::params::ParamSpec;
 use intruders::ShapeEntry;
 
@@ -18,18 +19,28 @@ pub(super) fn in_grains(
     space: Space,
     places: &mut Places,
 ) -> Option<Intruder> {
-    intruder(table, space, places, |table| {
-        let fits = |shape: &&&ShapeEntry| {
-            let has_dimension = match space {
-                Space::Planar => shape.planar,
-                Space::Spatial => shape.spatial,
-            };
-            has_dimension && shape.build.is_some()
-        };
-        let (here, later): (Vec<&ShapeEntry>, Vec<_>) = intruders::SHAPES.iter().partition(fits);
-        let [here, later] = [here, later].map(|shapes| names(&shapes));
-        intruders::find(table.choice("shape", &here, &later, "the shape of the intruder")?)
-    })
+    let recessive_wall = match table.has("recessive_wall") {
+        true => table.boolean("recessive_wall", false),
+        false => Some(false),
+    };
+    let wall_span = table.span_of("recessive_wall");
+    let reader = table.reader;
+    let intruder = intruder(table, space, places, |shape| {
+        // A chain is more than one body.
+        shape.is_of(space) && shape.name != "two-link-chain"
+    })?;
+    let recessive_wall = recessive_wall?;
+    if recessive_wall && intruder.shape.under_shaft.is_none() {
+        let with_top = intruders::SHAPES.iter().filter(|shape| shape.under_shaft.is_some());
+        let with_top = names(&with_top.copied().collect::<Vec<_>>());
+        reader.report(
+            Diagnostic::error(format!("the shape `{}` has no top plane", intruder.shape.name))
+                .at(wall_span, "a recessive wall stands on the top plane of the intruder")
+                .help(format!("shapes with one: {}", with_top.join(", "))),
+        );
+        return None;
+    }
+    Some(Intruder { recessive_wall, ..intruder })
 }
 
 /// The intruder of a resistive medium.
@@ -38,39 +49,46 @@ pub(super) fn in_resistance(
     space: Space,
     places: &mut Places,
 ) -> Option<Intruder> {
-    intruder(table, space, places, |table| {
-        let (medium, fits): (_, fn(&ShapeEntry) -> bool) = match space {
-            Space::Planar => ("a planar medium", |shape| shape.planar),
-            Space::Spatial => ("a medium of dimension 3", |shape| shape.spatial),
-        };
-        let fitting = intruders::SHAPES.iter().filter(|shape| fits(shape));
-        let here = names(&fitting.copied().collect::<Vec<_>>());
-        let named = table.peek_text("shape").and_then(intruders::find);
-        if let Some(shape) = named.filter(|shape| !fits(shape)) {
-            table.reader.report(
-                Diagnostic::error(format!("the shape `{}` cannot act in {medium}", shape.name))
-                    .at(table.span_of("shape"), "a shape of another dimension")
-                    .help(format!("shapes here: {}", here.join(", "))),
-            );
-            return None;
-        }
-        intruders::find(table.choice("shape", &here, &[], "the shape of the intruder")?)
-    })
+    intruder(table, space, places, |shape| shape.is_of_resistance(space))
+}
+
+/// The shape, of those that `fits` says the medium knows.
+fn shape(
+    table: &TableReader<'_>,
+    space: Space,
+    fits: impl Fn(&ShapeEntry) -> bool,
+) -> Option<&'static ShapeEntry> {
+    let medium = match space {
+        Space::Planar => "a planar medium",
+        Space::Spatial => "a medium of dimension 3",
+    };
+    let fitting = intruders::SHAPES.iter().filter(|shape| fits(shape));
+    let here = names(&fitting.copied().collect::<Vec<_>>());
+    let named = table.peek_text("shape").and_then(intruders::find);
+    if let Some(shape) = named.filter(|shape| !fits(shape)) {
+        table.reader.report(
+            Diagnostic::error(format!("the shape `{}` cannot act in {medium}", shape.name))
+                .at(table.span_of("shape"), "a shape of another dimension")
+                .help(format!("shapes here: {}", here.join(", "))),
+        );
+        return None;
+    }
+    intruders::find(table.choice("shape", &here, &[], "the shape of the intruder")?)
 }
 
 fn names(shapes: &[&ShapeEntry]) -> Vec<&'static str> {
     shapes.iter().map(|shape| shape.name).collect()
 }
 
-/// The intruder of a medium whose shapes `choose` knows.
+/// The intruder of a medium that knows the shapes that `fits` says.
 fn intruder(
     table: TableReader<'_>,
     space: Space,
     places: &mut Places,
-    choose: impl Fn(&TableReader<'_>) -> Option<&'static ShapeEntry>,
+    fits: impl Fn(&ShapeEntry) -> bool,
 ) -> Option<Intruder> {
     let name = table.slug("name", Some("intruder"), "the intruder's name in logs and reports");
-    let shape = choose(&table)?;
+    let shape = shape(&table, space, fits)?;
     let params = table.params(shape.params);
     places.intruder = BodyPlaces {
         count: None,
@@ -84,49 +102,94 @@ fn intruder(
     let size = params.as_ref().map(|params| (shape.volume)(params, space));
     let mass = mass(&table, &specs::INTRUDER_MASS, density, size);
     table.finish();
-    Some(Intruder { name: name?.value, shape, params: params?, mass: mass? })
+    let (name, params, mass) = (name?.value, params?, mass?);
+    Some(Intruder { name, shape, params, mass, recessive_wall: false })
 }
 
-/// How the intruder comes in; the table is not finished.
+/// How the intruder comes into a resistive medium; the table is not finished.
 pub(super) fn impact(table: &TableReader<'_>, places: &mut Places) -> Option<Impact> {
+    let velocity = velocity(table, places);
+    let spin = turning(table);
+    let (speed, angle_rad) = velocity?;
+    Some(Impact { speed, angle_rad, spin: spin?, attitude_rad: 0.0 })
+}
+
+/// How the intruder comes into a bed of grains; the table is not finished.
+pub(super) fn impact_on_grains(
+    table: &TableReader<'_>,
+    space: Space,
+    places: &mut Places,
+) -> Option<Impact> {
+    let velocity = velocity(table, places);
+    let is_vector = table.node("spin").is_some_and(|node| matches!(node.value, Value::Array(_)));
+    let spin = match space {
+        Space::Spatial if is_vector => several(table, &specs::SPIN_VECTOR)
+            .map(|[x, y, z]| Vec3::new(x.value, y.value, z.value)),
+        _ => turning(table),
+    };
+    if let Some(spin) = spin.filter(|_| is_vector) {
+        table.note_list(&specs::SPIN_VECTOR, spin.as_slice());
+    }
+    let attitude = table.optional_number(&specs::ATTITUDE);
+    let (speed, angle_rad) = velocity?;
+    let attitude_rad = attitude?.map_or(0.0, |found| found.value);
+    Some(Impact { speed, angle_rad, spin: spin?, attitude_rad })
+}
+
+/// Speed (m/s) and angle below the horizontal (rad).
+fn velocity(table: &TableReader<'_>, places: &mut Places) -> Option<(f64, f64)> {
     let speed = table.number(&specs::SPEED);
     let angle = table.number(&specs::ANGLE);
-    let spin = table.number(&specs::SPIN);
     places.speed = table.span_of("speed");
     places.angle = table.span_of("angle");
     places.spin = table.span_of("spin");
-    Some(Impact { speed: speed?.value, angle_rad: angle?.value, spin: spin?.value })
+    Some((speed?.value, angle?.value))
+}
+
+/// The angular velocity (rad/s) of a spin in the x–z plane: counter-clockwise is about −y.
+fn turning(table: &TableReader<'_>) -> Option<Vec3> {
+    table.number(&specs::SPIN).map(|spin| Vec3::new(0.0, -spin.value, 0.0))
 }
 
 /// Where impacts on a bed of grains start.
 pub(super) fn start_positions(
     table: &TableReader<'_>,
-    container: Option<&Container>,
+    (space, container): (Space, Option<&Container>),
     places: &mut Places,
 ) -> Option<StartPositions> {
-    let x = start_x(table);
+    let start = start(table, space);
     let x_range = x_range(table, container);
     places.x = table.span_of("x").or_else(|| table.span_of("position"));
     places.x_range = table.span_of("x_range");
-    Some(StartPositions { x: x?, x_range: x_range? })
+    let (x, y) = start?;
+    Some(StartPositions { x, y, x_range: x_range? })
 }
 
-/// `x`, or the first of `position = [x, y]`.
-fn start_x(table: &TableReader<'_>) -> Option<Option<f64>> {
-    let (has_x, has_position) = (table.has("x"), table.has("position"));
-    if has_x && has_position {
+/// `x`, and in space `y`, or both as `position = [x, y]`.
+fn start(table: &TableReader<'_>, space: Space) -> Option<(Option<f64>, Option<f64>)> {
+    let has_y = space == Space::Spatial && table.has("y");
+    if !table.has("position") {
+        let x = table.optional_number(&specs::X);
+        let y = if has_y { table.optional_number(&specs::Y) } else { Some(None) };
+        let value = |found: Option<Found<f64>>| found.map(|found| found.value);
+        return Some((value(x?), value(y?)));
+    }
+    if table.has("x") || has_y {
+        let other = if table.has("x") { "x" } else { "y" };
         table.reader.report(
-            Diagnostic::error("both `x` and `position` are given")
+            Diagnostic::error(format!("both `{other}` and `position` are given"))
                 .at(table.span_of("position"), "says where the intruder starts")
-                .with(table.span_of("x"), "says it too")
+                .with(table.span_of(other), "says it too")
                 .help("keep one of the two"),
         );
         return None;
     }
-    if !has_position {
-        return table.optional_number(&specs::X).map(|found| found.map(|found| found.value));
+    let [x, y] = several(table, &specs::POSITION)?;
+    table.note(&specs::X, x.value);
+    if space == Space::Spatial {
+        table.note(&specs::Y, y.value);
+        return Some((Some(x.value), Some(y.value)));
     }
-    let (x, y) = pair(table, &specs::POSITION)?;
     if y.value != 0.0 {
         table.reader.report(
             Diagnostic::error(
@@ -137,15 +200,14 @@ fn start_x(table: &TableReader<'_>) -> Option<Option<f64>> {
         );
         return None;
     }
-    table.note(&specs::X, x.value);
-    Some(Some(x.value))
+    Some((Some(x.value), None))
 }
 
 /// `x_range`, or the middle third of the container.
 fn x_range(table: &TableReader<'_>, container: Option<&Container>) -> Option<(f64, f64)> {
     let range = match table.has("x_range") {
         true => {
-            let (from, to) = pair(table, &specs::X_RANGE)?;
+            let [from, to] = several(table, &specs::X_RANGE)?;
             if from.value > to.value {
                 table.reader.report(
                     Diagnostic::error("`x_range` runs backwards")
@@ -161,23 +223,28 @@ fn x_range(table: &TableReader<'_>, container: Option<&Container>) -> Option<(f6
             (width / 3.0, width / 1.5)
         }
     };
-    table.note_pair(&specs::X_RANGE, range);
+    table.note_list(&specs::X_RANGE, &[range.0, range.1]);
     Some(range)
 }
 
-/// A list of exactly two quantities.
-fn pair(table: &TableReader<'_>, spec: &ParamSpec) -> Option<(Found<f64>, Found<f64>)> {
+/// A list of exactly so many quantities.
+fn several<const N: usize>(table: &TableReader<'_>, spec: &ParamSpec) -> Option<[Found<f64>; N]> {
     let Node { span, value } = table.node(spec.key)?;
     if let Value::Array(nodes) = value
-        && let [first, second] = nodes.as_slice()
+        && nodes.len() == N
     {
-        let (first, second) = (table.number_at(first, spec), table.number_at(second, spec));
-        return first.zip(second);
+        let found: Vec<_> = nodes.iter().map(|node| table.number_at(node, spec)).collect();
+        let found: Option<Vec<Found<f64>>> = found.into_iter().collect();
+        return found?.try_into().ok();
     }
+    let (count, kind, example) = match N {
+        2 => ("two", "lengths", "\"0.3 m\", \"0.7 m\""),
+        _ => ("three", "spins", "\"0 rad/s\", \"-10 rad/s\", \"2 rad/s\""),
+    };
     table.reader.report(
-        Diagnostic::error(format!("`{}` is not a list of two lengths", spec.key))
-            .at(*span, "two lengths are wanted")
-            .help(format!("write {} = [\"0.3 m\", \"0.7 m\"]", spec.key)),
+        Diagnostic::error(format!("`{}` is not a list of {count} {kind}", spec.key))
+            .at(*span, format!("{count} {kind} are wanted"))
+            .help(format!("write {} = [{example}]", spec.key)),
     );
     None
 }

@@ -46,7 +46,7 @@ pub(super) fn model(
     let intruder_table = root.table("intruder", Some(INTRUDER_EXAMPLE));
     let intruder = space.and_then(|space| impact::in_resistance(intruder_table, space, places));
     let impact_table = root.table("impact", Some(IMPACT_EXAMPLE));
-    foreign.keys(&impact_table, "impact", &["x", "position", "x_range"]);
+    foreign.keys(&impact_table, "impact", &["x", "y", "position", "x_range", "attitude"]);
     let impact = impact::impact(&impact_table, places);
     impact_table.finish();
     let conditions_table = root.table("conditions", None);

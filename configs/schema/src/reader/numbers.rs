@@ -221,10 +221,11 @@ impl TableReader<'_> {
         self.entry(spec.key).and_then(|entry| self.number_at(&entry.node, spec))
     }
 
-    /// Writes a pair of numbers.
-    pub(crate) fn note_pair(&self, spec: &ParamSpec, (from, to): (f64, f64)) {
-        let [from, to] = [from, to].map(|value| number_toml(value, spec.dimension));
-        self.write(spec.key, format!("[{from}, {to}]"));
+    /// Writes a list of numbers.
+    pub(crate) fn note_list(&self, spec: &ParamSpec, values: &[f64]) {
+        let items: Vec<String> =
+            values.iter().map(|&value| number_toml(value, spec.dimension)).collect();
+        self.write(spec.key, format!("[{}]", items.join(", ")));
     }
 
     /// Writes a line that was derived from what was read.

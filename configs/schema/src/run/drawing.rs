@@ -1,15 +1,13 @@
-//! Intruders of resistive media as they are drawn.
+//! Intruders as they are drawn.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
+use engine::grains::Space;
 use engine::math::Vec3;
 use engine::record::LoggedShape;
-use engine::resistance::{Impact, Space, State};
+use intruders::Drawing;
 
 use crate::model::Intruder;
-
-/// Sections of a drawn body along its axis.
-const LEVELS: usize = 24;
 
 /// Corners of a drawn round section.
 const CORNERS: usize = 32;
@@ -17,55 +15,15 @@ const CORNERS: usize = 32;
 /// Thickness of a drawn planar body, in its diameter.
 const THICKNESS: f64 = 0.1;
 
-/// Halvings that find the height of a body to the last digit.
-const HALVINGS: usize = 60;
-
-/// A part of `intruder` as it is drawn about its centre.
-pub(super) fn shape_of(intruder: &Intruder, space: Space, impact: &Impact) -> LoggedShape {
-    let param = |name| intruder.params.iter().find(|(key, _)| *key == name).map(|(_, value)| value);
-    let diameter = impact.assembly().part(0, impact.start()).immersion.diameter;
-    let radius = 0.5 * diameter;
-    match (intruder.shape.name, param("length")) {
-        ("sphere", _) if space == Space::Spatial => LoggedShape::Sphere { radius },
-        ("sphere" | "disc", _) => LoggedShape::Disc { radius, thickness: THICKNESS * diameter },
-        (_, Some(length)) => body(&[(-0.5 * length, radius), (0.5 * length, radius)], space),
-        _ => body(&profile(impact, space), space),
-    }
-}
-
-/// Heights above the centre (m) of sections of a compact body, with their half widths (m), as its
-/// volume grows while it sinks.
-fn profile(impact: &Impact, space: Space) -> Vec<(f64, f64)> {
-    let assembly = impact.assembly();
-    let sunk = |depth: f64| {
-        let mut state: State = *impact.start();
-        state.position[1] = -depth;
-        state
-    };
-    let half_width = |height: f64| {
-        let section = assembly.part(0, &sunk(height)).immersion.section;
-        match space {
-            Space::Planar => 0.5 * section,
-            Space::Spatial => (section / PI).sqrt(),
+/// `intruder`, or of a chain each of its links, as it is drawn about its centre of mass.
+pub(super) fn shape_of(intruder: &Intruder, space: Space) -> LoggedShape {
+    match ((intruder.shape.build)(&intruder.params, space).drawing, space) {
+        (Drawing::Ball(radius), Space::Spatial) => LoggedShape::Sphere { radius },
+        (Drawing::Ball(radius), Space::Planar) => {
+            LoggedShape::Disc { radius, thickness: THICKNESS * 2.0 * radius }
         }
-    };
-    let centre = assembly.weight_at(0, &sunk(0.0)).0;
-    // Every shape is taller than its centre of mass is high, and none of ours four times.
-    let (mut inside, mut outside) = (centre, 8.0 * centre);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (inside + outside);
-        if half_width(middle) > 0.0 {
-            inside = middle;
-        } else {
-            outside = middle;
-        }
+        (Drawing::Revolved(sections), _) => body(&sections, space),
     }
-    (0..=LEVELS)
-        .map(|level| {
-            let height = inside * level as f64 / LEVELS as f64;
-            (height - centre, half_width(height))
-        })
-        .collect()
 }
 
 /// A closed surface around sections (height (m), half width (m)) in rising order.

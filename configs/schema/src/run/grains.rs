@@ -4,16 +4,16 @@ use std::time::Instant;
 
 use engine::checkpoint;
 use engine::error::StepError;
-use engine::grains::Space;
 use engine::math::Vec3;
 use engine::parallel::n_threads;
 use engine::record::{
     BedChannels, BodyFrame, BodyLoad, BodySample, EventLevel, GrainSample, LogPosition, LogSetup,
-    LoggedBody, LoggedShape, RecordError, RunLog, Stamp,
+    LoggedBody, RecordError, RunLog, Stamp,
 };
 use engine::simulation::{Simulation, Snapshot};
 use serde::{Deserialize, Serialize};
 
+use super::drawing::shape_of;
 use super::folder::OutputFolder;
 use super::log_texts::{arrow_m_per_newton, attachments, metadata, opening};
 use super::model_file::model_text;
@@ -181,7 +181,9 @@ impl Setting<'_> {
     fn log_setup(&self, simulation: &Simulation, condition: &Condition) -> LogSetup {
         let GrainModel { model, medium } = self.grains;
         let bodies = simulation.intruder().bodies();
-        let radius = bodies[0].surface().bounding_radius();
+        // Without the shaft of a recessive wall, which is not drawn.
+        let drawn = (model.intruder.shape.build)(&model.intruder.params, medium.space);
+        let radius = drawn.surface.bounding_radius();
         let weight = model.intruder.mass * medium.gravity;
         let Container { width, depth } = medium.container;
         let top = simulation.surface() + 2.0 * radius;
@@ -208,10 +210,7 @@ impl Setting<'_> {
                 .iter()
                 .map(|body| LoggedBody {
                     name: body.name.clone(),
-                    shape: match medium.space {
-                        Space::Planar => LoggedShape::Disc { radius, thickness: 0.2 * radius },
-                        Space::Spatial => LoggedShape::Sphere { radius },
-                    },
+                    shape: shape_of(&model.intruder, medium.space),
                 })
                 .collect(),
             container: Some((Vec3::zeros(), Vec3::new(width, depth, top))),
