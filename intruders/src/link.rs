@@ -21,6 +21,7 @@ pub(crate) const LINK: ShapeEntry = ShapeEntry {
     build: |params, space| Link::new(params, 1.0).0.body(space),
     under_shaft: None,
     volume: |params, space| Rod::volume(params.get("length"), params.get("diameter"), space),
+    contact_area: Rod::contact_area,
     assembly,
 };
 

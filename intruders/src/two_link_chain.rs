@@ -21,6 +21,7 @@ pub(crate) const TWO_LINK_CHAIN: ShapeEntry = ShapeEntry {
     build: |params, space| Chain::new(params, 1.0).links[0].body(space),
     under_shaft: None,
     volume: |params, space| 2.0 * Rod::volume(params.get("length"), params.get("diameter"), space),
+    contact_area: Rod::contact_area,
     assembly,
 };
 

@@ -45,7 +45,7 @@ struct Saved {
 /// A run between two steps.
 struct Run<'a> {
     simulation: Simulation,
-    observables: Observables,
+    observables: Observables<'a>,
     log: RunLog,
     folder: &'a OutputFolder,
     key: [u8; 32],
@@ -118,7 +118,10 @@ impl Setting<'_> {
         folder: &'f OutputFolder,
         condition: &Condition,
         control: &mut dyn Control,
-    ) -> Result<Run<'f>, RunError> {
+    ) -> Result<Run<'f>, RunError>
+    where
+        Self: 'f,
+    {
         let key = result_key(&model_text(self.grains.model));
         let mut simulation = self.grains.simulation(&self.bed.resting, condition)?;
         let setup = self.log_setup(&simulation, condition);
