@@ -11,6 +11,7 @@ pub mod checkpoint;
 pub mod clock;
 pub mod contact;
 mod contacts;
+pub mod course;
 pub mod error;
 pub mod grain_bed;
 pub mod grains;
