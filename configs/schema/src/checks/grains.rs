@@ -2,8 +2,6 @@
 
 use engine::grains::Space;
 
-use engine::math::{Vec3, turned_about_y};
-
 use super::{Common, metres, seconds};
 use crate::diagnostics::{Diagnostic, Span};
 use crate::limits;
@@ -120,20 +118,9 @@ impl GrainChecks<'_> {
         }
     }
 
-    /// How far the intruder reaches to a side at the start (m).
-    fn half_width(&self) -> f64 {
-        let intruder = &self.grains.model.intruder;
-        let shape = (intruder.shape.build)(&intruder.params, self.grains.medium.space);
-        let orientation = turned_about_y(self.grains.attitude());
-        let sides = [Vec3::x(), -Vec3::x()];
-        let reach =
-            sides.map(|side| shape.surface.support(orientation.inverse_transform_vector(&side)));
-        reach[0].max(reach[1])
-    }
-
     fn start_positions(&self) {
         let width = self.grains.medium.container.width;
-        let radius = self.half_width();
+        let radius = self.grains.half_width();
         let inside = |x: f64| x >= radius && x <= width - radius;
         let outside = |x: f64, span: Option<Span>| {
             if !inside(x) {
