@@ -69,6 +69,11 @@ impl GrainModel<'_> {
         Ok(Box::new(body))
     }
 
+    /// How many bodies the intruder is made of.
+    pub(crate) fn n_bodies(&self) -> usize {
+        self.links().map_or(1, |links| links.bodies().len())
+    }
+
     /// The links of a chain, with the joint at the origin; none for an intruder that is one body.
     fn links(&self) -> Option<HingedLinks> {
         let intruder = &self.model.intruder;

@@ -17,6 +17,7 @@ pub(super) struct GrainChecks<'a> {
 impl GrainChecks<'_> {
     pub(super) fn all(&self) {
         self.sizes();
+        self.links();
         self.derived_quantities();
         self.common.number_of_conditions();
         if !self.common.reader.failed() {
@@ -50,6 +51,32 @@ impl GrainChecks<'_> {
             for (kind, places) in settle.grains.iter().zip(&self.common.places.grains) {
                 too_wide("grain", kind.diameter, *places);
             }
+        }
+    }
+
+    /// Links have round ends, and a chain moves in the x–z plane.
+    fn links(&self) {
+        let (intruder, places) = (&self.grains.model.intruder, self.common.places);
+        let param = |name| intruder.params.iter().find(|(key, _)| *key == name);
+        if let (Some((_, length)), Some((_, diameter))) = (param("length"), param("diameter"))
+            && length <= diameter
+        {
+            self.common.reader.report(
+                Diagnostic::error("a link is longer than it is thick")
+                    .at(places.intruder.diameter, format!("{} thick", metres(diameter)))
+                    .help(format!(
+                        "its length, round ends included, is {}; a sphere has the shape \"sphere\"",
+                        metres(length)
+                    )),
+            );
+        }
+        let spin = self.grains.model.impact.spin;
+        if intruder.shape.links.is_some() && (spin.x != 0.0 || spin.z != 0.0) {
+            self.common.reader.report(
+                Diagnostic::error("a chain moves in the x–z plane")
+                    .at(places.spin, "turns it out of that")
+                    .help("write its spin as one number, counter-clockwise positive"),
+            );
         }
     }
 
