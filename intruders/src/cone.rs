@@ -25,6 +25,7 @@ pub(crate) const CONE: ShapeEntry = ShapeEntry {
         let shape = Wedge::new(params, space);
         Body::revolved(shape.surface(None), shape.inertia_per_mass())
     },
+    links: None,
     under_shaft: Some(|params, space, length| {
         Arc::new(Wedge::new(params, space).surface(Some(length)))
     }),

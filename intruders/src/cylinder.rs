@@ -24,6 +24,7 @@ pub(crate) const CYLINDER: ShapeEntry = ShapeEntry {
         let shape = Flat::new(params, space);
         Body::revolved(shape.surface(None), shape.inertia_per_mass())
     },
+    links: None,
     under_shaft: Some(|params, space, length| {
         Arc::new(Flat::new(params, space).surface(Some(length)))
     }),

@@ -25,6 +25,7 @@ pub(crate) const HEMISPHERE: ShapeEntry = ShapeEntry {
         let shape = Dome::new(params, space);
         Body::revolved(shape.surface(None), shape.inertia_per_mass())
     },
+    links: None,
     under_shaft: Some(|params, space, length| {
         Arc::new(Dome::new(params, space).surface(Some(length)))
     }),

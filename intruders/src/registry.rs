@@ -8,6 +8,7 @@ use engine::params::{ParamSpec, ParamTable};
 use engine::resistance::{Assembly, State};
 use engine::surface::Surface;
 
+use crate::hinged_links::HingedLinks;
 use crate::outline::Revolved;
 
 /// One shape of intruder.
@@ -26,6 +27,9 @@ pub struct ShapeEntry {
     pub params: &'static [ParamSpec],
     /// Makes a body of it from SI values that fill `params`; of a chain, one of its equal links.
     pub build: fn(&ParamTable, Space) -> Body,
+    /// Makes linked bodies of it, of this mass in all (kg), for a bed of grains; `None` for a shape
+    /// that is one body.
+    pub links: Option<fn(&ParamTable, Space, f64) -> HingedLinks>,
     /// Its surface with a shaft of its top cross-section, of this length (m), upward from its top
     /// plane, which keeps grains off its top and is not felt; `None` for a shape without top plane.
     pub under_shaft: Option<fn(&ParamTable, Space, f64) -> Arc<dyn Surface>>,

@@ -2,8 +2,6 @@
 
 use engine::grains::Space;
 
-use engine::math::{Vec3, turned_about_y};
-
 use super::{Common, metres, seconds};
 use crate::diagnostics::{Diagnostic, Span};
 use crate::limits;
@@ -19,6 +17,7 @@ pub(super) struct GrainChecks<'a> {
 impl GrainChecks<'_> {
     pub(super) fn all(&self) {
         self.sizes();
+        self.links();
         self.derived_quantities();
         self.common.number_of_conditions();
         if !self.common.reader.failed() {
@@ -52,6 +51,32 @@ impl GrainChecks<'_> {
             for (kind, places) in settle.grains.iter().zip(&self.common.places.grains) {
                 too_wide("grain", kind.diameter, *places);
             }
+        }
+    }
+
+    /// Links have round ends, and a chain moves in the x–z plane.
+    fn links(&self) {
+        let (intruder, places) = (&self.grains.model.intruder, self.common.places);
+        let param = |name| intruder.params.iter().find(|(key, _)| *key == name);
+        if let (Some((_, length)), Some((_, diameter))) = (param("length"), param("diameter"))
+            && length <= diameter
+        {
+            self.common.reader.report(
+                Diagnostic::error("a link is longer than it is thick")
+                    .at(places.intruder.diameter, format!("{} thick", metres(diameter)))
+                    .help(format!(
+                        "its length, round ends included, is {}; a sphere has the shape \"sphere\"",
+                        metres(length)
+                    )),
+            );
+        }
+        let spin = self.grains.model.impact.spin;
+        if intruder.shape.links.is_some() && (spin.x != 0.0 || spin.z != 0.0) {
+            self.common.reader.report(
+                Diagnostic::error("a chain moves in the x–z plane")
+                    .at(places.spin, "turns it out of that")
+                    .help("write its spin as one number, counter-clockwise positive"),
+            );
         }
     }
 
@@ -120,20 +145,9 @@ impl GrainChecks<'_> {
         }
     }
 
-    /// How far the intruder reaches to a side at the start (m).
-    fn half_width(&self) -> f64 {
-        let intruder = &self.grains.model.intruder;
-        let shape = (intruder.shape.build)(&intruder.params, self.grains.medium.space);
-        let orientation = turned_about_y(self.grains.attitude());
-        let sides = [Vec3::x(), -Vec3::x()];
-        let reach =
-            sides.map(|side| shape.surface.support(orientation.inverse_transform_vector(&side)));
-        reach[0].max(reach[1])
-    }
-
     fn start_positions(&self) {
         let width = self.grains.medium.container.width;
-        let radius = self.half_width();
+        let radius = self.grains.half_width();
         let inside = |x: f64| x >= radius && x <= width - radius;
         let outside = |x: f64, span: Option<Span>| {
             if !inside(x) {
