@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use configs::engine::resistance::Space;
 use configs::estimate::Estimate;
-use configs::{Color, GrainModel, Medium, Model, ResistiveModel, stability};
+use configs::{Color, GrainModel, Medium, Model, ResistiveModel, TimeStep, stability};
 use serde_json::{Map, Value, json};
 
 use crate::check_set;
@@ -52,7 +52,8 @@ struct Facts {
 
 fn of_grains(grains: GrainModel<'_>) -> Facts {
     let estimate = Estimate::of(grains);
-    let collision = stability::shortest_collision_time(grains);
+    let times = stability::times(grains);
+    let collision = times.collision;
     let step = stability::time_step(grains);
     let mut lines = vec![
         ("grains", estimate.n_grains.to_string()),
@@ -63,7 +64,11 @@ fn of_grains(grains: GrainModel<'_>) -> Facts {
             let per_collision = collision.map_or(String::new(), |time| {
                 format!(", {:.1} per shortest collision", time / step)
             });
-            lines.push(("time step", format!("{step:e} s{per_collision}")));
+            let decided = match (grains.medium.stepping.time_step, times.step()) {
+                (TimeStep::Auto, Some((_, by))) => format!(", set by {}", by.describe()),
+                _ => String::new(),
+            };
+            lines.push(("time step", format!("{step:e} s{per_collision}{decided}")));
             lines.push(("steps", format!("{steps} at most, per impact")));
         }
         _ => lines.push(("time step", "known when the laws are built".to_owned())),

@@ -1,6 +1,6 @@
 //! Linear spring–dashpot with a tangential spring and a Coulomb limit.
 
-use engine::contact::{Contact, ContactLaw, Partner, Response, Slot};
+use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::ledger::{Channel, ChannelKind};
 use engine::math::Vec3;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
@@ -14,7 +14,7 @@ use crate::registry::{ActsOn, FromParams, LawEntry};
 /// F_n = k_n δ + m_r γ_n dδ/dt   (N), repulsion positive; it may attract while damping exceeds the
 /// spring, as the source prints it
 ///
-/// F_t = −(k_t ξ + m_r γ_t v_t), |F_t| ≤ μ |F_n|
+/// F_t = −(k_t ξ + m_r γ_t v_t), |F_t| ≤ μ |F_n|, where adhesion adds to F_n what [`Response`] says
 ///
 /// ξ (m) is the tangential spring, kept in [`Memory`] and turned with the contact plane. Above the
 /// limit the viscous part is dropped and ξ = −F_t/k_t: with the γ_t of the source the dashpot alone
@@ -104,7 +104,8 @@ impl ContactLaw for LinearSpringDashpot {
         energy.normal += 0.5 * k_n * overlap * overlap;
         energy.normal_damping += 0.5 * (history.normal_damping + damping) * contact.overlap_step;
 
-        let limit = pair.friction * normal_force.abs();
+        let pressed = response.normal_force + normal_force + response.adhesive_force;
+        let limit = pair.friction * pressed.abs();
         let before = contact.turn(history.spring);
         let stretched = before + contact.slip_step;
         let viscous = contact.slip_velocity * (mass * pair.tangential_damping_rate);
@@ -129,11 +130,11 @@ impl ContactLaw for LinearSpringDashpot {
         response.tangential_force += force;
     }
 
-    fn collision_time(pair: &Pair, mass_eff: f64) -> Option<f64> {
-        Some(std::f64::consts::PI * (mass_eff / pair.normal_stiffness).sqrt())
+    fn collision_time(pair: &Pair, encounter: &Encounter) -> Option<f64> {
+        Some(std::f64::consts::PI * (encounter.mass_eff / pair.normal_stiffness).sqrt())
     }
 
-    fn damping_time(pair: &Pair) -> Option<f64> {
+    fn damping_time(pair: &Pair, _: &Encounter) -> Option<f64> {
         // Spin makes a contact lighter along its plane: 1 + m R²/I, 3.5 for spheres, 3 for discs.
         let rate = pair.normal_damping_rate.max(3.5 * pair.tangential_damping_rate);
         (rate > 0.0).then(|| 1.0 / rate)

@@ -1,6 +1,6 @@
 //! Rolling resistance as an elastic–plastic spring with a dashpot.
 
-use engine::contact::{Contact, ContactLaw, Partner, Response, Slot};
+use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::ledger::{Channel, ChannelKind};
 use engine::math::Vec3;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
@@ -86,7 +86,7 @@ impl ContactLaw for RollingResistance {
         } else {
             0.0
         };
-        let limit = lever * response.normal_force.abs();
+        let limit = lever * (response.normal_force + response.adhesive_force).abs();
         let rolling = |spin: Vec3| spin - contact.normal * spin.dot(&contact.normal);
 
         let turned = rolling(contact.relative_turn);
@@ -110,11 +110,11 @@ impl ContactLaw for RollingResistance {
         response.couple += couple;
     }
 
-    fn collision_time(_: &Pair, _: f64) -> Option<f64> {
+    fn collision_time(_: &Pair, _: &Encounter) -> Option<f64> {
         None
     }
 
-    fn damping_time(_: &Pair) -> Option<f64> {
+    fn damping_time(_: &Pair, _: &Encounter) -> Option<f64> {
         None
     }
 }

@@ -1,8 +1,8 @@
 //! What must hold for every registered law, whatever it says.
 
-use contact_laws::{LAWS, LawEntry};
+use contact_laws::{ActsOn, LAWS, LawEntry};
 use engine::contact::stage::Batch;
-use engine::contact::{Contact, ContactStage, Partner, Response, Slot};
+use engine::contact::{Contact, ContactStage, Encounter, Partner, Response, Slot};
 use engine::math::{Quat, Vec3};
 use engine::params::{Default as Given, ParamTable};
 
@@ -233,11 +233,34 @@ fn every_registered_law_is_silent_where_nothing_touches() {
 }
 
 #[test]
-fn every_registered_law_has_channels_of_its_own() {
-    let mut seen = Vec::new();
-    for channel in LAWS.iter().flat_map(|entry| entry.channels) {
-        let account = (channel.name, channel.kind);
-        assert!(!seen.contains(&account), "{account:?} is booked twice");
-        seen.push(account);
+fn every_registered_law_has_channels_of_its_own_in_whatever_bed() {
+    // Base laws may share: a bed has one of them.
+    for base in LAWS.iter().filter(|entry| entry.acts_on == ActsOn::ContactBase) {
+        let effects = LAWS.iter().filter(|entry| entry.acts_on == ActsOn::ContactEffect);
+        let mut seen = Vec::new();
+        for channel in std::iter::once(base).chain(effects).flat_map(|entry| entry.channels) {
+            let account = (channel.name, channel.kind);
+            assert!(!seen.contains(&account), "{account:?} is booked twice");
+            seen.push(account);
+        }
+    }
+}
+
+#[test]
+fn a_head_on_collision_of_a_linear_law_rebounds_as_its_damping_says() {
+    let entry = contact_laws::find("linear-spring-dashpot").expect("the law is registered");
+    let (stiffness, mass) = (3200.0, 2.45e-5);
+    for rate in [0.0, 1e3, 1e4] {
+        let mut table = table(entry);
+        table.set("normal_stiffness", stiffness);
+        table.set("normal_damping_rate", rate);
+        let stages = [(entry.build)(&table)];
+        let encounter = Encounter { mass_eff: mass, radius_eff: 1e-3, speed: 0.5 };
+        let found = engine::contact::restitution(&stages, Partner::Grain, &encounter);
+        // A damped oscillator through half its period; it may attract before it lets go.
+        let natural = (stiffness / mass - 0.25 * rate * rate).sqrt();
+        let exact = libm::exp(-0.5 * rate * std::f64::consts::PI / natural);
+        // The last step, of which there are 2000, is taken whole.
+        assert!((found.expect("it has a duration") - exact).abs() < 1e-3, "{found:?} {exact}");
     }
 }

@@ -10,6 +10,7 @@ use crate::boundary::Container;
 use crate::contact::{ContactStage, Partner};
 use crate::contacts::{ContactSums, Contacts, Memory, SavedBlock};
 use crate::error::StepError;
+use crate::footprint::Footprint;
 use crate::grains::{Grain, Grains, Space};
 use crate::ledger::{ChannelKind, Term, TermKind};
 use crate::math::Vec3;
@@ -47,7 +48,12 @@ struct GrainEnergy {
     translation: f64,
     rotation: f64,
     potential: f64,
+    /// How many of them move, see [`GrainBed::moving_share`].
+    moving: u32,
 }
+
+/// A grain moves when its energy would lift it by this share of its diameter.
+const MOVING_LIFT: f64 = 0.01;
 
 /// Everything of a bed that changes during a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -204,25 +210,25 @@ impl GrainBed {
             .map(|part| part.placement.max_speed(part.surface.bounding_radius()))
             .fold(self.fastest, |fastest, speed| fastest.max(self.fastest + speed));
         if self.intruder_list.spend(approach * dt) {
+            let largest = self.grains.radius.iter().fold(0.0_f64, |largest, &r| largest.max(r));
+            let reach = self.contacts.reach(Partner::Intruder, largest);
+            let margin = self.intruder_list.margin() + reach;
             for (k, part) in parts.iter().enumerate() {
                 let index = self.walls.len() + k;
-                self.contacts.list_surface(
-                    &self.grains,
-                    (index, part),
-                    self.intruder_list.margin(),
-                );
+                self.contacts.list_surface(&self.grains, (index, part), margin);
             }
             self.intruder_list.renew();
         }
     }
 
     fn list_pairs_and_walls(&mut self) {
-        let margin = self.pair_list.margin();
         let largest = self.grains.radius.iter().fold(0.0_f64, |largest, &r| largest.max(r));
+        let margin = self.pair_list.margin() + self.contacts.reach(Partner::Grain, 0.5 * largest);
+        let wall_margin = self.pair_list.margin() + self.contacts.reach(Partner::Wall, largest);
         self.grid.fill(&self.grains, 2.0 * largest + margin);
         self.contacts.list_pairs(&self.grains, &self.grid, margin);
         for (index, wall) in self.walls.iter().enumerate() {
-            self.contacts.list_surface(&self.grains, (index, wall), margin);
+            self.contacts.list_surface(&self.grains, (index, wall), wall_margin);
         }
         self.pair_list.renew();
     }
@@ -243,12 +249,14 @@ impl GrainBed {
     pub(crate) fn gather_and_kick(&mut self, dt: f64) {
         let half = 0.5 * dt;
         let gravity = self.gravity;
+        let weight_per_mass = gravity.norm();
         let contacts = &self.contacts;
         let Grains {
             load,
             velocity,
             spin,
             position,
+            radius,
             mass,
             inertia,
             inverse_mass,
@@ -271,8 +279,12 @@ impl GrainBed {
                     load[k].force += gravity * mass[i];
                     velocity[k] += load[k].force * (half * inverse_mass[i]);
                     spin[k] += load[k].torque * (half * inverse_inertia[i]);
-                    energy.translation += 0.5 * mass[i] * velocity[k].norm_squared();
-                    energy.rotation += 0.5 * inertia[i] * spin[k].norm_squared();
+                    let translation = 0.5 * mass[i] * velocity[k].norm_squared();
+                    let rotation = 0.5 * inertia[i] * spin[k].norm_squared();
+                    energy.translation += translation;
+                    energy.rotation += rotation;
+                    let lift = 2.0 * MOVING_LIFT * radius[i] * mass[i] * weight_per_mass;
+                    energy.moving += u32::from(translation + rotation > lift);
                     energy.potential -= mass[i] * gravity.dot(&position[i]);
                 }
             });
@@ -312,6 +324,7 @@ impl GrainBed {
             translation: sum.translation + block.translation,
             rotation: sum.rotation + block.rotation,
             potential: sum.potential + block.potential,
+            moving: sum.moving + block.moving,
         });
         entries.clear();
         entries.extend([bodies[0], bodies[1], grains.translation, grains.rotation]);
@@ -333,11 +346,37 @@ impl GrainBed {
         entries.push(walls);
     }
 
+    /// What grains cover of each part of the intruder, as of the last step.
+    #[must_use]
+    pub fn footprints(&self) -> &[Footprint] {
+        &self.sums.footprints[self.walls.len()..]
+    }
+
+    /// Share of the grains that move: whose kinetic energy would lift them by more than a hundredth of
+    /// their diameter (–). It is γ of the three-shape study, the share that takes part in dissipation.
+    #[must_use]
+    pub fn moving_share(&self) -> f64 {
+        // Without weight nothing has to be lifted: then every grain with any energy moves.
+        let moving: u32 = self.energy.iter().map(|block| block.moving).sum();
+        f64::from(moving) / self.grains.len() as f64
+    }
+
+    /// Kinetic energy of all grains (J).
+    #[must_use]
+    pub fn kinetic_energy(&self) -> f64 {
+        self.energy.iter().map(|block| block.translation + block.rotation).sum()
+    }
+
     /// Mean kinetic energy of a grain (J).
     #[must_use]
     pub fn mean_kinetic_energy(&self) -> f64 {
-        let total: f64 = self.energy.iter().map(|block| block.translation + block.rotation).sum();
-        total / self.grains.len() as f64
+        self.kinetic_energy() / self.grains.len() as f64
+    }
+
+    /// Whether each grain touches another or a wall, in the order of memory.
+    #[must_use]
+    pub fn lying(&self) -> Vec<bool> {
+        self.contacts.lying(self.grains.len(), self.walls.len())
     }
 
     /// Whether the step can be trusted.

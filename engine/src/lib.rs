@@ -4,15 +4,19 @@
 //! [`contact`] says what a contact law is. The engine knows no law, no shape and no TOML; it defines
 //! the traits that those implement.
 
+pub mod activity;
 pub mod bed;
 pub mod body;
 pub mod boundary;
 pub mod checkpoint;
 pub mod clock;
+pub mod coarse_graining;
 pub mod contact;
 mod contacts;
 pub mod course;
+pub mod crater;
 pub mod error;
+pub mod footprint;
 pub mod grain_bed;
 pub mod grains;
 pub mod launch;

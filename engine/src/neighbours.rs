@@ -172,3 +172,66 @@ pub(crate) fn spatial_order(grains: &Grains) -> Vec<usize> {
 fn interleave(coordinate: u32, stride: usize) -> u64 {
     (0..20).fold(0, |key, bit| key | u64::from(coordinate >> bit & 1) << (bit * stride))
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::bed::random;
+    use crate::grains::Grain;
+
+    const MARGIN: f64 = 1e-3;
+
+    /// Grains anywhere in a cube of a tenth of a metre, the largest `ratio` times the smallest.
+    fn scattered(space: Space, ratio: f64, seed: u64) -> Grains {
+        let mut rng = random(seed, "scattered");
+        let list: Vec<Grain> = (0..400)
+            .map(|id| {
+                let mut number = || rng.random::<f64>();
+                let place = Vec3::new(number(), number(), number()) * 0.1;
+                let is_large = number() < 0.05;
+                let small = 0.01 / ratio;
+                Grain {
+                    position: match space {
+                        Space::Planar => Vec3::new(place.x, 0.0, place.z),
+                        Space::Spatial => place,
+                    },
+                    velocity: Vec3::zeros(),
+                    spin: Vec3::zeros(),
+                    radius: if is_large { 0.01 } else { small * (0.5 + 0.5 * number()) },
+                    mass: 1.0,
+                    id,
+                }
+            })
+            .collect();
+        Grains::new(space, &list)
+    }
+
+    fn all_pairs(grains: &Grains) -> Vec<[u32; 2]> {
+        let near = |i: usize, j: usize| {
+            let reach = grains.radius[i] + grains.radius[j] + MARGIN;
+            (grains.position[i] - grains.position[j]).norm_squared() < reach * reach
+        };
+        let n = grains.len();
+        let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
+        pairs.filter(|&(i, j)| near(i, j)).map(|(i, j)| [i as u32, j as u32]).collect()
+    }
+
+    #[test]
+    fn the_grid_lists_the_pairs_that_a_look_at_all_pairs_lists() {
+        for space in [Space::Planar, Space::Spatial] {
+            for (seed, ratio) in [(1, 1.0), (2, 10.0), (3, 100.0)] {
+                let grains = scattered(space, ratio, seed);
+                let mut grid = CellGrid::default();
+                grid.fill(&grains, 0.02 + MARGIN);
+                let mut found = Vec::new();
+                for i in 0..grains.len() {
+                    grid.pairs_of(&grains, i, MARGIN, &mut found);
+                }
+                assert!(found.len() > 20, "{} pairs are few", found.len());
+                assert!(found == all_pairs(&grains), "{space:?}, ratio {ratio}");
+            }
+        }
+    }
+}

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::activity::Activity;
 use crate::body::{Mechanism, RigidBody};
 use crate::clock::{Clock, steps_in};
 use crate::course::Course;
@@ -26,6 +27,7 @@ pub struct Simulation {
     world: World,
     settings: Settings,
     courses: Vec<Course>,
+    activity: Activity,
     surface: f64,
     impact_energy: f64,
     energy_scale: f64,
@@ -36,6 +38,7 @@ pub struct Simulation {
 pub struct Snapshot {
     world: SavedWorld,
     courses: Vec<Course>,
+    activity: Activity,
     surface: f64,
     impact_energy: f64,
 }
@@ -65,7 +68,8 @@ impl Simulation {
         let mass: f64 = bodies.iter().map(|body| body.mass).sum();
         let fall = mass * world.bed.gravity.norm() * 2.0 * body.surface().bounding_radius();
         let energy_scale = if impact_energy > 0.0 { impact_energy } else { fall };
-        Self { world, settings, courses, surface, impact_energy, energy_scale }
+        let activity = Activity::default();
+        Self { world, settings, courses, activity, surface, impact_energy, energy_scale }
     }
 
     /// Moves on by one step.
@@ -78,6 +82,8 @@ impl Simulation {
         for (index, course) in self.courses.iter_mut().enumerate() {
             course.observe((clock.time(), clock.dt), intruder, index);
         }
+        let bed = &self.world.bed;
+        self.activity.observe(clock.time(), bed.moving_share(), bed.kinetic_energy());
         self.check_budget()
     }
 
@@ -154,6 +160,12 @@ impl Simulation {
         &self.courses
     }
 
+    /// How much of the bed took part.
+    #[must_use]
+    pub fn activity(&self) -> &Activity {
+        &self.activity
+    }
+
     /// Height of the undisturbed surface (m): where the lowest point of the intruder was at the
     /// start.
     #[must_use]
@@ -167,6 +179,7 @@ impl Simulation {
         Snapshot {
             world: self.world.save(),
             courses: self.courses.clone(),
+            activity: self.activity,
             surface: self.surface,
             impact_energy: self.impact_energy,
         }
@@ -178,6 +191,7 @@ impl Simulation {
     pub fn restore(&mut self, saved: Snapshot) -> bool {
         let is_of_this_run = saved.courses.len() == self.courses.len();
         self.courses = saved.courses;
+        self.activity = saved.activity;
         self.surface = saved.surface;
         self.impact_energy = saved.impact_energy;
         is_of_this_run && self.world.restore(saved.world)

@@ -98,6 +98,14 @@ impl Placement {
         self.orientation_half.inverse_transform_vector(&(point - self.position_half))
     }
 
+    /// Velocity (m/s), at the end of the step, of the point of the body that lies `arm` (m) from its
+    /// reference point.
+    #[inline]
+    #[must_use]
+    pub fn velocity_at(&self, arm: Vec3) -> Vec3 {
+        self.velocity_now + self.spin_now.cross(&arm)
+    }
+
     /// Bound on the speed of any point of a part of radius `bounding_radius` (m/s).
     #[must_use]
     pub fn max_speed(&self, bounding_radius: f64) -> f64 {

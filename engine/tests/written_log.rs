@@ -46,6 +46,7 @@ fn a_log_of_scalars_every_step_and_frames_is_written_for_other_readers() {
             forces: &[Vec3::new(0.0, 0.0, DRAG * speed), Vec3::new(0.0, 0.0, -MASS * GRAVITY)],
             torques: &[Vec3::zeros(), Vec3::zeros()],
             contacts: 0,
+            area: 0.0,
         };
         log.body_load(at, 0, &load).unwrap();
         if step.is_multiple_of(500) {
@@ -83,6 +84,7 @@ fn setup() -> LogSetup {
         flush_every: 1000,
         checkpoint_every: 10_000,
         grains: true,
+        bed: None,
         surface_z_m: 0.1,
         bodies: vec![LoggedBody {
             name: "ball".to_owned(),

@@ -30,6 +30,7 @@ pub(crate) const CONE: ShapeEntry = ShapeEntry {
         Arc::new(Wedge::new(params, space).surface(Some(length)))
     }),
     volume: |params, space| Wedge::new(params, space).volume(f64::INFINITY),
+    contact_area: |params, space, depth| Wedge::new(params, space).contact_area(depth),
     assembly,
 };
 

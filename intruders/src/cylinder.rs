@@ -29,6 +29,7 @@ pub(crate) const CYLINDER: ShapeEntry = ShapeEntry {
         Arc::new(Flat::new(params, space).surface(Some(length)))
     }),
     volume: |params, space| Flat::new(params, space).volume(f64::INFINITY),
+    contact_area: |params, space, depth| Flat::new(params, space).contact_area(depth),
     assembly,
 };
 

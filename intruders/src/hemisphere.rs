@@ -30,6 +30,7 @@ pub(crate) const HEMISPHERE: ShapeEntry = ShapeEntry {
         Arc::new(Dome::new(params, space).surface(Some(length)))
     }),
     volume: |params, space| Dome::new(params, space).volume(f64::INFINITY),
+    contact_area: |params, space, depth| Dome::new(params, space).contact_area(depth),
     assembly,
 };
 

@@ -22,6 +22,7 @@ pub(crate) const LINK: ShapeEntry = ShapeEntry {
     links: None,
     under_shaft: None,
     volume: |params, space| Rod::volume(params.get("length"), params.get("diameter"), space),
+    contact_area: Rod::contact_area,
     assembly,
 };
 

@@ -35,6 +35,10 @@ pub struct ShapeEntry {
     pub under_shaft: Option<fn(&ParamTable, Space, f64) -> Arc<dyn Surface>>,
     /// Volume (m³), or area (m²) in a planar medium, from SI values that fill `params`.
     pub volume: fn(&ParamTable, Space) -> f64,
+    /// Area (m²), or length (m) in a planar medium, that a body standing upright has below the surface
+    /// when its lowest point is so deep (m); of a chain, one of its links. The three-shape study, eqs
+    /// 13–16: with the side of a cylinder and without flat tops.
+    pub contact_area: fn(&ParamTable, Space, f64) -> f64,
     /// Makes it for a resistive medium.
     pub assembly: fn(&Casting) -> Launchable,
 }

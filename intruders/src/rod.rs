@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use engine::grains::Space;
 use engine::math::{Vec3, Vec4};
-use engine::params::{Default, ParamSpec, Range};
+use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::resistance::{Immersion, Part, PartLoad};
 use engine::units::Dimension;
 
@@ -75,6 +75,17 @@ struct Portion {
 }
 
 impl Rod {
+    /// Area (m², planar m) that an upright rod of these parameters has below the surface at `depth` (m):
+    /// its end and its side.
+    pub(crate) fn contact_area(params: &ParamTable, space: Space, depth: f64) -> f64 {
+        let (length, diameter) = (params.get("length"), params.get("diameter"));
+        let side = depth.clamp(0.0, length);
+        match space {
+            Space::Planar => diameter + 2.0 * side,
+            Space::Spatial => PI * diameter * (0.25 * diameter + side),
+        }
+    }
+
     /// Volume of a rod (m³) of `length` and `diameter` (m); planar, the area (m²).
     pub(crate) fn volume(length: f64, diameter: f64, space: Space) -> f64 {
         match space {

@@ -27,6 +27,7 @@ pub(crate) const DISC: ShapeEntry = ShapeEntry {
     links: None,
     under_shaft: None,
     volume: |params, _| planar_area(params),
+    contact_area,
     assembly: |casting| compact(casting, disc),
 };
 
@@ -42,6 +43,7 @@ pub(crate) const SPHERE: ShapeEntry = ShapeEntry {
     links: None,
     under_shaft: None,
     volume,
+    contact_area,
     assembly: |casting| compact(casting, sphere),
 };
 
@@ -74,6 +76,10 @@ fn volume(params: &ParamTable, space: Space) -> f64 {
         Space::Planar => planar_area(params),
         Space::Spatial => 4.0 / 3.0 * PI * (0.5 * params.get("diameter")).powi(3),
     }
+}
+
+fn contact_area(params: &ParamTable, space: Space, depth: f64) -> f64 {
+    Cap { radius: 0.5 * params.get("diameter"), space }.contact_area(depth)
 }
 
 /// The body for a resistive medium; `body` has its moment of inertia.

@@ -23,6 +23,7 @@ pub(crate) const TWO_LINK_CHAIN: ShapeEntry = ShapeEntry {
     links: Some(HingedLinks::new),
     under_shaft: None,
     volume: |params, space| 2.0 * Rod::volume(params.get("length"), params.get("diameter"), space),
+    contact_area: Rod::contact_area,
     assembly,
 };
 

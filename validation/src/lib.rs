@@ -55,9 +55,11 @@ mod score;
 pub mod sensitivity;
 mod signature;
 mod significance;
+pub mod spheres;
 pub mod suggestion;
 #[cfg(test)]
 mod test_sets;
+pub mod three_shapes;
 pub mod verdict;
 pub mod weights;
 pub mod where_it_fails;

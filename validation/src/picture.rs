@@ -52,12 +52,13 @@ const LETTERS: f64 = 13.0;
 /// Width of a letter of that size, on average (pixels).
 const LETTER: f64 = 6.6;
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-type Drawn = Result<(), DrawingAreaErrorKind<<SVGBackend<'static> as DrawingBackend>::ErrorType>>;
+pub(crate) type Drawn =
+    Result<(), DrawingAreaErrorKind<<SVGBackend<'static> as DrawingBackend>::ErrorType>>;
 
 /// A picture of `size` (pixels) on white.
-fn svg(
+pub(crate) fn svg(
     size: (u32, u32),
     draw: impl for<'a> FnOnce(&Area<'a>) -> Drawn,
 ) -> Result<String, PictureError> {
@@ -73,7 +74,7 @@ fn svg(
 }
 
 /// The colour of model, effect or series `index`.
-fn colour(index: usize) -> RGBColor {
+pub(crate) fn colour(index: usize) -> RGBColor {
     COLOURS[index % COLOURS.len()]
 }
 

@@ -25,6 +25,8 @@ Usage: cargo xtask <task>
   bench              impacts per second on resistive media, in release
   bench diagnosis [ARG]...
                      how often the diagnosis is right, in release; the arguments go to the program
+  three-shapes [ARG]...
+                     cylinder, hemisphere and cone on beds of grains, in release; the same
   validate [ARG]...  the validation rows, in release; the arguments go to the program as they are
   help               this text
 
@@ -39,6 +41,7 @@ enum Task {
     Help,
     Lint,
     Tidy,
+    ThreeShapes(Vec<OsString>),
     Validate(Vec<OsString>),
 }
 
@@ -68,6 +71,7 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
             Some("help") => Task::Help,
             Some("lint") => Task::Lint,
             Some("tidy") => Task::Tidy,
+            Some("three-shapes") => return Ok(Task::ThreeShapes(parser.raw_args()?.collect())),
             Some("validate") => return Ok(Task::Validate(parser.raw_args()?.collect())),
             _ => return Err(format!("no task is called `{}`", name.display()).into()),
         },
@@ -105,6 +109,7 @@ fn run(task: Task) -> Result<ExitCode> {
         }
         Task::Bench => program(&sh, "bench", &[]),
         Task::BenchDiagnosis(args) => program(&sh, "diagnosis", &args),
+        Task::ThreeShapes(args) => program(&sh, "three_shapes", &args),
         Task::Validate(args) => program(&sh, "validate", &args),
     }
 }

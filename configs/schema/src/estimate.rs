@@ -1,12 +1,19 @@
 //! What a model of grains will cost, before anything is run.
 
 use engine::clock::steps_in;
+use engine::grains::Space;
 
 use crate::model::GrainModel;
 use crate::stability;
 
-/// Memory per grain (byte).
-const BYTES_PER_GRAIN: u64 = 2400;
+/// Memory per grain (byte): a sphere has more neighbours than a disc.
+fn bytes_per_grain(space: Space) -> u64 {
+    match space {
+        Space::Planar => 2400,
+        Space::Spatial => 3400,
+    }
+}
+
 /// Memory that does not depend on the grains (byte).
 const BYTES_FIXED: u64 = 9_000_000;
 /// Speed of the engine on two cores (1/s).
@@ -39,7 +46,9 @@ impl Estimate {
             n_grains,
             n_conditions: model.model.conditions().len(),
             steps,
-            memory_bytes: n_grains.saturating_mul(BYTES_PER_GRAIN).saturating_add(BYTES_FIXED),
+            memory_bytes: n_grains
+                .saturating_mul(bytes_per_grain(model.medium.space))
+                .saturating_add(BYTES_FIXED),
             run_time_s: steps.map(|steps| steps as f64 * n_grains as f64 / GRAIN_STEPS_PER_S),
         }
     }

@@ -60,6 +60,14 @@ pub(crate) const FRAMES_PER_S: ParamSpec = ParamSpec {
     )
 };
 
+pub(crate) const FIELDS_AT: ParamSpec = required(
+    "fields_at",
+    Dimension::TIME,
+    NOT_NEGATIVE,
+    Range::closed(0.0, 100.0),
+    "when the velocity field and the crater are logged",
+);
+
 pub(crate) const ABORT_ABOVE: ParamSpec = ParamSpec {
     default: Default::Value(0.05),
     ..required(

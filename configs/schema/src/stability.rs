@@ -1,14 +1,16 @@
 //! How fast contacts can change, and the time step that follows from it.
 
-use engine::contact::Partner;
+use engine::contact::{ContactStage, Encounter, Partner};
 
-use crate::model::{BedSource, GrainModel, TimeStep};
+use crate::model::{BedSource, GrainModel, LawChoice, TimeStep};
 
 /// Steps per shortest collision when `time_step = "auto"`.
 pub const STEPS_PER_COLLISION: f64 = 30.0;
 /// Steps per shortest relaxation by damping when `time_step = "auto"`. Half as many and a bed of
 /// many contacts per grain never comes to rest: each contact's damping overshoots.
 pub const STEPS_PER_DAMPING_TIME: f64 = 4.0;
+/// Steps per shortest surface wave when `time_step = "auto"`, a fifth of the Rayleigh time as is usual.
+pub const STEPS_PER_WAVE: f64 = 5.0;
 /// Fewer steps per relaxation than this are refused.
 pub const FEWEST_STEPS_PER_DAMPING_TIME: f64 = 1.0;
 /// Fewer steps per relaxation than this are accepted with a warning.
@@ -18,60 +20,195 @@ pub const FEWEST_STEPS_PER_COLLISION: f64 = 10.0;
 /// Fewer steps per collision than this are accepted with a warning.
 pub const FEW_STEPS_PER_COLLISION: f64 = 20.0;
 
-/// The mass of the lightest grain (kg).
-fn lightest_grain(model: GrainModel<'_>) -> f64 {
-    let lightest = |masses: &mut dyn Iterator<Item = f64>| masses.fold(f64::INFINITY, f64::min);
-    match &model.medium.bed.source {
-        BedSource::Settle(settle) => {
-            let mut masses =
-                settle.grains.iter().filter(|kind| kind.count > 0).map(|kind| kind.mass);
-            lightest(&mut masses)
+/// Packing fraction by which the height of a bed is guessed that names no target.
+const GUESSED_PACKING: f64 = 0.8;
+/// Slowest approach (m/s) that a step is chosen for: without it nothing that starts at rest in no
+/// gravity would have a collision time.
+const SLOWEST_APPROACH: f64 = 1e-3;
+
+/// How long (s) the quickest things last that a step has to resolve.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Times {
+    /// The shortest collision, without damping; `None` if no law decides it.
+    pub collision: Option<f64>,
+    /// The shortest relaxation by damping, if there is damping.
+    pub damping: Option<f64>,
+    /// The shortest surface wave through a grain, if the grains have elastic constants.
+    pub wave: Option<f64>,
+}
+
+/// What decides an automatic step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Decisive {
+    /// The shortest collision.
+    Collision,
+    /// The shortest relaxation by damping.
+    Damping,
+    /// The shortest surface wave.
+    Wave,
+}
+
+impl Decisive {
+    /// What it is, as a reader is told.
+    #[must_use]
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Collision => "the shortest collision",
+            Self::Damping => "the damping of a contact",
+            Self::Wave => "the Rayleigh wave",
         }
-        BedSource::Csv(csv) => lightest(&mut csv.grains.iter().map(|grain| grain.mass)),
     }
 }
 
-/// How long the shortest collision of two grains lasts without damping, π √(m*/k_n) (s); `None`
-/// for a law without a constant normal stiffness.
+impl Times {
+    /// The automatic step (s) and what decides it; `None` without a collision time.
+    #[must_use]
+    pub fn step(&self) -> Option<(f64, Decisive)> {
+        let collision = (self.collision? / STEPS_PER_COLLISION, Decisive::Collision);
+        let damping = self.damping.map(|time| (time / STEPS_PER_DAMPING_TIME, Decisive::Damping));
+        let wave = self.wave.map(|time| (time / STEPS_PER_WAVE, Decisive::Wave));
+        let others = damping.into_iter().chain(wave);
+        Some(others.fold(collision, |least, one| if one.0 < least.0 { one } else { least }))
+    }
+}
+
+/// The lightest grain, which of grains of one material is the quickest to collide.
+#[derive(Clone, Copy)]
+struct Lightest {
+    radius: f64,
+    mass: f64,
+}
+
+impl Lightest {
+    fn of(model: GrainModel<'_>) -> Self {
+        let lighter = |one: Self, other: Self| if other.mass < one.mass { other } else { one };
+        let none = Self { radius: 0.0, mass: f64::INFINITY };
+        match &model.medium.bed.source {
+            BedSource::Settle(settle) => settle
+                .grains
+                .iter()
+                .filter(|kind| kind.count > 0)
+                .map(|kind| Self { radius: 0.5 * kind.diameter, mass: kind.mass })
+                .fold(none, lighter),
+            BedSource::Csv(csv) => csv
+                .grains
+                .iter()
+                .map(|grain| Self { radius: grain.radius, mass: grain.mass })
+                .fold(none, lighter),
+        }
+    }
+
+    /// kg/m³ of the sphere of this radius.
+    fn density(self) -> f64 {
+        0.75 * self.mass / (std::f64::consts::PI * self.radius.powi(3))
+    }
+}
+
+/// How fast (m/s) a grain hits the bottom that falls through the height of the bed.
+fn fall_speed(model: GrainModel<'_>) -> f64 {
+    let bed = &model.medium.bed;
+    let height = bed.target_height.unwrap_or_else(|| match &bed.source {
+        BedSource::Settle(settle) => {
+            let areas = settle.grains.iter().map(|kind| {
+                kind.count as f64 * std::f64::consts::FRAC_PI_4 * kind.diameter * kind.diameter
+            });
+            areas.sum::<f64>() / (GUESSED_PACKING * model.medium.container.width)
+        }
+        BedSource::Csv(csv) => {
+            csv.grains.iter().fold(0.0, |height: f64, grain| height.max(grain.y + grain.radius))
+        }
+    });
+    (2.0 * model.medium.gravity * height).sqrt().max(SLOWEST_APPROACH)
+}
+
+/// Laws, and the quickest encounters that happen under them.
+struct Scene {
+    stages: Vec<Box<dyn ContactStage>>,
+    lightest: Lightest,
+    encounters: Vec<(Partner, Encounter)>,
+}
+
+impl Scene {
+    fn new<'a>(
+        model: GrainModel<'a>,
+        effects: impl IntoIterator<Item = &'a LawChoice>,
+        speed: f64,
+    ) -> Self {
+        let lightest = Lightest::of(model);
+        let Lightest { radius, mass } = lightest;
+        let pair = Encounter { mass_eff: 0.5 * mass, radius_eff: 0.5 * radius, speed };
+        let wall = Encounter { mass_eff: mass, radius_eff: radius, speed };
+        let laws = std::iter::once(&model.medium.contact_law).chain(effects);
+        Self {
+            stages: laws.map(|law| (law.entry.build)(&law.params)).collect(),
+            lightest,
+            encounters: vec![(Partner::Grain, pair), (Partner::Wall, wall)],
+        }
+    }
+
+    fn of_run(model: GrainModel<'_>) -> Self {
+        let impacts = model.model.conditions();
+        let speed = impacts.iter().fold(fall_speed(model), |speed, one| speed.max(one.speed));
+        let mut scene = Self::new(model, &model.medium.effects, speed);
+        let Lightest { radius, mass } = scene.lightest;
+        // Written so that a tiny mass cannot underflow in a product. Against a face of the intruder the
+        // contact is as stiff as it gets.
+        let mass_eff = mass / (1.0 + mass / model.model.intruder.mass);
+        let encounter = Encounter { mass_eff, radius_eff: radius, speed };
+        scene.encounters.push((Partner::Intruder, encounter));
+        scene
+    }
+
+    fn of_preparation(model: GrainModel<'_>) -> Self {
+        let effects: &[LawChoice] = match &model.medium.bed.source {
+            BedSource::Settle(settle) => &settle.effects,
+            BedSource::Csv(_) => &[],
+        };
+        Self::new(model, effects, fall_speed(model))
+    }
+
+    fn times(&self) -> Times {
+        let Lightest { radius, .. } = self.lightest;
+        let density = self.lightest.density();
+        Times {
+            collision: self.least(|stage, partner, met| stage.collision_time(partner, met)),
+            damping: self.least(|stage, partner, met| stage.damping_time(partner, met)),
+            wave: self.least(|stage, _, _| stage.wave_time(Partner::Grain, radius, density)),
+        }
+    }
+
+    fn least(
+        &self,
+        time: impl Fn(&dyn ContactStage, Partner, &Encounter) -> Option<f64>,
+    ) -> Option<f64> {
+        let each = self.stages.iter().flat_map(|stage| {
+            self.encounters.iter().filter_map(|(partner, met)| time(&**stage, *partner, met))
+        });
+        each.reduce(f64::min)
+    }
+}
+
+/// The times of the run, the intruder's collisions included.
+///
+/// Collisions are as fast as the fastest impact, or as a fall through the height of the bed.
 #[must_use]
-pub fn grain_collision_time(model: GrainModel<'_>) -> Option<f64> {
-    collision_time(model, 0.5 * lightest_grain(model))
+pub fn times(model: GrainModel<'_>) -> Times {
+    Scene::of_run(model).times()
 }
 
-/// How long the shortest collision of the run lasts, the intruder's included (s).
+/// The times while the bed settles: the grains fall through about its height.
 #[must_use]
-pub fn shortest_collision_time(model: GrainModel<'_>) -> Option<f64> {
-    let (grain, intruder) = (lightest_grain(model), model.model.intruder.mass);
-    // Written so that a tiny mass cannot underflow in a product.
-    let with_intruder = grain / (1.0 + grain / intruder);
-    collision_time(model, with_intruder.min(0.5 * grain))
-}
-
-fn collision_time(model: GrainModel<'_>, mass_eff: f64) -> Option<f64> {
-    let law = &model.medium.contact_law;
-    (law.entry.build)(&law.params).collision_time(Partner::Grain, mass_eff)
-}
-
-/// In how short a time damping stops the relative motion of two grains (s), if the law has any.
-#[must_use]
-pub fn damping_time(model: GrainModel<'_>) -> Option<f64> {
-    let law = &model.medium.contact_law;
-    (law.entry.build)(&law.params).damping_time(Partner::Grain)
-}
-
-/// The automatic step (s), when the shortest collision lasts `collision` (s).
-fn automatic(model: GrainModel<'_>, collision: f64) -> f64 {
-    let relaxation = damping_time(model).unwrap_or(f64::INFINITY);
-    (collision / STEPS_PER_COLLISION).min(relaxation / STEPS_PER_DAMPING_TIME)
+pub fn preparation_times(model: GrainModel<'_>) -> Times {
+    Scene::of_preparation(model).times()
 }
 
 /// The step of the run, its factor included (s); `None` when it is automatic and the law has no
-/// constant normal stiffness.
+/// collision time.
 #[must_use]
 pub fn time_step(model: GrainModel<'_>) -> Option<f64> {
     let step = match model.medium.stepping.time_step {
         TimeStep::Fixed(step) => step,
-        TimeStep::Auto => automatic(model, shortest_collision_time(model)?),
+        TimeStep::Auto => times(model).step()?.0,
     };
     Some(step * model.medium.stepping.time_step_factor)
 }
@@ -84,6 +221,6 @@ pub fn preparation_time_step(model: GrainModel<'_>) -> Option<f64> {
     };
     match settle.preparation_time_step {
         TimeStep::Fixed(step) => Some(step),
-        TimeStep::Auto => Some(automatic(model, grain_collision_time(model)?)),
+        TimeStep::Auto => Some(preparation_times(model).step()?.0),
     }
 }

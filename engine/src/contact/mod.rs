@@ -6,12 +6,14 @@
 //! ([`stage`]).
 
 pub mod geometry;
+mod rebound;
 pub mod stage;
 pub mod table;
 
 use crate::ledger::Channel;
 use crate::math::Vec3;
 
+pub use rebound::restitution;
 pub use stage::{ContactStage, Stage};
 
 /// What a grain touches; each kind has its own parameters of a law.
@@ -41,9 +43,10 @@ impl Partner {
 /// `normal` is a unit vector from j to i: a repulsive force on i is `+normal_force * normal`.
 /// Rates belong to the end of the step, steps to what was done during it (see [`crate::step`]).
 ///
-/// A law sees a contact at every step in which it overlaps, and once more in the step in which it
-/// has opened, with `overlap <= 0`: the force is then zero and what the contact still stored has to
-/// be booked.
+/// A law sees a contact at every step in which it overlaps or is held together by a law that
+/// attracts ([`Response::holds`]), and once more in the step in which it has opened, with
+/// `overlap <= 0`: the force is then zero and what the contact still stored has to be booked. A law
+/// that acts on overlap alone takes a contact that is held open for an opened one.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact {
     /// n, from j to i (–).
@@ -107,6 +110,12 @@ impl Contact {
 pub struct Response {
     /// F_n (N), repulsion positive.
     pub normal_force: f64,
+    /// F_a (N), at least 0: what attraction adds to the force that friction is measured by, whose
+    /// limit is μ (F_n + F_a).
+    pub adhesive_force: f64,
+    /// Whether a law holds the contact together though it may have opened: then it is kept, with all
+    /// that its laws remember, and seen again in the next step.
+    pub holds: bool,
     /// dF_n/dδ (N/m), which rolling resistance scales with.
     pub normal_stiffness: f64,
     /// F_t (N).
@@ -118,10 +127,26 @@ pub struct Response {
 /// The order in which the laws of a contact act: a later one may use what an earlier one answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Slot {
+    /// Forces along the normal that the base law has to know of before it limits friction: adhesion,
+    /// and damping of its own.
+    Normal,
     /// Normal and tangential force; every bed has exactly one.
     Base,
     /// A couple against rolling, limited by the normal force.
     Rolling,
+    /// A couple against twisting, limited by the normal force.
+    Twisting,
+}
+
+/// A head-on collision by which the time step is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Encounter {
+    /// m*, with 1/m* = 1/m_i + 1/m_j (kg).
+    pub mass_eff: f64,
+    /// R*, with 1/R* = 1/R_i + 1/R_j (m).
+    pub radius_eff: f64,
+    /// Speed at which the two approach (m/s), above zero.
+    pub speed: f64,
 }
 
 /// A contact law, or an effect added to one.
@@ -156,11 +181,23 @@ pub trait ContactLaw: Send + Sync + 'static {
         energy: &mut Self::Energy,
     );
 
-    /// How long a head-on collision of two bodies of reduced mass `mass_eff` (kg) lasts (s);
-    /// `None` if this law does not decide it. Sets `time_step = "auto"`.
-    fn collision_time(pair: &Self::Pair, mass_eff: f64) -> Option<f64>;
+    /// How long a head-on collision lasts without damping (s); `None` if this law does not decide it.
+    /// Sets `time_step = "auto"`.
+    fn collision_time(pair: &Self::Pair, encounter: &Encounter) -> Option<f64>;
 
     /// In how short a time (s) its damping brings the relative motion of two bodies to rest; `None`
     /// if it has none. Damping is explicit, so a longer step than about half of this shakes a bed.
-    fn damping_time(pair: &Self::Pair) -> Option<f64>;
+    fn damping_time(pair: &Self::Pair, encounter: &Encounter) -> Option<f64>;
+
+    /// How long (s) a surface wave runs through a grain of `radius` (m) and `density` (kg/m³); `None` if
+    /// the law has no elastic constants. Bounds `time_step = "auto"`.
+    fn wave_time(_pair: &Self::Pair, _radius: f64, _density: f64) -> Option<f64> {
+        None
+    }
+
+    /// The widest gap (m) at which it still holds a contact together, for bodies of radius
+    /// `radius_eff` (m) or less; 0 for a law that needs an overlap.
+    fn reach(_pair: &Self::Pair, _radius_eff: f64) -> f64 {
+        0.0
+    }
 }

@@ -1,6 +1,6 @@
 //! Lowers a contact law to a loop over many contacts: chosen by name once per run, inlined inside.
 
-use crate::contact::{Contact, ContactLaw, Partner, Response, Slot};
+use crate::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use crate::ledger::Channel;
 
 /// Contacts that are evaluated together, small enough to stay in the first-level cache.
@@ -27,9 +27,13 @@ pub trait ContactStage: Send + Sync {
     /// has one entry per channel and is added to.
     fn sweep(&self, batch: Batch<'_>, dt: f64, history: &mut [f64], energy: &mut [f64]);
     /// Duration (s) of a head-on collision, see [`ContactLaw::collision_time`].
-    fn collision_time(&self, partner: Partner, mass_eff: f64) -> Option<f64>;
+    fn collision_time(&self, partner: Partner, encounter: &Encounter) -> Option<f64>;
     /// Shortest relaxation (s), see [`ContactLaw::damping_time`].
-    fn damping_time(&self, partner: Partner) -> Option<f64>;
+    fn damping_time(&self, partner: Partner, encounter: &Encounter) -> Option<f64>;
+    /// Time (s) of a surface wave, see [`ContactLaw::wave_time`].
+    fn wave_time(&self, partner: Partner, radius: f64, density: f64) -> Option<f64>;
+    /// Widest gap (m) of a contact, see [`ContactLaw::reach`].
+    fn reach(&self, partner: Partner, radius_eff: f64) -> f64;
 }
 
 /// A law with its parameters per kind of partner.
@@ -81,11 +85,19 @@ impl<L: ContactLaw> ContactStage for Stage<L> {
         }
     }
 
-    fn collision_time(&self, partner: Partner, mass_eff: f64) -> Option<f64> {
-        L::collision_time(&self.pairs[partner.index()], mass_eff)
+    fn collision_time(&self, partner: Partner, encounter: &Encounter) -> Option<f64> {
+        L::collision_time(&self.pairs[partner.index()], encounter)
     }
 
-    fn damping_time(&self, partner: Partner) -> Option<f64> {
-        L::damping_time(&self.pairs[partner.index()])
+    fn damping_time(&self, partner: Partner, encounter: &Encounter) -> Option<f64> {
+        L::damping_time(&self.pairs[partner.index()], encounter)
+    }
+
+    fn wave_time(&self, partner: Partner, radius: f64, density: f64) -> Option<f64> {
+        L::wave_time(&self.pairs[partner.index()], radius, density)
+    }
+
+    fn reach(&self, partner: Partner, radius_eff: f64) -> f64 {
+        L::reach(&self.pairs[partner.index()], radius_eff)
     }
 }

@@ -7,6 +7,7 @@ use crate::contact::geometry::{
 use crate::contact::stage::Batch;
 use crate::contact::table::ContactTable;
 use crate::contact::{Contact, ContactStage, Partner, Response};
+use crate::footprint::Footprint;
 use crate::grains::{Grains, Load};
 use crate::math::Vec3;
 use crate::surface::{SurfacePoint, Wrench};
@@ -58,6 +59,8 @@ pub(super) struct Tally {
     pub(super) wall_energy: Vec<f64>,
     /// Per part.
     pub(super) wrenches: Vec<Wrench>,
+    /// Per part; empty for walls.
+    pub(super) footprints: Vec<Footprint>,
     pub(super) overlap: Deepest,
 }
 
@@ -113,9 +116,10 @@ impl Bench {
             };
             stage.sweep(batch, dt, history, own);
         }
-        for (contact, &row) in self.contacts.iter().zip(&self.rows) {
+        let evaluated = self.contacts.iter().zip(&self.responses);
+        for ((contact, response), &row) in evaluated.zip(&self.rows) {
             let row = row as usize;
-            touching[row] = contact.overlap > 0.0;
+            touching[row] = contact.overlap > 0.0 || response.holds;
             if !touching[row] {
                 for (stage, rows) in stages.iter().zip(history.iter_mut()) {
                     let len = stage.history_len();
@@ -131,6 +135,7 @@ impl Tally {
         self.energy.fill(0.0);
         self.wall_energy.fill(0.0);
         self.wrenches.fill(Wrench::default());
+        self.footprints.fill(Footprint::default());
         self.overlap = Deepest::default();
     }
 
@@ -243,8 +248,17 @@ impl Block {
                 let (on_grain, on_part) =
                     loads_on_grain_and_part(contact, response, grains.radius[i], apart);
                 load[i - self.first].add(&on_grain);
-                if contact.overlap > 0.0 {
+                if contact.overlap > 0.0 || response.holds {
                     self.tally.wrenches[index].add(&on_part);
+                    if !is_wall {
+                        let radius = grains.radius[i];
+                        self.tally.footprints[index].add_grain(
+                            contact,
+                            radius,
+                            grains.space.grain_cross_section(radius),
+                            placement.velocity_at(apart),
+                        );
+                    }
                 }
                 self.tally.note_overlap(contact, i, grains.inverse_radius[i]);
             }

@@ -11,8 +11,9 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::body::Part;
-use crate::contact::ContactStage;
 use crate::contact::table::ContactTable;
+use crate::contact::{ContactStage, Partner};
+use crate::footprint::Footprint;
 use crate::grains::{Grains, Load};
 use crate::neighbours::CellGrid;
 use crate::parallel::{BLOCK, block_of};
@@ -36,6 +37,8 @@ pub(crate) struct ContactSums {
     pub(crate) wall_energy: Vec<f64>,
     /// Per part.
     pub(crate) wrenches: Vec<Wrench>,
+    /// Per part; empty for walls.
+    pub(crate) footprints: Vec<Footprint>,
     pub(crate) overlap: Deepest,
 }
 
@@ -55,6 +58,7 @@ impl Contacts {
                     energy: vec![0.0; n_channels],
                     wall_energy: vec![0.0; n_channels],
                     wrenches: vec![Wrench::default(); n_parts],
+                    footprints: vec![Footprint::default(); n_parts],
                     overlap: Deepest::default(),
                 },
                 bench: Bench::default(),
@@ -65,6 +69,12 @@ impl Contacts {
 
     pub(crate) fn stages(&self) -> &[Box<dyn ContactStage>] {
         &self.stages
+    }
+
+    /// The widest gap (m) of a contact that a law still holds together, of bodies of radius `radius_eff`
+    /// (m) or less.
+    pub(crate) fn reach(&self, partner: Partner, radius_eff: f64) -> f64 {
+        self.stages.iter().fold(0.0, |reach, stage| reach.max(stage.reach(partner, radius_eff)))
     }
 
     /// Lists again which grains are nearer to each other than `margin` (m).
@@ -176,6 +186,8 @@ impl Contacts {
         sums.wall_energy.resize(n_channels, 0.0);
         sums.wrenches.clear();
         sums.wrenches.resize(n_parts, Wrench::default());
+        sums.footprints.clear();
+        sums.footprints.resize(n_parts, Footprint::default());
         sums.overlap = Deepest::default();
         for Block { tally, .. } in &self.blocks {
             for (sum, part) in sums.energy.iter_mut().zip(&tally.energy) {
@@ -185,6 +197,9 @@ impl Contacts {
                 *sum += part;
             }
             for (sum, part) in sums.wrenches.iter_mut().zip(&tally.wrenches) {
+                sum.add(part);
+            }
+            for (sum, part) in sums.footprints.iter_mut().zip(&tally.footprints) {
                 sum.add(part);
             }
             if tally.overlap.relative > sums.overlap.relative {
@@ -219,6 +234,20 @@ impl Contacts {
             }
         }
         touching
+    }
+
+    /// Whether each of `n_grains` grains touches another or one of the first `n_walls` parts.
+    pub(crate) fn lying(&self, n_grains: usize, n_walls: usize) -> Vec<bool> {
+        let mut lying = vec![false; n_grains];
+        for [i, j] in self.touching_pairs() {
+            (lying[i], lying[j]) = (true, true);
+        }
+        for table in self.blocks.iter().flat_map(|block| &block.surfaces[..n_walls]) {
+            for (row, &[i, _]) in table.keys().iter().enumerate() {
+                lying[i as usize] |= table.is_touching(row);
+            }
+        }
+        lying
     }
 
     /// All tables, for a checkpoint.

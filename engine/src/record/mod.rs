@@ -14,6 +14,7 @@
 pub mod chunk;
 mod error;
 mod file;
+mod points;
 mod resume;
 mod scene;
 mod schema;
@@ -31,6 +32,8 @@ use foxglove::messages::{FrameTransforms, Log, PointCloud, PoseInFrame, SceneUpd
 use mcap::records::Metadata;
 use serde::{Deserialize, Serialize};
 
+use crate::coarse_graining::FieldPoint;
+use crate::crater::CraterPoint;
 use file::{Cut, Definition, LogFile};
 use scene::Scene;
 use schema::{Fields, Layout};
@@ -38,8 +41,8 @@ use schema::{Fields, Layout};
 pub use error::RecordError;
 pub use file::Stamp;
 pub use setup::{
-    BodyFrame, BodyLoad, BodySample, EventLevel, GrainSample, LogAttachment, LogSetup, LoggedBody,
-    LoggedShape,
+    BedChannels, BodyEstimate, BodyFrame, BodyLoad, BodySample, EventLevel, GrainSample,
+    LogAttachment, LogSetup, LoggedBody, LoggedShape,
 };
 
 /// The file of scalars, events and frames.
@@ -82,8 +85,16 @@ struct RunChannels {
     energy: u16,
     states: Vec<u16>,
     loads: Vec<u16>,
+    bed: Option<BedIds>,
     frames: FrameChannels,
     events: u16,
+}
+
+struct BedIds {
+    activity: u16,
+    estimates: Vec<u16>,
+    /// Fields and crater.
+    fields: Option<[u16; 2]>,
 }
 
 struct FrameChannels {
@@ -215,14 +226,16 @@ impl RunLog {
         body: usize,
         load: &BodyLoad<'_>,
     ) -> Result<(), RecordError> {
-        let BodyLoad { forces, torques, contacts } = *load;
+        let BodyLoad { forces, torques, contacts, area } = *load;
         assert!(
             forces.len() == self.n_origins && torques.len() == self.n_origins,
             "one force and one torque per origin"
         );
         let name = &self.bodies[body];
+        finite(at, || format!("area of {name}"), &[area])?;
         let mut fields = Fields::begin(&mut self.buffer, at.step, at.time_s);
         fields.count(contacts);
+        fields.number(area);
         for (force, torque) in forces.iter().zip(torques) {
             finite(at, || format!("force on {name}"), force.as_slice())?;
             finite(at, || format!("torque on {name}"), torque.as_slice())?;
@@ -230,6 +243,74 @@ impl RunLog {
             fields.vector(torque);
         }
         self.run.write(self.ids.loads[body], at.encode()?, &self.buffer)
+    }
+
+    /// Writes what the collisional estimate says of a body in a step.
+    ///
+    /// # Errors
+    /// A value that is not finite, or the file system's refusal.
+    ///
+    /// # Panics
+    /// If the setup has no bed.
+    pub fn body_estimate(
+        &mut self,
+        at: Stamp,
+        body: usize,
+        estimate: &BodyEstimate,
+    ) -> Result<(), RecordError> {
+        let BodyEstimate { geometric_area, force, magnitudes } = estimate;
+        let name = &self.bodies[body];
+        finite(at, || format!("estimated force on {name}"), force.as_slice())?;
+        finite(at, || format!("estimate for {name}"), &[*geometric_area, *magnitudes])?;
+        let id = self.ids.bed().estimates[body];
+        let mut fields = Fields::begin(&mut self.buffer, at.step, at.time_s);
+        fields.number(*geometric_area);
+        fields.number(*magnitudes);
+        fields.vector(force);
+        self.run.write(id, at.encode()?, &self.buffer)
+    }
+
+    /// Writes the share of the grains that move (–) after a step.
+    ///
+    /// # Errors
+    /// A value that is not finite, or the file system's refusal.
+    ///
+    /// # Panics
+    /// If the setup has no bed.
+    pub fn bed_activity(&mut self, at: Stamp, moving_share: f64) -> Result<(), RecordError> {
+        finite(at, || "moving_share".to_owned(), &[moving_share])?;
+        let id = self.ids.bed().activity;
+        Fields::begin(&mut self.buffer, at.step, at.time_s).number(moving_share);
+        self.run.write(id, at.encode()?, &self.buffer)
+    }
+
+    /// Writes the fields of the bed and the profile of its surface after a step.
+    ///
+    /// # Errors
+    /// A value that is not finite, or the file system's refusal.
+    ///
+    /// # Panics
+    /// If the setup has no bed with fields.
+    pub fn bed_fields(
+        &mut self,
+        at: Stamp,
+        fields: &[FieldPoint],
+        crater: &[CraterPoint],
+    ) -> Result<(), RecordError> {
+        let ids = self.ids.bed().fields.expect("the setup has fields");
+        let stamp = at.encode()?;
+        for (id, message) in ids.into_iter().zip([
+            points::field_cloud(stamp.1, fields, &self.scene),
+            points::crater_cloud(stamp.1, crater, &self.scene),
+        ]) {
+            let message = message.ok_or_else(|| RecordError::NonFinite {
+                step: at.step,
+                what: "a field of the bed".to_owned(),
+            })?;
+            scene::encode(&message, &mut self.buffer);
+            self.run.write(id, stamp, &self.buffer)?;
+        }
+        Ok(())
     }
 
     /// Writes a frame: every body, in the order of the setup, and the grains if they are logged.
@@ -325,7 +406,8 @@ impl RunLog {
         let budget = Layout::energy_budget(&setup.energy_terms);
         let state = Layout::intruder_state();
         let load = Layout::intruder_load(&setup.force_origins);
-        setup.check(&[&budget, &state, &load])?;
+        let (estimate, activity) = (Layout::estimate(), Layout::bed_activity());
+        setup.check(&[&budget, &state, &load, &estimate, &activity])?;
 
         let LogSetup { flush_every, checkpoint_every, .. } = *setup;
         let start = |name, cut| {
@@ -354,6 +436,22 @@ impl RunLog {
             loads: per_body(setup, |name| {
                 run.define(own(&format!("/intruder/{name}/load"), &load))
             })?,
+            bed: match setup.bed {
+                None => None,
+                Some(channels) => Some(BedIds {
+                    activity: run.define(own("/bed/activity", &activity))?,
+                    estimates: per_body(setup, |name| {
+                        run.define(own(&format!("/intruder/{name}/estimate"), &estimate))
+                    })?,
+                    fields: match channels {
+                        BedChannels::Scalars => None,
+                        BedChannels::ScalarsAndFields => Some([
+                            run.define(drawn::<PointCloud>("/bed/field"))?,
+                            run.define(drawn::<PointCloud>("/bed/crater"))?,
+                        ]),
+                    },
+                }),
+            },
             frames: define_frames(&mut run, setup)?,
             events: run.define(drawn::<Log>("/log"))?,
         };
@@ -378,6 +476,12 @@ impl RunLog {
             scene: Scene::new(setup),
             buffer: Vec::new(),
         })
+    }
+}
+
+impl RunChannels {
+    fn bed(&self) -> &BedIds {
+        self.bed.as_ref().expect("the setup has a bed")
     }
 }
 

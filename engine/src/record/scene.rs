@@ -13,7 +13,7 @@ use super::{BodyFrame, GrainSample, LogSetup, LoggedBody, LoggedShape};
 use crate::math::{Quat, Vec3};
 
 /// The frame that everything is drawn in: z up, surface of the undisturbed bed at z = 0.
-const WORLD: &str = "world";
+pub(super) const WORLD: &str = "world";
 
 /// Bytes of a grain in the cloud: six 32-bit floats and an identifier.
 const STRIDE: u32 = 28;

@@ -86,7 +86,9 @@ impl Layout {
     /// `plunge.IntruderLoad`, a force and a torque per origin.
     pub(super) fn intruder_load(origins: &[String]) -> Self {
         origins.iter().fold(
-            Self::new("plunge.IntruderLoad").with("contacts", FieldKind::Count),
+            Self::new("plunge.IntruderLoad")
+                .with("contacts", FieldKind::Count)
+                .with("area_m2", FieldKind::Number),
             |layout, origin| {
                 let origin = snake_case(origin);
                 layout
@@ -94,6 +96,19 @@ impl Layout {
                     .with(&format!("{origin}_torque"), FieldKind::Vector)
             },
         )
+    }
+
+    /// `plunge.CollisionalEstimate`, of the force of a bed of grains on a body.
+    pub(super) fn estimate() -> Self {
+        Self::new("plunge.CollisionalEstimate")
+            .with("geometric_area_m2", FieldKind::Number)
+            .with("magnitudes_N", FieldKind::Number)
+            .with("force", FieldKind::Vector)
+    }
+
+    /// `plunge.BedActivity`.
+    pub(super) fn bed_activity() -> Self {
+        Self::new("plunge.BedActivity").with("moving_share", FieldKind::Number)
     }
 
     /// The first name that is used twice or is no protobuf identifier.

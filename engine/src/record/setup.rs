@@ -21,6 +21,8 @@ pub struct LogSetup {
     pub checkpoint_every: u64,
     /// Whether to write `grains.mcap`.
     pub grains: bool,
+    /// What there is to say of a bed of grains; none of another medium.
+    pub bed: Option<BedChannels>,
     /// Height of the undisturbed surface (m).
     pub surface_z_m: f64,
     /// The bodies, in the order in which the engine numbers them.
@@ -38,6 +40,15 @@ pub struct LogSetup {
     pub metadata: BTreeMap<String, String>,
     /// Files carried in `run.mcap`.
     pub attachments: Vec<LogAttachment>,
+}
+
+/// The channels of a bed of grains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BedChannels {
+    /// How much of it moves, and the collisional estimate of the force on each body.
+    Scalars,
+    /// The same, and its fields and its crater at some times.
+    ScalarsAndFields,
 }
 
 /// A body of the log.
@@ -116,6 +127,20 @@ pub struct BodyLoad<'a> {
     pub torques: &'a [Vec3],
     /// Number of touching grains and walls.
     pub contacts: u32,
+    /// What the bed covers of the surface (m², planar m): in a bed of grains the sum of the
+    /// cross-sections of the touching grains, in a resistive medium the immersed area.
+    pub area: f64,
+}
+
+/// What the collisional estimate says of the load on a body.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyEstimate {
+    /// Area (m², planar m) that a body of this shape has below the undisturbed surface.
+    pub geometric_area: f64,
+    /// Estimated force (N).
+    pub force: Vec3,
+    /// Sum of the magnitudes of its parts (N).
+    pub magnitudes: f64,
 }
 
 /// A body in a frame.

@@ -35,6 +35,7 @@ fn written(folder: &TempDir, last: u64) -> RunLog {
         flush_every: FLUSH_EVERY,
         checkpoint_every: 1000,
         grains: false,
+        bed: None,
         surface_z_m: 0.5,
         bodies: vec![body("ball"), body("disc")],
         container: None,
@@ -54,7 +55,7 @@ fn written(folder: &TempDir, last: u64) -> RunLog {
             let sample = BodySample { position, velocity, spin: Vec3::zeros(), depth_m: depth };
             log.body_state(at, index, &sample).unwrap();
             let (forces, torques) = ([Vec3::zeros()], [Vec3::zeros()]);
-            let load = BodyLoad { forces: &forces, torques: &torques, contacts: 1 };
+            let load = BodyLoad { forces: &forces, torques: &torques, contacts: 1, area: 0.0 };
             log.body_load(at, index, &load).unwrap();
         }
     }

@@ -62,8 +62,12 @@ fn sample(last: u64) -> Sample {
         let state = BodySample { position, velocity, spin, depth_m: libm::tan(x) };
         log.body_state(at, 0, &state).unwrap();
         let (forces, torques) = ([Vec3::repeat(x * 0.7)], [Vec3::zeros()]);
-        log.body_load(at, 0, &BodyLoad { forces: &forces, torques: &torques, contacts: 1 })
-            .unwrap();
+        log.body_load(
+            at,
+            0,
+            &BodyLoad { forces: &forces, torques: &torques, contacts: 1, area: 0.0 },
+        )
+        .unwrap();
     }
     log.finish().unwrap();
     let bytes = fs::read(scratch.0.join("run.mcap")).unwrap();
@@ -85,6 +89,7 @@ fn setup() -> LogSetup {
         flush_every: 10,
         checkpoint_every: 1000,
         grains: false,
+        bed: None,
         surface_z_m: 0.0,
         bodies: vec![LoggedBody {
             name: "ball".to_owned(),

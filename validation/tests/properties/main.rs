@@ -1,5 +1,6 @@
 //! What must hold for every run, whatever it is a run of.
 
+mod beds;
 mod closure;
 mod cloud;
 mod conservation;

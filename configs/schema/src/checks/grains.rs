@@ -188,19 +188,22 @@ impl GrainChecks<'_> {
 
     fn steps(&self) {
         let run = stability::time_step(self.grains);
-        let collision = stability::shortest_collision_time(self.grains);
-        self.step_against(run, collision, self.common.places.time_step, true);
-        let grains = stability::grain_collision_time(self.grains);
+        let times = stability::times(self.grains);
+        self.step_against(run, times.collision, self.common.places.time_step, true);
         if self.common.places.preparation_time_step.is_some() {
             let step = stability::preparation_time_step(self.grains);
-            self.step_against(step, grains, self.common.places.preparation_time_step, false);
-            self.step_against_damping(step, self.common.places.preparation_time_step);
+            let (times, span) = (
+                stability::preparation_times(self.grains),
+                self.common.places.preparation_time_step,
+            );
+            self.step_against(step, times.collision, span, false);
+            self.step_against_damping(step, times.damping, span);
         }
-        self.step_against_damping(run, self.common.places.time_step);
+        self.step_against_damping(run, times.damping, self.common.places.time_step);
     }
 
-    fn step_against_damping(&self, step: Option<f64>, span: Option<Span>) {
-        let (Some(step), Some(relaxation)) = (step, stability::damping_time(self.grains)) else {
+    fn step_against_damping(&self, step: Option<f64>, relaxation: Option<f64>, span: Option<Span>) {
+        let (Some(step), Some(relaxation)) = (step, relaxation) else {
             return;
         };
         let steps = relaxation / step;

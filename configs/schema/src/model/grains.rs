@@ -72,6 +72,8 @@ pub struct GrainLog {
     pub flush_every: u64,
     /// Whether grains are logged at all.
     pub grains: bool,
+    /// When the fields of the bed and its crater are logged (s).
+    pub fields_at: Vec<f64>,
 }
 
 /// The box: x from 0 to `width`, in three dimensions y from 0 to `depth`, and up from its bottom at 0.

@@ -116,9 +116,11 @@ fn log(table: TableReader<'_>) -> Option<(LogSettings, GrainLog)> {
     );
     let frames_per_s = table.number(&specs::FRAMES_PER_S);
     let grains = table.boolean("grains", true);
+    let fields_at = table.numbers(&specs::FIELDS_AT);
     table.finish();
     let settings = LogSettings { frames_per_s: frames_per_s?.value };
-    Some((settings, GrainLog { flush_every: flush_every?.value, grains: grains? }))
+    let fields_at = fields_at?.unwrap_or_default().into_iter().map(|found| found.value).collect();
+    Some((settings, GrainLog { flush_every: flush_every?.value, grains: grains?, fields_at }))
 }
 
 /// `[medium]`: discs or spheres, and the magnitude of gravity (m/s²).

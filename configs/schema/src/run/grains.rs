@@ -8,8 +8,8 @@ use engine::error::StepError;
 use engine::math::Vec3;
 use engine::parallel::n_threads;
 use engine::record::{
-    BodyFrame, BodyLoad, BodySample, EventLevel, GrainSample, LogPosition, LogSetup, LoggedBody,
-    RecordError, RunLog, Stamp,
+    BedChannels, BodyFrame, BodyLoad, BodySample, EventLevel, GrainSample, LogPosition, LogSetup,
+    LoggedBody, RecordError, RunLog, Stamp,
 };
 use engine::simulation::{Simulation, Snapshot};
 use serde::{Deserialize, Serialize};
@@ -18,6 +18,7 @@ use super::drawing::shape_of;
 use super::folder::OutputFolder;
 use super::log_texts::{arrow_m_per_newton, attachments, metadata, opening};
 use super::model_file::model_text;
+use super::observables::Observables;
 use super::{
     BedSummary, Control, CostSummary, FinalEnergy, PreparedBed, Progress, RunError, Summary, Task,
     bed_key, result_key,
@@ -45,6 +46,7 @@ struct Saved {
 /// A run between two steps.
 struct Run<'a> {
     simulation: Simulation,
+    observables: Observables<'a>,
     log: RunLog,
     folder: &'a OutputFolder,
     key: [u8; 32],
@@ -118,10 +120,14 @@ impl Setting<'_> {
         folder: &'f OutputFolder,
         condition: &Condition,
         control: &mut dyn Control,
-    ) -> Result<Run<'f>, RunError> {
+    ) -> Result<Run<'f>, RunError>
+    where
+        Self: 'f,
+    {
         let key = result_key(&model_text(self.grains.model));
         let mut simulation = self.grains.simulation(&self.bed.resting, condition)?;
         let setup = self.log_setup(&simulation, condition);
+        let observables = Observables::new(self.grains, &simulation);
         let steps_per_frame = (1.0 / (self.grains.model.log.frames_per_s * simulation.clock().dt))
             .round()
             .max(1.0) as u64;
@@ -147,6 +153,7 @@ impl Setting<'_> {
                     }
                     return Ok(Run {
                         simulation,
+                        observables,
                         log,
                         folder,
                         key,
@@ -169,7 +176,8 @@ impl Setting<'_> {
             }
         }
         let log = RunLog::create(folder.path(), &setup)?;
-        let mut run = Run { simulation, log, folder, key, steps_per_frame, checkpoint_every };
+        let mut run =
+            Run { simulation, observables, log, folder, key, steps_per_frame, checkpoint_every };
         run.log.event(run.stamp(), EventLevel::Info, &opening(condition))?;
         run.record()?;
         Ok(run)
@@ -198,6 +206,10 @@ impl Setting<'_> {
             flush_every: medium.log.flush_every,
             checkpoint_every: medium.stepping.checkpoint_every,
             grains: medium.log.grains,
+            bed: Some(match medium.log.fields_at.is_empty() {
+                true => BedChannels::Scalars,
+                false => BedChannels::ScalarsAndFields,
+            }),
             surface_z_m: simulation.surface(),
             bodies: bodies
                 .iter()
@@ -274,10 +286,13 @@ impl Run<'_> {
 
     fn record(&mut self) -> Result<(), RunError> {
         let at = self.stamp();
-        let Self { simulation, log, .. } = self;
+        let Self { simulation, observables, log, .. } = self;
         let balance = simulation.ledger().balance();
         log.energy(at, &balance.values, balance.unaccounted, simulation.closure())?;
-        for (index, body) in simulation.intruder().bodies().iter().enumerate() {
+        let footprints = simulation.bed().footprints();
+        for (index, (body, footprint)) in
+            simulation.intruder().bodies().iter().zip(footprints).enumerate()
+        {
             let state = BodySample {
                 position: body.position,
                 velocity: body.velocity,
@@ -289,9 +304,11 @@ impl Run<'_> {
                 forces: &[body.contact.force, body.weight],
                 torques: &[body.contact.torque, Vec3::zeros()],
                 contacts: body.contact.contacts,
+                area: footprint.covered_area,
             };
             log.body_load(at, index, &load)?;
         }
+        observables.record(at, simulation, log)?;
         if at.step.is_multiple_of(self.steps_per_frame) {
             self.record_frame(at)?;
         }

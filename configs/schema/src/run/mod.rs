@@ -6,6 +6,7 @@ mod folder;
 mod grains;
 mod log_texts;
 mod model_file;
+mod observables;
 mod resistive;
 mod summary;
 
@@ -26,8 +27,8 @@ use crate::model::{Condition, GrainModel, Medium, Model, ResistiveModel};
 pub use bed_cache::{PreparedBed, bed_key, prepare};
 pub use folder::Existing;
 pub use summary::{
-    BedSummary, CostSummary, EnergySummary, FinalEnergy, ForceSummary, Group, ImpactSummary,
-    LinkSummary, ListSummary, Scatter, StopSummary, Summary,
+    ActivitySummary, BedSummary, CostSummary, EnergySummary, FinalEnergy, ForceSummary, Group,
+    ImpactSummary, LinkSummary, ListSummary, Scatter, StopSummary, Summary,
 };
 
 use folder::{Found, OutputFolder};

@@ -141,6 +141,7 @@ fn log_setup(
         flush_every: u64::MAX,
         checkpoint_every: u64::MAX,
         grains: false,
+        bed: None,
         surface_z_m: 0.0,
         bodies: (0..n_parts)
             .map(|part| LoggedBody {
@@ -196,6 +197,7 @@ impl Writer<'_> {
                 forces: &[part.dynamic, part.friction, weight],
                 torques: &[part.torque - by_friction, by_friction, Vec3::zeros()],
                 contacts: 0,
+                area: part.part.immersion.immersed_area,
             };
             self.log.body_load(at, index, &load)?;
             frames.push(BodyFrame {

@@ -27,10 +27,17 @@ dissipated_sliding_J:double input_drive_J:double
 speed_m_per_s:double position:xyz velocity:xyz spin:xyz
 /intruder/rear/state plunge.IntruderState step:uint64 time_s:double depth_m:double \
 speed_m_per_s:double position:xyz velocity:xyz spin:xyz
-/intruder/ball/load plunge.IntruderLoad step:uint64 time_s:double contacts:uint32 contact:xyz \
-contact_torque:xyz gravity:xyz gravity_torque:xyz
-/intruder/rear/load plunge.IntruderLoad step:uint64 time_s:double contacts:uint32 contact:xyz \
-contact_torque:xyz gravity:xyz gravity_torque:xyz
+/intruder/ball/load plunge.IntruderLoad step:uint64 time_s:double contacts:uint32 area_m2:double \
+contact:xyz contact_torque:xyz gravity:xyz gravity_torque:xyz
+/intruder/rear/load plunge.IntruderLoad step:uint64 time_s:double contacts:uint32 area_m2:double \
+contact:xyz contact_torque:xyz gravity:xyz gravity_torque:xyz
+/bed/activity plunge.BedActivity step:uint64 time_s:double moving_share:double
+/intruder/ball/estimate plunge.CollisionalEstimate step:uint64 time_s:double \
+geometric_area_m2:double magnitudes_N:double force:xyz
+/intruder/rear/estimate plunge.CollisionalEstimate step:uint64 time_s:double \
+geometric_area_m2:double magnitudes_N:double force:xyz
+/bed/field foxglove.PointCloud
+/bed/crater foxglove.PointCloud
 /tf foxglove.FrameTransforms
 /scene foxglove.SceneUpdate
 /intruder/ball/pose foxglove.PoseInFrame
@@ -76,6 +83,11 @@ fn own_messages_decode_by_the_descriptors_in_the_file() {
     assert_eq!(load["gravity.z"], -9.81);
     assert_eq!(load["contact_torque.y"], 0.1 * x);
     assert_eq!(load["contacts"], 0.0);
+    assert_eq!(load["area_m2"], 0.25 * x);
+    let estimate = last("/intruder/ball/estimate");
+    assert_eq!(estimate["force.z"], x);
+    assert_eq!(estimate["magnitudes_N"], 2.0);
+    assert_eq!(last("/bed/activity")["moving_share"], 0.125);
 }
 
 #[test]
@@ -98,6 +110,33 @@ fn the_grain_log_opens_alone_and_its_points_lie_below_their_fields() {
     assert_eq!([0, 8, 12, 20].map(float), [1e-3, 0.0, 1e-3, 1.0]);
     assert_eq!(point[24..], 1_u32.to_le_bytes());
     assert_eq!(cloud.data.len(), 3 * 28);
+}
+
+#[test]
+fn fields_and_crater_are_clouds_in_the_frame_of_the_log() {
+    let scratch = Scratch::new();
+    write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
+    let [run, _] = scratch.files();
+    let cloud = |topic: &str| {
+        let mut messages = mcap::MessageStream::new(&run).unwrap().map(|message| message.unwrap());
+        let message = messages.find(|message| message.channel.topic == topic).unwrap();
+        PointCloud::decode(message.data.as_ref()).unwrap()
+    };
+    let value = |cloud: &PointCloud, point: usize, name: &str| {
+        let field = cloud.fields.iter().find(|field| field.name == name).unwrap();
+        let at = point * cloud.point_stride as usize + field.offset as usize;
+        f32::from_le_bytes(cloud.data[at..at + 4].try_into().unwrap())
+    };
+    let field = cloud("/bed/field");
+    assert_eq!(field.data.len(), 2 * field.point_stride as usize);
+    // The surface lies at 0.3 m in the engine and at 0 in the log.
+    assert_eq!(value(&field, 1, "z"), (0.4_f64 - 0.3) as f32);
+    assert_eq!(value(&field, 1, "vz_m_per_s"), -4.0);
+    assert_eq!(value(&field, 1, "speed_m_per_s"), 5.0);
+    assert_eq!(value(&field, 1, "temperature_m2_per_s2"), 0.25);
+    let crater = cloud("/bed/crater");
+    assert_eq!(value(&crater, 0, "z"), (0.2_f64 - 0.3) as f32);
+    assert_eq!(value(&crater, 0, "distance_m"), 0.05_f32);
 }
 
 #[test]

@@ -54,6 +54,7 @@ fn setup() -> LogSetup {
         flush_every: 20,
         checkpoint_every: 60,
         grains: true,
+        bed: Some(BedChannels::ScalarsAndFields),
         surface_z_m: 0.3,
         bodies: vec![
             LoggedBody { name: "ball".to_owned(), shape: LoggedShape::Sphere { radius: 0.02 } },
@@ -99,9 +100,14 @@ fn write_step(log: &mut RunLog, step: u64, n_grains: u32) -> Result<(), RecordEr
             forces: &[Vec3::new(x, 0.0, 1.0), Vec3::new(0.0, 0.0, -9.81)],
             torques: &[Vec3::new(0.0, 0.1 * x, 0.0), Vec3::zeros()],
             contacts: step as u32 % 5,
+            area: 0.25 * x,
         };
         log.body_load(at, body, &load)?;
+        let estimate =
+            BodyEstimate { geometric_area: 0.5, force: Vec3::new(0.0, 0.0, x), magnitudes: 2.0 };
+        log.body_estimate(at, body, &estimate)?;
     }
+    log.bed_activity(at, 0.125)?;
     if step.is_multiple_of(FRAME_EVERY) {
         let body = BodyFrame {
             position: Vec3::new(x, 0.0, 0.3),
@@ -116,6 +122,16 @@ fn write_step(log: &mut RunLog, step: u64, n_grains: u32) -> Result<(), RecordEr
             id,
         });
         log.frame(at, &[body; 2], &mut grains)?;
+    }
+    if step == 8 {
+        let field = FieldPoint {
+            position: Vec3::new(0.1, 0.2, 0.4),
+            packing_fraction: 0.5,
+            velocity: Vec3::new(3.0, 0.0, -4.0),
+            temperature: 0.25,
+        };
+        let crater = CraterPoint { position: Vec3::new(0.1, 0.0, 0.2), distance: 0.05 };
+        log.bed_fields(at, &[field; 2], &[crater])?;
     }
     if step.is_multiple_of(50) {
         log.event(at, EventLevel::Info, &format!("step {step}"))?;

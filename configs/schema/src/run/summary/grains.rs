@@ -9,8 +9,8 @@ use engine::stopping::Stopping;
 
 use super::resistive::LinkCourse;
 use super::{
-    BedSummary, CostSummary, EnergySummary, FinalEnergy, ImpactSummary, LinkSummary, StopSummary,
-    Summary, by_channel,
+    ActivitySummary, BedSummary, CostSummary, EnergySummary, FinalEnergy, ImpactSummary,
+    LinkSummary, StopSummary, Summary, by_channel,
 };
 use crate::model::{Condition, GrainModel};
 
@@ -43,6 +43,7 @@ impl BedSummary {
             height_m: report.height,
             coordination: report.coordination,
             cache: cache.to_owned(),
+            activity: None,
             warnings: off_target(report, model),
         }
     }
@@ -136,6 +137,13 @@ impl Summary {
         let ledger = simulation.ledger();
         let end = FinalEnergy::held_by(simulation);
         let initial = simulation.impact_energy();
+        let activity = simulation.activity();
+        let activity = ActivitySummary {
+            largest_moving_share: activity.largest_share(),
+            largest_kinetic_energy: activity.largest_energy(),
+            peak_time_s: activity.peak_time(),
+            dissipation_time_s: activity.dissipation_time(),
+        };
         Self {
             name: model.run.name.clone(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -161,7 +169,7 @@ impl Summary {
                 unaccounted: ledger.balance().unaccounted,
                 closure: simulation.closure(),
             },
-            bed: Some(bed.clone()),
+            bed: Some(BedSummary { activity: Some(activity), ..bed.clone() }),
             forces: None,
             links: links(simulation),
             cost,

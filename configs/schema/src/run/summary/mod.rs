@@ -102,8 +102,22 @@ pub struct BedSummary {
     pub height_m: f64,
     pub coordination: f64,
     pub cache: String,
+    /// What took part in the impact, once there is one.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub activity: Option<ActivitySummary>,
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub warnings: Vec<String>,
+}
+
+/// How much of the bed took part in the impact, and for how long: γ and T of the three-shape study, eq. 24.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
+pub struct ActivitySummary {
+    pub largest_moving_share: f64,
+    #[serde(rename = "largest_kinetic_energy_J")]
+    pub largest_kinetic_energy: f64,
+    pub peak_time_s: f64,
+    pub dissipation_time_s: Option<f64>,
 }
 
 /// What it cost; the only part of a summary that depends on the machine.

@@ -1,0 +1,102 @@
+//! `cargo xtask three-shapes`: cylinder, hemisphere and cone on beds of our own.
+
+#![allow(clippy::print_stdout, reason = "stdout is where a command's result belongs")]
+
+use std::error::Error;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use lexopt::prelude::{Long, Short, ValueExt};
+use validation::three_shapes::{Places, cases, depths, frictions, run, table};
+
+const HELP: &str = "\
+Cylinder, hemisphere and cone at equal mass, radius and speed; and the hemisphere without and with friction.
+
+Usage: cargo xtask three-shapes [--seeds N] [--threads N] [--out DIR] [--cache DIR] [--write]
+
+  --seeds N    beds per condition (3)
+  --threads N  impacts at a time (one per core)
+  --out DIR    where results are kept (runs/three-shapes); those that are there are not run again
+  --cache DIR  where prepared beds are kept (runs/.cache)
+  --write      the table to docs/three-shapes.md below its mark, the pictures beside it
+
+Exit status: 0 done, 1 failed, 2 the command line was not understood.
+";
+
+/// Everything below this line of the document is written by the program.
+const MARK: &str = "<!-- written by cargo xtask three-shapes --write -->";
+
+struct Wish {
+    seeds: u64,
+    threads: usize,
+    places: Places,
+    write: bool,
+}
+
+fn main() -> ExitCode {
+    let wish = match parse() {
+        Ok(Some(wish)) => wish,
+        Ok(None) => {
+            print!("{HELP}");
+            return ExitCode::SUCCESS;
+        }
+        Err(error) => {
+            eprintln!("error: {error}\n\n{HELP}");
+            return ExitCode::from(2);
+        }
+    };
+    match study(&wish) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn parse() -> Result<Option<Wish>, lexopt::Error> {
+    let mut parser = lexopt::Parser::from_env();
+    let mut wish = Wish {
+        seeds: 3,
+        threads: std::thread::available_parallelism().map_or(1, usize::from),
+        places: Places { out: "runs/three-shapes".into(), cache: "runs/.cache".into() },
+        write: false,
+    };
+    while let Some(argument) = parser.next()? {
+        match argument {
+            Long("seeds") => wish.seeds = parser.value()?.parse()?,
+            Long("threads") => wish.threads = parser.value()?.parse()?,
+            Long("out") => wish.places.out = PathBuf::from(parser.value()?),
+            Long("cache") => wish.places.cache = PathBuf::from(parser.value()?),
+            Long("write") => wish.write = true,
+            Short('h') | Long("help") => return Ok(None),
+            other => return Err(other.unexpected()),
+        }
+    }
+    Ok(Some(wish))
+}
+
+fn study(wish: &Wish) -> Result<(), Box<dyn Error>> {
+    let cases = cases(wish.seeds);
+    let outcomes = run(&cases, &wish.places, wish.threads, &|case, outcome| {
+        eprintln!(
+            "{}: {:.1} mm, closure {:.1e}",
+            case.name(),
+            1e3 * outcome.depth_m,
+            outcome.closure
+        );
+    })?;
+    let results: Vec<_> = cases.into_iter().zip(outcomes).collect();
+    let text = table(&results);
+    print!("{text}");
+    if wish.write {
+        let path = Path::new("docs/three-shapes.md");
+        let before = fs::read_to_string(path)?;
+        let (kept, _) = before.split_once(MARK).ok_or("docs/three-shapes.md has lost its mark")?;
+        fs::write(path, format!("{kept}{MARK}\n\n{text}"))?;
+        fs::write("docs/three-shapes-depth.svg", depths(&results)?)?;
+        fs::write("docs/three-shapes-friction.svg", frictions(&results)?)?;
+    }
+    Ok(())
+}
