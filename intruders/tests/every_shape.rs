@@ -19,7 +19,7 @@ fn every_body() -> impl Iterator<Item = (&'static ShapeEntry, Space, Body)> {
                 params.set(
                     spec.key,
                     match spec.default {
-                        Default::Required => middle,
+                        Default::Required | Default::FromBase(_) => middle,
                         Default::Value(value) => value,
                         Default::SameAs(other) => params.get(other),
                     },
