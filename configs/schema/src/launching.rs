@@ -7,7 +7,7 @@ use engine::math::{Quat, Vec3, turned_about_y};
 use engine::surface::Surface;
 
 use crate::build::BuildError;
-use crate::model::{Condition, Container, GrainModel};
+use crate::model::{Condition, Container, ContainerShape, GrainModel, SidesKind};
 
 /// Length of the shaft of a recessive wall, in the height of the bed: grains that are thrown up do not
 /// come over its top.
@@ -64,9 +64,25 @@ impl GrainModel<'_> {
         orientation: Quat,
         (x, y): (f64, f64),
     ) -> Result<(), BuildError> {
-        let Container { width, depth } = self.medium.container;
-        let reach =
-            |direction: Vec3| surface.support(orientation.inverse_transform_vector(&direction));
+        let Container { shape, width, depth, sides, .. } = self.medium.container;
+        // Through a periodic side the intruder may stand.
+        let reach = |direction: Vec3| match sides {
+            SidesKind::Periodic => 0.0,
+            SidesKind::Wall | SidesKind::Absorbing => {
+                surface.support(orientation.inverse_transform_vector(&direction))
+            }
+        };
+        if shape == ContainerShape::Cylinder {
+            let axis = Vec3::new(0.5 * width, 0.5 * width, 0.0);
+            let from_axis = Vec3::new(x, y, 0.0) - axis;
+            let outward = from_axis.try_normalize(0.0).unwrap_or_else(Vec3::x);
+            // A body that is not round may reach farther aside of this direction, by less than its own
+            // size squared over the diameter.
+            if from_axis.norm() + reach(outward) > 0.5 * width {
+                return Err(BuildError::StartTouchesCylinder { x, y, diameter: width });
+            }
+            return Ok(());
+        }
         if x < reach(-Vec3::x()) || x > width - reach(Vec3::x()) {
             return Err(BuildError::StartTouchesSide { x, width });
         }
