@@ -35,23 +35,24 @@ pub(super) fn sizes(table: &TableReader<'_>, space: Space) -> Option<(SizeDistri
         &[],
         "how the diameters are spread",
     );
-    if table.has("mass") {
-        table.reader.report(
-            Diagnostic::error("grains of many sizes have no common `mass`")
-                .at(table.span_of("mass"), "of which grain?")
-                .with(table.span_of("distribution"), "many sizes")
-                .help(format!("write {}", density_example(space))),
-        );
-    }
-    let density = table.number(density);
+    let density = match table.has("mass") {
+        false => table.number(density),
+        true => {
+            table.reader.report(
+                Diagnostic::error("grains of many sizes have no common `mass`")
+                    .at(table.span_of("mass"), "of which grain?")
+                    .with(table.span_of("distribution"), "many sizes")
+                    .help(format!("write {}", density_example(space))),
+            );
+            None
+        }
+    };
     let sizes = match distribution? {
         "uniform" => uniform(table),
         "lognormal" => lognormal(table),
         _ => list(table),
     };
-    let has_mass = table.has("mass");
-    let density = density?.value;
-    sizes.filter(|_| !has_mass).map(|sizes| (sizes, Material::Density(density)))
+    Some((sizes?, Material::Density(density?.value)))
 }
 
 fn density_example(space: Space) -> &'static str {
@@ -98,15 +99,16 @@ fn in_order(table: &TableReader<'_>, min: Found<f64>, max: Found<f64>) -> Option
 }
 
 fn list(table: &TableReader<'_>) -> Option<SizeDistribution> {
-    let lists =
-        [&specs::GRAIN_DIAMETERS, &specs::GRAIN_WEIGHTS].map(|spec| match table.has(spec.key) {
-            true => table.numbers(spec)?,
-            false => {
-                table.missing_list(spec);
-                None
-            }
-        });
-    let [Some(diameters), Some(weights)] = lists else { return None };
+    let read = |spec: &ParamSpec, example: &str| match table.has(spec.key) {
+        true => table.numbers(spec)?,
+        false => {
+            table.missing_list(spec, example);
+            None
+        }
+    };
+    let diameters = read(&specs::GRAIN_DIAMETERS, "[\"2 mm\", \"3 mm\"]");
+    let weights = read(&specs::GRAIN_WEIGHTS, "[3, 1]");
+    let (diameters, weights) = (diameters?, weights?);
     let values = |list: Vec<Found<f64>>| list.into_iter().map(|found| found.value).collect();
     let (diameters, weights): (Vec<f64>, Vec<f64>) = (values(diameters), values(weights));
     if diameters.len() != weights.len() {
