@@ -1,6 +1,9 @@
 //! The contact laws and effects of plunge, each in a file of its own and one line of [`LAWS`].
 
 pub mod formula;
+mod hertz;
+mod hertz_mindlin;
+mod hertz_mindlin_viscous;
 mod linear_spring_dashpot;
 mod registry;
 mod resistance;
@@ -14,7 +17,12 @@ pub use resistance::{
 };
 
 /// Every law and effect, in the order of the docs.
-pub static LAWS: &[&LawEntry] = &[&linear_spring_dashpot::ENTRY, &rolling_resistance::ENTRY];
+pub static LAWS: &[&LawEntry] = &[
+    &linear_spring_dashpot::ENTRY,
+    &hertz_mindlin::ENTRY,
+    &hertz_mindlin_viscous::ENTRY,
+    &rolling_resistance::ENTRY,
+];
 
 /// The law or effect called `name`.
 #[must_use]

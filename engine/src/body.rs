@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::contact::Partner;
 use crate::math::{Quat, Vec3, cayley, quat_from_parts, quat_parts};
+use crate::stopping::Followed;
 use crate::surface::{Placement, Surface, Wrench};
 
 /// One convex part of a wall or an intruder: what a grain can touch.
@@ -29,6 +30,15 @@ pub trait Mechanism: Send + Sync {
     fn load(&mut self, wrenches: &[Wrench], gravity: Vec3);
     /// Its bodies, for the log and the energy.
     fn bodies(&self) -> &[RigidBody];
+    /// What is followed of body `index` to tell when it has stopped.
+    fn followed(&self, index: usize) -> Followed {
+        Followed::of(&self.bodies()[index])
+    }
+    /// Whether each body stops for itself, when its tip no longer sinks, counted from its own first
+    /// contact with the bed.
+    fn stops_with_its_tips(&self) -> bool {
+        false
+    }
     /// Everything that changes during a run.
     fn save(&self) -> Vec<f64>;
     /// Takes back what [`Mechanism::save`] gave; `false` if it does not fit.

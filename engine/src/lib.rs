@@ -13,6 +13,7 @@ pub mod clock;
 pub mod coarse_graining;
 pub mod contact;
 mod contacts;
+pub mod course;
 pub mod crater;
 pub mod error;
 pub mod footprint;

@@ -3,12 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use crate::activity::Activity;
-use crate::body::Mechanism;
+use crate::body::{Mechanism, RigidBody};
 use crate::clock::{Clock, steps_in};
+use crate::course::Course;
 use crate::error::StepError;
 use crate::grain_bed::GrainBed;
 use crate::ledger::Ledger;
-use crate::stopping::{Followed, Stopping};
 use crate::world::{SavedWorld, World};
 
 /// What a run is told besides the bed and the intruder.
@@ -26,7 +26,7 @@ pub struct Settings {
 pub struct Simulation {
     world: World,
     settings: Settings,
-    stopping: Stopping,
+    courses: Vec<Course>,
     activity: Activity,
     surface: f64,
     impact_energy: f64,
@@ -37,7 +37,7 @@ pub struct Simulation {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     world: SavedWorld,
-    stopping: Stopping,
+    courses: Vec<Course>,
     activity: Activity,
     surface: f64,
     impact_energy: f64,
@@ -61,14 +61,15 @@ impl Simulation {
         let world = World::new(bed, intruder, settings.dt);
         let bodies = world.intruder.bodies();
         let body = bodies.first().expect("an impact has an intruder");
-        let stopping = Stopping::new(Followed::of(body));
-        let surface = body.lowest();
+        let courses = (0..bodies.len()).map(|index| Course::new(&*world.intruder, index)).collect();
+        let surface = bodies.iter().map(RigidBody::lowest).fold(f64::INFINITY, f64::min);
         let impact_energy = bodies.iter().flat_map(|body| body.kinetic_energy()).sum::<f64>();
         // An intruder let go from rest has no energy of impact to compare with.
-        let fall = body.mass * world.bed.gravity.norm() * 2.0 * body.surface().bounding_radius();
+        let mass: f64 = bodies.iter().map(|body| body.mass).sum();
+        let fall = mass * world.bed.gravity.norm() * 2.0 * body.surface().bounding_radius();
         let energy_scale = if impact_energy > 0.0 { impact_energy } else { fall };
         let activity = Activity::default();
-        Self { world, settings, stopping, activity, surface, impact_energy, energy_scale }
+        Self { world, settings, courses, activity, surface, impact_energy, energy_scale }
     }
 
     /// Moves on by one step.
@@ -77,18 +78,19 @@ impl Simulation {
     /// If the step cannot be trusted.
     pub fn advance(&mut self) -> Result<(), StepError> {
         self.world.advance()?;
-        let body = &self.world.intruder.bodies()[0];
-        let time = self.world.clock.time();
-        self.stopping.observe(time, Followed::of(body));
+        let (clock, intruder) = (self.world.clock, &*self.world.intruder);
+        for (index, course) in self.courses.iter_mut().enumerate() {
+            course.observe((clock.time(), clock.dt), intruder, index);
+        }
         let bed = &self.world.bed;
-        self.activity.observe(time, bed.moving_share(), bed.kinetic_energy());
+        self.activity.observe(clock.time(), bed.moving_share(), bed.kinetic_energy());
         self.check_budget()
     }
 
-    /// Whether the intruder has stopped, or time is up.
+    /// Whether every body of the intruder has stopped, or time is up.
     #[must_use]
     pub fn is_over(&self) -> bool {
-        self.stopping.is_over() || self.world.clock.step >= self.last_step()
+        self.courses.iter().all(Course::is_over) || self.world.clock.step >= self.last_step()
     }
 
     /// The step at which the run ends at the latest.
@@ -152,10 +154,10 @@ impl Simulation {
         self.world.clock
     }
 
-    /// Stopping times and depth.
+    /// Stopping times, depth and energy given to the bed of each body of the intruder.
     #[must_use]
-    pub fn stopping(&self) -> &Stopping {
-        &self.stopping
+    pub fn courses(&self) -> &[Course] {
+        &self.courses
     }
 
     /// How much of the bed took part.
@@ -176,7 +178,7 @@ impl Simulation {
     pub fn save(&self) -> Snapshot {
         Snapshot {
             world: self.world.save(),
-            stopping: self.stopping,
+            courses: self.courses.clone(),
             activity: self.activity,
             surface: self.surface,
             impact_energy: self.impact_energy,
@@ -187,10 +189,11 @@ impl Simulation {
     /// another one.
     #[must_use]
     pub fn restore(&mut self, saved: Snapshot) -> bool {
-        self.stopping = saved.stopping;
+        let is_of_this_run = saved.courses.len() == self.courses.len();
+        self.courses = saved.courses;
         self.activity = saved.activity;
         self.surface = saved.surface;
         self.impact_energy = saved.impact_energy;
-        self.world.restore(saved.world)
+        is_of_this_run && self.world.restore(saved.world)
     }
 }

@@ -46,6 +46,8 @@ pub struct Stopping {
     start: Vec3,
     /// At the start (m).
     reach: f64,
+    /// Whether the vertical component alone decides.
+    is_tip: bool,
     /// Unit vector of the horizontal part of the impact velocity, or zero.
     forward: Vec3,
     before: Sample,
@@ -84,6 +86,7 @@ impl Stopping {
             speed,
             start: position,
             reach,
+            is_tip: false,
             forward,
             before: Sample {
                 time: 0.0,
@@ -97,6 +100,14 @@ impl Stopping {
             rest_since: None,
             now: 0.0,
         }
+    }
+
+    /// The tip of a link that meets the bed so at `time` (s): it has stopped when it no longer sinks
+    /// (S0, the end of the penetration).
+    #[must_use]
+    pub fn of_tip(time: f64, followed: Followed) -> Self {
+        let start = Self::new(followed);
+        Self { is_tip: true, before: Sample { time, ..start.before }, now: time, ..start }
     }
 
     /// Takes note of the state at `time` (s).
@@ -141,9 +152,12 @@ impl Stopping {
             && self.rest_since.is_some_and(|since| self.now - since >= REST_HOLD)
     }
 
-    /// The larger stopping time (s).
+    /// The larger stopping time (s); of a tip, the vertical one.
     #[must_use]
     pub fn stopping_time(&self) -> Option<f64> {
+        if self.is_tip {
+            return self.vertical;
+        }
         Some(self.horizontal_time()?.max(self.vertical?))
     }
 

@@ -25,10 +25,12 @@ pub(crate) const CONE: ShapeEntry = ShapeEntry {
         let shape = Wedge::new(params, space);
         Body::revolved(shape.surface(None), shape.inertia_per_mass())
     },
+    links: None,
     under_shaft: Some(|params, space, length| {
         Arc::new(Wedge::new(params, space).surface(Some(length)))
     }),
     volume: |params, space| Wedge::new(params, space).volume(f64::INFINITY),
+    contact_area: |params, space, depth| Wedge::new(params, space).contact_area(depth),
     assembly,
 };
 

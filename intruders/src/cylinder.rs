@@ -24,10 +24,12 @@ pub(crate) const CYLINDER: ShapeEntry = ShapeEntry {
         let shape = Flat::new(params, space);
         Body::revolved(shape.surface(None), shape.inertia_per_mass())
     },
+    links: None,
     under_shaft: Some(|params, space, length| {
         Arc::new(Flat::new(params, space).surface(Some(length)))
     }),
     volume: |params, space| Flat::new(params, space).volume(f64::INFINITY),
+    contact_area: |params, space, depth| Flat::new(params, space).contact_area(depth),
     assembly,
 };
 

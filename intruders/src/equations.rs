@@ -53,6 +53,21 @@ impl Equations {
         self.right[coordinate] += couple;
     }
 
+    /// What acts on the coordinates so far (N or N m).
+    pub(crate) fn load(&self) -> Vec4 {
+        self.right
+    }
+
+    /// Momenta of the coordinates (kg m/s or kg m²/s) that move at these `rates` (m/s or rad/s).
+    pub(crate) fn momenta(&self, rates: &Vec4) -> Vec4 {
+        self.matrix * rates
+    }
+
+    /// Rates of coordinates that have these `momenta`; NaN as in [`Equations::solve`].
+    pub(crate) fn rates(&self, momenta: &Vec4) -> Vec4 {
+        self.matrix.lu().solve(momenta).unwrap_or(Vec4::repeat(f64::NAN))
+    }
+
     /// Accelerations of the coordinates; NaN where the mass matrix is singular, which a body with mass
     /// and inertia never has, so that an integration ends with an error.
     pub(crate) fn solve(&self) -> [f64; COORDINATES] {

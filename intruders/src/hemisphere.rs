@@ -25,10 +25,12 @@ pub(crate) const HEMISPHERE: ShapeEntry = ShapeEntry {
         let shape = Dome::new(params, space);
         Body::revolved(shape.surface(None), shape.inertia_per_mass())
     },
+    links: None,
     under_shaft: Some(|params, space, length| {
         Arc::new(Dome::new(params, space).surface(Some(length)))
     }),
     volume: |params, space| Dome::new(params, space).volume(f64::INFINITY),
+    contact_area: |params, space, depth| Dome::new(params, space).contact_area(depth),
     assembly,
 };
 

@@ -4,6 +4,7 @@ mod cone;
 mod cylinder;
 mod equations;
 mod hemisphere;
+mod hinged_links;
 mod link;
 mod outline;
 mod parry_surface;
@@ -13,6 +14,7 @@ mod specs;
 mod sphere;
 mod two_link_chain;
 
+pub use hinged_links::HingedLinks;
 pub use registry::{Body, Casting, Drawing, Launchable, ShapeEntry};
 
 /// Every shape, in the order of the docs.

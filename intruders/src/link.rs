@@ -19,8 +19,10 @@ pub(crate) const LINK: ShapeEntry = ShapeEntry {
     planar_in_resistance: false,
     params: PARAMS,
     build: |params, space| Link::new(params, 1.0).0.body(space),
+    links: None,
     under_shaft: None,
     volume: |params, space| Rod::volume(params.get("length"), params.get("diameter"), space),
+    contact_area: Rod::contact_area,
     assembly,
 };
 

@@ -8,6 +8,7 @@ use engine::params::{ParamSpec, ParamTable};
 use engine::resistance::{Assembly, State};
 use engine::surface::Surface;
 
+use crate::hinged_links::HingedLinks;
 use crate::outline::Revolved;
 
 /// One shape of intruder.
@@ -26,11 +27,18 @@ pub struct ShapeEntry {
     pub params: &'static [ParamSpec],
     /// Makes a body of it from SI values that fill `params`; of a chain, one of its equal links.
     pub build: fn(&ParamTable, Space) -> Body,
+    /// Makes linked bodies of it, of this mass in all (kg), for a bed of grains; `None` for a shape
+    /// that is one body.
+    pub links: Option<fn(&ParamTable, Space, f64) -> HingedLinks>,
     /// Its surface with a shaft of its top cross-section, of this length (m), upward from its top
     /// plane, which keeps grains off its top and is not felt; `None` for a shape without top plane.
     pub under_shaft: Option<fn(&ParamTable, Space, f64) -> Arc<dyn Surface>>,
     /// Volume (m³), or area (m²) in a planar medium, from SI values that fill `params`.
     pub volume: fn(&ParamTable, Space) -> f64,
+    /// Area (m²), or length (m) in a planar medium, that a body standing upright has below the surface
+    /// when its lowest point is so deep (m); of a chain, one of its links. The three-shape study, eqs
+    /// 13–16: with the side of a cylinder and without flat tops.
+    pub contact_area: fn(&ParamTable, Space, f64) -> f64,
     /// Makes it for a resistive medium.
     pub assembly: fn(&Casting) -> Launchable,
 }

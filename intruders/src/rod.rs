@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use engine::grains::Space;
 use engine::math::{Vec3, Vec4};
-use engine::params::{Default, ParamSpec, Range};
+use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::resistance::{Immersion, Part, PartLoad};
 use engine::units::Dimension;
 
@@ -75,6 +75,17 @@ struct Portion {
 }
 
 impl Rod {
+    /// Area (m², planar m) that an upright rod of these parameters has below the surface at `depth` (m):
+    /// its end and its side.
+    pub(crate) fn contact_area(params: &ParamTable, space: Space, depth: f64) -> f64 {
+        let (length, diameter) = (params.get("length"), params.get("diameter"));
+        let side = depth.clamp(0.0, length);
+        match space {
+            Space::Planar => diameter + 2.0 * side,
+            Space::Spatial => PI * diameter * (0.25 * diameter + side),
+        }
+    }
+
     /// Volume of a rod (m³) of `length` and `diameter` (m); planar, the area (m²).
     pub(crate) fn volume(length: f64, diameter: f64, space: Space) -> f64 {
         match space {
@@ -169,9 +180,8 @@ impl Rod {
         load: &PartLoad,
         gravity: f64,
     ) {
-        let centre = self.point(pose, 0.5 * self.length, 0.0);
-        equations.add_mass(&centre, self.mass);
-        equations.add_inertia(self.coordinate, self.inertia());
+        let centre = self.centre_point(pose);
+        self.add_inertia_to(equations, pose);
         equations.add_force(&centre, Vec3::new(0.0, 0.0, -self.mass * gravity));
 
         let portion = self.portion(pose);
@@ -182,13 +192,35 @@ impl Rod {
         equations.add_couple(self.coordinate, load.couple);
     }
 
+    /// Adds its inertia to the equations of motion.
+    pub(crate) fn add_inertia_to(&self, equations: &mut Equations, pose: &Pose) {
+        equations.add_mass(&self.centre_point(pose), self.mass);
+        equations.add_inertia(self.coordinate, self.inertia());
+    }
+
+    /// How the coordinates move its centre.
+    pub(crate) fn centre_point(&self, pose: &Pose) -> Point {
+        self.point(pose, 0.5 * self.length, 0.0)
+    }
+
+    /// Velocity of its centre (m/s).
+    pub(crate) fn centre_velocity(&self, pose: &Pose) -> Vec3 {
+        self.velocity(pose, 0.5 * self.length)
+    }
+
+    /// Change of its kinetic energy with its angle while the rates stay (J/rad).
+    pub(crate) fn turning(&self, pose: &Pose) -> f64 {
+        let arm = 0.5 * self.length - self.to_reference;
+        -self.mass * pose.spin * arm * self.centre_velocity(pose).dot(&pose.axis())
+    }
+
     /// The point of the axis at a distance `from_tip` (m).
-    fn position(&self, pose: &Pose, from_tip: f64) -> Vec3 {
+    pub(crate) fn position(&self, pose: &Pose, from_tip: f64) -> Vec3 {
         pose.reference + pose.axis() * (from_tip - self.to_reference)
     }
 
     /// The velocity of that point of the body (m/s).
-    fn velocity(&self, pose: &Pose, from_tip: f64) -> Vec3 {
+    pub(crate) fn velocity(&self, pose: &Pose, from_tip: f64) -> Vec3 {
         pose.velocity + pose.normal() * (pose.spin * (from_tip - self.to_reference))
     }
 

@@ -24,8 +24,10 @@ pub(crate) const DISC: ShapeEntry = ShapeEntry {
     planar_in_resistance: true,
     params: PARAMS,
     build: disc,
+    links: None,
     under_shaft: None,
     volume: |params, _| planar_area(params),
+    contact_area,
     assembly: |casting| compact(casting, disc),
 };
 
@@ -38,8 +40,10 @@ pub(crate) const SPHERE: ShapeEntry = ShapeEntry {
     planar_in_resistance: true,
     params: PARAMS,
     build: sphere,
+    links: None,
     under_shaft: None,
     volume,
+    contact_area,
     assembly: |casting| compact(casting, sphere),
 };
 
@@ -72,6 +76,10 @@ fn volume(params: &ParamTable, space: Space) -> f64 {
         Space::Planar => planar_area(params),
         Space::Spatial => 4.0 / 3.0 * PI * (0.5 * params.get("diameter")).powi(3),
     }
+}
+
+fn contact_area(params: &ParamTable, space: Space, depth: f64) -> f64 {
+    Cap { radius: 0.5 * params.get("diameter"), space }.contact_area(depth)
 }
 
 /// The body for a resistive medium; `body` has its moment of inertia.

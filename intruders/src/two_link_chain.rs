@@ -1,11 +1,12 @@
 //! Two equal links on a joint without friction at their tops.
 
-use engine::math::Vec3;
+use engine::math::{Vec3, Vec4};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::resistance::assembly::{COORDINATES, PARTS};
 use engine::resistance::{Assembly, Part, PartLoad, State};
 
 use crate::equations::Equations;
+use crate::hinged_links::HingedLinks;
 use crate::registry::{Casting, Launchable, ShapeEntry};
 use crate::rod::{Pose, Rod, link_angle};
 use crate::specs::{DIAMETER, length};
@@ -14,13 +15,15 @@ use crate::specs::{DIAMETER, length};
 pub(crate) const TWO_LINK_CHAIN: ShapeEntry = ShapeEntry {
     name: "two-link-chain",
     summary: "Two equal round links that enter with their tips, on a joint at their tops.",
-    planar: false,
+    planar: true,
     spatial: true,
     planar_in_resistance: false,
     params: PARAMS,
     build: |params, space| Chain::new(params, 1.0).links[0].body(space),
+    links: Some(HingedLinks::new),
     under_shaft: None,
     volume: |params, space| 2.0 * Rod::volume(params.get("length"), params.get("diameter"), space),
+    contact_area: Rod::contact_area,
     assembly,
 };
 
@@ -40,25 +43,34 @@ const PARAMS: &[ParamSpec] = &[
 fn assembly(casting: &Casting) -> Launchable {
     let chain = Chain::new(casting.params, casting.mass);
     let Casting { velocity, spin, .. } = *casting;
-    let angles = ["link_angle_1", "link_angle_2"].map(|key| casting.params.get(key));
-    let deeper = if angles[1].abs() < angles[0].abs() { angles[1] } else { angles[0] };
-    let (sin, cos) = libm::sincos(deeper);
+    let angles = angles(casting.params);
+    let (sin, cos) = libm::sincos(deeper(angles));
     let arm = chain.links[0].length;
     let start = State {
         position: [arm * sin, arm * cos, angles[0], angles[1]],
-        rate: [velocity.x + spin * arm * cos, velocity.z - spin * arm * sin, spin, spin],
+        rate: chain.rates_at_start(angles, velocity, spin),
         ..State::default()
     };
     Launchable { assembly: Box::new(chain), start }
 }
 
+/// Of both links to the vertical at the start (rad).
+pub(crate) fn angles(params: &ParamTable) -> [f64; PARTS] {
+    ["link_angle_1", "link_angle_2"].map(|key| params.get(key))
+}
+
+/// The angle of the link with the deeper tip, the first of two that are equally deep.
+fn deeper([first, second]: [f64; PARTS]) -> f64 {
+    if second.abs() < first.abs() { second } else { first }
+}
+
 /// Coordinates: x and z of the joint and the angles of both links to the vertical.
-struct Chain {
-    links: [Rod; PARTS],
+pub(crate) struct Chain {
+    pub(crate) links: [Rod; PARTS],
 }
 
 impl Chain {
-    fn new(params: &ParamTable, mass: f64) -> Self {
+    pub(crate) fn new(params: &ParamTable, mass: f64) -> Self {
         let (length, diameter) = (params.get("length"), params.get("diameter"));
         let link = |coordinate| Rod {
             length,
@@ -69,9 +81,40 @@ impl Chain {
         };
         Self { links: [link(2), link(3)] }
     }
+
+    /// Rates of the coordinates (m/s, rad/s) at which the deeper tip has this `velocity` (m/s) and both
+    /// links turn with `spin` (rad/s).
+    pub(crate) fn rates_at_start(
+        &self,
+        angles: [f64; PARTS],
+        velocity: Vec3,
+        spin: f64,
+    ) -> [f64; COORDINATES] {
+        let (sin, cos) = libm::sincos(deeper(angles));
+        let arm = self.links[0].length;
+        [velocity.x + spin * arm * cos, velocity.z - spin * arm * sin, spin, spin]
+    }
+
+    /// The inertia of both links at these `coordinates`.
+    pub(crate) fn inertia(&self, coordinates: &Vec4) -> Equations {
+        let mut equations = Equations::new(COORDINATES);
+        let state = State { position: (*coordinates).into(), ..State::default() };
+        for (index, link) in self.links.iter().enumerate() {
+            link.add_inertia_to(&mut equations, &pose(index, &state));
+        }
+        equations
+    }
+
+    /// Change of the kinetic energy with the coordinates while the rates stay (N or J/rad).
+    pub(crate) fn turning(&self, coordinates: &Vec4, rates: &Vec4) -> Vec4 {
+        let (position, rate) = ((*coordinates).into(), (*rates).into());
+        let state = State { position, rate, time: 0.0 };
+        let [first, second] = [0, 1].map(|index| self.links[index].turning(&pose(index, &state)));
+        Vec4::new(0.0, 0.0, first, second)
+    }
 }
 
-fn pose(index: usize, state: &State) -> Pose {
+pub(crate) fn pose(index: usize, state: &State) -> Pose {
     let ([x, z, ..], [vx, vz, ..]) = (state.position, state.rate);
     Pose {
         reference: Vec3::new(x, 0.0, z),

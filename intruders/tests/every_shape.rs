@@ -284,3 +284,25 @@ fn a_shaft_keeps_grains_off_the_top_is_not_felt_and_changes_nothing_below_it() {
         }
     }
 }
+
+#[test]
+fn every_registered_shape_touches_more_of_the_bed_the_deeper_it_is_and_never_more_than_it_has() {
+    for entry in SHAPES {
+        for space in [Space::Planar, Space::Spatial].into_iter().filter(|&space| entry.is_of(space))
+        {
+            let params = params(entry);
+            let size = 2.0 * (entry.build)(&params, space).surface.bounding_radius();
+            let area = |share: f64| (entry.contact_area)(&params, space, share * size);
+            let areas: Vec<f64> = (0..=40).map(|k| area(0.05 * f64::from(k))).collect();
+            assert!(areas.is_sorted() && areas[0] >= 0.0, "{} {space:?}: {areas:?}", entry.name);
+            // No convex body has more surface than the ball (the circle) around it, and no prism or rod
+            // more than the cylinder (the square) around that.
+            let most = match space {
+                Space::Planar => 4.0 * size,
+                Space::Spatial => 1.5 * PI * size * size,
+            };
+            assert!(areas[40] > 0.0 && areas[40] <= most, "{} {space:?}", entry.name);
+            assert_eq!(areas[39].to_bits(), areas[40].to_bits(), "{} is covered", entry.name);
+        }
+    }
+}

@@ -10,6 +10,12 @@ mod friction_on_incline;
 mod grain_in_groove;
 #[path = "../cases/head_on_collision.rs"]
 mod head_on_collision;
+#[path = "../cases/hertz_collisions.rs"]
+mod hertz_collisions;
+#[path = "../cases/hertz_mindlin_oblique.rs"]
+mod hertz_mindlin_oblique;
+#[path = "../cases/hertz_mindlin_spin.rs"]
+mod hertz_mindlin_spin;
 #[path = "../cases/oblique_collision_energy.rs"]
 mod oblique_collision_energy;
 #[path = "../cases/rolling_to_rest.rs"]
@@ -29,4 +35,7 @@ pub static CASES: &[&Case] = &[
     &rolling_to_rest::CASE,
     &squeezed_grain::CASE,
     &grain_in_groove::CASE,
+    &hertz_collisions::CASE,
+    &hertz_mindlin_oblique::CASE,
+    &hertz_mindlin_spin::CASE,
 ];

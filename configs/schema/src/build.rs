@@ -183,7 +183,7 @@ impl GrainModel<'_> {
     /// `resting` in the container under the laws of the run, ready for the intruder.
     #[must_use]
     pub fn bed(&self, resting: &RestingBed) -> GrainBed {
-        GrainBed::new(resting, self.container(), self.gravity(), self.stages(), 1)
+        GrainBed::new(resting, self.container(), self.gravity(), self.stages(), self.n_bodies())
     }
 
     /// The impact `condition` on the bed `resting`.

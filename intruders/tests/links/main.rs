@@ -2,5 +2,6 @@
 
 mod chain_mechanics;
 mod common;
+mod hinged_links;
 mod links_in_sand;
 mod two_link_trends;

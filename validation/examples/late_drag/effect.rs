@@ -112,7 +112,7 @@ pub(crate) fn impacts() -> [Impact; 2] {
         space: plain.space,
         mass: model.intruder.mass,
         velocity: launch.velocity(),
-        spin: launch.spin_about_y(),
+        spin: launch.spin.y,
     });
     let by_type = Impact::new(made.assembly, laws, plain.surroundings(), made.start);
     [by_formula, by_type]

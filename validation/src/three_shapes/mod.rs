@@ -229,8 +229,8 @@ fn impact(model: &Model, cache: &Path) -> Result<Outcome, StudyError> {
     }
     Ok(Outcome {
         model_hash: model.hash(),
-        depth_m: simulation.stopping().depth(),
-        stopping_time_s: simulation.stopping().stopping_time(),
+        depth_m: simulation.courses()[0].stopping().depth(),
+        stopping_time_s: simulation.courses()[0].stopping().stopping_time(),
         impact_energy_j: simulation.impact_energy(),
         closure: simulation.closure(),
         moving_share: simulation.activity().largest_share(),

@@ -2,8 +2,6 @@
 
 use engine::grains::Space;
 
-use engine::math::{Vec3, turned_about_y};
-
 use super::{Common, metres, seconds};
 use crate::absorbing;
 use crate::diagnostics::{Diagnostic, Span};
@@ -27,6 +25,7 @@ impl GrainChecks<'_> {
     pub(super) fn all(&self) {
         self.sizes();
         self.boundaries();
+        self.links();
         self.derived_quantities();
         self.common.number_of_conditions();
         if !self.common.reader.failed() {
@@ -86,7 +85,7 @@ impl GrainChecks<'_> {
             return;
         }
         let grain = self.grains.largest_grain();
-        let intruder = self.intruder_extent();
+        let intruder = self.grains.extent();
         let mut axes = vec![("wide", container.width, self.common.places.width)];
         if self.grains.medium.space == Space::Spatial {
             axes.push(("deep", container.depth, self.common.places.depth));
@@ -110,11 +109,30 @@ impl GrainChecks<'_> {
         }
     }
 
-    /// How wide the intruder is however it is turned (m).
-    fn intruder_extent(&self) -> f64 {
-        let intruder = &self.grains.model.intruder;
-        let shape = (intruder.shape.build)(&intruder.params, self.grains.medium.space);
-        2.0 * shape.surface.bounding_radius()
+    /// Links have round ends, and a chain moves in the x–z plane.
+    fn links(&self) {
+        let (intruder, places) = (&self.grains.model.intruder, self.common.places);
+        let param = |name| intruder.params.iter().find(|(key, _)| *key == name);
+        if let (Some((_, length)), Some((_, diameter))) = (param("length"), param("diameter"))
+            && length <= diameter
+        {
+            self.common.reader.report(
+                Diagnostic::error("a link is longer than it is thick")
+                    .at(places.intruder.diameter, format!("{} thick", metres(diameter)))
+                    .help(format!(
+                        "its length, round ends included, is {}; a sphere has the shape \"sphere\"",
+                        metres(length)
+                    )),
+            );
+        }
+        let spin = self.grains.model.impact.spin;
+        if intruder.shape.links.is_some() && (spin.x != 0.0 || spin.z != 0.0) {
+            self.common.reader.report(
+                Diagnostic::error("a chain moves in the x–z plane")
+                    .at(places.spin, "turns it out of that")
+                    .help("write its spin as one number, counter-clockwise positive"),
+            );
+        }
     }
 
     fn derived_quantities(&self) {
@@ -187,23 +205,12 @@ impl GrainChecks<'_> {
         }
     }
 
-    /// How far the intruder reaches to a side at the start (m).
-    fn half_width(&self) -> f64 {
-        let intruder = &self.grains.model.intruder;
-        let shape = (intruder.shape.build)(&intruder.params, self.grains.medium.space);
-        let orientation = turned_about_y(self.grains.attitude());
-        let sides = [Vec3::x(), -Vec3::x()];
-        let reach =
-            sides.map(|side| shape.surface.support(orientation.inverse_transform_vector(&side)));
-        reach[0].max(reach[1])
-    }
-
     fn start_positions(&self) {
         let width = self.grains.medium.container.width;
         // Through a periodic side the intruder may stand.
         let radius = match self.grains.medium.container.sides {
             SidesKind::Periodic => 0.0,
-            SidesKind::Wall | SidesKind::Absorbing => self.half_width(),
+            SidesKind::Wall | SidesKind::Absorbing => self.grains.half_width(),
         };
         let inside = |x: f64| x >= radius && x <= width - radius;
         let outside = |x: f64, span: Option<Span>| {

@@ -25,10 +25,7 @@ pub(super) fn in_grains(
     };
     let wall_span = table.span_of("recessive_wall");
     let reader = table.reader;
-    let intruder = intruder(table, space, places, |shape| {
-        // A chain is more than one body.
-        shape.is_of(space) && shape.name != "two-link-chain"
-    })?;
+    let intruder = intruder(table, space, places, |shape| shape.is_of(space))?;
     let recessive_wall = recessive_wall?;
     if recessive_wall && intruder.shape.under_shaft.is_none() {
         let with_top = intruders::SHAPES.iter().filter(|shape| shape.under_shaft.is_some());

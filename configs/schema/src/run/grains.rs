@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use engine::body::RigidBody;
 use engine::checkpoint;
 use engine::error::StepError;
 use engine::math::Vec3;
@@ -46,7 +47,7 @@ struct Saved {
 /// A run between two steps.
 struct Run<'a> {
     simulation: Simulation,
-    observables: Observables,
+    observables: Observables<'a>,
     log: RunLog,
     folder: &'a OutputFolder,
     key: [u8; 32],
@@ -120,15 +121,16 @@ impl Setting<'_> {
     }
 
     fn progress(&self, simulation: &Simulation) -> Progress {
-        let body = &simulation.intruder().bodies()[0];
+        let bodies = simulation.intruder().bodies();
+        let lowest = bodies.iter().map(RigidBody::lowest).fold(f64::INFINITY, f64::min);
         Progress::Impact {
             index: self.task.of.0,
             of: self.task.of.1,
             step: simulation.clock().step,
             last_step: simulation.last_step(),
             time: simulation.clock().time(),
-            depth: simulation.surface() - body.lowest(),
-            speed: body.velocity.norm(),
+            depth: simulation.surface() - lowest,
+            speed: bodies[0].velocity.norm(),
         }
     }
 
@@ -138,7 +140,10 @@ impl Setting<'_> {
         folder: &'f OutputFolder,
         condition: &Condition,
         control: &mut dyn Control,
-    ) -> Result<Run<'f>, RunError> {
+    ) -> Result<Run<'f>, RunError>
+    where
+        Self: 'f,
+    {
         let key = result_key(&model_text(self.grains.model));
         let mut simulation = self.grains.simulation(&self.bed.resting, condition)?;
         let setup = self.log_setup(&simulation, condition);
@@ -249,21 +254,36 @@ impl Run<'_> {
 
     /// One step, its messages, and a checkpoint where one is due.
     fn advance(&mut self) -> Result<(), RunError> {
-        let stopped = self.simulation.stopping().stopping_time().is_some();
+        let stopped = self.stopping_times();
         if let Err(error) = self.simulation.advance() {
             return Err(self.give_up(error));
         }
         self.record()?;
-        if let (false, Some(time)) = (stopped, self.simulation.stopping().stopping_time()) {
-            let depth = self.simulation.stopping().depth();
-            let text = format!("stopped after {time:.6} s, {depth:.6} m deep");
-            self.log.event(self.stamp(), EventLevel::Info, &text)?;
+        for (index, (before, now)) in stopped.into_iter().zip(self.stopping_times()).enumerate() {
+            if let (None, Some(time)) = (before, now) {
+                let text = self.stop_text(index, time);
+                self.log.event(self.stamp(), EventLevel::Info, &text)?;
+            }
         }
         if self.simulation.clock().step.is_multiple_of(self.checkpoint_every) {
             self.log.event(self.stamp(), EventLevel::Info, "checkpoint")?;
             self.save()?;
         }
         Ok(())
+    }
+
+    fn stopping_times(&self) -> Vec<Option<f64>> {
+        let courses = self.simulation.courses().iter();
+        courses.map(|course| course.stopping().stopping_time()).collect()
+    }
+
+    /// That body `index` stopped at `time` (s), by name where there are several.
+    fn stop_text(&self, index: usize, time: f64) -> String {
+        let depth = self.simulation.courses()[index].stopping().depth();
+        let bodies = self.simulation.intruder().bodies();
+        let who =
+            if bodies.len() == 1 { String::new() } else { format!("{} ", bodies[index].name) };
+        format!("{who}stopped after {time:.6} s, {depth:.6} m deep")
     }
 
     /// Leaves a readable log behind; what it cannot say any more is in the error.

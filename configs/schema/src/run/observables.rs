@@ -21,15 +21,17 @@ const SPACING: f64 = 1.0;
 const HEADROOM: f64 = 1.0;
 
 /// What is logged of a bed besides its grains.
-pub(super) struct Observables {
+pub(super) struct Observables<'a> {
     /// 1 + e of a grain and the intruder at the speed of impact.
     rebound: f64,
+    /// Area (m², planar m) that an upright body of this shape has below the surface at a depth (m).
+    area_at: Box<dyn Fn(f64) -> f64 + 'a>,
     /// Steps at which fields are logged.
     field_steps: Vec<u64>,
 }
 
-impl Observables {
-    pub(super) fn new(grains: GrainModel<'_>, simulation: &Simulation) -> Self {
+impl<'a> Observables<'a> {
+    pub(super) fn new(grains: GrainModel<'a>, simulation: &Simulation) -> Self {
         let dt = simulation.clock().dt;
         let field_steps = grains.medium.log.fields_at.iter().map(|&time| steps_in(time, dt));
         let bed = simulation.bed();
@@ -42,7 +44,15 @@ impl Observables {
             speed: simulation.intruder().bodies()[0].velocity.norm(),
         };
         let restitution = restitution(bed.stages(), Partner::Intruder, &encounter);
-        Self { rebound: 1.0 + restitution.unwrap_or(1.0), field_steps: field_steps.collect() }
+        let intruder = &grains.model.intruder;
+        let space = bed.grains.space;
+        Self {
+            rebound: 1.0 + restitution.unwrap_or(1.0),
+            area_at: Box::new(move |depth| {
+                (intruder.shape.contact_area)(&intruder.params, space, depth)
+            }),
+            field_steps: field_steps.collect(),
+        }
     }
 
     /// Writes what belongs to every step, and the fields where they are due.
@@ -54,9 +64,11 @@ impl Observables {
     ) -> Result<(), RecordError> {
         let bed = simulation.bed();
         log.bed_activity(at, bed.moving_share())?;
-        for (index, footprint) in bed.footprints().iter().enumerate() {
+        let bodies = simulation.intruder().bodies();
+        for (index, (footprint, body)) in bed.footprints().iter().zip(bodies).enumerate() {
+            let depth = (simulation.surface() - body.lowest()).max(0.0);
             let estimate = BodyEstimate {
-                geometric_area: 0.0,
+                geometric_area: (self.area_at)(depth),
                 force: footprint.collisional_force * self.rebound,
                 magnitudes: footprint.collisional_magnitudes * self.rebound,
             };

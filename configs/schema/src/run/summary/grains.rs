@@ -1,12 +1,16 @@
 //! The summary of an impact on a bed of grains.
 
 use engine::bed::BedReport;
+use engine::body::RigidBody;
+use engine::course::Course;
 use engine::ledger::{ChannelKind, TermKind};
 use engine::simulation::Simulation;
+use engine::stopping::Stopping;
 
+use super::resistive::LinkCourse;
 use super::{
     ActivitySummary, BedSummary, CostSummary, EnergySummary, FinalEnergy, ImpactSummary,
-    StopSummary, Summary, by_channel,
+    LinkSummary, StopSummary, Summary, by_channel,
 };
 use crate::model::{Condition, GrainModel};
 
@@ -120,6 +124,52 @@ pub(in crate::run) fn near_the_floor(
     })
 }
 
+/// When the intruder stopped. Of a chain, from the first contact of any link to the last stop of any.
+fn stop(simulation: &Simulation) -> StopSummary {
+    let courses = simulation.courses();
+    let first = courses.iter().filter_map(Course::contact).reduce(f64::min).unwrap_or(0.0);
+    let latest = |time: fn(&Stopping) -> Option<f64>| {
+        let times = courses.iter().map(|course| time(course.stopping()));
+        times.collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::max)
+    };
+    // What a chain does not have at its start stays zero.
+    let after = |time: Option<f64>| time.map(|time| if time > 0.0 { time - first } else { 0.0 });
+    let largest = |of: fn(&Stopping) -> f64| {
+        courses.iter().map(|course| of(course.stopping())).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let stopping_time = after(latest(Stopping::stopping_time));
+    StopSummary {
+        stopped: stopping_time.is_some(),
+        stopping_time_s: stopping_time,
+        stopping_time_z_s: after(latest(Stopping::vertical_time)),
+        stopping_time_x_s: after(latest(Stopping::horizontal_time)),
+        rest_time_s: after(latest(Stopping::rest_time)),
+        depth_m: largest(Stopping::depth),
+        range_m: largest(Stopping::range),
+    }
+}
+
+/// Every link of a chain; nothing for an intruder of one body.
+fn links(simulation: &Simulation) -> Vec<LinkSummary> {
+    let (courses, bodies) = (simulation.courses(), simulation.intruder().bodies());
+    if courses.len() == 1 {
+        return Vec::new();
+    }
+    let all: f64 = courses.iter().map(Course::given).sum();
+    let link = |(course, body): (&Course, &RigidBody)| {
+        let stopping = course.stopping();
+        LinkSummary::new(LinkCourse {
+            contact: course.contact(),
+            stop: stopping.stopping_time(),
+            depth: stopping.depth(),
+            given: course.given(),
+            given_by_all: all,
+            lost: course.lost(body),
+        })
+    };
+    courses.iter().zip(bodies).map(link).collect()
+}
+
 impl Summary {
     /// The impact `condition` of `grains`, at its end.
     pub(in crate::run) fn of_grains(
@@ -131,7 +181,6 @@ impl Summary {
         cost: CostSummary,
     ) -> Self {
         let model = grains.model;
-        let stop = simulation.stopping();
         let ledger = simulation.ledger();
         let end = FinalEnergy::held_by(simulation);
         let initial = simulation.impact_energy();
@@ -153,15 +202,7 @@ impl Summary {
                 x_m: grains.start_x(condition),
                 position_index: condition.position_index,
             },
-            stop: StopSummary {
-                stopped: stop.stopping_time().is_some(),
-                stopping_time_s: stop.stopping_time(),
-                stopping_time_z_s: stop.vertical_time(),
-                stopping_time_x_s: stop.horizontal_time(),
-                rest_time_s: stop.rest_time(),
-                depth_m: stop.depth(),
-                range_m: stop.range(),
-            },
+            stop: stop(simulation),
             energy: EnergySummary {
                 initial,
                 at_end: FinalEnergy {
@@ -177,7 +218,7 @@ impl Summary {
             },
             bed: Some(BedSummary { activity: Some(activity), ..bed.clone() }),
             forces: None,
-            links: Vec::new(),
+            links: links(simulation),
             cost,
         }
     }

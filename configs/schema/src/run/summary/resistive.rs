@@ -44,6 +44,41 @@ pub struct LinkSummary {
     pub potential_share: Option<f64>,
 }
 
+/// What a link has gone through, times from the start.
+pub(super) struct LinkCourse {
+    /// First contact (s).
+    pub(super) contact: Option<f64>,
+    /// (s).
+    pub(super) stop: Option<f64>,
+    /// (m).
+    pub(super) depth: f64,
+    /// To the medium (J).
+    pub(super) given: f64,
+    /// By all links (J).
+    pub(super) given_by_all: f64,
+    /// Kinetic and potential energy (J).
+    pub(super) lost: [f64; 2],
+}
+
+impl LinkSummary {
+    pub(super) fn new(link: LinkCourse) -> Self {
+        let share = |of: f64, whole: f64| (whole != 0.0).then(|| of / whole);
+        let [kinetic_lost, potential_lost] = link.lost;
+        let lost = kinetic_lost + potential_lost;
+        Self {
+            contact_s: link.contact,
+            stopping_time_s: link.stop.zip(link.contact).map(|(end, start)| end - start),
+            depth_m: link.depth,
+            given: link.given,
+            given_share: share(link.given, link.given_by_all),
+            kinetic_lost,
+            potential_lost,
+            kinetic_share: share(kinetic_lost, lost),
+            potential_share: share(potential_lost, lost),
+        }
+    }
+}
+
 /// What is gathered for the summary while the impact runs.
 #[derive(Default)]
 pub(in crate::run) struct Watched {
@@ -178,29 +213,19 @@ impl Ended {
             return Vec::new();
         }
         let all: f64 = self.given.iter().sum();
-        let share = |of: f64, whole: f64| (whole != 0.0).then(|| of / whole);
-        (0..self.given.len())
-            .map(|part| {
-                let stop = &self.ending.parts[part];
-                let kinetic_lost = self.lost(TermKind::Kinetic, Some(part));
-                let potential_lost = self.lost(TermKind::Potential, Some(part));
-                let lost = kinetic_lost + potential_lost;
-                LinkSummary {
-                    contact_s: stop.contact,
-                    stopping_time_s: stop
-                        .vertical
-                        .zip(stop.contact)
-                        .map(|(end, start)| end - start),
-                    depth_m: stop.depth,
-                    given: self.given[part],
-                    given_share: share(self.given[part], all),
-                    kinetic_lost,
-                    potential_lost,
-                    kinetic_share: share(kinetic_lost, lost),
-                    potential_share: share(potential_lost, lost),
-                }
+        let link = |part: usize| {
+            let stop = &self.ending.parts[part];
+            let lost = [TermKind::Kinetic, TermKind::Potential];
+            LinkSummary::new(LinkCourse {
+                contact: stop.contact,
+                stop: stop.vertical,
+                depth: stop.depth,
+                given: self.given[part],
+                given_by_all: all,
+                lost: lost.map(|kind| self.lost(kind, Some(part))),
             })
-            .collect()
+        };
+        (0..self.given.len()).map(link).collect()
     }
 
     fn energy(&self, scale: f64) -> EnergySummary {

@@ -1,0 +1,164 @@
+//! Hertz–Mindlin with damping that sets the restitution.
+
+use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::ledger::Channel;
+use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::units::Dimension;
+
+use crate::hertz::{self, Damping, Elastic, damping_ratio, params};
+use crate::registry::{ActsOn, FromParams, LawEntry};
+
+/// Hertz's normal force, Mindlin's tangential spring, a Coulomb limit, and damping with which grains
+/// rebound with the same restitution at every speed.
+///
+/// F_n = max(0, 4/3 E* a δ + 2 √(5/6) β √(S_n m*) dδ/dt)   (N), a = √(R* δ), S_n = 2 E* a
+///
+/// F_t = −(k_t ξ + 2 √(5/6) β √(k_t m*) v_t), k_t = 8 G* a, |F_t| ≤ μ F_n
+///
+/// It never attracts, and β is the one with which the rebound, so cut off, has the restitution asked for.
+/// For spring and limit see [`hertz::act`]. `tangential_damping` multiplies the viscous part of F_t.
+///
+/// Valid for δ ≪ R* and no yield. A softened E is safe while δ/R* stays below about 1 %.
+///
+/// Channels: `normal`, `tangential` (stored); `normal-damping`, `tangential-damping`, `sliding`,
+/// `stiffness-change` (dissipated, the last one of either sign).
+///
+/// Source: Johnson, Contact Mechanics (1985); Mindlin (1949); Tsuji, Tanaka & Ishida, Powder Technol.
+/// 71, 239 (1992). Differs from the last in β, which there lets the end of a rebound attract.
+pub(crate) struct HertzMindlin {
+    pairs: [Pair; 3],
+}
+
+type Pair = hertz::Pair<Restitution>;
+
+/// Damping as √(stiffness · mass).
+#[derive(Clone, Copy)]
+pub(crate) struct Restitution {
+    /// 2 √(5/6) β √(2 E*), 2 √(5/6) β √(8 G*).
+    factors: [f64; 2],
+}
+
+impl Damping for Restitution {
+    #[inline]
+    fn coefficients(&self, contact_radius: f64, mass_eff: f64) -> [f64; 2] {
+        let root = (contact_radius * mass_eff).sqrt();
+        self.factors.map(|factor| factor * root)
+    }
+}
+
+impl ContactLaw for HertzMindlin {
+    const NAME: &'static str = "hertz-mindlin";
+    const SLOT: Slot = Slot::Base;
+    const CHANNELS: &'static [Channel] = hertz::CHANNELS;
+    type Pair = Pair;
+    type History = hertz::Memory;
+    type Energy = hertz::Energy;
+
+    fn pair(&self, partner: Partner) -> Pair {
+        self.pairs[partner.index()]
+    }
+
+    #[inline]
+    fn act(
+        pair: &Pair,
+        contact: &Contact,
+        _dt: f64,
+        history: &mut hertz::Memory,
+        response: &mut Response,
+        energy: &mut hertz::Energy,
+    ) {
+        hertz::act(pair, contact, history, response, energy);
+    }
+
+    fn collision_time(pair: &Pair, encounter: &Encounter) -> Option<f64> {
+        Some(pair.elastic.collision_time(encounter))
+    }
+
+    fn damping_time(pair: &Pair, encounter: &Encounter) -> Option<f64> {
+        hertz::damping_time(pair, encounter)
+    }
+
+    fn wave_time(pair: &Pair, radius: f64, density: f64) -> Option<f64> {
+        Some(pair.elastic.wave_time(radius, density))
+    }
+}
+
+impl FromParams for HertzMindlin {
+    fn from_params(values: &ParamTable) -> Self {
+        let ratio = 2.0 * (5.0_f64 / 6.0).sqrt() * damping_ratio(values.get("restitution"));
+        let tangential = values.get("tangential_damping");
+        let pair = |partner| {
+            let elastic = Elastic::of(values, partner);
+            let factors = [
+                ratio * elastic.normal_stiffness(1.0).sqrt(),
+                tangential * ratio * elastic.tangential_stiffness(1.0).sqrt(),
+            ];
+            let friction = params::friction(values, partner);
+            Pair { elastic, damping: Restitution { factors }, friction }
+        };
+        Self { pairs: Partner::ALL.map(pair) }
+    }
+}
+
+const PARAMS: &[ParamSpec] = &params::specs(
+    ParamSpec {
+        key: "restitution",
+        dimension: Dimension::NONE,
+        default: Default::Required,
+        allowed: Range { min: 0.0, max: 1.0, includes_min: false },
+        plausible: Range::closed(0.1, 1.0),
+        meaning: "e, speed of a head-on rebound over that of the impact",
+    },
+    ParamSpec {
+        default: Default::Value(1.0),
+        meaning: "factor on the viscous part of the tangential force; 0 leaves friction alone",
+        ..params::TANGENTIAL_DAMPING
+    },
+);
+
+/// The registry's line.
+pub(crate) const ENTRY: LawEntry = LawEntry {
+    acts_on: ActsOn::ContactBase,
+    summary: "Hertz and Mindlin springs from elastic constants, damped to a given restitution.",
+    formula: "F_n = max(0, 4/3 E* a δ + 2√(5/6) β √(S_n m*) dδ/dt);  F_t = −(8 G* a ξ + c_t v_t), \
+              |F_t| ≤ μ F_n;  a = √(R* δ)",
+    signature: "The base law of a bed; μ sets the depth-linear friction, e the rebound of the bed.",
+    source: "Johnson (1985), eq. 4.23; Mindlin (1949); Tsuji, Tanaka & Ishida, Powder Technol. 71, \
+             239 (1992)",
+    params: PARAMS,
+    ..LawEntry::of::<HertzMindlin>()
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hertz::tests::{MODULUS, OVERLAP, RADIUS_EFF, acted, beads, close, contact};
+
+    fn pair(restitution: f64) -> Pair {
+        let more = [("restitution", restitution), ("tangential_damping", 1.0)];
+        HertzMindlin::from_params(&beads(&more)).pair(Partner::Grain)
+    }
+
+    #[test]
+    fn damping_is_the_ratio_times_the_root_of_stiffness_and_mass() {
+        let approaching = Contact { overlap_rate: 1e-3, ..contact() };
+        let mut history = bytemuck::Zeroable::zeroed();
+        let (response, _) = acted::<HertzMindlin>(&pair(0.5), &approaching, &mut history);
+        let stiffness = 2.0 * MODULUS * (RADIUS_EFF * OVERLAP).sqrt();
+        let elastic = 2.0 / 3.0 * stiffness * OVERLAP;
+        let damping = 2.0
+            * (5.0_f64 / 6.0).sqrt()
+            * damping_ratio(0.5)
+            * (stiffness * approaching.mass_eff()).sqrt()
+            * 1e-3;
+        assert!(close(response.normal_force, elastic + damping));
+    }
+
+    #[test]
+    fn a_contact_that_opens_fast_does_not_attract() {
+        let parting = Contact { overlap_rate: -100.0, ..contact() };
+        let mut history = bytemuck::Zeroable::zeroed();
+        let (response, _) = acted::<HertzMindlin>(&pair(0.1), &parting, &mut history);
+        assert_eq!(response.normal_force.to_bits(), 0.0_f64.to_bits());
+    }
+}

@@ -1,0 +1,167 @@
+//! Hertz–Mindlin with a viscoelastic material.
+
+use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::ledger::Channel;
+use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::units::Dimension;
+
+use crate::hertz::{self, Damping, Elastic, params};
+use crate::registry::{ActsOn, FromParams, LawEntry};
+
+/// Hertz's normal force, Mindlin's tangential spring, a Coulomb limit, and the damping of a viscoelastic
+/// material, with which faster grains rebound less.
+///
+/// F_n = max(0, K_n δ^{3/2} + 3/2 A K_n √δ dδ/dt)   (N), K_n = 4/3 E* √R*
+///
+/// F_t = −(k_t ξ + f A k_t v_t), k_t = 8 G* √(R* δ), |F_t| ≤ μ F_n
+///
+/// For spring and limit see [`hertz::act`]. f is `tangential_damping`: the source writes a viscous part
+/// of F_t in its eq. 2 and gives no formula for it, and says in §3 that friction alone dissipates. So f
+/// is zero unless it is given; with f = 1 the material damps shear as it damps the normal motion.
+///
+/// Channels: as `hertz-mindlin`.
+///
+/// Source: eqs 1–4 of the three-shape study; Brilliantov, Spahn, Hertzsch & Pöschel, Phys. Rev. E 53,
+/// 5382 (1996). Differs from the former in K_n, printed with 3/4, in G* = G/(2(2 − ν)), printed with
+/// 1 − ν, and in that nothing attracts.
+pub(crate) struct HertzMindlinViscous {
+    pairs: [Pair; 3],
+}
+
+type Pair = hertz::Pair<Viscous>;
+
+/// Damping as time · stiffness.
+#[derive(Clone, Copy)]
+pub(crate) struct Viscous {
+    /// A 2 E*, f A 8 G*.
+    factors: [f64; 2],
+}
+
+impl Damping for Viscous {
+    #[inline]
+    fn coefficients(&self, contact_radius: f64, _: f64) -> [f64; 2] {
+        self.factors.map(|factor| factor * contact_radius)
+    }
+}
+
+impl ContactLaw for HertzMindlinViscous {
+    const NAME: &'static str = "hertz-mindlin-viscous";
+    const SLOT: Slot = Slot::Base;
+    const CHANNELS: &'static [Channel] = hertz::CHANNELS;
+    type Pair = Pair;
+    type History = hertz::Memory;
+    type Energy = hertz::Energy;
+
+    fn pair(&self, partner: Partner) -> Pair {
+        self.pairs[partner.index()]
+    }
+
+    #[inline]
+    fn act(
+        pair: &Pair,
+        contact: &Contact,
+        _dt: f64,
+        history: &mut hertz::Memory,
+        response: &mut Response,
+        energy: &mut hertz::Energy,
+    ) {
+        hertz::act(pair, contact, history, response, energy);
+    }
+
+    fn collision_time(pair: &Pair, encounter: &Encounter) -> Option<f64> {
+        Some(pair.elastic.collision_time(encounter))
+    }
+
+    fn damping_time(pair: &Pair, encounter: &Encounter) -> Option<f64> {
+        hertz::damping_time(pair, encounter)
+    }
+
+    fn wave_time(pair: &Pair, radius: f64, density: f64) -> Option<f64> {
+        Some(pair.elastic.wave_time(radius, density))
+    }
+}
+
+impl FromParams for HertzMindlinViscous {
+    fn from_params(values: &ParamTable) -> Self {
+        let viscous_time = values.get("viscous_time");
+        let tangential = values.get("tangential_damping");
+        let pair = |partner| {
+            let elastic = Elastic::of(values, partner);
+            let factors = [
+                viscous_time * elastic.normal_stiffness(1.0),
+                tangential * viscous_time * elastic.tangential_stiffness(1.0),
+            ];
+            let friction = params::friction(values, partner);
+            Pair { elastic, damping: Viscous { factors }, friction }
+        };
+        Self { pairs: Partner::ALL.map(pair) }
+    }
+}
+
+const PARAMS: &[ParamSpec] = &params::specs(
+    ParamSpec {
+        key: "viscous_time",
+        dimension: Dimension::TIME,
+        default: Default::Required,
+        allowed: Range::NOT_NEGATIVE,
+        plausible: Range::closed(1e-8, 1e-2),
+        meaning: "A, damping force over stiffness and normal velocity",
+    },
+    ParamSpec {
+        default: Default::Value(0.0),
+        meaning: "f, damping of shear over A k_t; 0 leaves it to friction, 1 damps it alike",
+        ..params::TANGENTIAL_DAMPING
+    },
+);
+
+/// The registry's line.
+pub(crate) const ENTRY: LawEntry = LawEntry {
+    acts_on: ActsOn::ContactBase,
+    summary: "Hertz and Mindlin springs from elastic constants, with viscoelastic damping.",
+    formula: "F_n = max(0, K δ^(3/2) + 3/2 A K √δ dδ/dt), K = 4/3 E* √R*;  F_t = −8 G* a (ξ + f A v_t), \
+              |F_t| ≤ μ F_n;  a = √(R* δ)",
+    signature: "The base law of a bed; faster contacts lose more, so early peak and rebound change.",
+    source: "Brilliantov, Spahn, Hertzsch & Pöschel, Phys. Rev. E 53, 5382 (1996); Mindlin (1949)",
+    params: PARAMS,
+    ..LawEntry::of::<HertzMindlinViscous>()
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hertz::tests::{MODULUS, OVERLAP, RADIUS_EFF, acted, beads, close, contact};
+    use engine::math::Vec3;
+
+    const VISCOUS_TIME: f64 = 1e-6;
+
+    fn pair(tangential_damping: f64) -> Pair {
+        let more = [("viscous_time", VISCOUS_TIME), ("tangential_damping", tangential_damping)];
+        HertzMindlinViscous::from_params(&beads(&more)).pair(Partner::Grain)
+    }
+
+    #[test]
+    fn the_viscous_force_is_that_of_the_source_with_its_slips_put_right() {
+        let approaching = Contact { overlap_rate: 1e-3, ..contact() };
+        let mut history = bytemuck::Zeroable::zeroed();
+        let (response, _) = acted::<HertzMindlinViscous>(&pair(0.0), &approaching, &mut history);
+        let k_n = 4.0 / 3.0 * MODULUS * RADIUS_EFF.sqrt();
+        let elastic = k_n * OVERLAP * OVERLAP.sqrt();
+        let viscous = 1.5 * VISCOUS_TIME * k_n * OVERLAP.sqrt() * 1e-3;
+        assert!(close(response.normal_force, elastic + viscous));
+    }
+
+    #[test]
+    fn shear_is_damped_only_on_request() {
+        let shearing = Contact { slip_velocity: Vec3::x() * 1e-6, ..contact() };
+        let force = |tangential_damping: f64| {
+            let mut history = bytemuck::Zeroable::zeroed();
+            let pair = pair(tangential_damping);
+            let (response, _) = acted::<HertzMindlinViscous>(&pair, &shearing, &mut history);
+            response.tangential_force.x
+        };
+        let a = (RADIUS_EFF * OVERLAP).sqrt();
+        let k_t = pair(0.0).elastic.tangential_stiffness(a);
+        assert!(force(0.0).abs() < 1e-300);
+        assert!(close(force(2.0), -2.0 * VISCOUS_TIME * k_t * 1e-6));
+    }
+}
