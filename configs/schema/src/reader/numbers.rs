@@ -99,6 +99,11 @@ impl TableReader<'_> {
         Some(Some(values))
     }
 
+    /// Reports that a required list is missing, with an example of what to write.
+    pub(crate) fn missing_list(&self, spec: &ParamSpec, example: &str) {
+        self.missing(spec.key, example, spec.meaning);
+    }
+
     pub(crate) fn number_at(&self, node: &Node, spec: &ParamSpec) -> Option<Found<f64>> {
         let value = match (self.is_bare(spec), &node.value) {
             (true, Value::Float(value)) => *value,
