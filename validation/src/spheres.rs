@@ -214,7 +214,7 @@ impl Flight {
         };
         let mut grains = vec![grain(sphere, floor + sphere.radius + gap, motion, -1.0)];
         grains.extend(target.map(|(other, motion)| grain(other, MIDDLE, motion, 1.0)));
-        let room = Container { width: 2.0 * MIDDLE, depth: 2.0 * MIDDLE };
+        let room = Container::walled_box(2.0 * MIDDLE, 2.0 * MIDDLE);
         let bed = bed((Space::Spatial, room), Vec3::zeros(), &grains, stages, 0);
         // The gap as it is once positions are rounded.
         let mut flight = Self {
