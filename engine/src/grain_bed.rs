@@ -405,6 +405,18 @@ impl GrainBed {
         self.energy.iter().map(|block| block.translation + block.rotation).sum()
     }
 
+    /// Mean energy (J) of what of a grain's motion comes to rest by itself: in a plane all of it, in space
+    /// the translation. A sphere that spins about the normal of its only contact is stopped by nothing
+    /// but a law of twisting.
+    #[must_use]
+    pub fn mean_restless_energy(&self) -> f64 {
+        let restless = match self.grains.space {
+            Space::Planar => self.kinetic_energy(),
+            Space::Spatial => self.energy.iter().map(|block| block.translation).sum(),
+        };
+        restless / self.grains.len() as f64
+    }
+
     /// Mean kinetic energy of a grain (J).
     #[must_use]
     pub fn mean_kinetic_energy(&self) -> f64 {
@@ -461,5 +473,65 @@ impl GrainBed {
         self.pair_list = saved.pair_list;
         self.intruder_list = saved.intruder_list;
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::bed::{GrainKind, fill};
+    use crate::body::RigidBody;
+    use crate::math::Quat;
+    use crate::surface::{Surface, SurfacePoint};
+
+    const RADIUS: f64 = 1e-3;
+
+    /// A ball about its origin.
+    struct Ball(f64);
+
+    impl Surface for Ball {
+        fn closest(&self, point: Vec3) -> SurfacePoint {
+            let distance = point.norm();
+            SurfacePoint {
+                normal: point / distance,
+                gap: distance - self.0,
+                curvature: 1.0 / self.0,
+                felt: true,
+            }
+        }
+
+        fn support(&self, _: Vec3) -> f64 {
+            self.0
+        }
+
+        fn bounding_radius(&self) -> f64 {
+            self.0
+        }
+    }
+
+    /// Cells of the grid, and how many pairs of grains are listed, beside a ball of so many grain radii.
+    fn grid_beside(ratio: f64) -> ([usize; 3], usize) {
+        let container = Container::walled_box(0.03, 0.03);
+        let kinds = [GrainKind { count: 500, radius: RADIUS, mass: 1e-5 }];
+        let grains = fill(&kinds, (Space::Spatial, &container), 1);
+        let resting = RestingBed::without_history(Space::Spatial, &grains);
+        let mut bed = GrainBed::new(&resting, container, Vec3::zeros(), Vec::new(), 1);
+        let size = ratio * RADIUS;
+        let mut ball = RigidBody::new("ball", Arc::new(Ball(size)), 1.0, Vec3::repeat(1.0));
+        let start = Vec3::new(0.015, 0.015, size);
+        ball.launch(start, Quat::identity(), Vec3::zeros(), Vec3::zeros());
+        bed.pair_list = Freshness::stale(bed.pair_list.margin());
+        bed.refresh_neighbours(&ball, 0.0);
+        (bed.grid.cells(), bed.contacts.listed_pairs().count())
+    }
+
+    #[test]
+    fn a_large_intruder_makes_neither_cells_nor_pairs_of_grains_larger() {
+        let [small, twenty, hundred] = [1.0, 20.0, 100.0].map(grid_beside);
+        assert!(small.0.iter().product::<usize>() > 300 && small.1 > 100, "{small:?}");
+        assert_eq!(small, twenty);
+        assert_eq!(small, hundred);
     }
 }

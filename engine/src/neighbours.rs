@@ -150,6 +150,12 @@ impl CellGrid {
         self.cell_of = cell_of;
     }
 
+    /// How many cells there are along each axis.
+    #[cfg(test)]
+    pub(crate) fn cells(&self) -> [usize; 3] {
+        self.axes.map(|axis| axis.n)
+    }
+
     fn cell(&self, position: Vec3) -> [usize; 3] {
         [0, 1, 2].map(|axis| self.axes[axis].cell(position[axis]))
     }

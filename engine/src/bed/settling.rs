@@ -13,7 +13,8 @@ use crate::grains::{Grain, Space};
 use crate::math::Vec3;
 use crate::world::{SavedWorld, World};
 
-/// A bed is at rest when the mean kinetic energy of a grain stays below this many m g d …
+/// A bed is at rest when the mean kinetic energy of a grain, in space without spin, stays below this many
+/// m g d …
 const REST_ENERGY: f64 = 1e-6;
 
 /// … for this long (s).
@@ -133,10 +134,10 @@ impl Settling {
         self.quiet_since.is_some_and(|since| self.clock().time() - since >= REST_HOLD)
     }
 
-    /// Mean kinetic energy of a grain over the one that counts as rest.
+    /// Mean kinetic energy of a grain, in space without spin, over the one that counts as rest.
     #[must_use]
     pub fn restlessness(&self) -> f64 {
-        self.bed().mean_kinetic_energy() / self.quiet_energy
+        self.bed().mean_restless_energy() / self.quiet_energy
     }
 
     /// How long (s) it has been settling since it was filled, or tapped last.

@@ -1,4 +1,4 @@
-//! Beds of spheres come to rest as beds of spheres do.
+//! Beds come to rest as beds do, and to the packing that is asked for.
 
 use engine::bed::{BedReport, GrainKind, Settling, fill};
 use engine::boundary::Container;
@@ -49,4 +49,47 @@ fn spheres_settle_to_the_packing_and_the_contacts_of_a_bed_with_friction() {
         }));
     })
     .expect("two threads");
+}
+
+/// A loose bed of rough discs that is tapped to `target`.
+fn tapped(target: f64) -> Settling {
+    let container = Container::walled_box(0.05, 0.0);
+    let kinds = [GrainKind { count: 120, ..KINDS[0] }, GrainKind { count: 30, ..KINDS[1] }];
+    let grains = fill(&kinds, (Space::Planar, &container), 2);
+    let rough = Linear { friction: 0.9, ..SOFT };
+    let gravity = Vec3::new(0.0, 0.0, -9.81);
+    Settling::new(&grains, (Space::Planar, container), gravity, vec![rough.stage()], 2.5e-5)
+        .tapped_to(target)
+}
+
+fn settle(settling: &mut Settling) {
+    while !settling.is_at_rest() {
+        settling.advance().expect("a sound step");
+        assert!(settling.time_since_tap() < 3.0, "no rest: {}", settling.restlessness());
+    }
+}
+
+#[test]
+fn taps_make_a_loose_bed_denser_and_a_restart_between_them_changes_no_bit() {
+    let fraction = |settling: &Settling| BedReport::of(settling.bed()).packing_fraction;
+    let mut loose = tapped(0.1);
+    settle(&mut loose);
+    // Denser than the target, it is left alone.
+    assert_eq!(loose.taps(), 0);
+
+    let mut dense = tapped(0.9);
+    let mut saved = None;
+    while !dense.is_at_rest() {
+        dense.advance().expect("a sound step");
+        if dense.taps() == 1 && saved.is_none() {
+            saved = Some(dense.save());
+        }
+    }
+    assert!(dense.taps() >= 1);
+    assert!(fraction(&dense) > fraction(&loose) + 0.003, "{}", fraction(&dense));
+
+    let mut resumed = tapped(0.9);
+    assert!(resumed.restore(saved.expect("it was tapped")));
+    settle(&mut resumed);
+    assert_eq!(resumed.bed().resting(), dense.bed().resting());
 }

@@ -1,6 +1,7 @@
 //! What must hold for every run, whatever it is a run of.
 
 mod beds;
+mod boundaries;
 mod closure;
 mod cloud;
 mod conservation;
