@@ -40,6 +40,9 @@ struct Laws {
     limits: [(f64, &'static str); 2],
     /// The widest gap (m) across which they still act.
     reach: f64,
+    /// Dissipated channels that by their nature take either sign: springs whose stiffness changes, and
+    /// attraction that jumps.
+    signed: &'static [&'static str],
 }
 
 const LINEAR_LIMITS: [(f64, &str); 2] = [
@@ -70,6 +73,7 @@ const LAWS: [Laws; 8] = [
         },
         limits: LINEAR_LIMITS,
         reach: 0.0,
+        signed: &[],
     },
     Laws {
         name: "linear + rolling",
@@ -79,18 +83,21 @@ const LAWS: [Laws; 8] = [
         },
         limits: LINEAR_LIMITS,
         reach: 0.0,
+        signed: &[],
     },
     Laws {
         name: "Hertz–Mindlin",
         of: |e| (vec![SOFT.hertz_mindlin(e, S1.friction)], hertz_duration()),
         limits: HERTZ_LIMITS,
         reach: 0.0,
+        signed: &["stiffness-change"],
     },
     Laws {
         name: "Hertz–Mindlin, viscous",
         of: |e| (vec![SOFT.hertz_mindlin_viscous(viscous_time(e), S1.friction)], hertz_duration()),
         limits: HERTZ_LIMITS,
         reach: 0.0,
+        signed: &["stiffness-change"],
     },
     Laws {
         name: "Hertz–Mindlin + rolling + twisting",
@@ -102,6 +109,7 @@ const LAWS: [Laws; 8] = [
         },
         limits: HERTZ_LIMITS,
         reach: 0.0,
+        signed: &["stiffness-change", "rolling-resistance", "twisting-resistance"],
     },
     Laws {
         name: "Hertz–Mindlin + JKR",
@@ -112,6 +120,7 @@ const LAWS: [Laws; 8] = [
         },
         limits: COHESIVE_LIMITS,
         reach: 1e-5,
+        signed: &["stiffness-change", "cohesion-jkr"],
     },
     Laws {
         name: "Hertz–Mindlin + DMT",
@@ -122,13 +131,14 @@ const LAWS: [Laws; 8] = [
         },
         limits: COHESIVE_LIMITS,
         reach: 0.0,
+        signed: &["stiffness-change", "cohesion-dmt"],
     },
     Laws {
         name: "linear + bridge",
         of: |e| {
             let (law, duration) = linear(e);
             let water = [
-                ("surface_tension", 0.072),
+                ("surface_tension", 0.02),
                 ("contact_angle", 0.3),
                 ("liquid_volume", BRIDGE_VOLUME),
             ];
@@ -136,6 +146,7 @@ const LAWS: [Laws; 8] = [
         },
         limits: LINEAR_LIMITS,
         reach: 2e-4,
+        signed: &["capillary-bridge"],
     },
 ];
 
@@ -188,11 +199,11 @@ fn linear(e: f64) -> (Linear, f64) {
     (law, PI / (stiffness - decay * decay).sqrt())
 }
 
-/// W (J/m²): with these soft grains, a tenth of a collision's force at the most.
-const WORK_OF_ADHESION: f64 = 2.0;
+/// W (J/m²), little enough for grains to part that are damped to a tenth of their speed.
+const WORK_OF_ADHESION: f64 = 0.2;
 
-/// V (m³), a thousandth of a grain.
-const BRIDGE_VOLUME: f64 = 5e-11;
+/// V (m³), likewise.
+const BRIDGE_VOLUME: f64 = 5e-12;
 
 /// Grains of a softened material.
 const SOFT: Material =
@@ -240,7 +251,7 @@ impl Survey {
                 let start = (degrees * PI / 180.0, phase(k));
                 let collision = collide(stages, start, laws.reach, dt);
                 let residual = collision.unaccounted / collision.energy;
-                let returned = collision.returned(e < 1.0);
+                let returned = collision.returned(laws.signed, e < 1.0);
                 survey.worst = survey.worst.max(residual);
                 survey.mean += residual / (3 * PHASES) as f64;
                 survey.returned = survey.returned.max(returned);
@@ -262,11 +273,11 @@ struct Collision {
 
 impl Collision {
     /// Largest part of a channel that came back.
-    fn returned(&self, with_dashpots: bool) -> f64 {
+    fn returned(&self, signed: &[&str], with_dashpots: bool) -> f64 {
         self.channels
             .iter()
             .filter(|(name, ..)| {
-                !(with_dashpots && name == "sliding") && name != "stiffness-change"
+                !(with_dashpots && name == "sliding") && !signed.contains(&name.as_str())
             })
             // A channel that holds next to nothing has no share to lose.
             .map(|(_, held, lost)| lost / held.max(1e-3 * self.energy))

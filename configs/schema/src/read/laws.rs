@@ -67,8 +67,12 @@ fn law(table: &TableReader<'_>, slot: ActsOn, base: Option<&LawChoice>) -> Optio
         table.reader.report(explain_law(&name.value, span, slot, &known));
         return None;
     };
-    let lent = lent_to(table, entry, span, base);
-    let params = table.params_on(entry.params, lent?)?;
+    let Some(lent) = lent_to(table, entry, span, base) else {
+        // Its keys are known; they are just not read.
+        entry.params.iter().for_each(|spec| _ = table.has(spec.key));
+        return None;
+    };
+    let params = table.params_on(entry.params, lent)?;
     Some(LawChoice { entry, params, span })
 }
 
