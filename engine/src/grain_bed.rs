@@ -1,12 +1,10 @@
 //! A bed of grains in a container: the state, and the phases that [`crate::step`] puts in order.
 
-use std::sync::Arc;
-
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::body::{Mechanism, Part};
-use crate::boundary::Container;
+use crate::boundary::{Absorber, Container};
 use crate::contact::{ContactStage, Partner};
 use crate::contacts::{ContactSums, Contacts, Memory, SavedBlock};
 use crate::error::StepError;
@@ -16,6 +14,7 @@ use crate::ledger::{ChannelKind, Term, TermKind};
 use crate::math::Vec3;
 use crate::neighbours::{CellGrid, Freshness, spatial_order};
 use crate::parallel::BLOCK;
+use crate::recessive::RecessiveWork;
 use crate::surface::Placement;
 
 /// Gap up to which grains are listed as neighbours, in mean grain diameters.
@@ -31,7 +30,9 @@ pub struct GrainBed {
     /// (m/s²).
     pub gravity: Vec3,
     container: Container,
+    absorber: Option<Absorber>,
     walls: Vec<Part>,
+    recessive: RecessiveWork,
     contacts: Contacts,
     sums: ContactSums,
     energy: Vec<GrainEnergy>,
@@ -48,6 +49,8 @@ struct GrainEnergy {
     translation: f64,
     rotation: f64,
     potential: f64,
+    /// What absorbing layers took in the last step.
+    absorbed: f64,
     /// How many of them move, see [`GrainBed::moving_share`].
     moving: u32,
 }
@@ -62,6 +65,7 @@ pub(crate) struct SavedBed {
     blocks: Vec<SavedBlock>,
     pair_list: Freshness,
     intruder_list: Freshness,
+    recessive: RecessiveWork,
 }
 
 /// A bed at rest as it is stored: grains in the order of memory, and what their contacts remember.
@@ -113,20 +117,20 @@ impl GrainBed {
     ) -> Self {
         assert!(!resting.grains.is_empty(), "a bed has grains");
         stages.sort_by_key(|stage| stage.slot());
-        let grains = Grains::new(resting.space, &resting.grains);
+        let mut grains = Grains::new(resting.space, &resting.grains);
+        grains.period = container.period(resting.space);
+        grains.wrap();
         let walls: Vec<Part> = container
             .walls(resting.space)
             .into_iter()
-            .map(|wall| Part {
-                surface: Arc::new(wall),
-                placement: Placement::fixed(),
-                partner: Partner::Wall,
-            })
+            .map(|surface| Part { surface, placement: Placement::fixed(), partner: Partner::Wall })
             .collect();
         let mean_diameter = 2.0 * grains.radius.iter().sum::<f64>() / grains.len() as f64;
         let mut bed = Self {
             gravity,
+            absorber: container.absorber(resting.space),
             container,
+            recessive: RecessiveWork::new(n_intruder_parts),
             contacts: Contacts::new(stages, grains.len(), walls.len() + n_intruder_parts),
             sums: ContactSums::default(),
             energy: vec![GrainEnergy::default(); grains.len().div_ceil(BLOCK)],
@@ -184,9 +188,9 @@ impl GrainBed {
     /// and their overlap (m).
     #[must_use]
     pub fn pair_deeper_than(&self, limit: f64) -> Option<([u32; 2], f64)> {
-        let Grains { position, radius, id, .. } = &self.grains;
+        let Grains { radius, id, .. } = &self.grains;
         self.contacts.listed_pairs().find_map(|[i, j]| {
-            let overlap = radius[i] + radius[j] - (position[i] - position[j]).norm();
+            let overlap = radius[i] + radius[j] - self.grains.apart(i, j).norm();
             (overlap > limit * radius[i].min(radius[j])).then(|| {
                 let (a, b) = (id[i].min(id[j]), id[i].max(id[j]));
                 ([a, b], overlap)
@@ -197,6 +201,11 @@ impl GrainBed {
     /// Half a kick and the drift of the grains; `dt` (s).
     pub(crate) fn kick_drift(&mut self, dt: f64) {
         self.fastest = self.grains.kick_drift(dt);
+    }
+
+    /// Brings back inside what has left through a periodic side.
+    pub(crate) fn wrap(&mut self) {
+        self.grains.wrap();
     }
 
     /// Lists neighbours again where the lists may have become stale.
@@ -237,6 +246,7 @@ impl GrainBed {
     pub(crate) fn evaluate_contacts(&mut self, intruder: &dyn Mechanism, dt: f64) {
         self.contacts.evaluate(&mut self.grains, &self.walls, intruder.parts(), dt);
         self.contacts.sum(&mut self.sums);
+        self.recessive.book(intruder.parts(), &self.sums.unfelt[self.walls.len()..], dt);
     }
 
     /// Hands the load of the bed and of gravity to the intruder.
@@ -250,10 +260,11 @@ impl GrainBed {
         let half = 0.5 * dt;
         let gravity = self.gravity;
         let weight_per_mass = gravity.norm();
-        let contacts = &self.contacts;
+        let (contacts, absorber) = (&self.contacts, &self.absorber);
         let Grains {
             load,
             velocity,
+            velocity_now,
             spin,
             position,
             radius,
@@ -277,6 +288,11 @@ impl GrainBed {
                 for k in 0..load.len() {
                     let i = block * BLOCK + k;
                     load[k].force += gravity * mass[i];
+                    if let Some(absorber) = absorber {
+                        let drag = mass[i] * absorber.rate(position[i]);
+                        load[k].force -= velocity_now[i] * drag;
+                        energy.absorbed += drag * velocity[k].norm_squared() * dt;
+                    }
                     velocity[k] += load[k].force * (half * inverse_mass[i]);
                     spin[k] += load[k].torque * (half * inverse_inertia[i]);
                     let translation = 0.5 * mass[i] * velocity[k].norm_squared();
@@ -290,9 +306,14 @@ impl GrainBed {
             });
     }
 
-    /// The terms of the ledger of this bed: motion, gravity, then the channels of the laws.
+    fn has_recessive(&self, intruder: &dyn Mechanism) -> bool {
+        intruder.parts().iter().any(|part| part.surface.is_recessive())
+    }
+
+    /// The terms of the ledger of this bed with `intruder`: motion, gravity, the channels of the laws,
+    /// then those of the boundaries.
     #[must_use]
-    pub fn terms(&self) -> Vec<Term> {
+    pub fn terms(&self, intruder: &dyn Mechanism) -> Vec<Term> {
         let kinetic = |name: &'static str| Term { name: name.into(), kind: TermKind::Kinetic };
         let potential = |name: &'static str| Term { name: name.into(), kind: TermKind::Potential };
         let mut terms = vec![
@@ -307,7 +328,17 @@ impl GrainBed {
             name: channel.name.into(),
             kind: TermKind::Channel(channel.kind),
         }));
-        terms.push(Term { name: "walls".into(), kind: TermKind::Channel(ChannelKind::Dissipated) });
+        let channel = |name: &'static str, kind: ChannelKind| Term {
+            name: name.into(),
+            kind: TermKind::Channel(kind),
+        };
+        terms.push(channel("walls", ChannelKind::Dissipated));
+        if self.absorber.is_some() {
+            terms.push(channel("absorbing-boundary", ChannelKind::Dissipated));
+        }
+        if self.has_recessive(intruder) {
+            terms.push(channel("recessive-wall", ChannelKind::Input));
+        }
         terms
     }
 
@@ -324,6 +355,7 @@ impl GrainBed {
             translation: sum.translation + block.translation,
             rotation: sum.rotation + block.rotation,
             potential: sum.potential + block.potential,
+            absorbed: sum.absorbed + block.absorbed,
             moving: sum.moving + block.moving,
         });
         entries.clear();
@@ -344,6 +376,12 @@ impl GrainBed {
             }
         }
         entries.push(walls);
+        if self.absorber.is_some() {
+            entries.push(grains.absorbed);
+        }
+        if self.has_recessive(intruder) {
+            entries.push(self.recessive.work());
+        }
     }
 
     /// What grains cover of each part of the intruder, as of the last step.
@@ -406,16 +444,20 @@ impl GrainBed {
             blocks: self.contacts.save(),
             pair_list: self.pair_list,
             intruder_list: self.intruder_list,
+            recessive: self.recessive.clone(),
         }
     }
 
     /// Takes back a saved state; `false` if it does not fit.
     pub(crate) fn restore(&mut self, saved: SavedBed) -> bool {
         let n = self.grains.len();
-        if !saved.grains.is_consistent(n) || !self.contacts.restore(saved.blocks, n) {
+        let same_parts = saved.recessive.n_parts() == self.recessive.n_parts();
+        if !same_parts || !saved.grains.is_consistent(n) || !self.contacts.restore(saved.blocks, n)
+        {
             return false;
         }
-        self.grains = saved.grains;
+        self.grains = Grains { period: self.grains.period, ..saved.grains };
+        self.recessive = saved.recessive;
         self.pair_list = saved.pair_list;
         self.intruder_list = saved.intruder_list;
         true

@@ -1,8 +1,11 @@
 //! The grains: flat arrays, one entry per grain.
 
+use std::f64::consts::{FRAC_PI_4, FRAC_PI_6};
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::boundary::Period;
 use crate::math::Vec3;
 use crate::parallel::BLOCK;
 
@@ -16,6 +19,15 @@ pub enum Space {
 }
 
 impl Space {
+    /// Volume of a grain (m³), or its area (m²) in a plane, from its diameter (m).
+    #[must_use]
+    pub fn grain_content(self, diameter: f64) -> f64 {
+        match self {
+            Self::Planar => FRAC_PI_4 * diameter * diameter,
+            Self::Spatial => FRAC_PI_6 * diameter * diameter * diameter,
+        }
+    }
+
     /// Moment of inertia (kg m²) of a grain: a disc's ½ m r² or a sphere's ⅖ m r².
     #[must_use]
     pub fn grain_inertia(self, mass: f64, radius: f64) -> f64 {
@@ -98,6 +110,9 @@ pub struct Grains {
     pub spin_now: Vec<Vec3>,
     /// Force (N) and torque (N m) on each grain, gravity included.
     pub load: Vec<Load>,
+    /// How the space that they live in repeats; it belongs to the container and is not stored.
+    #[serde(skip)]
+    pub(crate) period: Period,
 }
 
 /// Force and torque on a grain.
@@ -146,7 +161,14 @@ impl Grains {
             velocity_now: list.iter().map(|grain| grain.velocity).collect(),
             spin_now: list.iter().map(|grain| grain.spin).collect(),
             load: vec![Load::ZERO; list.len()],
+            period: Period::NONE,
         }
+    }
+
+    /// From grain `j` to the nearest image of grain `i` (m).
+    #[inline(always)]
+    pub(crate) fn apart(&self, i: usize, j: usize) -> Vec3 {
+        self.period.shortest(self.position[i] - self.position[j])
     }
 
     /// How many there are.
@@ -192,6 +214,26 @@ impl Grains {
             mass: self.mass[i],
             id: self.id[i],
         })
+    }
+
+    /// Adds `velocity` (m/s) to that of every grain.
+    pub(crate) fn throw(&mut self, velocity: Vec3) {
+        for of in [&mut self.velocity, &mut self.velocity_now] {
+            of.iter_mut().for_each(|own| *own += velocity);
+        }
+    }
+
+    /// Brings back inside, on the other side, what has left through a periodic one.
+    pub(crate) fn wrap(&mut self) {
+        if self.period.is_none() {
+            return;
+        }
+        let period = self.period;
+        self.position.par_chunks_mut(BLOCK).for_each(|positions| {
+            for position in positions {
+                *position = period.inside(*position);
+            }
+        });
     }
 
     /// Half a kick, then the drift; `dt` (s). Returns the greatest speed (m/s) of a grain.

@@ -20,15 +20,14 @@ pub fn height_in_touch(
     (x, y): (f64, f64),
 ) -> f64 {
     let reach = surface.bounding_radius();
-    let below: Vec<(Vec3, f64)> = grains
-        .position
-        .iter()
-        .zip(&grains.radius)
+    let images =
+        grains.position.iter().map(|&at| grains.period.image_near(at, Vec3::new(x, y, at.z)));
+    let below: Vec<(Vec3, f64)> = images
+        .zip(grains.radius.iter().copied())
         .filter(|(position, radius)| {
             let apart = Vec3::new(position.x - x, position.y - y, 0.0);
-            apart.norm() < reach + **radius
+            apart.norm() < reach + radius
         })
-        .map(|(&position, &radius)| (position, radius))
         .collect();
     let down = orientation.inverse_transform_vector(&-Vec3::z());
     let on_floor = surface.support(down);

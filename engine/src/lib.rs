@@ -25,6 +25,7 @@ pub mod math;
 mod neighbours;
 pub mod parallel;
 pub mod params;
+mod recessive;
 pub mod record;
 pub mod resistance;
 pub mod simulation;

@@ -1,5 +1,7 @@
 //! Which grains are near each other: a cell grid, rebuilt when grains have moved far enough.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use crate::grains::{Grains, Space};
@@ -36,13 +38,56 @@ impl Freshness {
     }
 }
 
-/// Grains sorted into square (cubic) cells as wide as the reach of the largest grain.
+/// The cells along one axis.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct CellAxis {
+    from: f64,
+    inverse_width: f64,
+    /// How many.
+    pub(crate) n: usize,
+    wraps: bool,
+}
+
+impl CellAxis {
+    /// Cells of `width` (m) or a little less than twice that from `from` over `length` (m); they tile an
+    /// axis that repeats after just that length.
+    pub(crate) fn new(from: f64, length: f64, width: f64, period: Option<f64>) -> Self {
+        match period {
+            Some(period) => {
+                let n = ((period / width) as usize).max(1);
+                Self { from: 0.0, inverse_width: n as f64 / period, n, wraps: true }
+            }
+            None => {
+                let n = ((length / width) as usize).saturating_add(1);
+                Self { from, inverse_width: 1.0 / width, n, wraps: false }
+            }
+        }
+    }
+
+    /// The cell of the coordinate `at` (m).
+    pub(crate) fn cell(&self, at: f64) -> usize {
+        (((at - self.from) * self.inverse_width) as usize).min(self.n - 1)
+    }
+
+    /// The cells next to `cell` and itself, each once, in at most two runs.
+    pub(crate) fn around(&self, cell: usize) -> [Range<usize>; 2] {
+        let last = self.n - 1;
+        match self.wraps {
+            // Fewer than three are all next to each other.
+            true if self.n < 3 => [0..self.n, 0..0],
+            true if cell == 0 => [0..2, last..self.n],
+            true if cell == last => [last - 1..self.n, 0..1],
+            _ => [cell.saturating_sub(1)..(cell + 2).min(self.n), 0..0],
+        }
+    }
+}
+
+/// Grains sorted into square (cubic) cells as wide as the reach of the largest grain, or a little wider
+/// where they tile a side that repeats.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CellGrid {
-    origin: Vec3,
-    inverse_width: f64,
-    /// Cells along x, y, z.
-    n: [usize; 3],
+    axes: [CellAxis; 3],
+    /// Where the grains of each cell begin in `members`.
     starts: Vec<u32>,
     members: Vec<u32>,
     cell_of: Vec<u32>,
@@ -62,30 +107,31 @@ impl CellGrid {
         // A grain thrown far out must not cost memory: wider cells are slower, never wrong.
         let mut width = reach;
         loop {
-            let cells = [extent.x, extent.y, extent.z]
-                .map(|length| ((length / width) as usize).saturating_add(1));
-            self.n = match grains.space {
-                Space::Planar => [cells[0], 1, cells[2]],
-                Space::Spatial => cells,
+            let axis = |axis: usize| {
+                CellAxis::new(low[axis], extent[axis], width, grains.period.length(axis))
             };
-            let product = self.n.iter().try_fold(1_usize, |all, &n| all.checked_mul(n));
+            let y = match grains.space {
+                Space::Planar => CellAxis::new(0.0, 0.0, width, None),
+                Space::Spatial => axis(1),
+            };
+            self.axes = [axis(0), y, axis(2)];
+            let product = self.axes.iter().try_fold(1_usize, |all, axis| all.checked_mul(axis.n));
             if product.is_some_and(|product| product <= 4 * grains.len() + 64) {
                 break;
             }
             width *= 1.5;
         }
-        self.origin = low;
-        self.inverse_width = 1.0 / width;
 
+        let n = self.axes.map(|axis| axis.n);
         let mut cell_of = std::mem::take(&mut self.cell_of);
         cell_of.clear();
         cell_of.extend(grains.position.iter().map(|&position| {
             let [x, y, z] = self.cell(position);
-            ((z * self.n[1] + y) * self.n[0] + x) as u32
+            ((z * n[1] + y) * n[0] + x) as u32
         }));
         // Two places behind its cell, a count becomes the place that is filled next, and so in the
         // end the start of the cell after.
-        let n_cells = self.n.iter().product::<usize>();
+        let n_cells = n.iter().product::<usize>();
         self.starts.clear();
         self.starts.resize(n_cells + 2, 0);
         for &cell in &cell_of {
@@ -105,12 +151,7 @@ impl CellGrid {
     }
 
     fn cell(&self, position: Vec3) -> [usize; 3] {
-        let offset = (position - self.origin) * self.inverse_width;
-        [
-            (offset.x as usize).min(self.n[0] - 1),
-            (offset.y as usize).min(self.n[1] - 1),
-            (offset.z as usize).min(self.n[2] - 1),
-        ]
+        [0, 1, 2].map(|axis| self.axes[axis].cell(position[axis]))
     }
 
     /// Appends to `keys` every pair (i, j) with j > i whose gap is below `margin` (m), j ascending.
@@ -124,22 +165,24 @@ impl CellGrid {
         let from = keys.len();
         let position = grains.position[i];
         let radius = grains.radius[i] + margin;
+        let [n_x, n_y, _] = self.axes.map(|axis| axis.n);
         let cell = self.cell(position);
-        let span =
-            |axis: usize| cell[axis].saturating_sub(1)..=(cell[axis] + 1).min(self.n[axis] - 1);
-        for z in span(2) {
-            for y in span(1) {
-                let row = (z * self.n[1] + y) * self.n[0];
-                let xs = span(0);
-                let first = self.starts[row + xs.start()] as usize;
-                let last = self.starts[row + xs.end() + 1] as usize;
-                for &j in &self.members[first..last] {
-                    if j as usize <= i {
-                        continue;
-                    }
-                    let near = radius + grains.radius[j as usize];
-                    if (position - grains.position[j as usize]).norm_squared() < near * near {
-                        keys.push([i as u32, j]);
+        let around = |axis: usize| self.axes[axis].around(cell[axis]);
+        for z in around(2).into_iter().flatten() {
+            for y in around(1).into_iter().flatten() {
+                let row = (z * n_y + y) * n_x;
+                for xs in around(0) {
+                    let first = self.starts[row + xs.start] as usize;
+                    let last = self.starts[row + xs.end] as usize;
+                    for &j in &self.members[first..last] {
+                        if j as usize <= i {
+                            continue;
+                        }
+                        let near = radius + grains.radius[j as usize];
+                        let apart = grains.apart(i, j as usize);
+                        if apart.norm_squared() < near * near {
+                            keys.push([i as u32, j]);
+                        }
                     }
                 }
             }

@@ -5,6 +5,7 @@
 //! 1. **Kick and drift.** Half a kick under the old forces gives the half-step velocities
 //!    `v_h = v + ½ dt a`; positions move with them. `v* = v_h + ½ dt a` is the velocity
 //!    extrapolated to the new positions.
+//!    **Wrap.** A grain that has left through a periodic side comes in on the other.
 //! 2. **Neighbours.** The list of near pairs is made again once something may have left it; contact
 //!    histories move along.
 //! 3. **Contacts.** What overlaps is found. Damping uses rates from `v*`: with `v_h` the rebound
@@ -12,8 +13,8 @@
 //!    step, from `v_h`, in the contact plane of the half step, turned into the new one (Vyas et al.,
 //!    Comput. Phys. Commun. 310, 109524 (2025), on what goes wrong otherwise).
 //!    Each law books its dissipation as mean force times displacement.
-//! 4. **Gather and kick.** Forces are summed in a fixed order, gravity is added, and the second half
-//!    kick brings velocities to the time of the positions.
+//! 4. **Gather and kick.** Forces are summed in a fixed order, gravity and the drag of absorbing
+//!    layers (with `v*`) are added, and the second half kick brings velocities to the time of the positions.
 //! 5. **Ledger.** The energy of every channel is closed against the start.
 
 use crate::body::Mechanism;
@@ -34,6 +35,7 @@ pub(crate) fn step(
 ) -> Result<(), StepError> {
     intruder.kick_drift(dt);
     bed.kick_drift(dt);
+    bed.wrap();
     bed.refresh_neighbours(intruder, dt);
     bed.evaluate_contacts(intruder, dt);
     bed.load_intruder(intruder);

@@ -22,7 +22,7 @@ impl World {
     /// Finds the forces of the initial state and opens the ledger on it; `dt` (s) is the step.
     #[must_use]
     pub fn new(mut bed: GrainBed, mut intruder: Box<dyn Mechanism>, dt: f64) -> Self {
-        let mut books = Books::new(Ledger::new(bed.terms()));
+        let mut books = Books::new(Ledger::new(bed.terms(&*intruder)));
         prime(&mut bed, &mut *intruder, &mut books);
         Self { bed, intruder, books, clock: Clock::new(dt) }
     }

@@ -16,7 +16,7 @@ use engine::world::World;
 pub const MIDDLE: Vec3 = Vec3::new(0.09375, 0.0, 0.09375);
 
 /// A container a metre wide and deep.
-pub const ROOM: Container = Container { width: 1.0, depth: 1.0 };
+pub const ROOM: Container = Container::walled_box(1.0, 1.0);
 
 /// Size and mass of a grain or a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -163,7 +163,7 @@ pub fn on_floor(
     let position = Vec3::new(8.0, 8.0, size.radius - sunk);
     let position = if space == Space::Planar { Vec3::new(8.0, 0.0, position.z) } else { position };
     let grain = Grain { spin, ..size.grain(position, velocity) };
-    let container = Container { width: 16.0, depth: 16.0 };
+    let container = Container::walled_box(16.0, 16.0);
     let bed = bed((space, container), gravity, &[grain], stages, 0);
     World::new(bed, Box::new(NoIntruder), dt)
 }

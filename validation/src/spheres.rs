@@ -108,6 +108,18 @@ impl Material {
         stage("hertz-mindlin-viscous", &self.hertz(friction, ("viscous_time", viscous_time), 0.0))
     }
 
+    /// The effect `name` on a Hertz law for grains of it, with one parameter of its own.
+    #[must_use]
+    pub fn effect(&self, name: &str, own: (&'static str, f64)) -> Box<dyn ContactStage> {
+        let mut values = vec![own];
+        values.extend(
+            self.hertz(0.0, own, 0.0).into_iter().filter(|(key, _)| {
+                key.ends_with("young_modulus") || key.ends_with("poisson_ratio")
+            }),
+        );
+        stage(name, &values)
+    }
+
     fn hertz(
         &self,
         friction: f64,
@@ -214,7 +226,7 @@ impl Flight {
         };
         let mut grains = vec![grain(sphere, floor + sphere.radius + gap, motion, -1.0)];
         grains.extend(target.map(|(other, motion)| grain(other, MIDDLE, motion, 1.0)));
-        let room = Container { width: 2.0 * MIDDLE, depth: 2.0 * MIDDLE };
+        let room = Container::walled_box(2.0 * MIDDLE, 2.0 * MIDDLE);
         let bed = bed((Space::Spatial, room), Vec3::zeros(), &grains, stages, 0);
         // The gap as it is once positions are rounded.
         let mut flight = Self {

@@ -1,15 +1,19 @@
 //! From a model to a bed and a simulation.
 
-use engine::bed::{GrainKind, Settling, fill, random};
-use engine::boundary::Container;
+use engine::bed::{GrainKind, Settling, SizeDistribution, fill, random};
+use engine::boundary::{Bottom, Container, Sides};
 use engine::contact::ContactStage;
 use engine::grain_bed::{GrainBed, RestingBed};
 use engine::grains::Grain;
 use engine::math::Vec3;
 use engine::simulation::{Settings, Simulation};
+use rand::Rng;
 use thiserror::Error;
 
-use crate::model::{self, BedSource, Condition, GrainModel, LawChoice, Settle, StartX};
+use crate::absorbing;
+use crate::model::{
+    self, BedSource, BottomKind, Condition, GrainModel, LawChoice, Settle, SidesKind, StartX,
+};
 use crate::stability;
 
 /// Why a model that reads well cannot be built.
@@ -38,6 +42,18 @@ pub enum BuildError {
         /// (m).
         width: f64,
     },
+    /// The start lies too near to the side of a cylinder.
+    #[error(
+        "an intruder that starts at x = {x} m, y = {y} m touches the container, {diameter} m across"
+    )]
+    StartTouchesCylinder {
+        /// (m).
+        x: f64,
+        /// (m).
+        y: f64,
+        /// (m).
+        diameter: f64,
+    },
     /// The start lies too near to the front or the back.
     #[error("an intruder that starts at y = {y} m touches the container, {depth} m deep")]
     StartTouchesFront {
@@ -51,9 +67,21 @@ pub enum BuildError {
 impl GrainModel<'_> {
     /// The container.
     #[must_use]
-    pub fn box_container(&self) -> Container {
-        let model::Container { width, depth } = self.medium.container;
-        Container { width, depth }
+    pub fn container(&self) -> Container {
+        let of_file = &self.medium.container;
+        let plain = of_file.without_layers();
+        let layer = || absorbing::layer(*self);
+        Container {
+            sides: match of_file.sides {
+                SidesKind::Absorbing => Sides::Absorbing(layer()),
+                SidesKind::Wall | SidesKind::Periodic => plain.sides,
+            },
+            bottom: match of_file.bottom {
+                BottomKind::Absorbing => Bottom::Absorbing(layer()),
+                BottomKind::Wall => plain.bottom,
+            },
+            ..plain
+        }
     }
 
     fn gravity(&self) -> Vec3 {
@@ -92,20 +120,32 @@ impl GrainModel<'_> {
         }
         let dt = stability::preparation_time_step(*self)
             .ok_or(BuildError::NoTimeStep { law: self.medium.contact_law.entry.name })?;
-        let kinds: Vec<GrainKind> = settle
-            .grains
-            .iter()
-            .map(|kind| GrainKind {
-                count: kind.count as usize,
-                radius: 0.5 * kind.diameter,
-                mass: kind.mass,
-            })
-            .collect();
-        let container = self.box_container();
+        let mut rng = random(self.model.run.seed, "sizes");
+        let kinds: Vec<GrainKind> =
+            settle.grains.iter().flat_map(|kind| self.drawn(kind, &mut rng)).collect();
+        let container = self.container();
         let space = self.medium.space;
         let grains = fill(&kinds, (space, &container), self.model.run.seed);
         let stages = self.preparation_stages(settle);
-        Ok(Some(Settling::new(&grains, (space, container), self.gravity(), stages, dt)))
+        let settling = Settling::new(&grains, (space, container), self.gravity(), stages, dt);
+        Ok(Some(match self.medium.bed.target_packing_fraction {
+            Some(target) => settling.tapped_to(target),
+            None => settling,
+        }))
+    }
+
+    /// The grains of `kind`: at once where all are equal, else one by one.
+    fn drawn(&self, kind: &model::GrainKind, rng: &mut impl Rng) -> Vec<GrainKind> {
+        let of = |count: usize, diameter: f64| GrainKind {
+            count,
+            radius: 0.5 * diameter,
+            mass: kind.mass(self.medium.space, diameter),
+        };
+        let count = kind.count as usize;
+        match &kind.sizes {
+            SizeDistribution::Equal(diameter) => vec![of(count, *diameter)],
+            sizes => (0..count).map(|_| of(1, sizes.draw(rng))).collect(),
+        }
     }
 
     /// The laws while the bed settles: the contact law with the friction of the preparation between
@@ -143,7 +183,7 @@ impl GrainModel<'_> {
     /// `resting` in the container under the laws of the run, ready for the intruder.
     #[must_use]
     pub fn bed(&self, resting: &RestingBed) -> GrainBed {
-        GrainBed::new(resting, self.box_container(), self.gravity(), self.stages(), self.n_bodies())
+        GrainBed::new(resting, self.container(), self.gravity(), self.stages(), self.n_bodies())
     }
 
     /// The impact `condition` on the bed `resting`.

@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 use std::fmt;
 
+use engine::boundary::{Base, Container};
 use engine::grains::Space;
 
 use crate::diagnostics::{nearest, shorten};
@@ -68,10 +69,32 @@ const DEEPEST_IN_WALL: f64 = 0.5;
 pub struct Room {
     /// Discs in a plane or spheres in space.
     pub space: Space,
-    /// Inner width of the box (m).
-    pub width: f64,
-    /// Inner depth of the box (m).
-    pub depth: f64,
+    /// The container.
+    pub container: Container,
+}
+
+impl Room {
+    /// Whether the sides let a grain of `inner` (m) without what may be in a wall be at `x`, `y` (m);
+    /// `None` if they do, else the column and how it should be.
+    fn refusal(&self, x: f64, y: f64, inner: f64) -> Option<(&'static str, String)> {
+        if self.container.holds(self.space, (x, y), inner) {
+            return None;
+        }
+        let [width, depth] = self.container.extents();
+        let holds_x = self.container.holds(self.space, (x, 0.5 * depth), inner);
+        Some(match self.container.base {
+            Base::Circle { diameter } => (
+                "x_m",
+                format!("the grain at {x} m, {y} m is outside of the cylinder, {diameter} m wide"),
+            ),
+            Base::Rectangle { .. } if holds_x => {
+                ("y_m", format!("the grain at {y} m is outside of the box, 0 to {depth} m"))
+            }
+            Base::Rectangle { .. } => {
+                ("x_m", format!("the grain at {x} m is outside of the box, 0 to {width} m"))
+            }
+        })
+    }
 }
 
 /// What a table has to say in one kind of space.
@@ -266,21 +289,14 @@ impl Columns {
             return Err(fault("radius_m", "mass or moment of inertia out of range".to_owned()));
         }
         let inner = radius * (1.0 - DEEPEST_IN_WALL);
-        let inside = |column: &str, at: f64, length: f64| match at < inner || at > length - inner {
-            true => Err(fault(
-                column,
-                format!("the grain at {at} m is outside of the box, 0 to {length} m"),
-            )),
-            false => Ok(()),
-        };
-        inside("x_m", x, room.width)?;
-        if let Some(y) = y {
-            inside("y_m", y, room.depth)?;
+        let y = y.unwrap_or(0.0);
+        if let Some((column, message)) = room.refusal(x, y, inner) {
+            return Err(fault(column, message));
         }
         if z < inner {
             return Err(fault(names.up, format!("the grain at {z} m is below the bottom, 0 m")));
         }
-        Ok(CsvGrain { x, y: y.unwrap_or(0.0), z, radius, mass })
+        Ok(CsvGrain { x, y, z, radius, mass })
     }
 }
 
@@ -288,8 +304,8 @@ impl Columns {
 mod tests {
     use super::*;
 
-    const PLANE: Room = Room { space: Space::Planar, width: 1.0, depth: 0.0 };
-    const CUBE: Room = Room { space: Space::Spatial, width: 1.0, depth: 1.0 };
+    const PLANE: Room = Room { space: Space::Planar, container: Container::walled_box(1.0, 0.0) };
+    const CUBE: Room = Room { space: Space::Spatial, container: Container::walled_box(1.0, 1.0) };
 
     fn faults(text: &str) -> String {
         let faults = read(text.as_bytes(), PLANE).expect_err("a faulty table");

@@ -10,7 +10,7 @@ use engine::surface::Surface;
 use intruders::HingedLinks;
 
 use crate::build::BuildError;
-use crate::model::{Condition, Container, GrainModel};
+use crate::model::{Condition, Container, ContainerShape, GrainModel, SidesKind};
 
 /// Length of the shaft of a recessive wall, in the height of the bed: grains that are thrown up do not
 /// come over its top.
@@ -119,6 +119,12 @@ impl GrainModel<'_> {
         reach(&entrants, Vec3::x()).max(reach(&entrants, -Vec3::x()))
     }
 
+    /// How wide the intruder is at most, however it turns (m).
+    pub(crate) fn extent(&self) -> f64 {
+        let reach = |one: &Entrant| one.offset.norm() + one.surface.bounding_radius();
+        2.0 * self.entrants().iter().map(reach).fold(0.0, f64::max)
+    }
+
     /// Where the intruder starts along the depth (m): in the middle, unless the file says otherwise.
     #[must_use]
     pub fn start_y(&self) -> f64 {
@@ -127,10 +133,25 @@ impl GrainModel<'_> {
 
     /// Refuses an intruder that starts in a side of the container.
     fn check_sides(&self, entrants: &[Entrant], (x, y): (f64, f64)) -> Result<(), BuildError> {
-        let Container { width, depth } = self.medium.container;
-        let is_inside = |at: f64, size: f64, axis: Vec3| {
-            at >= reach(entrants, -axis) && at <= size - reach(entrants, axis)
+        let Container { shape, width, depth, sides, .. } = self.medium.container;
+        // Through a periodic side the intruder may stand.
+        let reach = |direction: Vec3| match sides {
+            SidesKind::Periodic => 0.0,
+            SidesKind::Wall | SidesKind::Absorbing => reach(entrants, direction),
         };
+        if shape == ContainerShape::Cylinder {
+            let axis = Vec3::new(0.5 * width, 0.5 * width, 0.0);
+            let from_axis = Vec3::new(x, y, 0.0) - axis;
+            let outward = from_axis.try_normalize(0.0).unwrap_or_else(Vec3::x);
+            // A body that is not round may reach farther aside of this direction, by less than its own
+            // size squared over the diameter.
+            if from_axis.norm() + reach(outward) > 0.5 * width {
+                return Err(BuildError::StartTouchesCylinder { x, y, diameter: width });
+            }
+            return Ok(());
+        }
+        let is_inside =
+            |at: f64, size: f64, axis: Vec3| at >= reach(-axis) && at <= size - reach(axis);
         if !is_inside(x, width, Vec3::x()) {
             return Err(BuildError::StartTouchesSide { x, width });
         }

@@ -6,6 +6,7 @@
 //! `document` is the TOML with its places, `reader` reads tables key by key, `read` knows the
 //! tables of a model, `checks` compares values with each other, `diagnostics` shows what is wrong.
 
+mod absorbing;
 mod build;
 mod checks;
 mod diagnostics;
@@ -33,11 +34,11 @@ pub use diagnostics::{
 };
 pub use load::{ConfigError, LoadOptions, Loaded, ModelSource};
 pub use model::{
-    AngleTable, Bed, BedSource, Coefficient, Condition, ConditionLists, Container, CsvBed,
-    EffectChoice, EnergySettings, FreeParameter, GrainKind, GrainLog, GrainMedium, GrainModel,
-    Impact, Intruder, Launch, LawChoice, LogSettings, Medium, Model, ParameterError,
-    ResistanceChoice, ResistiveMedium, ResistiveModel, RunSettings, Settle, StartPositions, StartX,
-    Stepping, TimeStep,
+    AngleTable, Bed, BedSource, BottomKind, Coefficient, Condition, ConditionLists, Container,
+    ContainerShape, CsvBed, EffectChoice, EnergySettings, FreeParameter, GrainKind, GrainLog,
+    GrainMedium, GrainModel, Impact, Intruder, Launch, LawChoice, LogSettings, Material, Medium,
+    Model, ParameterError, ResistanceChoice, ResistiveMedium, ResistiveModel, RunSettings, Settle,
+    SidesKind, StartPositions, StartX, Stepping, TimeStep,
 };
 pub use paths::PathError;
 pub use reader::interval as describe_range;

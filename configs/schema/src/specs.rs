@@ -93,6 +93,25 @@ pub(crate) const WIDTH: ParamSpec =
 pub(crate) const DEPTH: ParamSpec =
     ParamSpec { key: "depth", meaning: "the inner depth of the box, along y", ..WIDTH };
 
+pub(crate) const CONTAINER_DIAMETER: ParamSpec =
+    ParamSpec { key: "diameter", meaning: "the inner diameter of the cylinder", ..WIDTH };
+
+pub(crate) const ABSORBING_THICKNESS: ParamSpec = required(
+    "absorbing_thickness",
+    LENGTH,
+    POSITIVE,
+    Range::closed(1e-4, 10.0),
+    "the thickness of the layers that absorb",
+);
+
+pub(crate) const ABSORBING_RATE: ParamSpec = required(
+    "absorbing_rate",
+    Dimension::RATE,
+    NOT_NEGATIVE,
+    Range::closed(1.0, 1e7),
+    "the rate of the drag at the wall of a layer that absorbs",
+);
+
 pub(crate) const PREPARATION_FRICTION: ParamSpec = required(
     "preparation_friction",
     NUMBER,
@@ -119,6 +138,34 @@ pub(crate) const TARGET_HEIGHT: ParamSpec = required(
 
 pub(crate) const GRAIN_DIAMETER: ParamSpec =
     required("diameter", LENGTH, POSITIVE, Range::closed(1e-5, 0.1), "the diameter of one grain");
+
+pub(crate) const GRAIN_DIAMETER_MIN: ParamSpec =
+    ParamSpec { key: "diameter_min", meaning: "the smallest diameter", ..GRAIN_DIAMETER };
+
+pub(crate) const GRAIN_DIAMETER_MAX: ParamSpec =
+    ParamSpec { key: "diameter_max", meaning: "the largest diameter", ..GRAIN_DIAMETER };
+
+pub(crate) const GRAIN_DIAMETER_MEDIAN: ParamSpec =
+    ParamSpec { key: "diameter_median", meaning: "the median diameter", ..GRAIN_DIAMETER };
+
+pub(crate) const GRAIN_DIAMETER_SIGMA: ParamSpec = required(
+    "diameter_sigma",
+    NUMBER,
+    Range { min: 0.0, max: 3.0, includes_min: false },
+    Range::closed(0.01, 1.0),
+    "the standard deviation of the logarithm of the diameter",
+);
+
+pub(crate) const GRAIN_DIAMETERS: ParamSpec =
+    ParamSpec { key: "diameters", meaning: "the diameters", ..GRAIN_DIAMETER };
+
+pub(crate) const GRAIN_WEIGHTS: ParamSpec = required(
+    "weights",
+    NUMBER,
+    Range::closed(0.0, 1e12),
+    Range::closed(0.0, 1e12),
+    "the share by number of each diameter, in any unit",
+);
 
 pub(crate) const GRAIN_MASS: ParamSpec =
     required("mass", Dimension::MASS, POSITIVE, Range::closed(1e-12, 1.0), "the mass of one grain");

@@ -1,6 +1,7 @@
 //! How fast contacts can change, and the time step that follows from it.
 
 use engine::contact::{ContactStage, Encounter, Partner};
+use engine::grains::Space;
 
 use crate::model::{BedSource, GrainModel, LawChoice, TimeStep};
 
@@ -21,7 +22,13 @@ pub const FEWEST_STEPS_PER_COLLISION: f64 = 10.0;
 pub const FEW_STEPS_PER_COLLISION: f64 = 20.0;
 
 /// Packing fraction by which the height of a bed is guessed that names no target.
-const GUESSED_PACKING: f64 = 0.8;
+pub(crate) fn guessed_packing(space: Space) -> f64 {
+    match space {
+        Space::Planar => 0.8,
+        Space::Spatial => 0.6,
+    }
+}
+
 /// Slowest approach (m/s) that a step is chosen for: without it nothing that starts at rest in no
 /// gravity would have a collision time.
 const SLOWEST_APPROACH: f64 = 1e-3;
@@ -88,7 +95,11 @@ impl Lightest {
                 .grains
                 .iter()
                 .filter(|kind| kind.count > 0)
-                .map(|kind| Self { radius: 0.5 * kind.diameter, mass: kind.mass })
+                .map(|kind| {
+                    let diameter = kind.sizes.smallest();
+                    let mass = kind.mass(model.medium.space, diameter);
+                    Self { radius: 0.5 * diameter, mass }
+                })
                 .fold(none, lighter),
             BedSource::Csv(csv) => csv
                 .grains
@@ -109,13 +120,13 @@ fn fall_speed(model: GrainModel<'_>) -> f64 {
     let bed = &model.medium.bed;
     let height = bed.target_height.unwrap_or_else(|| match &bed.source {
         BedSource::Settle(settle) => {
-            let areas = settle.grains.iter().map(|kind| {
-                kind.count as f64 * std::f64::consts::FRAC_PI_4 * kind.diameter * kind.diameter
-            });
-            areas.sum::<f64>() / (GUESSED_PACKING * model.medium.container.width)
+            let space = model.medium.space;
+            let contents = settle.grains.iter().map(|kind| kind.count as f64 * kind.content(space));
+            let base = model.medium.container.without_layers().base_area(space);
+            contents.sum::<f64>() / (guessed_packing(space) * base)
         }
         BedSource::Csv(csv) => {
-            csv.grains.iter().fold(0.0, |height: f64, grain| height.max(grain.y + grain.radius))
+            csv.grains.iter().fold(0.0, |height: f64, grain| height.max(grain.z + grain.radius))
         }
     });
     (2.0 * model.medium.gravity * height).sqrt().max(SLOWEST_APPROACH)

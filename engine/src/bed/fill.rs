@@ -5,9 +5,10 @@ use std::f64::consts::PI;
 use rand::RngExt;
 
 use super::random;
-use crate::boundary::Container;
+use crate::boundary::{Container, Period};
 use crate::grains::{Grain, Space};
 use crate::math::Vec3;
+use crate::neighbours::CellAxis;
 
 /// Grains of one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +35,7 @@ fn fill_fraction(space: Space) -> f64 {
 #[must_use]
 pub fn fill(kinds: &[GrainKind], (space, container): (Space, &Container), seed: u64) -> Vec<Grain> {
     let mut rng = random(seed, "fill");
+    let ([width, depth], period) = (container.extents(), container.period(space));
     let largest = kinds.iter().fold(0.0_f64, |largest, kind| largest.max(kind.radius));
     let height = fill_height(kinds, space, container);
     let mut free = FreeSpace::new(space, container, height, 2.0 * largest);
@@ -45,16 +47,20 @@ pub fn fill(kinds: &[GrainKind], (space, container): (Space, &Container), seed: 
         for _ in 0..kind.count {
             let mut tries = 0;
             let position = loop {
-                let mut between =
-                    |length: f64| kind.radius + (length - 2.0 * kind.radius) * rng.random::<f64>();
-                let x = between(container.width);
+                let mut between = |length: f64| match period.is_none() {
+                    true => kind.radius + (length - 2.0 * kind.radius) * rng.random::<f64>(),
+                    false => length * rng.random::<f64>(),
+                };
+                let x = between(width);
                 let y = match space {
                     Space::Planar => 0.0,
-                    Space::Spatial => between(container.depth),
+                    Space::Spatial => between(depth),
                 };
                 let z = kind.radius + (free.height - kind.radius) * rng.random::<f64>();
                 let place = Vec3::new(x, y, z);
-                if free.fits(place, kind.radius, &grains) {
+                if container.holds(space, (x, y), kind.radius)
+                    && free.fits(place, kind.radius, &grains)
+                {
                     break place;
                 }
                 tries += 1;
@@ -86,50 +92,53 @@ fn fill_height(kinds: &[GrainKind], space: Space, container: &Container) -> f64 
         }
     };
     let content: f64 = kinds.iter().map(content).sum();
-    PI * content / (fill_fraction(space) * container.base(space))
+    PI * content / (fill_fraction(space) * container.base_area(space))
 }
 
 /// Which grains have been placed where, in square (cubic) cells as wide as the largest grain.
 struct FreeSpace {
     height: f64,
     cell: f64,
-    n_x: usize,
-    n_y: usize,
+    x: CellAxis,
+    y: CellAxis,
+    period: Period,
     cells: Vec<Vec<usize>>,
 }
 
 impl FreeSpace {
     fn new(space: Space, container: &Container, height: f64, cell: f64) -> Self {
-        let n_x = (container.width / cell) as usize + 1;
-        let n_y = match space {
-            Space::Planar => 1,
-            Space::Spatial => (container.depth / cell) as usize + 1,
+        let (extents, period) = (container.extents(), container.period(space));
+        let axis = |axis: usize| CellAxis::new(0.0, extents[axis], cell, period.length(axis));
+        let y = match space {
+            Space::Planar => CellAxis::new(0.0, 0.0, cell, None),
+            Space::Spatial => axis(1),
         };
-        let n_z = (height / cell) as usize + 2;
-        Self { height, cell, n_x, n_y, cells: vec![Vec::new(); n_x * n_y * n_z] }
+        let mut free = Self { height, cell, x: axis(0), y, period, cells: Vec::new() };
+        free.make_room();
+        free
     }
 
     fn grow(&mut self) {
         self.height *= 1.1;
-        let n_z = (self.height / self.cell) as usize + 2;
-        self.cells.resize(self.n_x * self.n_y * n_z, Vec::new());
+        self.make_room();
     }
 
-    fn cell_of(&self, place: Vec3) -> [usize; 3] {
-        [place.x, place.y, place.z].map(|coordinate| (coordinate / self.cell) as usize)
+    fn make_room(&mut self) {
+        let n_z = (self.height / self.cell) as usize + 2;
+        self.cells.resize(self.x.n * self.y.n * n_z, Vec::new());
     }
 
     fn fits(&self, place: Vec3, radius: f64, grains: &[Grain]) -> bool {
-        let cell = self.cell_of(place);
-        let n = [self.n_x, self.n_y, self.cells.len() / (self.n_x * self.n_y)];
-        let span = |axis: usize| cell[axis].saturating_sub(1)..=(cell[axis] + 1).min(n[axis] - 1);
-        span(2).all(|z| {
-            span(1).all(|y| {
-                span(0).all(|x| {
-                    self.cells[(z * self.n_y + y) * self.n_x + x].iter().all(|&other| {
+        let layer = (place.z / self.cell) as usize;
+        let n_z = self.cells.len() / (self.x.n * self.y.n);
+        let near = |axis: &CellAxis, at: f64| axis.around(axis.cell(at)).into_iter().flatten();
+        (layer.saturating_sub(1)..=(layer + 1).min(n_z - 1)).all(|z| {
+            near(&self.y, place.y).all(|y| {
+                near(&self.x, place.x).all(|x| {
+                    self.cells[(z * self.y.n + y) * self.x.n + x].iter().all(|&other| {
                         let Grain { position, radius: other, .. } = &grains[other];
                         let near = other + radius;
-                        (position - place).norm_squared() > near * near
+                        self.period.shortest(position - place).norm_squared() > near * near
                     })
                 })
             })
@@ -137,8 +146,9 @@ impl FreeSpace {
     }
 
     fn take(&mut self, place: Vec3, grain: usize) {
-        let [x, y, z] = self.cell_of(place);
-        self.cells[(z * self.n_y + y) * self.n_x + x].push(grain);
+        let (x, y) = (self.x.cell(place.x), self.y.cell(place.y));
+        let z = (place.z / self.cell) as usize;
+        self.cells[(z * self.y.n + y) * self.x.n + x].push(grain);
     }
 }
 
@@ -153,7 +163,7 @@ mod tests {
 
     #[test]
     fn random_grains_overlap_neither_each_other_nor_a_wall() {
-        let container = Container { width: 0.1, depth: 0.03 };
+        let container = Container::walled_box(0.1, 0.03);
         for space in [Space::Planar, Space::Spatial] {
             let grains = fill(&KINDS, (space, &container), 7);
             assert_eq!(grains.len(), 360);

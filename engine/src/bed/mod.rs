@@ -4,6 +4,7 @@
 mod fill;
 mod report;
 mod settling;
+mod sizes;
 
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -11,6 +12,7 @@ use rand_pcg::Pcg64;
 pub use fill::{GrainKind, fill};
 pub use report::BedReport;
 pub use settling::{SavedSettling, Settling};
+pub use sizes::SizeDistribution;
 
 /// A generator of random numbers for one purpose: the same for the same seed and name, whatever
 /// else a run draws.

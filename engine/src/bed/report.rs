@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::boundary::Container;
+use crate::boundary::{Base, Container, Period, Sides};
 use crate::grain_bed::GrainBed;
 use crate::grains::{Grains, Space};
 
@@ -38,15 +38,17 @@ impl BedReport {
         let spacing = spacing(grains.space) * mean_diameter;
         let height = Columns::over(grains.space, container, 0.0, spacing).mean_height(grains);
         let margin = INSIDE * mean_diameter;
-        let has_inside = container.narrowest(grains.space) - 2.0 * margin > margin
-            && height - 2.0 * margin > margin;
+        let has_room = |length: f64| length - 2.0 * margin > margin;
+        let has_sides = container.sides != Sides::Periodic;
+        let has_inside =
+            has_room(height) && (!has_sides || has_room(container.narrowest(grains.space)));
         let inside = has_inside.then(|| {
             Columns::over(grains.space, container, margin, spacing)
                 .covered(grains, (margin, height - margin))
         });
         Self {
             grains: grains.len(),
-            packing_fraction: content(grains) / (container.base(grains.space) * height),
+            packing_fraction: content(grains) / (container.base_area(grains.space) * height),
             packing_fraction_inside: inside,
             height,
             mean_diameter,
@@ -77,6 +79,9 @@ fn spacing(space: Space) -> f64 {
 struct Columns {
     x: Axis,
     y: Axis,
+    /// Middle (m) and radius (m) of the circle that they lie in; none in a rectangle.
+    circle: Option<(f64, f64)>,
+    period: Period,
 }
 
 /// Points `from` + (k + ½) `spacing` (m), k < `n`, which fill `length` (m).
@@ -98,11 +103,16 @@ impl Axis {
         Self { from, length: to - from, spacing: (to - from) / n as f64, n }
     }
 
+    /// The point `k` (m).
+    fn at(&self, k: usize) -> f64 {
+        self.from + (k as f64 + 0.5) * self.spacing
+    }
+
     /// Calls `chord(k, half length)` for every point that lies within `radius` (m) of `centre` (m).
     fn for_each_chord(&self, centre: f64, radius: f64, mut chord: impl FnMut(usize, f64)) {
         let first = ((centre - radius - self.from) / self.spacing - 0.5).ceil().max(0.0) as usize;
         for k in first..self.n {
-            let offset = self.from + (k as f64 + 0.5) * self.spacing - centre;
+            let offset = self.at(k) - centre;
             if offset >= radius {
                 break;
             }
@@ -112,23 +122,49 @@ impl Axis {
 }
 
 impl Columns {
-    /// Over the base of `container` but for a `margin` (m) along its sides.
+    /// Over the base of `container` but for a `margin` (m) along its walls.
     fn over(space: Space, container: &Container, margin: f64, spacing: f64) -> Self {
+        let margin = if container.sides == Sides::Periodic { 0.0 } else { margin };
+        let [width, depth] = container.extents();
         let along = |length: f64| Axis::new([margin, length - margin], spacing);
-        let y = match space {
-            Space::Planar => Axis::NONE,
-            Space::Spatial => along(container.depth),
+        let (y, circle) = match (space, container.base) {
+            (Space::Planar, _) => (Axis::NONE, None),
+            (Space::Spatial, Base::Rectangle { .. }) => (along(depth), None),
+            (Space::Spatial, Base::Circle { diameter }) => {
+                (along(depth), Some((0.5 * diameter, 0.5 * diameter - margin)))
+            }
         };
-        Self { x: along(container.width), y }
+        Self { x: along(width), y, circle, period: container.period(space) }
     }
 
+    /// Whether the column `k` of `row` lies in the circle, if there is one.
+    fn counts(&self, k: usize, row: usize) -> bool {
+        self.circle.is_none_or(|(middle, radius)| {
+            let (x, y) = (self.x.at(k) - middle, self.y.at(row) - middle);
+            x * x + y * y <= radius * radius
+        })
+    }
+
+    /// How many columns there are.
     fn len(&self) -> usize {
-        self.x.n * self.y.n
+        let in_row = |row: usize| (0..self.x.n).filter(|&k| self.counts(k, row)).count();
+        match self.circle {
+            None => self.x.n * self.y.n,
+            Some(_) => (0..self.y.n).map(in_row).sum(),
+        }
+    }
+
+    /// The area (m²) or length (m) of the base that the columns stand for.
+    fn base(&self) -> f64 {
+        match self.circle {
+            None => self.x.length * self.y.length,
+            Some(_) => self.len() as f64 * (self.x.spacing * self.y.spacing),
+        }
     }
 
     /// Mean over all columns of the highest point that grains cover (m).
     fn mean_height(&self, grains: &Grains) -> f64 {
-        let mut top = vec![0.0_f64; self.len()];
+        let mut top = vec![0.0_f64; self.x.n * self.y.n];
         self.for_each_chord(grains, |column, z, half_chord| {
             top[column] = top[column].max(z + half_chord);
         });
@@ -142,19 +178,39 @@ impl Columns {
             length += ((z + half_chord).min(high) - (z - half_chord).max(low)).max(0.0);
         });
         let volume = length * (self.x.spacing * self.y.spacing);
-        volume / (self.x.length * self.y.length * (high - low))
+        volume / (self.base() * (high - low))
     }
 
     /// Calls `chord(column, height of its middle, half its length)` for every column that cuts a
     /// grain, and every grain it cuts.
     fn for_each_chord(&self, grains: &Grains, mut chord: impl FnMut(usize, f64, f64)) {
         for (position, &radius) in grains.position.iter().zip(&grains.radius) {
-            self.y.for_each_chord(position.y, radius, |row, radius| {
-                self.x.for_each_chord(position.x, radius, |k, half_chord| {
-                    chord(row * self.x.n + k, position.z, half_chord);
+            for y in self.images(1, position.y, radius).into_iter().flatten() {
+                self.y.for_each_chord(y, radius, |row, radius| {
+                    for x in self.images(0, position.x, radius).into_iter().flatten() {
+                        self.x.for_each_chord(x, radius, |k, half_chord| {
+                            if self.counts(k, row) {
+                                chord(row * self.x.n + k, position.z, half_chord);
+                            }
+                        });
+                    }
                 });
-            });
+            }
         }
+    }
+
+    /// The coordinate `at` (m) along an axis, and that of the image that reaches in from the other side.
+    fn images(&self, axis: usize, at: f64, radius: f64) -> [Option<f64>; 2] {
+        let image = self.period.length(axis).and_then(|length| {
+            if at < radius {
+                Some(at + length)
+            } else if at > length - radius {
+                Some(at - length)
+            } else {
+                None
+            }
+        });
+        [Some(at), image]
     }
 }
 
@@ -164,7 +220,7 @@ mod tests {
     use crate::grains::Grain;
     use crate::math::Vec3;
 
-    const CUBE: Container = Container { width: 1.0, depth: 1.0 };
+    const CUBE: Container = Container::walled_box(1.0, 1.0);
 
     fn one_grain(space: Space, y: f64) -> Grains {
         let grain = Grain {
@@ -197,5 +253,25 @@ mod tests {
         assert!((columns.covered(&grains, (0.0, 1.0)) - volume).abs() < 2e-3 * volume);
         let height = section * 0.3 + 0.5 * volume;
         assert!((columns.mean_height(&grains) - height).abs() < 2e-3 * height);
+    }
+
+    #[test]
+    fn a_sphere_across_a_periodic_side_counts_on_both() {
+        let container = Container { sides: Sides::Periodic, ..CUBE };
+        let columns = Columns::over(Space::Spatial, &container, 0.1, 2e-3);
+        let volume = 4.0 / 3.0 * PI * 1e-3;
+        let covered = columns.covered(&one_grain(Space::Spatial, 0.03), (0.0, 1.0));
+        assert!((covered - volume).abs() < 2e-3 * volume);
+    }
+
+    #[test]
+    fn the_base_of_a_cylinder_is_a_circle() {
+        let container = Container { base: Base::Circle { diameter: 1.0 }, ..CUBE };
+        let columns = Columns::over(Space::Spatial, &container, 0.0, 2e-3);
+        // Five hundred columns across: the rim cuts one in a hundred, on both sides alike.
+        assert!((columns.base() - 0.25 * PI).abs() < 1e-3);
+        let height = columns.mean_height(&one_grain(Space::Spatial, 0.5));
+        let expected = (PI * 0.01 * 0.3 + 0.5 * 4.0 / 3.0 * PI * 1e-3) / (0.25 * PI);
+        assert!((height - expected).abs() < 4e-3 * expected);
     }
 }

@@ -70,7 +70,7 @@ fn assemble(now: &Meeting, half: &Meeting, bodies: Bodies, dt: f64) -> Contact {
 #[inline(always)]
 pub(crate) fn between_grains(grains: &Grains, i: usize, j: usize, dt: f64) -> Contact {
     let both = |of: &[Vec3]| [of[i], of[j]];
-    let apart = grains.position[i] - grains.position[j];
+    let apart = grains.apart(i, j);
     let (r_i, r_j) = (grains.radius[i], grains.radius[j]);
     let meet = |apart: Vec3, [v_i, v_j]: [Vec3; 2], [w_i, w_j]: [Vec3; 2]| {
         let distance = apart.norm();
@@ -98,18 +98,19 @@ fn arms_between_grains(normal: Vec3, overlap: f64, r_i: f64, r_j: f64) -> (Vec3,
     (normal * (0.5 * overlap - r_i), normal * (r_j - 0.5 * overlap))
 }
 
-/// The contact of grain `i` with a rigid part; `now` and `half` are the nearest points of its
-/// surface to the grain's centre at the end and in the middle of the step, body frame.
+/// The contact of a grain with a rigid part. `(i, position)` is the grain and the image of its centre
+/// that is nearest to the part; `now` and `half` are the nearest points of the surface to that at the
+/// end and in the middle of the step, body frame.
 #[inline]
 pub(crate) fn with_surface(
     grains: &Grains,
-    i: usize,
+    (i, position): (usize, Vec3),
     (placement, partner): (&Placement, Partner),
     now: &SurfacePoint,
     half: &SurfacePoint,
     dt: f64,
 ) -> Contact {
-    let (position, radius) = (grains.position[i], grains.radius[i]);
+    let radius = grains.radius[i];
     let position_half = position - grains.velocity[i] * (0.5 * dt);
 
     let normal = placement.orientation * now.normal;

@@ -59,6 +59,8 @@ pub(super) struct Tally {
     pub(super) wall_energy: Vec<f64>,
     /// Per part.
     pub(super) wrenches: Vec<Wrench>,
+    /// Per part: what grains do to it that its body does not feel.
+    pub(super) unfelt: Vec<Wrench>,
     /// Per part; empty for walls.
     pub(super) footprints: Vec<Footprint>,
     pub(super) overlap: Deepest,
@@ -135,6 +137,7 @@ impl Tally {
         self.energy.fill(0.0);
         self.wall_energy.fill(0.0);
         self.wrenches.fill(Wrench::default());
+        self.unfelt.fill(Wrench::default());
         self.footprints.fill(Footprint::default());
         self.overlap = Deepest::default();
     }
@@ -164,7 +167,7 @@ impl Block {
         for (row, (&[i, j], &touched)) in keys.iter().zip(&*touching).enumerate() {
             let (i, j) = (i as usize, j as usize);
             let reach = grains.radius[i] + grains.radius[j];
-            let apart = grains.position[i] - grains.position[j];
+            let apart = grains.apart(i, j);
             near[n_near] = row as u32;
             n_near += usize::from((apart.norm_squared() < reach * reach) | touched);
         }
@@ -210,18 +213,18 @@ impl Block {
         let placement = &part.placement;
         let bench = &mut self.bench;
         bench.points.clear();
-        bench
-            .points
-            .extend(keys.iter().map(|&[i, _]| placement.to_body(grains.position[i as usize])));
+        let image =
+            |i: u32| grains.period.image_near(grains.position[i as usize], placement.position);
+        bench.points.extend(keys.iter().map(|&[i, _]| placement.to_body(image(i))));
         part.surface.closest_many(&bench.points, &mut bench.nearest);
         bench.near_rows.clear();
         bench.points.clear();
         bench.points_half.clear();
-        for (row, (&[i, _], nearest)) in keys.iter().zip(&bench.nearest).enumerate() {
-            let i = i as usize;
+        for (row, (&[index, _], nearest)) in keys.iter().zip(&bench.nearest).enumerate() {
+            let i = index as usize;
             if nearest.gap < grains.radius[i] || touching[row] {
                 bench.near_rows.push(row as u32);
-                let half = grains.position[i] - grains.velocity[i] * (0.5 * dt);
+                let half = image(index) - grains.velocity[i] * (0.5 * dt);
                 bench.points_half.push(placement.to_body_half(half));
             }
         }
@@ -233,10 +236,11 @@ impl Block {
             bench.clear();
             while next < bench.near_rows.len() && !bench.is_full() {
                 let row = bench.near_rows[next] as usize;
-                let i = keys[row][0] as usize;
+                let i = keys[row][0];
+                let grain = (i as usize, image(i));
                 let (now, half) = (bench.nearest[row], bench.nearest_half[next]);
                 let side = (placement, part.partner);
-                bench.push(with_surface(grains, i, side, &now, &half, dt), row);
+                bench.push(with_surface(grains, grain, side, &now, &half, dt), row);
                 next += 1;
             }
             let energy = if is_wall { &mut self.tally.wall_energy } else { &mut self.tally.energy };
@@ -244,13 +248,18 @@ impl Block {
             let evaluated = bench.contacts.iter().zip(&bench.responses);
             for ((contact, response), &row) in evaluated.zip(&bench.rows) {
                 let i = keys[row as usize][0] as usize;
-                let apart = grains.position[i] - placement.position;
+                let apart = image(i as u32) - placement.position;
                 let (on_grain, on_part) =
                     loads_on_grain_and_part(contact, response, grains.radius[i], apart);
                 load[i - self.first].add(&on_grain);
                 if contact.overlap > 0.0 || response.holds {
-                    self.tally.wrenches[index].add(&on_part);
-                    if !is_wall {
+                    let felt = bench.nearest[row as usize].felt;
+                    let wrenches = match felt {
+                        true => &mut self.tally.wrenches,
+                        false => &mut self.tally.unfelt,
+                    };
+                    wrenches[index].add(&on_part);
+                    if felt && !is_wall {
                         let radius = grains.radius[i];
                         self.tally.footprints[index].add_grain(
                             contact,

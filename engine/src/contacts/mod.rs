@@ -15,6 +15,7 @@ use crate::contact::table::ContactTable;
 use crate::contact::{ContactStage, Partner};
 use crate::footprint::Footprint;
 use crate::grains::{Grains, Load};
+use crate::math::Vec3;
 use crate::neighbours::CellGrid;
 use crate::parallel::{BLOCK, block_of};
 use crate::surface::Wrench;
@@ -37,6 +38,8 @@ pub(crate) struct ContactSums {
     pub(crate) wall_energy: Vec<f64>,
     /// Per part.
     pub(crate) wrenches: Vec<Wrench>,
+    /// Per part: what grains do to it that its body does not feel.
+    pub(crate) unfelt: Vec<Wrench>,
     /// Per part; empty for walls.
     pub(crate) footprints: Vec<Footprint>,
     pub(crate) overlap: Deepest,
@@ -58,6 +61,7 @@ impl Contacts {
                     energy: vec![0.0; n_channels],
                     wall_energy: vec![0.0; n_channels],
                     wrenches: vec![Wrench::default(); n_parts],
+                    unfelt: vec![Wrench::default(); n_parts],
                     footprints: vec![Footprint::default(); n_parts],
                     overlap: Deepest::default(),
                 },
@@ -98,10 +102,11 @@ impl Contacts {
             let bench = &mut block.bench;
             let end = (block.first + BLOCK).min(grains.len());
             let here = block.first..end;
+            let placement = &part.placement;
+            let image = |x: Vec3| grains.period.image_near(x, placement.position);
+            let positions = &grains.position[here.clone()];
             bench.points.clear();
-            bench
-                .points
-                .extend(grains.position[here.clone()].iter().map(|&x| part.placement.to_body(x)));
+            bench.points.extend(positions.iter().map(|&x| placement.to_body(image(x))));
             part.surface.closest_many(&bench.points, &mut bench.nearest);
             let mut keys = std::mem::take(&mut bench.keys);
             keys.clear();
@@ -186,6 +191,8 @@ impl Contacts {
         sums.wall_energy.resize(n_channels, 0.0);
         sums.wrenches.clear();
         sums.wrenches.resize(n_parts, Wrench::default());
+        sums.unfelt.clear();
+        sums.unfelt.resize(n_parts, Wrench::default());
         sums.footprints.clear();
         sums.footprints.resize(n_parts, Footprint::default());
         sums.overlap = Deepest::default();
@@ -197,6 +204,9 @@ impl Contacts {
                 *sum += part;
             }
             for (sum, part) in sums.wrenches.iter_mut().zip(&tally.wrenches) {
+                sum.add(part);
+            }
+            for (sum, part) in sums.unfelt.iter_mut().zip(&tally.unfelt) {
                 sum.add(part);
             }
             for (sum, part) in sums.footprints.iter_mut().zip(&tally.footprints) {

@@ -25,7 +25,7 @@ const KINDS: [GrainKind; 2] = [
 
 #[test]
 fn spheres_settle_to_the_packing_and_the_contacts_of_a_bed_with_friction() {
-    let container = Container { width: 0.03, depth: 0.03 };
+    let container = Container::walled_box(0.03, 0.03);
     let gravity = Vec3::new(0.0, 0.0, -9.81);
     with_threads(2, || {
         let grains = fill(&KINDS, (Space::Spatial, &container), 1);

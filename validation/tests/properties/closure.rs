@@ -15,7 +15,7 @@ use rand::RngExt;
 use validation::rig::{LARGE, Linear, S1, SMALL, Size, bed, run};
 
 const GRAVITY: Vec3 = Vec3::new(0.0, 0.0, -9.81);
-const BOX: Container = Container { width: 0.25, depth: 0.0 };
+const BOX: Container = Container::walled_box(0.25, 0.0);
 
 /// 2 000 grains in the proportion of Wang, Ye & Zheng (2012), fallen into a box. They still rattle a
 /// little: an impact has ten thousand times the energy.
@@ -71,7 +71,7 @@ fn without_dissipation_the_energy_of_a_box_of_grains_does_not_drift() {
     const DT: f64 = 1.5e-6;
     let law =
         Linear { normal_damping_rate: 0.0, tangential_damping_rate: 0.0, friction: 0.0, ..S1 };
-    let room = Container { width: 0.15, depth: 0.0 };
+    let room = Container::walled_box(0.15, 0.0);
     let kinds = [(SMALL, 160), (LARGE, 40)].map(|(size, count)| GrainKind {
         count,
         radius: size.radius,

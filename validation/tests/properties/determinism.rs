@@ -13,7 +13,7 @@ use crate::cloud::laws;
 
 /// `n` grains in lively motion, so that contacts open and close everywhere, and a disc shot into them.
 fn impact(n: usize, width: f64) -> Simulation {
-    let container = Container { width, depth: 0.0 };
+    let container = Container::walled_box(width, 0.0);
     let n_large = n / 6;
     let kinds = [(SMALL, n - n_large), (LARGE, n_large)].map(|(size, count)| GrainKind {
         count,

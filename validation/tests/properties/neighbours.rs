@@ -59,7 +59,7 @@ fn check(world: &mut World, steps: usize) -> usize {
 #[test]
 fn the_pairs_that_touch_in_a_plane_are_those_of_all_pairs_at_a_size_ratio_of_twenty() {
     for seed in [1, 2, 3] {
-        let container = Container { width: 0.1, depth: 0.0 };
+        let container = Container::walled_box(0.1, 0.0);
         let kinds =
             KINDS.map(|(count, radius)| GrainKind { count, radius, mass: size(radius).mass });
         let mut rng = random(seed, "velocities");

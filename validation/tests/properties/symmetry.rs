@@ -85,7 +85,7 @@ struct Units {
 
 const SI: Units = Units { length: 1.0, time: 1.0, mass: 1.0 };
 
-const BOX: Container = Container { width: 0.05, depth: 0.0 };
+const BOX: Container = Container::walled_box(0.05, 0.0);
 
 /// Grains that are about to fall into a small heap, told in SI units.
 fn heap() -> Vec<Grain> {
@@ -119,7 +119,7 @@ fn impact(grains: &[Grain], units: Units, steps: usize) -> Vec<Vec3> {
         friction: S1.friction,
     };
     let resting = RestingBed::without_history(Space::Planar, &grains);
-    let room = Container { width: BOX.width * length, depth: 0.0 };
+    let room = Container::walled_box(BOX.extents()[0] * length, 0.0);
     let gravity = Vec3::new(0.0, 0.0, -9.81 * velocity / time);
     let bed = GrainBed::new(&resting, room, gravity, vec![law.stage(), rolling(0.1, 0.3)], 1);
     let size = Size { radius: 0.01 * length, mass: 5e-3 * mass };

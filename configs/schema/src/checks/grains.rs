@@ -1,13 +1,21 @@
 //! What only a model of grains is checked for.
 
+use engine::contact::Slot;
 use engine::grains::Space;
 
 use super::{Common, metres, seconds};
+use crate::absorbing;
 use crate::diagnostics::{Diagnostic, Span};
 use crate::limits;
-use crate::model::{BedSource, Container, GrainModel, StartX};
-use crate::read::{BodyPlaces, disc_area, sphere_volume};
+use crate::model::{BedSource, BottomKind, Container, GrainModel, LawChoice, SidesKind, StartX};
+use crate::read::BodyPlaces;
 use crate::stability;
+
+/// Diameters of the largest grain that a periodic box is at least wide.
+const GRAINS_ACROSS: f64 = 6.0;
+
+/// Diameters of the largest grain between an intruder and its image in a periodic side, at least.
+const GRAINS_BESIDE: f64 = 4.0;
 
 pub(super) struct GrainChecks<'a> {
     pub(super) grains: GrainModel<'a>,
@@ -17,18 +25,20 @@ pub(super) struct GrainChecks<'a> {
 impl GrainChecks<'_> {
     pub(super) fn all(&self) {
         self.sizes();
+        self.boundaries();
         self.links();
         self.derived_quantities();
         self.common.number_of_conditions();
         if !self.common.reader.failed() {
             self.start_positions();
+            self.effects_of_space();
             self.steps();
             self.targets();
         }
     }
 
     fn sizes(&self) {
-        let Container { width, depth } = self.grains.medium.container;
+        let Container { width, depth, .. } = self.grains.medium.container;
         let in_space = self.grains.medium.space == Space::Spatial;
         let too_wide = |what: &str, diameter: f64, places: BodyPlaces| {
             let does_not_fit = |length: f64, side: Option<Span>, which: &str| {
@@ -49,7 +59,54 @@ impl GrainChecks<'_> {
         }
         if let BedSource::Settle(settle) = &self.grains.medium.bed.source {
             for (kind, places) in settle.grains.iter().zip(&self.common.places.grains) {
-                too_wide("grain", kind.diameter, *places);
+                too_wide("grain", kind.sizes.largest(), *places);
+            }
+        }
+    }
+
+    /// Refuses what a periodic side or a layer cannot be.
+    fn boundaries(&self) {
+        let container = &self.grains.medium.container;
+        let absorbs =
+            container.sides == SidesKind::Absorbing || container.bottom == BottomKind::Absorbing;
+        if absorbs
+            && container.absorbing_rate.is_none()
+            && absorbing::wave_speed(self.grains).is_none()
+        {
+            let law = &self.grains.medium.contact_law;
+            self.common.reader.report(
+                Diagnostic::error(format!(
+                    "the law `{}` does not say how fast waves are",
+                    law.entry.name
+                ))
+                .at(law.span, "has no collision time")
+                .help("give container.absorbing_rate"),
+            );
+        }
+        if container.sides != SidesKind::Periodic {
+            return;
+        }
+        let grain = self.grains.largest_grain();
+        let intruder = self.grains.extent();
+        let mut axes = vec![("wide", container.width, self.common.places.width)];
+        if self.grains.medium.space == Space::Spatial {
+            axes.push(("deep", container.depth, self.common.places.depth));
+        }
+        for (which, length, span) in axes {
+            let refuse = |needed: f64, why: &str| {
+                self.common.reader.report(
+                    Diagnostic::error(format!("the periodic box is too narrow for {why}"))
+                        .at(span, format!("{} {which}", metres(length)))
+                        .help(format!("at least {} is wanted", metres(needed))),
+                );
+            };
+            if length < GRAINS_ACROSS * grain {
+                refuse(GRAINS_ACROSS * grain, "its grains, which would touch their own images");
+            } else if length <= intruder + GRAINS_BESIDE * grain {
+                refuse(
+                    intruder + GRAINS_BESIDE * grain,
+                    "the intruder, which would feel its own image",
+                );
             }
         }
     }
@@ -87,8 +144,13 @@ impl GrainChecks<'_> {
         let mut bodies: Vec<(&str, f64, f64, BodyPlaces)> = Vec::new();
         if let BedSource::Settle(settle) = &medium.bed.source {
             for (kind, places) in settle.grains.iter().zip(&self.common.places.grains) {
-                bodies.push(("grain", kind.diameter, kind.mass, *places));
-                let total = kind.count as f64 * kind.mass;
+                let (smallest, largest) = (kind.sizes.smallest(), kind.sizes.largest());
+                let extremes =
+                    if smallest < largest { vec![smallest, largest] } else { vec![smallest] };
+                for diameter in extremes {
+                    bodies.push(("grain", diameter, kind.mass(medium.space, diameter), *places));
+                }
+                let total = kind.total_mass(medium.space);
                 if kind.count > 0 {
                     let inputs = [("mass", places.mass), ("count of grains", places.count)];
                     self.common.derived("the mass of all grains", total, inputs);
@@ -145,9 +207,32 @@ impl GrainChecks<'_> {
         }
     }
 
+    /// In a plane grains turn about one axis only, which lies in every contact plane.
+    fn effects_of_space(&self) {
+        let medium = self.grains.medium;
+        let settling: &[LawChoice] = match &medium.bed.source {
+            BedSource::Settle(settle) => &settle.effects,
+            BedSource::Csv(_) => &[],
+        };
+        for effect in medium.effects.iter().chain(settling) {
+            if medium.space == Space::Planar && effect.entry.slot == Slot::Twisting {
+                let name = effect.entry.name;
+                self.common.reader.report(
+                    Diagnostic::error(format!("`{name}` does nothing in a planar bed"))
+                        .at(effect.span, "discs cannot twist about the normal of a contact")
+                        .help("leave it out, or make the bed one of spheres: dimension = 3"),
+                );
+            }
+        }
+    }
+
     fn start_positions(&self) {
         let width = self.grains.medium.container.width;
-        let radius = self.grains.half_width();
+        // Through a periodic side the intruder may stand.
+        let radius = match self.grains.medium.container.sides {
+            SidesKind::Periodic => 0.0,
+            SidesKind::Wall | SidesKind::Absorbing => self.grains.half_width(),
+        };
         let inside = |x: f64| x >= radius && x <= width - radius;
         let outside = |x: f64, span: Option<Span>| {
             if !inside(x) {
@@ -275,14 +360,10 @@ impl GrainChecks<'_> {
         else {
             return;
         };
-        let Container { width, depth } = self.grains.medium.container;
-        let (size, base): (fn(f64) -> f64, _) = match self.grains.medium.space {
-            Space::Planar => (disc_area, width),
-            Space::Spatial => (sphere_volume, width * depth),
-        };
-        let content: f64 =
-            settle.grains.iter().map(|kind| kind.count as f64 * size(kind.diameter)).sum();
-        let implied = content / (base * height);
+        let space = self.grains.medium.space;
+        let contents = settle.grains.iter().map(|kind| kind.count as f64 * kind.content(space));
+        let base = self.grains.medium.container.without_layers().base_area(space);
+        let implied = contents.sum::<f64>() / (base * height);
         if (implied / fraction - 1.0).abs() > 0.03 {
             self.common.reader.report(
                 Diagnostic::warning("the two targets of the bed contradict each other")

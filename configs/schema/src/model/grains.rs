@@ -1,9 +1,12 @@
 //! A bed of grains, in SI.
 
+use std::f64::consts::{FRAC_PI_4, FRAC_PI_6};
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use contact_laws::LawEntry;
+use engine::bed::SizeDistribution;
+use engine::boundary::{self, Base, Bottom, Sides};
 use engine::grains::Space;
 use engine::params::ParamTable;
 
@@ -76,13 +79,74 @@ pub struct GrainLog {
     pub fields_at: Vec<f64>,
 }
 
-/// The box: x from 0 to `width`, in three dimensions y from 0 to `depth`, and up from its bottom at 0.
+/// The container: x from 0 to `width`, in three dimensions y from 0 to `depth`, and up from its bottom
+/// at 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Container {
-    /// Inner width (m).
+    /// What it is from above.
+    pub shape: ContainerShape,
+    /// Inner width, or diameter (m).
     pub width: f64,
-    /// Inner depth (m); 0 in a plane.
+    /// Inner depth, or diameter (m); 0 in a plane.
     pub depth: f64,
+    /// What its sides are.
+    pub sides: SidesKind,
+    /// What its bottom is.
+    pub bottom: BottomKind,
+    /// Thickness of the layers that absorb (m), if the file says so.
+    pub absorbing_thickness: Option<f64>,
+    /// Rate of their drag at the wall (1/s), if the file says so.
+    pub absorbing_rate: Option<f64>,
+}
+
+/// The shape of a container from above.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContainerShape {
+    /// A rectangle.
+    Box,
+    /// A circle.
+    Cylinder,
+}
+
+/// The sides of a container.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SidesKind {
+    /// Walls.
+    Wall,
+    /// What leaves on one side comes in on the other.
+    Periodic,
+    /// Walls behind a layer that absorbs.
+    Absorbing,
+}
+
+/// The bottom of a container.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BottomKind {
+    /// A wall.
+    Wall,
+    /// A wall below a layer that absorbs.
+    Absorbing,
+}
+
+impl Container {
+    /// The same to the engine, with plain walls where layers absorb.
+    #[must_use]
+    pub fn without_layers(&self) -> boundary::Container {
+        let sides = match self.sides {
+            SidesKind::Periodic => Sides::Periodic,
+            SidesKind::Wall | SidesKind::Absorbing => Sides::Wall,
+        };
+        boundary::Container { base: self.base(), sides, bottom: Bottom::Wall }
+    }
+
+    /// What it is from above, to the engine.
+    #[must_use]
+    pub fn base(&self) -> Base {
+        match self.shape {
+            ContainerShape::Box => Base::Rectangle { width: self.width, depth: self.depth },
+            ContainerShape::Cylinder => Base::Circle { diameter: self.width },
+        }
+    }
 }
 
 /// The grains at the start of the impact.
@@ -118,15 +182,54 @@ pub struct Settle {
     pub effects: Vec<LawChoice>,
 }
 
-/// Equal grains.
+/// Grains of one material, equal or of many sizes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GrainKind {
     /// How many.
     pub count: u64,
-    /// Diameter (m).
-    pub diameter: f64,
-    /// Mass of one (kg).
-    pub mass: f64,
+    /// Their diameters.
+    pub sizes: SizeDistribution,
+    /// What follows a mass from a diameter.
+    pub material: Material,
+}
+
+/// What the mass of a grain follows from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Material {
+    /// It is given, for grains of one size (kg).
+    Mass(f64),
+    /// Mass per volume (kg/m³), or per area of a plane (kg/m²).
+    Density(f64),
+}
+
+impl GrainKind {
+    /// The mass (kg) of a grain of `diameter` (m).
+    #[must_use]
+    pub fn mass(&self, space: Space, diameter: f64) -> f64 {
+        match self.material {
+            Material::Mass(mass) => mass,
+            Material::Density(density) => density * space.grain_content(diameter),
+        }
+    }
+
+    /// The mass of all of them (kg), expected where sizes are drawn.
+    #[must_use]
+    pub fn total_mass(&self, space: Space) -> f64 {
+        let one = match self.material {
+            Material::Mass(mass) => mass,
+            Material::Density(density) => density * self.content(space),
+        };
+        self.count as f64 * one
+    }
+
+    /// The mean volume of one (m³), or area (m²) in a plane.
+    #[must_use]
+    pub fn content(&self, space: Space) -> f64 {
+        match space {
+            Space::Planar => FRAC_PI_4 * self.sizes.moment(2),
+            Space::Spatial => FRAC_PI_6 * self.sizes.moment(3),
+        }
+    }
 }
 
 /// Grains at given positions.
@@ -179,6 +282,19 @@ impl<'a> GrainModel<'a> {
     #[must_use]
     pub fn bed_key_text(&self) -> &'a str {
         &self.model.bed_key
+    }
+
+    /// The largest diameter of a grain (m).
+    #[must_use]
+    pub fn largest_grain(&self) -> f64 {
+        let largest = |diameters: &mut dyn Iterator<Item = f64>| diameters.fold(0.0, f64::max);
+        match &self.medium.bed.source {
+            BedSource::Settle(settle) => {
+                let kinds = settle.grains.iter().filter(|kind| kind.count > 0);
+                largest(&mut kinds.map(|kind| kind.sizes.largest()))
+            }
+            BedSource::Csv(csv) => largest(&mut csv.grains.iter().map(|grain| 2.0 * grain.radius)),
+        }
     }
 
     /// Number of grains in the bed.

@@ -6,8 +6,9 @@ mod parameters;
 mod resistive;
 
 pub use grains::{
-    Bed, BedSource, Container, CsvBed, GrainKind, GrainLog, GrainMedium, GrainModel, LawChoice,
-    Settle, StartPositions, Stepping, TimeStep,
+    Bed, BedSource, BottomKind, Container, ContainerShape, CsvBed, GrainKind, GrainLog,
+    GrainMedium, GrainModel, LawChoice, Material, Settle, SidesKind, StartPositions, Stepping,
+    TimeStep,
 };
 pub(crate) use impact::degrees;
 pub use impact::{Condition, ConditionLists, Impact, Intruder, Launch, StartX};

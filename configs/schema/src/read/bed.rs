@@ -6,7 +6,8 @@ use engine::params::{Default as ParamDefault, ParamSpec};
 use super::bed_file::{DataFolder, csv_bed};
 use super::grains::time_step;
 use super::laws::effects;
-use super::{BodyPlaces, Places, disc_area, mass, sphere_volume};
+use super::sizes::sizes;
+use super::{BodyPlaces, Places};
 use crate::diagnostics::Diagnostic;
 use crate::limits;
 use crate::model::{Bed, BedSource, Container, GrainKind, LawChoice, Settle};
@@ -59,7 +60,7 @@ fn settle(
     let wanted = kinds.len().max(1);
     let grains: Vec<GrainKind> =
         kinds.into_iter().filter_map(|kind| grain_kind(kind, space, places)).collect();
-    let effects = effects(table.tables("effect", limits::EFFECTS));
+    let effects = effects(table.tables("effect", limits::EFFECTS), law);
     let grains = (grains.len() == wanted).then_some(grains)?;
     if grains.iter().all(|kind| kind.count == 0) {
         table.reader.report(
@@ -107,18 +108,15 @@ fn grain_kind(table: TableReader<'_>, space: Space, places: &mut Places) -> Opti
         0..=limits::GRAINS_OF_A_KIND,
         "the number of grains of this kind",
     );
-    let diameter = table.number(&specs::GRAIN_DIAMETER);
-    let (content, density): (fn(f64) -> f64, _) = match space {
-        Space::Planar => (disc_area, &specs::AREA_DENSITY),
-        Space::Spatial => (sphere_volume, &specs::DENSITY),
-    };
-    let content = diameter.map(|found| content(found.value));
-    let mass = mass(&table, &specs::GRAIN_MASS, density, content);
+    let sizes = sizes(&table, space);
     places.grains.push(BodyPlaces {
         count: table.span_of("count"),
-        diameter: table.span_of("diameter"),
+        diameter: ["diameter", "diameter_max", "diameters", "diameter_median"]
+            .into_iter()
+            .find_map(|key| table.span_of(key)),
         mass: table.span_of("mass").or_else(|| table.span_of("density")),
     });
     table.finish();
-    Some(GrainKind { count: count?.value, diameter: diameter?.value, mass: mass? })
+    let (sizes, material) = sizes?;
+    Some(GrainKind { count: count?.value, sizes, material })
 }

@@ -73,8 +73,8 @@ pub(crate) fn csv_bed(
         );
         return None;
     }
-    let &Container { width, depth } = container?;
-    match grains_csv::read(&bytes, Room { space, width, depth }) {
+    let container = container?.without_layers();
+    match grains_csv::read(&bytes, Room { space, container }) {
         Ok(read) => {
             for warning in read.warnings {
                 table.reader.report(Diagnostic::warning(warning).at(named.span, "in this file"));

@@ -4,14 +4,14 @@ use engine::grains::Space;
 use engine::params::ParamSpec;
 
 use super::bed::bed;
+use super::container::container;
 use super::foreign::Foreign;
 use super::{
     CommonTables, DataFolder, IMPACT_EXAMPLE, INTRUDER_EXAMPLE, KINDS, Places, energy, impact, laws,
 };
-use crate::diagnostics::Diagnostic;
 use crate::limits;
 use crate::model::{
-    Container, GrainLog, GrainMedium, LogSettings, Medium, Model, RunSettings, Stepping, TimeStep,
+    GrainLog, GrainMedium, LogSettings, Medium, Model, RunSettings, Stepping, TimeStep,
 };
 use crate::reader::TableReader;
 use crate::specs;
@@ -49,7 +49,7 @@ pub(super) fn model(
         folder,
         places,
     );
-    let effects = laws::effects(root.tables("effect", limits::EFFECTS));
+    let effects = laws::effects(root.tables("effect", limits::EFFECTS), contact_law.as_ref());
     let intruder = impact::in_grains(root.table("intruder", Some(INTRUDER_EXAMPLE)), space, places);
     let impact_table = root.table("impact", Some(IMPACT_EXAMPLE));
     let impact = impact::impact_on_grains(&impact_table, space, places);
@@ -136,38 +136,6 @@ fn medium(table: TableReader<'_>, places: &mut Places) -> Option<(Space, f64)> {
         _ => Space::Spatial,
     };
     Some((space, gravity?.value))
-}
-
-fn container(table: TableReader<'_>, space: Space, places: &mut Places) -> Option<Container> {
-    let shape = table.choice("shape", &["box"], &["cylinder"], "the shape of the container");
-    let width = table.number(&specs::WIDTH);
-    let depth = depth(&table, space);
-    let sides = table.choice("sides", &["wall"], &["periodic", "absorbing"], "what the sides are");
-    let bottom = table.choice("bottom", &["wall"], &["absorbing"], "what the bottom is");
-    places.width = table.span_of("width");
-    places.depth = table.span_of("depth");
-    // The keys of a shape that is yet to come are not worth a second message.
-    if shape.is_some() {
-        table.finish();
-    }
-    shape.and(sides).and(bottom)?;
-    Some(Container { width: width?.value, depth: depth? })
-}
-
-/// The depth of a box in space (m); 0 in a plane, which has none.
-fn depth(table: &TableReader<'_>, space: Space) -> Option<f64> {
-    match space {
-        Space::Spatial => table.number(&specs::DEPTH).map(|found| found.value),
-        Space::Planar if table.has("depth") => {
-            table.reader.report(
-                Diagnostic::error("a planar bed has no depth")
-                    .at(table.span_of("depth"), "is for dimension = 3")
-                    .help("remove it, or write dimension = 3 in [medium]"),
-            );
-            None
-        }
-        Space::Planar => Some(0.0),
-    }
 }
 
 /// A fixed step or `"auto"`.

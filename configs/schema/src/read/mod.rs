@@ -9,6 +9,7 @@ use crate::specs;
 
 mod bed;
 mod bed_file;
+mod container;
 mod fit;
 mod foreign;
 mod grains;
@@ -16,6 +17,7 @@ mod impact;
 mod laws;
 mod own_effect;
 mod resistive;
+mod sizes;
 
 pub(crate) use bed_file::DataFolder;
 pub(crate) use own_effect::formula_fault;
@@ -107,12 +109,12 @@ fn energy(table: TableReader<'_>) -> Option<EnergySettings> {
 }
 
 /// (m²) from a diameter (m).
-pub(crate) fn disc_area(diameter: f64) -> f64 {
+fn disc_area(diameter: f64) -> f64 {
     std::f64::consts::FRAC_PI_4 * diameter * diameter
 }
 
 /// (m³) from a diameter (m).
-pub(crate) fn sphere_volume(diameter: f64) -> f64 {
+fn sphere_volume(diameter: f64) -> f64 {
     std::f64::consts::PI / 6.0 * diameter * diameter * diameter
 }
 

@@ -124,7 +124,7 @@ fn settle(
     while !settling.is_at_rest() {
         settling.advance().map_err(|source| RunError::Settling { source })?;
         let (clock, restlessness) = (settling.clock(), settling.restlessness());
-        if clock.time() > patience {
+        if settling.time_since_tap() > patience {
             return Err(RunError::Restless { time: clock.time(), restlessness });
         }
         if clock.step.is_multiple_of(SAVE_EVERY) {

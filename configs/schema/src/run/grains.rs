@@ -19,6 +19,7 @@ use super::folder::OutputFolder;
 use super::log_texts::{arrow_m_per_newton, attachments, metadata, opening};
 use super::model_file::model_text;
 use super::observables::Observables;
+use super::summary::near_the_floor;
 use super::{
     BedSummary, Control, CostSummary, FinalEnergy, PreparedBed, Progress, RunError, Summary, Task,
     bed_key, result_key,
@@ -86,7 +87,7 @@ impl Setting<'_> {
             wall_s: wall,
             grain_steps_per_s: Some(if wall > 0.0 { grain_steps / wall } else { 0.0 }),
         };
-        let summary = Summary::of_grains(
+        let mut summary = Summary::of_grains(
             self.grains,
             condition,
             &run.simulation,
@@ -94,10 +95,29 @@ impl Setting<'_> {
             self.bed_summary,
             cost,
         );
+        if let Some(warning) = self.floor_warning(&run.simulation) {
+            control.warn(&warning);
+            summary.bed.iter_mut().for_each(|bed| bed.warnings.push(warning.clone()));
+        }
         run.log.finish()?;
         folder.write_json("summary.json", &summary)?;
         folder.tidy()?;
         Ok(Some(summary))
+    }
+
+    /// What to say where the floor may have stopped the intruder.
+    fn floor_warning(&self, simulation: &Simulation) -> Option<String> {
+        let grains = &simulation.bed().grains;
+        let mean_diameter = 2.0 * grains.radius.iter().sum::<f64>() / grains.len() as f64;
+        let left = simulation.intruder().bodies().iter().map(|body| body.lowest());
+        near_the_floor(left.fold(f64::INFINITY, f64::min), mean_diameter, 2.0 * self.drawn_radius())
+    }
+
+    /// Radius (m) of the intruder without the shaft of a recessive wall, which is not drawn.
+    fn drawn_radius(&self) -> f64 {
+        let GrainModel { model, medium } = self.grains;
+        let shape = (model.intruder.shape.build)(&model.intruder.params, medium.space);
+        shape.surface.bounding_radius()
     }
 
     fn progress(&self, simulation: &Simulation) -> Progress {
@@ -186,11 +206,9 @@ impl Setting<'_> {
     fn log_setup(&self, simulation: &Simulation, condition: &Condition) -> LogSetup {
         let GrainModel { model, medium } = self.grains;
         let bodies = simulation.intruder().bodies();
-        // Without the shaft of a recessive wall, which is not drawn.
-        let drawn = (model.intruder.shape.build)(&model.intruder.params, medium.space);
-        let radius = drawn.surface.bounding_radius();
+        let radius = self.drawn_radius();
         let weight = model.intruder.mass * medium.gravity;
-        let Container { width, depth } = medium.container;
+        let Container { width, depth, .. } = medium.container;
         let top = simulation.surface() + 2.0 * radius;
         let mut metadata = metadata(model, condition);
         let bed_key = blake3::Hash::from_bytes(bed_key(self.grains));

@@ -97,7 +97,7 @@ impl<'a> Observables<'a> {
         let top = simulation.surface() + 2.0 * HEADROOM * body.surface().bounding_radius();
         let plane = Plane {
             y,
-            x: 0.0..bed.container().width,
+            x: 0.0..bed.container().extents()[0],
             z: 0.0..top,
             spacing: SPACING * diameter,
             kernel_width: KERNEL_WIDTH * diameter,

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use engine::ledger::{ChannelKind, Ledger, TermKind};
 use serde::{Deserialize, Serialize};
 
+pub(super) use grains::near_the_floor;
 pub use list::{Group, ListSummary, Scatter};
 pub(super) use resistive::Watched;
 pub use resistive::{ForceSummary, LinkSummary};
@@ -101,6 +102,9 @@ pub struct BedSummary {
     pub packing_fraction_inside: Option<f64>,
     pub height_m: f64,
     pub coordination: f64,
+    /// How deep the bed should be for its floor not to be felt, see `docs/boundaries.md`.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub required_depth_m: Option<f64>,
     pub cache: String,
     /// What took part in the impact, once there is one.
     #[serde(skip_serializing_if = "Option::is_none", default)]

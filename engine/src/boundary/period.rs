@@ -1,0 +1,111 @@
+//! Sides that are no sides: what leaves on one comes in on the other.
+
+use crate::math::Vec3;
+
+/// Half the lengths (m) along x and y after which everything repeats; infinite where nothing does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Period {
+    half: [f64; 2],
+}
+
+impl Default for Period {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+impl Period {
+    /// Nothing repeats.
+    pub const NONE: Self = Self { half: [f64::INFINITY; 2] };
+
+    /// Repeats after `width` (m) along x and `depth` (m) along y.
+    #[must_use]
+    pub fn new(width: f64, depth: f64) -> Self {
+        Self { half: [0.5 * width, 0.5 * depth] }
+    }
+
+    /// The length (m) after which it repeats along x (0) or y (1), if it does.
+    pub(crate) fn length(&self, axis: usize) -> Option<f64> {
+        self.half.get(axis).map(|half| 2.0 * half).filter(|length| length.is_finite())
+    }
+
+    /// Whether nothing repeats.
+    pub(crate) fn is_none(&self) -> bool {
+        *self == Self::NONE
+    }
+
+    /// The shortest of the vectors that lead from one point to the images of another, given one of
+    /// them between points inside of the container.
+    #[inline(always)]
+    pub(crate) fn shortest(&self, apart: Vec3) -> Vec3 {
+        let along = |at: f64, half: f64| {
+            if at > half {
+                at - 2.0 * half
+            } else if at < -half {
+                at + 2.0 * half
+            } else {
+                at
+            }
+        };
+        Vec3::new(along(apart.x, self.half[0]), along(apart.y, self.half[1]), apart.z)
+    }
+
+    /// The image of `point` that is nearest to `reference`, which may lie anywhere.
+    #[inline]
+    pub(crate) fn image_near(&self, point: Vec3, reference: Vec3) -> Vec3 {
+        let along = |at: f64, to: f64, half: f64| {
+            if (at - to).abs() <= half {
+                return at;
+            }
+            at - 2.0 * half * ((at - to) / (2.0 * half) + 0.5).floor()
+        };
+        Vec3::new(
+            along(point.x, reference.x, self.half[0]),
+            along(point.y, reference.y, self.half[1]),
+            point.z,
+        )
+    }
+
+    /// The image of `point` inside of the container, from 0 to the length of the period.
+    #[inline]
+    pub(crate) fn inside(&self, point: Vec3) -> Vec3 {
+        let along = |at: f64, half: f64| {
+            if at < 0.0 {
+                at + 2.0 * half
+            } else if at >= 2.0 * half {
+                at - 2.0 * half
+            } else {
+                at
+            }
+        };
+        // Along an axis that does not repeat a point may lie behind the wall.
+        let x = if self.half[0].is_finite() { along(point.x, self.half[0]) } else { point.x };
+        let y = if self.half[1].is_finite() { along(point.y, self.half[1]) } else { point.y };
+        Vec3::new(x, y, point.z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NARROW: Period = Period { half: [0.5, f64::INFINITY] };
+
+    #[test]
+    fn the_shortest_way_leads_across_the_side_where_that_is_nearer() {
+        let apart = NARROW.shortest(Vec3::new(0.75, 3.0, -2.0));
+        assert_eq!(apart, Vec3::new(-0.25, 3.0, -2.0));
+        assert_eq!(NARROW.shortest(-apart), Vec3::new(0.25, -3.0, 2.0));
+        assert_eq!(NARROW.image_near(Vec3::new(0.125, 0.0, 0.0), Vec3::x() * 7.75).x, 8.125);
+        assert_eq!(NARROW.inside(Vec3::new(-0.25, -1.0, 0.0)), Vec3::new(0.75, -1.0, 0.0));
+        assert_eq!(NARROW.inside(Vec3::x()).x, 0.0);
+    }
+
+    #[test]
+    fn where_nothing_repeats_every_vector_stays_as_it_is() {
+        let vector = Vec3::new(1e3, -1e3, 0.1);
+        assert_eq!(Period::NONE.shortest(vector), vector);
+        assert_eq!(Period::NONE.image_near(vector, -vector), vector);
+        assert_eq!(Period::NONE.inside(vector), vector);
+    }
+}
