@@ -32,10 +32,12 @@ const SPIN: f64 = 100.0;
 /// At how many places within a step a contact begins.
 const PHASES: usize = 20;
 
+type Stages = Vec<Box<dyn ContactStage>>;
+
 /// Laws with damping for one restitution, and how long (s) a contact under them lasts.
 struct Laws {
     name: &'static str,
-    of: fn(f64) -> (Vec<Box<dyn ContactStage>>, f64),
+    of: fn(f64) -> (Stages, f64),
     /// Energy that may be unaccounted for, without and with damping, and why.
     limits: [(f64, &'static str); 2],
     /// The widest gap (m) across which they still act.
@@ -277,7 +279,7 @@ impl Collision {
         self.channels
             .iter()
             .filter(|(name, ..)| {
-                !(with_dashpots && name == "sliding") && !signed.contains(&name.as_str())
+                !(signed.contains(&name.as_str()) || with_dashpots && name == "sliding")
             })
             // A channel that holds next to nothing has no share to lose.
             .map(|(_, held, lost)| lost / held.max(1e-3 * self.energy))
