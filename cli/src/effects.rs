@@ -226,6 +226,7 @@ fn default_text(spec: &ParamSpec) -> String {
         },
         Default::Value(value) => format!("default {}", format_si(value, spec.dimension)),
         Default::SameAs(key) => format!("default: {key}"),
+        Default::FromBase(key) => format!("default: {key} of the contact law, which must have it"),
     }
 }
 
@@ -280,6 +281,7 @@ fn parameter_json(spec: &ParamSpec) -> Value {
         "default": match spec.default {
             Default::Value(value) => json!(value),
             Default::SameAs(key) => json!(key),
+            Default::FromBase(key) => json!(format!("contact_law.{key}")),
             Default::Required => Value::Null,
         },
         "allowed": range_json(spec.allowed),

@@ -1,5 +1,9 @@
 //! The contact laws and effects of plunge, each in a file of its own and one line of [`LAWS`].
 
+mod adhesion;
+mod capillary_bridge;
+mod cohesion_dmt;
+mod cohesion_jkr;
 pub mod formula;
 mod hertz;
 mod hertz_mindlin;
@@ -7,7 +11,10 @@ mod hertz_mindlin_viscous;
 mod linear_spring_dashpot;
 mod registry;
 mod resistance;
+mod rolling_constant_torque;
 mod rolling_resistance;
+mod twisting_resistance;
+mod velocity_restitution;
 
 pub use registry::{ActsOn, FromParams, LawEntry};
 pub use resistance::{
@@ -21,7 +28,13 @@ pub static LAWS: &[&LawEntry] = &[
     &linear_spring_dashpot::ENTRY,
     &hertz_mindlin::ENTRY,
     &hertz_mindlin_viscous::ENTRY,
+    &velocity_restitution::ENTRY,
+    &cohesion_dmt::ENTRY,
+    &cohesion_jkr::ENTRY,
+    &capillary_bridge::ENTRY,
     &rolling_resistance::ENTRY,
+    &rolling_constant_torque::ENTRY,
+    &twisting_resistance::ENTRY,
 ];
 
 /// The law or effect called `name`.

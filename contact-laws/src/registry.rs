@@ -1,6 +1,6 @@
 //! What a law says of itself, and how it is built by name.
 
-use engine::contact::{ContactLaw, ContactStage, Stage};
+use engine::contact::{ContactLaw, ContactStage, Slot, Stage};
 use engine::ledger::Channel;
 use engine::params::{ParamSpec, ParamTable};
 
@@ -20,6 +20,8 @@ pub struct LawEntry {
     pub name: &'static str,
     /// Where it acts.
     pub acts_on: ActsOn,
+    /// When it acts.
+    pub slot: Slot,
     /// What it is, in one sentence.
     pub summary: &'static str,
     /// The law as a formula, in plain text.
@@ -44,6 +46,7 @@ impl LawEntry {
         Self {
             name: L::NAME,
             acts_on: ActsOn::ContactBase,
+            slot: L::SLOT,
             summary: "",
             formula: "",
             signature: "",

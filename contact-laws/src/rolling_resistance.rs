@@ -20,6 +20,8 @@ use crate::registry::{ActsOn, FromParams, LawEntry};
 /// lets it add all of itself). Were spring and dashpot judged together, the dashpot would wind the
 /// spring, and a bed at 2 m/s got 8 % of what rolling dissipates back out of this channel.
 ///
+/// Where k_n changes with the overlap, what the spring loses or gains by it is booked as dissipated.
+///
 /// k_n is the stiffness that the base law reports; R* is half a radius for equal grains and the
 /// radius at a wall, so codes that scale with R or the diameter have another μ_r.
 ///
@@ -46,6 +48,8 @@ pub(crate) struct Memory {
     angle: Vec3,
     /// Viscous couple at the end of the last step (N m).
     damping: Vec3,
+    /// k_r at the end of the last step (N m).
+    stiffness: f64,
 }
 
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -103,10 +107,13 @@ impl ContactLaw for RollingResistance {
             (if size > limit { trial * (limit / size) } else { trial }, wound)
         };
         let viscous = -couple - angle * k_r;
+        energy.dissipated += 0.5 * (history.stiffness - k_r) * before.dot(&wound);
         energy.stored += 0.5 * k_r * angle.norm_squared();
         energy.dissipated += 0.5 * (history.damping + viscous).dot(&turned);
 
-        *history = Memory { angle, damping: viscous };
+        // Without stiffness nothing was wound up that could come back.
+        let angle = if k_r > 0.0 { angle } else { Vec3::zeros() };
+        *history = Memory { angle, damping: viscous, stiffness: k_r };
         response.couple += couple;
     }
 

@@ -21,6 +21,9 @@ fn table(entry: &LawEntry) -> ParamTable {
             Given::Required => middle,
             Given::Value(value) => value,
             Given::SameAs(key) => table.get(key),
+            // The elastic constants of a contact law.
+            Given::FromBase(key) if key.ends_with("poisson_ratio") => 0.3,
+            Given::FromBase(_) => 1e8,
         };
         table.set(spec.key, value);
     }

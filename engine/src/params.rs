@@ -11,6 +11,8 @@ pub enum Default {
     Value(f64),
     /// The value of another parameter of the same table, named here; it stands earlier in the table.
     SameAs(&'static str),
+    /// For an effect on a contact law: the value of this parameter of the law, which must have it.
+    FromBase(&'static str),
 }
 
 /// An interval of SI values.
@@ -71,8 +73,8 @@ pub struct ParamTable {
 impl ParamTable {
     /// An empty table.
     #[must_use]
-    pub fn new() -> Self {
-        Self::default()
+    pub const fn new() -> Self {
+        Self { entries: Vec::new() }
     }
 
     /// Sets `key` to an SI value, replacing an earlier one.

@@ -66,7 +66,7 @@ impl Simulation {
         let impact_energy = bodies.iter().flat_map(|body| body.kinetic_energy()).sum::<f64>();
         // An intruder let go from rest has no energy of impact to compare with.
         let mass: f64 = bodies.iter().map(|body| body.mass).sum();
-        let fall = mass * world.bed.gravity.norm() * 2.0 * body.surface().bounding_radius();
+        let fall = mass * world.bed.gravity.norm() * 2.0 * body.reach_down();
         let energy_scale = if impact_energy > 0.0 { impact_energy } else { fall };
         let activity = Activity::default();
         Self { world, settings, courses, activity, surface, impact_energy, energy_scale }

@@ -36,6 +36,8 @@ impl Dimension {
     pub const NONE: Self = Self::of(0, 0, 0, 0);
     /// Length (m).
     pub const LENGTH: Self = Self::of(0, 1, 0, 0);
+    /// Volume (m³).
+    pub const VOLUME: Self = Self::of(0, 3, 0, 0);
     /// Mass (kg).
     pub const MASS: Self = Self::of(1, 0, 0, 0);
     /// Time (s).
@@ -58,6 +60,8 @@ impl Dimension {
     pub const DENSITY: Self = Self::of(1, -3, 0, 0);
     /// Density of a planar medium (kg/m²).
     pub const AREA_DENSITY: Self = Self::of(1, -2, 0, 0);
+    /// Surface tension or work of adhesion (J/m²), the same as N/m.
+    pub const SURFACE_ENERGY: Self = Self::STIFFNESS;
     /// Force (N).
     pub const FORCE: Self = Self::of(1, 1, -2, 0);
     /// Pressure or elastic modulus (Pa).
@@ -165,6 +169,7 @@ impl Kind {
 const KINDS: &[Kind] = &[
     Kind { dimension: Dimension::NONE, name: "a pure number", units: &[""] },
     Kind { dimension: Dimension::LENGTH, name: "a length", units: &["mm", "cm", "m"] },
+    Kind { dimension: Dimension::VOLUME, name: "a volume", units: &["mm^3", "m^3"] },
     Kind { dimension: Dimension::MASS, name: "a mass", units: &["g", "kg"] },
     Kind { dimension: Dimension::TIME, name: "a time", units: &["us", "ms", "s"] },
     Kind { dimension: Dimension::RATE, name: "a rate", units: &["1/s"] },

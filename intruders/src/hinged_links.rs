@@ -152,16 +152,18 @@ impl HingedLinks {
     fn stand(&mut self) {
         self.follow();
         for (part, body) in self.parts.iter_mut().zip(&self.bodies) {
-            part.placement = body.parts()[0].placement;
-            let (spin, placement) = (body.spin(), &mut part.placement);
-            placement.position = body.position;
-            placement.position_half = body.position;
-            placement.orientation = body.orientation;
-            placement.orientation_half = body.orientation;
-            placement.velocity = body.velocity;
-            placement.velocity_now = body.velocity;
-            placement.spin = spin;
-            placement.spin_now = spin;
+            let (spin, still) = (body.spin(), body.parts()[0].placement);
+            part.placement = Placement {
+                position: body.position,
+                position_half: body.position,
+                orientation: body.orientation,
+                orientation_half: body.orientation,
+                velocity: body.velocity,
+                spin,
+                velocity_now: body.velocity,
+                spin_now: spin,
+                ..still
+            };
         }
     }
 }

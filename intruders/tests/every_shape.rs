@@ -25,7 +25,7 @@ fn params(entry: &ShapeEntry) -> ParamTable {
         params.set(
             spec.key,
             match spec.default {
-                Default::Required => middle,
+                Default::Required | Default::FromBase(_) => middle,
                 Default::Value(value) => value,
                 Default::SameAs(other) => params.get(other),
             },

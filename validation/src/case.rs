@@ -65,6 +65,12 @@ impl Outcome {
         Self { what: what.into(), measured, expected: Expected::AtLeast(limit), why }
     }
 
+    /// A line of a table in Markdown: what, measured, expected.
+    #[must_use]
+    pub fn markdown(&self) -> String {
+        format!("| {} | {:.6e} | {} |", self.what, self.measured, self.expected)
+    }
+
     /// Whether what was measured is right; what is not a number never is.
     #[must_use]
     pub fn holds(&self) -> bool {

@@ -2,6 +2,8 @@
 
 use crate::case::Case;
 
+#[path = "../cases/adhesion.rs"]
+mod adhesion;
 #[path = "../cases/ballistic_flight.rs"]
 mod ballistic_flight;
 #[path = "../cases/friction_on_incline.rs"]
@@ -24,6 +26,8 @@ mod rolling_to_rest;
 mod sliding_to_rolling;
 #[path = "../cases/squeezed_grain.rs"]
 mod squeezed_grain;
+#[path = "../cases/viscoelastic_restitution.rs"]
+mod viscoelastic_restitution;
 
 /// Every case, simple ones first.
 pub static CASES: &[&Case] = &[
@@ -38,4 +42,6 @@ pub static CASES: &[&Case] = &[
     &hertz_collisions::CASE,
     &hertz_mindlin_oblique::CASE,
     &hertz_mindlin_spin::CASE,
+    &viscoelastic_restitution::CASE,
+    &adhesion::CASE,
 ];

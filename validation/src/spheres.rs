@@ -63,6 +63,8 @@ pub struct Rebound {
     pub largest_overlap: f64,
     /// (N).
     pub largest_force: f64,
+    /// (N); zero unless something attracts.
+    pub largest_pull: f64,
     /// From touch to release (s).
     pub duration: f64,
 }
@@ -106,6 +108,18 @@ impl Material {
     #[must_use]
     pub fn hertz_mindlin_viscous(&self, viscous_time: f64, friction: f64) -> Box<dyn ContactStage> {
         stage("hertz-mindlin-viscous", &self.hertz(friction, ("viscous_time", viscous_time), 0.0))
+    }
+
+    /// The effect `name` on a Hertz law for grains of it, with one parameter of its own.
+    #[must_use]
+    pub fn effect(&self, name: &str, own: (&'static str, f64)) -> Box<dyn ContactStage> {
+        let mut values = vec![own];
+        values.extend(
+            self.hertz(0.0, own, 0.0).into_iter().filter(|(key, _)| {
+                key.ends_with("young_modulus") || key.ends_with("poisson_ratio")
+            }),
+        );
+        stage(name, &values)
     }
 
     fn hertz(
@@ -162,15 +176,18 @@ pub fn collide(
     for _ in 0..1_000_000 {
         run(&mut flight.world, 1);
         let overlap = flight.overlap();
-        if overlap > 0.0 {
+        // Attraction may hold on to a contact that has opened.
+        if overlap > 0.0 || rebound.is_some() && flight.normal_force() < 0.0 {
             let seen = rebound.get_or_insert(Rebound {
                 motion: Motion::default(),
                 largest_overlap: 0.0,
                 largest_force: 0.0,
+                largest_pull: 0.0,
                 duration: 0.0,
             });
             seen.largest_overlap = seen.largest_overlap.max(overlap);
             seen.largest_force = seen.largest_force.max(flight.normal_force());
+            seen.largest_pull = seen.largest_pull.max(-flight.normal_force());
         } else if let Some(mut seen) = rebound {
             let released = flight.world.clock().time() + dt * overlap / (before - overlap);
             seen.duration = released - flight.touch;

@@ -13,5 +13,6 @@ mod kill;
 mod log;
 mod recover;
 mod resistive;
+mod shapes;
 mod summary;
 mod threads;

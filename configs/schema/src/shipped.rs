@@ -34,6 +34,21 @@ pub static SHIPPED: &[Shipped] = &[
         text: include_str!("../../rolling-2d.toml"),
     },
     Shipped {
+        name: "wet-2d",
+        summary: "The vertical impact into wet Hertz–Mindlin grains.",
+        text: include_str!("../../wet-2d.toml"),
+    },
+    Shipped {
+        name: "cohesive-2d",
+        summary: "The vertical impact into viscoelastic grains that stick (JKR).",
+        text: include_str!("../../cohesive-2d.toml"),
+    },
+    Shipped {
+        name: "fine-2d",
+        summary: "The vertical impact with restitution by speed and weak cohesion (DMT).",
+        text: include_str!("../../fine-2d.toml"),
+    },
+    Shipped {
         name: "two-term-vector",
         summary: "A steel sphere into glass beads by a force law, along the velocity.",
         text: include_str!("../../two-term-vector.toml"),

@@ -119,6 +119,8 @@ pub(crate) fn act<D: Damping>(
     energy.tangential_damping +=
         0.5 * (history.tangential_damping + viscous).dot(&contact.slip_step);
 
+    // A contact that attraction holds open has no spring that could come back.
+    let spring = if touching { spring } else { Vec3::zeros() };
     *history = Memory {
         spring,
         tangential_stiffness: k_t,

@@ -79,6 +79,24 @@ pub(crate) const fn specs(damping: ParamSpec, tangential_damping: ParamSpec) -> 
     ]
 }
 
+/// The elastic constants of an effect on a law of this kind, which are that law's, with one more parameter
+/// in front.
+pub(crate) const fn specs_on_base(first: ParamSpec) -> [ParamSpec; 7] {
+    [
+        first,
+        of_base(MODULUS, "young_modulus"),
+        of_base(RATIO, "poisson_ratio"),
+        ParamSpec { meaning: "E of the walls", ..of_base(MODULUS, "wall_young_modulus") },
+        ParamSpec { meaning: "ν of the walls", ..of_base(RATIO, "wall_poisson_ratio") },
+        ParamSpec { meaning: "E of the intruder", ..of_base(MODULUS, "intruder_young_modulus") },
+        ParamSpec { meaning: "ν of the intruder", ..of_base(RATIO, "intruder_poisson_ratio") },
+    ]
+}
+
+const fn of_base(spec: ParamSpec, key: &'static str) -> ParamSpec {
+    ParamSpec { key, default: Default::FromBase(key), ..spec }
+}
+
 /// The factor on the viscous force in the contact plane.
 pub(crate) const TANGENTIAL_DAMPING: ParamSpec = ParamSpec {
     key: "tangential_damping",

@@ -66,7 +66,7 @@ fn fill(specs: &'static [ParamSpec], given: &[(&str, f64)]) -> ParamTable {
         let value = given.iter().find(|(key, _)| *key == spec.key).map(|(_, value)| *value);
         let value = value.or(match spec.default {
             Default::Value(default) => Some(default),
-            Default::Required | Default::SameAs(_) => None,
+            Default::Required | Default::SameAs(_) | Default::FromBase(_) => None,
         });
         params.set(spec.key, value.expect("every required value is given"));
     }

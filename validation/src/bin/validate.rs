@@ -11,10 +11,11 @@ use validation::{CASES, Case, Expected, Outcome};
 const HELP: &str = "\
 Runs cases whose answer is known and compares.
 
-Usage: cargo xtask validate [--only NAME] [--json] [--list]
+Usage: cargo xtask validate [--only NAME] [--json | --markdown] [--list]
 
   --only NAME  one case; may be given several times
   --json       one JSON document instead of tables
+  --markdown   the tables as they stand in the documents
   --list       the names and claims of the cases, without running them
 
 Exit status: 0 all rows hold, 1 a row does not, 2 the command line was not understood.
@@ -24,9 +25,18 @@ Exit status: 0 all rows hold, 1 a row does not, 2 the command line was not under
 #[derive(Default)]
 struct Wish {
     only: Vec<String>,
-    json: bool,
+    format: Format,
     list: bool,
     help: bool,
+}
+
+/// How results are shown.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+enum Format {
+    #[default]
+    Text,
+    Json,
+    Markdown,
 }
 
 fn main() -> ExitCode {
@@ -49,7 +59,7 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     // A few grains are no work for more than one thread.
-    match with_threads(1, || report(&cases, wish.json)) {
+    match with_threads(1, || report(&cases, wish.format)) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(error) => {
@@ -64,7 +74,8 @@ fn parse(mut args: impl Iterator<Item = String>) -> Result<Wish, String> {
     while let Some(arg) = args.next() {
         match arg.as_str() {
             "--only" => wish.only.push(args.next().ok_or("`--only` needs the name of a case")?),
-            "--json" => wish.json = true,
+            "--json" => wish.format = Format::Json,
+            "--markdown" => wish.format = Format::Markdown,
             "--list" => wish.list = true,
             "-h" | "--help" => wish.help = true,
             other => return Err(format!("`{other}` is not understood")),
@@ -87,27 +98,37 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Case>, String> {
 }
 
 /// Runs and prints; returns whether every row holds.
-fn report(cases: &[&Case], as_json: bool) -> bool {
+fn report(cases: &[&Case], format: Format) -> bool {
     let mut all_hold = true;
     let mut documents = Vec::new();
     for case in cases {
-        if !as_json {
-            println!("{}\n  {}", case.name, case.claim);
+        match format {
+            Format::Text => println!("{}\n  {}", case.name, case.claim),
+            Format::Markdown => println!("## {}\n\n{}\n", case.name, case.claim),
+            Format::Json => {}
         }
         let rows = (case.run)();
         all_hold &= rows.iter().all(Outcome::holds);
-        if as_json {
-            let rows: Vec<Value> = rows.iter().map(to_json).collect();
-            documents.push(json!({ "case": case.name, "claim": case.claim, "rows": rows }));
-        } else {
-            rows.iter().for_each(print_row);
+        match format {
+            Format::Json => {
+                let rows: Vec<Value> = rows.iter().map(to_json).collect();
+                documents.push(json!({ "case": case.name, "claim": case.claim, "rows": rows }));
+            }
+            Format::Text => rows.iter().for_each(print_row),
+            Format::Markdown => {
+                println!("| what | measured | expected |\n| --- | --- | --- |");
+                rows.iter().for_each(|row| println!("{}", row.markdown()));
+            }
+        }
+        if format != Format::Json {
             println!();
         }
     }
-    if as_json {
-        println!("{:#}", json!({ "holds": all_hold, "cases": documents }));
-    } else {
-        println!("{}", if all_hold { "every row holds" } else { "a row does not hold" });
+    match format {
+        Format::Json => println!("{:#}", json!({ "holds": all_hold, "cases": documents })),
+        Format::Text if all_hold => println!("every row holds"),
+        Format::Text => println!("a row does not hold"),
+        Format::Markdown => {}
     }
     all_hold
 }

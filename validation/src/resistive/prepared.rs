@@ -362,7 +362,7 @@ fn sizes(shape: &'static ShapeEntry, condition: &Condition) -> Result<ParamTable
         let value = match (given, spec.default) {
             (Some(value), _) | (None, Default::Value(value)) => value,
             (None, Default::SameAs(other)) => table.get(other),
-            (None, Default::Required) => {
+            (None, Default::Required | Default::FromBase(_)) => {
                 let condition = condition.id.clone();
                 return Err(ForwardError::MissingSize {
                     condition,

@@ -1,12 +1,13 @@
 //! What only a model of grains is checked for.
 
+use engine::contact::Slot;
 use engine::grains::Space;
 
 use super::{Common, metres, seconds};
 use crate::absorbing;
 use crate::diagnostics::{Diagnostic, Span};
 use crate::limits;
-use crate::model::{BedSource, BottomKind, Container, GrainModel, SidesKind, StartX};
+use crate::model::{BedSource, BottomKind, Container, GrainModel, LawChoice, SidesKind, StartX};
 use crate::read::BodyPlaces;
 use crate::stability;
 
@@ -30,6 +31,7 @@ impl GrainChecks<'_> {
         self.common.number_of_conditions();
         if !self.common.reader.failed() {
             self.start_positions();
+            self.effects_of_space();
             self.steps();
             self.targets();
         }
@@ -200,6 +202,25 @@ impl GrainChecks<'_> {
                     Diagnostic::error("the time step is longer than the run")
                         .at(self.common.places.time_step, seconds(step))
                         .with(self.common.places.duration, seconds(model.run.duration)),
+                );
+            }
+        }
+    }
+
+    /// In a plane grains turn about one axis only, which lies in every contact plane.
+    fn effects_of_space(&self) {
+        let medium = self.grains.medium;
+        let settling: &[LawChoice] = match &medium.bed.source {
+            BedSource::Settle(settle) => &settle.effects,
+            BedSource::Csv(_) => &[],
+        };
+        for effect in medium.effects.iter().chain(settling) {
+            if medium.space == Space::Planar && effect.entry.slot == Slot::Twisting {
+                let name = effect.entry.name;
+                self.common.reader.report(
+                    Diagnostic::error(format!("`{name}` does nothing in a planar bed"))
+                        .at(effect.span, "discs cannot twist about the normal of a contact")
+                        .help("leave it out, or make the bed one of spheres: dimension = 3"),
                 );
             }
         }

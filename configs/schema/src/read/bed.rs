@@ -60,7 +60,7 @@ fn settle(
     let wanted = kinds.len().max(1);
     let grains: Vec<GrainKind> =
         kinds.into_iter().filter_map(|kind| grain_kind(kind, space, places)).collect();
-    let effects = effects(table.tables("effect", limits::EFFECTS));
+    let effects = effects(table.tables("effect", limits::EFFECTS), law);
     let grains = (grains.len() == wanted).then_some(grains)?;
     if grains.iter().all(|kind| kind.count == 0) {
         table.reader.report(

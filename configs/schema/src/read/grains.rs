@@ -49,7 +49,7 @@ pub(super) fn model(
         folder,
         places,
     );
-    let effects = laws::effects(root.tables("effect", limits::EFFECTS));
+    let effects = laws::effects(root.tables("effect", limits::EFFECTS), contact_law.as_ref());
     let intruder = impact::in_grains(root.table("intruder", Some(INTRUDER_EXAMPLE)), space, places);
     let impact_table = root.table("impact", Some(IMPACT_EXAMPLE));
     let impact = impact::impact_on_grains(&impact_table, space, places);

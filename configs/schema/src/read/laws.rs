@@ -1,6 +1,7 @@
 //! `[contact_law]`, `[[effect]]` and `[[bed.effect]]`, driven by the registry.
 
 use contact_laws::{ActsOn, LawEntry};
+use engine::params::{Default as ParamDefault, ParamTable};
 
 use super::Places;
 use crate::diagnostics::{Diagnostic, Span, nearest, shorten};
@@ -8,7 +9,7 @@ use crate::model::LawChoice;
 use crate::reader::TableReader;
 
 pub(super) fn contact_law(table: TableReader<'_>, places: &mut Places) -> Option<LawChoice> {
-    let law = law(&table, ActsOn::ContactBase);
+    let law = law(&table, ActsOn::ContactBase, None);
     places.normal_stiffness = table.span_of("normal_stiffness");
     finish_law(table, ActsOn::ContactBase);
     law
@@ -22,11 +23,15 @@ fn finish_law(table: TableReader<'_>, slot: ActsOn) {
     }
 }
 
-pub(super) fn effects(tables: Vec<TableReader<'_>>) -> Option<Vec<LawChoice>> {
+/// The effects on the contact law `base`; `None` if that could not be read.
+pub(super) fn effects(
+    tables: Vec<TableReader<'_>>,
+    base: Option<&LawChoice>,
+) -> Option<Vec<LawChoice>> {
     let wanted = tables.len();
     let mut effects: Vec<LawChoice> = Vec::new();
     for table in tables {
-        let Some(effect) = law(&table, ActsOn::ContactEffect) else {
+        let Some(effect) = law(&table, ActsOn::ContactEffect, base) else {
             finish_law(table, ActsOn::ContactEffect);
             continue;
         };
@@ -47,8 +52,8 @@ pub(super) fn given_twice(name: &str, again: Span, first: Span) -> Diagnostic {
         .help("keep one of the two tables")
 }
 
-/// The law that `name` says, with its parameters.
-fn law(table: &TableReader<'_>, slot: ActsOn) -> Option<LawChoice> {
+/// The law that `name` says, with its parameters; an effect takes some from `base`.
+fn law(table: &TableReader<'_>, slot: ActsOn, base: Option<&LawChoice>) -> Option<LawChoice> {
     let known: Vec<&'static LawEntry> =
         contact_laws::LAWS.iter().filter(|law| law.acts_on == slot).copied().collect();
     let example = known.first().map_or("", |law| law.name);
@@ -62,8 +67,49 @@ fn law(table: &TableReader<'_>, slot: ActsOn) -> Option<LawChoice> {
         table.reader.report(explain_law(&name.value, span, slot, &known));
         return None;
     };
-    let params = table.params(entry.params)?;
+    let Some(lent) = lent_to(table, entry, span, base) else {
+        // Its keys are known; they are just not read.
+        entry.params.iter().for_each(|spec| _ = table.has(spec.key));
+        return None;
+    };
+    let params = table.params_on(entry.params, lent)?;
     Some(LawChoice { entry, params, span })
+}
+
+/// The parameters of `base`, if it has those that `effect` takes from it.
+fn lent_to<'b>(
+    table: &TableReader<'_>,
+    effect: &LawEntry,
+    span: Span,
+    base: Option<&'b LawChoice>,
+) -> Option<&'b ParamTable> {
+    const NOTHING: &ParamTable = &ParamTable::new();
+    let wanted: Vec<&str> = effect
+        .params
+        .iter()
+        .filter_map(|spec| match spec.default {
+            ParamDefault::FromBase(key) => Some(key),
+            _ => None,
+        })
+        .collect();
+    let Some(first) = wanted.first() else { return Some(NOTHING) };
+    let base = base?;
+    let has =
+        |law: &LawEntry| wanted.iter().all(|key| law.params.iter().any(|own| own.key == *key));
+    if has(base.entry) {
+        return Some(&base.params);
+    }
+    let fit =
+        contact_laws::LAWS.iter().filter(|law| law.acts_on == ActsOn::ContactBase && has(law));
+    let fit: Vec<&str> = fit.map(|law| law.name).collect();
+    let (effect, law) = (effect.name, base.entry.name);
+    table.reader.report(
+        Diagnostic::error(format!("`{effect}` needs a Hertz law, and `{law}` has no `{first}`"))
+            .at(span, "it acts on elastic constants")
+            .with(base.span, "the contact law")
+            .help(format!("contact laws with them: {}", fit.join(", "))),
+    );
+    None
 }
 
 fn explain_law(name: &str, span: Span, slot: ActsOn, known: &[&LawEntry]) -> Diagnostic {

@@ -15,7 +15,8 @@ impl TableReader<'_> {
         let found = match self.entry(spec.key) {
             Some(entry) => self.number_at(&entry.node, spec),
             None => match spec.default {
-                ParamDefault::Required => {
+                // What a contact law lends is filled in by [`TableReader::params_on`].
+                ParamDefault::Required | ParamDefault::FromBase(_) => {
                     self.missing(spec.key, &self.example(spec), spec.meaning);
                     None
                 }
@@ -44,10 +45,24 @@ impl TableReader<'_> {
 
     /// All parameters of a registry entry.
     pub(crate) fn params(&self, specs: &'static [ParamSpec]) -> Option<ParamTable> {
+        self.params_on(specs, &ParamTable::new())
+    }
+
+    /// All parameters of a registry entry that acts on a law with the parameters `base`.
+    pub(crate) fn params_on(
+        &self,
+        specs: &'static [ParamSpec],
+        base: &ParamTable,
+    ) -> Option<ParamTable> {
         let mut table = ParamTable::new();
         let mut complete = true;
         for spec in specs {
-            match self.number(spec) {
+            let lent = match spec.default {
+                ParamDefault::FromBase(key) => base.iter().find(|(own, _)| *own == key),
+                _ => None,
+            };
+            let default = lent.map_or(spec.default, |(_, value)| ParamDefault::Value(value));
+            match self.number(&ParamSpec { default, ..*spec }) {
                 Some(found) => table.set(spec.key, found.value),
                 None => complete = false,
             }

@@ -1,0 +1,126 @@
+//! Cohesion as a constant pull, as Derjaguin, Muller and Toporov have it.
+
+use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::ledger::{Channel, ChannelKind};
+use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::units::Dimension;
+
+use crate::adhesion::{Bond, Energy, Pull};
+use crate::registry::{ActsOn, FromParams, LawEntry};
+
+/// A constant attraction while two bodies overlap.
+///
+/// F_a = 2π W R*   (N), so F_n falls by F_a while δ > 0, and the two part at that pull
+///
+/// Friction is measured by what the base law alone presses with. On any base law; Hertz's gives what the
+/// source has, for small, stiff grains that adhere weakly.
+///
+/// Channels: `cohesion-dmt`, stored: −F_a δ, what the pull has done while closing, and has to be given
+/// back while opening; dissipated: nothing but the share of the step in which the force jumps, of either
+/// sign, at most F_a v dt/2.
+///
+/// Source: Derjaguin, Muller & Toporov, J. Colloid Interface Sci. 53, 314 (1975).
+pub(crate) struct CohesionDmt {
+    work_of_adhesion: f64,
+}
+
+/// The law, the same for every partner.
+#[derive(Clone, Copy)]
+pub(crate) struct Pair {
+    /// 2π W (N/m).
+    pull_per_radius: f64,
+}
+
+impl ContactLaw for CohesionDmt {
+    const NAME: &'static str = "cohesion-dmt";
+    const SLOT: Slot = Slot::Normal;
+    const CHANNELS: &'static [Channel] = CHANNELS;
+    type Pair = Pair;
+    type History = Bond;
+    type Energy = Energy;
+
+    fn pair(&self, _: Partner) -> Pair {
+        Pair { pull_per_radius: std::f64::consts::TAU * self.work_of_adhesion }
+    }
+
+    #[inline]
+    fn act(
+        pair: &Pair,
+        contact: &Contact,
+        _dt: f64,
+        history: &mut Bond,
+        response: &mut Response,
+        energy: &mut Energy,
+    ) {
+        let force = pair.pull_per_radius * contact.radius_eff();
+        let pull = Pull { force: -force, adhesive_force: force, stored: -force * contact.overlap };
+        let pull = (contact.overlap > 0.0).then_some(pull);
+        history.act(pull, contact, response, energy);
+    }
+
+    fn collision_time(_: &Pair, _: &Encounter) -> Option<f64> {
+        None
+    }
+
+    fn damping_time(_: &Pair, _: &Encounter) -> Option<f64> {
+        None
+    }
+}
+
+impl FromParams for CohesionDmt {
+    fn from_params(params: &ParamTable) -> Self {
+        Self { work_of_adhesion: params.get("work_of_adhesion") }
+    }
+}
+
+const CHANNELS: &[Channel] = &[
+    Channel { name: "cohesion-dmt", kind: ChannelKind::Stored },
+    Channel { name: "cohesion-dmt", kind: ChannelKind::Dissipated },
+];
+
+const PARAMS: &[ParamSpec] = &[ParamSpec {
+    key: "work_of_adhesion",
+    dimension: Dimension::SURFACE_ENERGY,
+    default: Default::Required,
+    allowed: Range::NOT_NEGATIVE,
+    plausible: Range::closed(1e-4, 10.0),
+    meaning: "W, energy per area that parting the surfaces takes, twice the surface energy",
+}];
+
+/// The registry's line.
+pub(crate) const ENTRY: LawEntry = LawEntry {
+    acts_on: ActsOn::ContactEffect,
+    summary: "Cohesion of dry grains: a constant pull while they touch (DMT).",
+    formula: "F_n → F_n − 2π W R* while δ > 0;  friction is measured without it",
+    signature: "A constant resistance: shallow impacts stop earlier, crater walls stand.",
+    source: "Derjaguin, Muller & Toporov, J. Colloid Interface Sci. 53, 314 (1975)",
+    params: PARAMS,
+    ..LawEntry::of::<CohesionDmt>()
+};
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::hertz::tests::{OVERLAP, RADIUS_EFF, acted, close, contact};
+
+    const WORK: f64 = 0.05;
+
+    #[test]
+    fn grains_that_touch_pull_with_two_pi_w_r_and_store_what_that_did() {
+        let pair = CohesionDmt { work_of_adhesion: WORK }.pair(Partner::Grain);
+        let pull = 2.0 * PI * WORK * RADIUS_EFF;
+        let mut bond = bytemuck::Zeroable::zeroed();
+        let closing = Contact { overlap_step: 1.5 * OVERLAP, ..contact() };
+        let (response, energy) = acted::<CohesionDmt>(&pair, &closing, &mut bond);
+        assert!(close(response.normal_force, -pull) && close(response.adhesive_force, pull));
+        assert!(close(energy.stored, -pull * OVERLAP));
+        // The mean force of the step, half the pull, over 1.5 overlaps; it acted over one.
+        assert!((energy.dissipated - pull * OVERLAP * (1.0 - 0.75)).abs() < 1e-14 * pull * OVERLAP);
+        let open = Contact { overlap: -1e-9, overlap_step: -2.0 * OVERLAP, ..contact() };
+        let (response, energy) = acted::<CohesionDmt>(&pair, &open, &mut bond);
+        assert!(!response.holds && response.normal_force.abs() < 1e-300);
+        assert!(energy.stored.abs() < 1e-300 && energy.dissipated.abs() < 1e-14 * pull * OVERLAP);
+    }
+}

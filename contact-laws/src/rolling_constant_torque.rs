@@ -1,0 +1,153 @@
+//! Rolling resistance as a constant torque.
+
+use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::ledger::{Channel, ChannelKind};
+use engine::math::Vec3;
+use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::units::Dimension;
+
+use crate::registry::{ActsOn, FromParams, LawEntry};
+
+/// A couple against rolling that does not depend on how fast it rolls.
+///
+/// M = −μ_r R* F_n ω_r/|ω_r|, |M| ≤ I_r |ω_r|/(κ dt)   (N m), 1/I_r = Σ 1/(I + m R²)
+///
+/// ω_r (rad/s) is the relative spin without its part along the normal. The second limit keeps the couple
+/// from turning the rotation round within a step: a free sphere answers 1/I, κ = 7/2 times the mobility
+/// of one that rolls. Where it acts the couple is that of a dashpot, so a grain at rest on a slope creeps;
+/// `rolling-resistance` holds it.
+///
+/// Channels: `rolling-constant-torque` (dissipated).
+///
+/// Source: Ai, Chen, Rotter & Ooi, Powder Technol. 206, 269 (2011), model A. Differs from it in the second
+/// limit.
+pub(crate) struct RollingConstantTorque {
+    rolling_friction: f64,
+}
+
+/// The law, the same for every partner.
+#[derive(Clone, Copy)]
+pub(crate) struct Pair {
+    rolling_friction: f64,
+}
+
+/// 1 + m R²/I of a sphere, which no grain exceeds.
+const FREE_OVER_ROLLING: f64 = 3.5;
+
+impl ContactLaw for RollingConstantTorque {
+    const NAME: &'static str = "rolling-constant-torque";
+    const SLOT: Slot = Slot::Rolling;
+    const CHANNELS: &'static [Channel] = CHANNELS;
+    type Pair = Pair;
+    /// The couple at the end of the last step (N m).
+    type History = [f64; 3];
+    type Energy = f64;
+
+    fn pair(&self, _: Partner) -> Pair {
+        Pair { rolling_friction: self.rolling_friction }
+    }
+
+    #[inline]
+    fn act(
+        pair: &Pair,
+        contact: &Contact,
+        dt: f64,
+        history: &mut [f64; 3],
+        response: &mut Response,
+        energy: &mut f64,
+    ) {
+        let rolling = |spin: Vec3| spin - contact.normal * spin.dot(&contact.normal);
+        let spin = rolling(contact.relative_spin);
+        let speed = spin.norm();
+        let pressed = (response.normal_force + response.adhesive_force).max(0.0);
+        let limit = pair.rolling_friction * contact.radius_eff() * pressed;
+        let stopping = speed / (FREE_OVER_ROLLING * contact.rolling_mobility * dt);
+        let couple =
+            if speed > 0.0 { spin * (-limit.min(stopping) / speed) } else { Vec3::zeros() };
+        let before = Vec3::from(*history);
+        *energy -= 0.5 * (before + couple).dot(&rolling(contact.relative_turn));
+        *history = couple.into();
+        response.couple += couple;
+    }
+
+    fn collision_time(_: &Pair, _: &Encounter) -> Option<f64> {
+        None
+    }
+
+    fn damping_time(_: &Pair, _: &Encounter) -> Option<f64> {
+        None
+    }
+}
+
+impl FromParams for RollingConstantTorque {
+    fn from_params(params: &ParamTable) -> Self {
+        Self { rolling_friction: params.get("rolling_friction") }
+    }
+}
+
+const CHANNELS: &[Channel] =
+    &[Channel { name: "rolling-constant-torque", kind: ChannelKind::Dissipated }];
+
+const PARAMS: &[ParamSpec] = &[ParamSpec {
+    key: "rolling_friction",
+    dimension: Dimension::NONE,
+    default: Default::Required,
+    allowed: Range::NOT_NEGATIVE,
+    plausible: Range::closed(0.01, 0.3),
+    meaning: "μ_r, rolling torque over R* F_n",
+}];
+
+/// The registry's line.
+pub(crate) const ENTRY: LawEntry = LawEntry {
+    acts_on: ActsOn::ContactEffect,
+    summary: "A torque of constant size against rolling; grains at rest may creep.",
+    formula: "M = −μ_r R* F_n ω_r/|ω_r|, never enough to turn the rotation round within a step",
+    signature: "More depth-linear friction, as rolling-resistance, but a bed that settles for long.",
+    source: "Ai, Chen, Rotter & Ooi, Powder Technol. 206, 269 (2011), model A",
+    params: PARAMS,
+    ..LawEntry::of::<RollingConstantTorque>()
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hertz::tests::{RADIUS_EFF, contact};
+
+    const FRICTION: f64 = 0.1;
+    const NORMAL_FORCE: f64 = 0.3;
+    const DT: f64 = 1e-6;
+
+    fn act(spin: Vec3, history: &mut [f64; 3]) -> (Vec3, f64) {
+        let pair = RollingConstantTorque { rolling_friction: FRICTION }.pair(Partner::Grain);
+        let contact = Contact { relative_spin: spin, relative_turn: spin * DT, ..contact() };
+        let mut response = Response { normal_force: NORMAL_FORCE, ..Response::default() };
+        let mut energy = 0.0;
+        RollingConstantTorque::act(&pair, &contact, DT, history, &mut response, &mut energy);
+        (response.couple, energy)
+    }
+
+    /// Round-off of a handful of operations.
+    fn close(value: f64, expected: f64) -> bool {
+        (value - expected).abs() <= 1e-14 * expected.abs().max(1e-12)
+    }
+
+    #[test]
+    fn the_couple_is_as_large_at_any_speed_and_leaves_twisting_alone() {
+        let torque = FRICTION * RADIUS_EFF * NORMAL_FORCE;
+        let mut history = [0.0; 3];
+        for speed in [1e3, 1e5] {
+            let (couple, energy) = act(Vec3::y() * speed + Vec3::z() * 50.0, &mut history);
+            assert!(close(couple.y, -torque) && close(couple.z, 0.0), "{couple:?}");
+            let share = if speed < 1e4 { 0.5 } else { 1.0 };
+            assert!(close(energy, share * torque * speed * DT));
+        }
+    }
+
+    #[test]
+    fn slow_rolling_is_not_turned_round() {
+        let spin = 1e-3;
+        let (couple, _) = act(Vec3::y() * spin, &mut [0.0; 3]);
+        let mobility = 3.5 * contact().rolling_mobility;
+        assert!(close(couple.y * mobility * DT, -spin));
+    }
+}
