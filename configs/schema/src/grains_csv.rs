@@ -325,7 +325,10 @@ mod tests {
         let text = "x_m,y_m,z_m,radius_m,density_kg_per_m3\n0.5,0.25,0.1,0.01,2500\n";
         let table = read(text.as_bytes(), CUBE).expect("a good table");
         let grain = table.grains[0];
-        assert_eq!([grain.x, grain.y, grain.z], [0.5, 0.25, 0.1]);
+        assert_eq!(
+            CsvGrain { radius: 0.0, mass: 0.0, ..grain },
+            CsvGrain { x: 0.5, y: 0.25, z: 0.1, radius: 0.0, mass: 0.0 }
+        );
         // A few roundings apart.
         assert!((grain.mass / (2500.0 * PI / 6.0 * 0.02_f64.powi(3)) - 1.0).abs() < 1e-15);
         let text = "x_m,y_m,z_m,radius_m,density_kg_per_m2\n";

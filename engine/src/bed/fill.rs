@@ -170,7 +170,7 @@ mod tests {
             for (i, a) in grains.iter().enumerate() {
                 assert!(a.position.x >= a.radius && a.position.x <= 0.1 - a.radius);
                 match space {
-                    Space::Planar => assert_eq!(a.position.y, 0.0),
+                    Space::Planar => assert_eq!(a.position.y.to_bits(), 0.0_f64.to_bits()),
                     Space::Spatial => {
                         assert!(a.position.y >= a.radius && a.position.y <= 0.03 - a.radius);
                     }

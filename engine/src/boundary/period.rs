@@ -96,9 +96,10 @@ mod tests {
         let apart = NARROW.shortest(Vec3::new(0.75, 3.0, -2.0));
         assert_eq!(apart, Vec3::new(-0.25, 3.0, -2.0));
         assert_eq!(NARROW.shortest(-apart), Vec3::new(0.25, -3.0, 2.0));
-        assert_eq!(NARROW.image_near(Vec3::new(0.125, 0.0, 0.0), Vec3::x() * 7.75).x, 8.125);
+        let image = NARROW.image_near(Vec3::x() * 0.125, Vec3::x() * 7.75);
+        assert_eq!(image, Vec3::x() * 8.125);
         assert_eq!(NARROW.inside(Vec3::new(-0.25, -1.0, 0.0)), Vec3::new(0.75, -1.0, 0.0));
-        assert_eq!(NARROW.inside(Vec3::x()).x, 0.0);
+        assert_eq!(NARROW.inside(Vec3::x()), Vec3::zeros());
     }
 
     #[test]

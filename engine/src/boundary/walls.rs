@@ -80,7 +80,7 @@ mod tests {
         let point = wall.closest(Vec3::new(0.1, 0.03, 5.0));
         assert_eq!(point.normal, Vec3::y());
         assert!((point.gap - 0.03).abs() < 1e-16);
-        assert_eq!(point.curvature, -10.0);
+        assert_eq!(point.curvature.to_bits(), (-10.0_f64).to_bits());
         assert!((wall.closest(Vec3::new(0.1, 0.1, 0.0)).gap - 0.1).abs() < 1e-16);
         assert!(wall.closest(Vec3::new(0.21, 0.1, 0.0)).gap < 0.0);
     }

@@ -12,7 +12,7 @@ use super::{
     ActivitySummary, BedSummary, CostSummary, EnergySummary, FinalEnergy, ImpactSummary,
     LinkSummary, StopSummary, Summary, by_channel,
 };
-use crate::model::{Condition, GrainModel};
+use crate::model::{BedSource, Condition, GrainModel};
 
 impl FinalEnergy {
     /// What the ledger of `simulation` holds now, the intruder's kinetic and potential energy, and the
@@ -63,8 +63,14 @@ fn off_target(report: &BedReport, model: GrainModel<'_>) -> Vec<String> {
     if let Some(target) = model.medium.bed.target_packing_fraction {
         let found = report.packing_fraction;
         if (found - target).abs() > PACKING_FRACTION_TOLERANCE {
+            let settles = matches!(model.medium.bed.source, BedSource::Settle(_));
+            let advice = match found > target && settles {
+                true => "; a higher preparation_friction makes it looser",
+                false => "",
+            };
             warnings.push(format!(
-                "the packing fraction is {found:.3}, not {target} ± {PACKING_FRACTION_TOLERANCE}"
+                "the packing fraction is {found:.3}, not {target} ± \
+                 {PACKING_FRACTION_TOLERANCE}{advice}"
             ));
         }
     }
