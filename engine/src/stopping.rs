@@ -26,7 +26,10 @@ impl Followed {
     /// A body as a whole.
     #[must_use]
     pub fn of(body: &RigidBody) -> Self {
-        Self { position: body.position, velocity: body.velocity, reach: body.reach_down() }
+        // A rotation of many steps has lost its norm by some 1e-13, which is not a depth.
+        let down = body.orientation.inverse_transform_vector(&-Vec3::z()).normalize();
+        let reach = body.surface().support(down);
+        Self { position: body.position, velocity: body.velocity, reach }
     }
 }
 

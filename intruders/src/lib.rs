@@ -15,7 +15,7 @@ mod sphere;
 mod two_link_chain;
 
 pub use hinged_links::HingedLinks;
-pub use registry::{Body, Casting, Drawing, Launchable, ShapeEntry};
+pub use registry::{Body, Casting, Drawing, Launchable, ShapeEntry, UnderShaft};
 
 /// Every shape, in the order of the docs.
 pub static SHAPES: &[&ShapeEntry] = &[

@@ -11,6 +11,9 @@ use engine::surface::Surface;
 use crate::hinged_links::HingedLinks;
 use crate::outline::Revolved;
 
+/// Makes a surface with a shaft of this length (m) on it.
+pub type UnderShaft = fn(&ParamTable, Space, f64) -> Arc<dyn Surface>;
+
 /// One shape of intruder.
 pub struct ShapeEntry {
     /// The name in TOML, kebab-case.
@@ -32,7 +35,7 @@ pub struct ShapeEntry {
     pub links: Option<fn(&ParamTable, Space, f64) -> HingedLinks>,
     /// Its surface with a shaft of its top cross-section, of this length (m), upward from its top
     /// plane, which keeps grains off its top and is not felt; `None` for a shape without top plane.
-    pub under_shaft: Option<fn(&ParamTable, Space, f64) -> Arc<dyn Surface>>,
+    pub under_shaft: Option<UnderShaft>,
     /// Volume (m³), or area (m²) in a planar medium, from SI values that fill `params`.
     pub volume: fn(&ParamTable, Space) -> f64,
     /// Area (m²), or length (m) in a planar medium, that a body standing upright has below the surface

@@ -17,7 +17,7 @@ fn bumps(space: Space) -> Grains {
             let bump = (0.618_034 * f64::from(i * i + 7 * j)).rem_euclid(1.0);
             let radius = 2e-3 * (1.0 + 0.5 * bump);
             // Far above the floor, which the tip of a leaning cone finds beside the grains.
-            let height = 1.0 + 3e-3 * (1.414_214 * f64::from(i + 3 * j)).rem_euclid(1.0);
+            let height = 1.0 + 3e-3 * (0.732_051 * f64::from(i + 3 * j)).rem_euclid(1.0);
             Grain {
                 position: Vec3::new(5e-3 * f64::from(i), 5e-3 * f64::from(j), height),
                 velocity: Vec3::zeros(),
