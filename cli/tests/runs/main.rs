@@ -14,5 +14,6 @@ mod log;
 mod recover;
 mod resistive;
 mod shapes;
+mod space;
 mod summary;
 mod threads;
