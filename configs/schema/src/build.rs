@@ -123,7 +123,8 @@ impl GrainModel<'_> {
         let mut rng = random(self.model.run.seed, "sizes");
         let kinds: Vec<GrainKind> =
             settle.grains.iter().flat_map(|kind| self.drawn(kind, &mut rng)).collect();
-        let container = self.container().without_layers();
+        // Layers that absorb would hold the falling grains up for seconds.
+        let container = self.medium.container.without_layers();
         let space = self.medium.space;
         let grains = fill(&kinds, (space, &container), self.model.run.seed);
         let stages = self.preparation_stages(settle);

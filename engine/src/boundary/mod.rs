@@ -70,17 +70,6 @@ impl Container {
         Self { base: Base::Rectangle { width, depth }, sides: Sides::Wall, bottom: Bottom::Wall }
     }
 
-    /// The same container without layers that absorb: grains that fall through one sink like stones in
-    /// honey, so a bed is prepared without.
-    #[must_use]
-    pub fn without_layers(mut self) -> Self {
-        if let Sides::Absorbing(_) = self.sides {
-            self.sides = Sides::Wall;
-        }
-        self.bottom = Bottom::Wall;
-        self
-    }
-
     /// Its extents along x and y (m), from 0.
     #[must_use]
     pub fn extents(&self) -> [f64; 2] {

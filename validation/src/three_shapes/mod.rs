@@ -35,6 +35,10 @@ pub const FRICTIONS: [f64; 2] = [0.0, 0.8];
 /// The model whose friction is varied, and its speed (m/s).
 const RUBBED: (&str, f64) = ("hemisphere-3d", 2.0);
 
+/// What of the shipped models is smaller here: 3.6 diameters of the intruder across, 4 deep.
+const BED: [&str; 3] =
+    ["bed.grains.0.count=8000", "container.width=\"72 mm\"", "container.depth=\"72 mm\""];
+
 /// Time between two samples of a path (s).
 const SAMPLE: f64 = 1e-4;
 
@@ -202,6 +206,7 @@ impl Case {
         let shipped = find_shipped(self.model).map(ModelSource::Shipped);
         let source = shipped.unwrap_or_else(|| ModelSource::Path(self.model.into()));
         let mut sets = vec![format!("impact.speed=\"{} m/s\"", self.speed)];
+        sets.extend(BED.map(str::to_owned));
         sets.extend(self.friction.map(|f| format!("contact_law.intruder_friction={f:?}")));
         let options = LoadOptions { sets, seed: Some(self.seed), ..LoadOptions::default() };
         Model::load(source, &options)
