@@ -49,6 +49,31 @@ pub static SHIPPED: &[Shipped] = &[
         text: include_str!("../../fine-2d.toml"),
     },
     Shipped {
+        name: "hemisphere-3d",
+        summary: "A hemisphere, dome first, into 20 000 spheres, 2 m/s.",
+        text: include_str!("../../hemisphere-3d.toml"),
+    },
+    Shipped {
+        name: "cylinder-3d",
+        summary: "The same with a cylinder, flat face first.",
+        text: include_str!("../../cylinder-3d.toml"),
+    },
+    Shipped {
+        name: "cone-3d",
+        summary: "The same with a cone, tip first.",
+        text: include_str!("../../cone-3d.toml"),
+    },
+    Shipped {
+        name: "two-link-2d",
+        summary: "A chain of two links, tips first, into 20 000 discs.",
+        text: include_str!("../../two-link-2d.toml"),
+    },
+    Shipped {
+        name: "two-link-3d",
+        summary: "A chain of two links, tips first, into 20 000 spheres.",
+        text: include_str!("../../two-link-3d.toml"),
+    },
+    Shipped {
         name: "two-term-vector",
         summary: "A steel sphere into glass beads by a force law, along the velocity.",
         text: include_str!("../../two-term-vector.toml"),
