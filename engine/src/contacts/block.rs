@@ -259,7 +259,7 @@ impl Block {
                         false => &mut self.tally.unfelt,
                     };
                     wrenches[index].add(&on_part);
-                    if felt && !is_wall {
+                    if felt && !is_wall && contact.overlap > 0.0 {
                         let radius = grains.radius[i];
                         self.tally.footprints[index].add_grain(
                             contact,
