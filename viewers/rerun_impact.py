@@ -4,16 +4,18 @@
     python viewers/rerun_impact.py runs/hemisphere-3d                     # shows it
     python viewers/rerun_impact.py runs/hemisphere-3d -o hemisphere.rrd   # a file to open later
 
-Needs: pip install rerun-sdk==0.41.0. Rerun calls the interface that maps protobuf fields to curves unstable, hence the
+Needs: pip install -r .ci/python-requirements.txt rerun-sdk==0.41.0. Rerun calls the interface that maps protobuf fields to curves unstable, hence the
 version.
 """
 
 import argparse
 from pathlib import Path
 
+import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 from mcap.reader import make_reader
+from mcap_protobuf.decoder import DecoderFactory
 from rerun.blueprint.encodings import ComponentSourceKind, VisualizerComponentMapping
 
 
@@ -55,6 +57,15 @@ def energy_fields(log):
     return []
 
 
+def middling_radius(run):
+    """The median radius of the grains (m)."""
+    with open(run / "grains.mcap", "rb") as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        _, _, _, cloud = next(iter(reader.iter_decoded_messages(topics=["/grains"])))
+    kinds = [(field.name, "<u4" if field.name == "id" else "<f4") for field in cloud.fields]
+    return float(np.median(np.frombuffer(cloud.data, dtype=kinds)["radius"]))
+
+
 def blueprint(run):
     log = run / "run.mcap"
     found = topics(log)
@@ -63,6 +74,7 @@ def blueprint(run):
         rrb.TimeSeriesView(
             name="energy (J)",
             contents="/energy/budget",
+            plot_legend=rrb.PlotLegend(visible=False),
             overrides={"/energy/budget": curves(found["/energy/budget"], energy_fields(log))},
         ),
         rrb.TimeSeriesView(
@@ -84,7 +96,13 @@ def blueprint(run):
     ]
     return rrb.Blueprint(
         rrb.Horizontal(
-            rrb.Spatial3DView(name="bed", origin="/", contents=["+ /grains", "+ /intruder/**", "+ /bed/**"]),
+            rrb.Spatial3DView(
+                name="bed",
+                origin="/",
+                contents=["+ /grains", "+ /intruder/**", "+ /scene"],
+                # Rerun does not take the radii from the cloud: all grains are drawn as a middling one.
+                defaults=[rr.Points3D.from_fields(radii=middling_radius(run))],
+            ),
             rrb.Vertical(*views),
             column_shares=[3, 2],
         ),
