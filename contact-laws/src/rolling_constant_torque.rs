@@ -12,9 +12,10 @@ use crate::registry::{ActsOn, FromParams, LawEntry};
 ///
 /// M = −μ_r R* F_n ω_r/|ω_r|, |M| ≤ I_r |ω_r|/(κ dt)   (N m), 1/I_r = Σ 1/(I + m R²)
 ///
-/// ω_r (rad/s) is the relative spin without its part along the normal. The second limit keeps the couple
-/// from turning the rotation round within a step: a free sphere answers 1/I, κ = 7/2 times the mobility
-/// of one that rolls. Where it acts the couple is that of a dashpot, so a grain at rest on a slope creeps;
+/// ω_r (rad/s) is the relative spin without its part along the normal. The second limit keeps the couple of
+/// one contact from turning the rotation round within a step: a free sphere answers 1/I, κ = 7/2 times the
+/// mobility of one that rolls. Several contacts of a grain may together, and then a slow spin dithers,
+/// within what μ_r R* F_n can do in a step. Where it acts the couple is that of a dashpot, so a grain at rest on a slope creeps;
 /// `rolling-resistance` holds it.
 ///
 /// Channels: `rolling-constant-torque` (dissipated).

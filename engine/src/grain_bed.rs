@@ -152,6 +152,12 @@ impl GrainBed {
         &self.container
     }
 
+    /// The image of `point` that lies between periodic sides.
+    #[must_use]
+    pub fn image_inside(&self, point: Vec3) -> Vec3 {
+        self.grains.period.inside(point)
+    }
+
     /// The laws, in the order in which they act.
     #[must_use]
     pub fn stages(&self) -> &[Box<dyn ContactStage>] {
@@ -291,7 +297,9 @@ impl GrainBed {
                     if let Some(absorber) = absorber {
                         let drag = mass[i] * absorber.rate(position[i]);
                         load[k].force -= velocity_now[i] * drag;
-                        energy.absorbed += drag * velocity[k].norm_squared() * dt;
+                        // Second order: what acts half-way, over the way of the step.
+                        let half_way = absorber.rate(position[i] - velocity[k] * half);
+                        energy.absorbed += mass[i] * half_way * velocity[k].norm_squared() * dt;
                     }
                     velocity[k] += load[k].force * (half * inverse_mass[i]);
                     spin[k] += load[k].torque * (half * inverse_inertia[i]);

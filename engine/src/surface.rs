@@ -28,7 +28,8 @@ pub trait Surface: Send + Sync {
         nearest.extend(points.iter().map(|&point| self.closest(point)));
     }
 
-    /// How far the surface reaches along the unit vector `direction` from the origin (m).
+    /// How far the surface reaches along the unit vector `direction` from the origin (m); of a body under a
+    /// shaft, the body alone.
     fn support(&self, direction: Vec3) -> f64;
 
     /// Radius of the smallest sphere about the origin that holds the surface (m).

@@ -142,7 +142,9 @@ impl Surface for Revolved {
     fn support(&self, direction: Vec3) -> f64 {
         let r = (direction.x * direction.x + direction.y * direction.y).sqrt();
         let direction = Point { r, z: direction.z };
-        let corners = self.corners.iter().map(|corner| corner.at.dot(direction));
+        // How deep and how wide a body is does not count its shaft.
+        let own = self.corners.iter().filter(|corner| corner.felt);
+        let corners = own.map(|corner| corner.at.dot(direction));
         let domes = self.facets.iter().filter_map(|facet| facet.dome_support(direction));
         corners.chain(domes).fold(f64::NEG_INFINITY, f64::max)
     }

@@ -1,5 +1,5 @@
-//! Runs in three dimensions, with every boundary, law and joint that remembers something: the same bytes
-//! on any number of threads, and after an end on the way.
+//! Runs in three dimensions, with layers, periods, a recessive wall, a joint and laws that remember
+//! something: the same bytes on any number of threads, and after an end on the way.
 
 use std::fmt::Write as _;
 use std::fs;

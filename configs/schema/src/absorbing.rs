@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use engine::boundary::Layer;
 use engine::contact::{Encounter, Partner};
 
-use crate::model::{BedSource, GrainModel};
+use crate::model::{BedSource, BottomKind, Container, GrainModel, SidesKind};
 use crate::stability::guessed_packing;
 
 /// Thickness of a layer, in mean grain diameters.
@@ -25,6 +25,13 @@ pub(crate) fn layer(model: GrainModel<'_>) -> Layer {
         Some(rate) => Layer { thickness, rate },
         None => Layer::for_waves(thickness, wave_speed(model).unwrap_or(0.0)),
     }
+}
+
+/// The drag of a layer at its wall (1/s), where `model` has any.
+pub(crate) fn largest_rate(model: GrainModel<'_>) -> Option<f64> {
+    let Container { sides, bottom, .. } = &model.medium.container;
+    let absorbs = *sides == SidesKind::Absorbing || *bottom == BottomKind::Absorbing;
+    absorbs.then(|| layer(model).rate).filter(|rate| *rate > 0.0)
 }
 
 /// Speed (m/s) of a long wave along a chain of mean grains, c = d √(k/m); `None` if the law does not say

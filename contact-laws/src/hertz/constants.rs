@@ -70,6 +70,11 @@ impl Elastic {
         4.0 / 3.0 * self.modulus * a * overlap
     }
 
+    /// 8/15 E* a δ² (J), what an overlap holds where 1/R* is `curvature` (1/m).
+    pub(crate) fn energy(&self, curvature: f64, overlap: f64) -> f64 {
+        0.4 * self.normal_force((overlap / curvature).sqrt(), overlap) * overlap
+    }
+
     /// S_n = 2 E* a (N/m), the slope of the force.
     #[inline]
     pub(crate) fn normal_stiffness(&self, a: f64) -> f64 {

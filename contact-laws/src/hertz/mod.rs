@@ -30,6 +30,8 @@ pub(crate) struct Pair<D> {
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(crate) struct Memory {
+    /// 1/R* at the end of the last step (1/m), 0 if it did not touch.
+    curvature: f64,
     /// ξ (m).
     spring: Vec3,
     /// k_t at the end of the last step (N/m).
@@ -90,8 +92,17 @@ pub(crate) fn act<D: Damping>(
         if touching { pair.damping.coefficients(a, contact.mass_eff()) } else { [0.0; 2] };
 
     let spare = (elastic + response.normal_force + response.adhesive_force).max(0.0);
-    let damping = (c_n * contact.overlap_rate).max(-spare);
+    // Damping never takes more than the elastic force, also where adhesion would hold the two together.
+    let damping = (c_n * contact.overlap_rate).max(-spare.min(elastic));
     energy.normal += 0.4 * elastic * overlap;
+    if history.curvature > 0.0
+        && history.curvature.to_bits() != contact.inverse_radius_eff.to_bits()
+    {
+        // Over an edge or along a cone the same overlap holds another energy.
+        let half_way = (overlap - 0.5 * contact.overlap_step).max(0.0);
+        let held = |curvature| pair.elastic.energy(curvature, half_way);
+        energy.stiffness_change += held(history.curvature) - held(contact.inverse_radius_eff);
+    }
     energy.normal_damping += 0.5 * (history.normal_damping + damping) * contact.overlap_step;
 
     let k_t = pair.elastic.tangential_stiffness(a);
@@ -122,6 +133,7 @@ pub(crate) fn act<D: Damping>(
     // A contact that attraction holds open has no spring that could come back.
     let spring = if touching { spring } else { Vec3::zeros() };
     *history = Memory {
+        curvature: if touching { contact.inverse_radius_eff } else { 0.0 },
         spring,
         tangential_stiffness: k_t,
         normal_damping: damping,

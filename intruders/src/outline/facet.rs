@@ -39,7 +39,7 @@ pub(super) struct Corner {
     pub(super) at: Point,
     /// In the middle of those of both sides.
     normal: Point,
-    felt: bool,
+    pub(super) felt: bool,
 }
 
 /// The nearest point of an outline, and how far it is.

@@ -6,6 +6,7 @@ use engine::coarse_graining::{Plane, fields};
 use engine::contact::{Encounter, Partner, restitution};
 use engine::crater::crater;
 use engine::grains::Space;
+use engine::math::Vec3;
 use engine::record::{BodyEstimate, RecordError, RunLog, Stamp};
 use engine::simulation::Simulation;
 
@@ -90,11 +91,14 @@ impl<'a> Observables<'a> {
         let grains = &bed.grains;
         let diameter = 2.0 * grains.radius.iter().sum::<f64>() / grains.len() as f64;
         let body = &simulation.intruder().bodies()[0];
+        // Through a periodic side the intruder may have left the box.
+        let at_home = bed.image_inside(body.position);
         let y = match grains.space {
             Space::Planar => 0.0,
-            Space::Spatial => body.position.y,
+            Space::Spatial => at_home.y,
         };
-        let top = simulation.surface() + 2.0 * HEADROOM * body.surface().bounding_radius();
+        let width = body.surface().support(Vec3::x()) + body.surface().support(-Vec3::x());
+        let top = simulation.surface() + HEADROOM * width;
         let plane = Plane {
             y,
             x: 0.0..bed.container().extents()[0],
@@ -102,7 +106,7 @@ impl<'a> Observables<'a> {
             spacing: SPACING * diameter,
             kernel_width: KERNEL_WIDTH * diameter,
         };
-        let axis = (body.position.x, y);
+        let axis = (at_home.x, y);
         log.bed_fields(at, &fields(grains, &plane), &crater(grains, &bed.lying(), axis))
     }
 }
