@@ -107,6 +107,7 @@ def draw_energy(axes, log):
         "sliding": change("dissipated_sliding"),
         "walls": change("dissipated_walls"),
     }
+    shares["other channels"] = change("dissipated") - sum(list(shares.values())[2:])
     axes.stackplot(times, [np.maximum(share, 0) for share in shares.values()], labels=shares)
     axes.plot(times, 1 - change("potential_intruder"), "k--", lw=1, label="impact energy and fall")
     axes.set(xlabel="time (s)", ylabel="share of the impact energy", xlim=(0, times[-1]))
