@@ -17,7 +17,7 @@ enum Kind {
 
 use Kind::{Count, Number, Reached, Text, Truth};
 
-const KEYS: [(&str, Kind); 36] = [
+const KEYS: [(&str, Kind); 41] = [
     ("/name", Text),
     ("/version", Text),
     ("/model_hash", Text),
@@ -49,6 +49,11 @@ const KEYS: [(&str, Kind); 36] = [
     ("/bed/height_m", Number),
     ("/bed/coordination", Number),
     ("/bed/cache", Text),
+    ("/bed/required_depth_m", Number),
+    ("/bed/activity/largest_moving_share", Number),
+    ("/bed/activity/largest_kinetic_energy_J", Number),
+    ("/bed/activity/peak_time_s", Number),
+    ("/bed/activity/dissipation_time_s", Reached),
     ("/cost/steps", Count),
     ("/cost/dt_s", Number),
     ("/cost/threads", Count),

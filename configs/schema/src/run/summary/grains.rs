@@ -222,7 +222,11 @@ impl Summary {
                 unaccounted: ledger.balance().unaccounted,
                 closure: simulation.closure(),
             },
-            bed: Some(BedSummary { activity: Some(activity), ..bed.clone() }),
+            bed: Some(BedSummary {
+                activity: Some(activity),
+                required_depth_m: required_depth(grains),
+                ..bed.clone()
+            }),
             forces: None,
             links: links(simulation),
             cost,
