@@ -425,12 +425,6 @@ impl GrainBed {
         restless / self.grains.len() as f64
     }
 
-    /// Mean kinetic energy of a grain (J).
-    #[must_use]
-    pub fn mean_kinetic_energy(&self) -> f64 {
-        self.kinetic_energy() / self.grains.len() as f64
-    }
-
     /// Whether each grain touches another or a wall, in the order of memory.
     #[must_use]
     pub fn lying(&self) -> Vec<bool> {

@@ -46,15 +46,6 @@ impl Space {
             Self::Spatial => std::f64::consts::PI * radius * radius,
         }
     }
-
-    /// Area (m²) of a disc or volume (m³) of a sphere.
-    #[must_use]
-    pub fn grain_volume(self, radius: f64) -> f64 {
-        match self {
-            Self::Planar => std::f64::consts::PI * radius * radius,
-            Self::Spatial => 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius,
-        }
-    }
 }
 
 /// One grain as a recipe or a file gives it: at rest, unless it says otherwise.

@@ -86,7 +86,7 @@ fn without_dissipation_the_energy_of_a_box_of_grains_does_not_drift() {
     let series: Vec<f64> = with_threads(1, || {
         let bed = bed((Space::Planar, room), GRAVITY, &grains, vec![law.stage()], 0);
         let mut world = World::new(bed, Box::new(NoIntruder), DT);
-        let start = world.bed().mean_kinetic_energy() * grains.len() as f64;
+        let start = world.bed().kinetic_energy();
         let sample = |_| {
             run(&mut world, 100);
             world.ledger().balance().unaccounted / start

@@ -233,3 +233,17 @@ impl Summary {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_floor_is_near_within_five_grains_or_half_the_intruder() {
+        // Grains of 4 mm: 20 mm; an intruder of 60 mm: 30 mm.
+        assert!(near_the_floor(0.019, 4e-3, 0.02).is_some());
+        assert!(near_the_floor(0.021, 4e-3, 0.02).is_none());
+        assert!(near_the_floor(0.029, 4e-3, 0.06).is_some_and(|text| text.contains("0.0300 m")));
+        assert!(near_the_floor(0.031, 4e-3, 0.06).is_none());
+    }
+}
