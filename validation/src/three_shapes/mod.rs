@@ -98,18 +98,19 @@ pub enum StudyError {
     Threads(#[from] ThreadsError),
 }
 
-/// Every impact of the study: all shapes at all speeds on beds of `seeds` seeds, then all frictions on the
-/// first.
+/// Every impact of the study on beds of `seeds` seeds: all shapes at all speeds, then all frictions.
 #[must_use]
 pub fn cases(seeds: u64) -> Vec<Case> {
-    let shapes = (1..=seeds).flat_map(|seed| {
+    let seeds = 1..=seeds;
+    let shapes = seeds.clone().flat_map(|seed| {
         SHAPES.into_iter().flat_map(move |model| {
             SPEEDS.into_iter().map(move |speed| Case { model, speed, seed, friction: None })
         })
     });
-    let (model, speed) = RUBBED;
-    let frictions =
-        FRICTIONS.into_iter().map(|f| Case { model, speed, seed: 1, friction: Some(f) });
+    let frictions = seeds.flat_map(|seed| {
+        let (model, speed) = RUBBED;
+        FRICTIONS.into_iter().map(move |f| Case { model, speed, seed, friction: Some(f) })
+    });
     shapes.chain(frictions).collect()
 }
 
