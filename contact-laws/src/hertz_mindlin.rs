@@ -1,12 +1,10 @@
 //! Hertz–Mindlin with damping that sets the restitution.
 
-use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
-use engine::ledger::Channel;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
 use crate::hertz::{self, Damping, Elastic, damping_ratio, params};
-use crate::registry::{ActsOn, FromParams, LawEntry};
+use crate::registry::{ActsOn, LawEntry};
 
 /// Hertz's normal force, Mindlin's tangential spring, a Coulomb limit, and damping with which grains
 /// rebound with the same restitution at every speed.
@@ -25,11 +23,7 @@ use crate::registry::{ActsOn, FromParams, LawEntry};
 ///
 /// Source: Johnson, Contact Mechanics (1985); Mindlin (1949); Tsuji, Tanaka & Ishida, Powder Technol.
 /// 71, 239 (1992). Differs from the last in β, which there lets the end of a rebound attract.
-pub(crate) struct HertzMindlin {
-    pairs: [Pair; 3],
-}
-
-type Pair = hertz::Pair<Restitution>;
+pub(crate) type HertzMindlin = hertz::Law<Restitution>;
 
 /// Damping as √(stiffness · mass).
 #[derive(Clone, Copy)]
@@ -39,64 +33,22 @@ pub(crate) struct Restitution {
 }
 
 impl Damping for Restitution {
+    const NAME: &'static str = "hertz-mindlin";
+
+    fn of(elastic: &Elastic, values: &ParamTable) -> Self {
+        let ratio = 2.0 * (5.0_f64 / 6.0).sqrt() * damping_ratio(values.get("restitution"));
+        let tangential = values.get("tangential_damping");
+        let factors = [
+            ratio * elastic.normal_stiffness(1.0).sqrt(),
+            tangential * ratio * elastic.tangential_stiffness(1.0).sqrt(),
+        ];
+        Self { factors }
+    }
+
     #[inline]
     fn coefficients(&self, contact_radius: f64, mass_eff: f64) -> [f64; 2] {
         let root = (contact_radius * mass_eff).sqrt();
         self.factors.map(|factor| factor * root)
-    }
-}
-
-impl ContactLaw for HertzMindlin {
-    const NAME: &'static str = "hertz-mindlin";
-    const SLOT: Slot = Slot::Base;
-    const CHANNELS: &'static [Channel] = hertz::CHANNELS;
-    type Pair = Pair;
-    type History = hertz::Memory;
-    type Energy = hertz::Energy;
-
-    fn pair(&self, partner: Partner) -> Pair {
-        self.pairs[partner.index()]
-    }
-
-    #[inline]
-    fn act(
-        pair: &Pair,
-        contact: &Contact,
-        _dt: f64,
-        history: &mut hertz::Memory,
-        response: &mut Response,
-        energy: &mut hertz::Energy,
-    ) {
-        hertz::act(pair, contact, history, response, energy);
-    }
-
-    fn collision_time(pair: &Pair, encounter: &Encounter) -> Option<f64> {
-        Some(pair.elastic.collision_time(encounter))
-    }
-
-    fn damping_time(pair: &Pair, encounter: &Encounter) -> Option<f64> {
-        hertz::damping_time(pair, encounter)
-    }
-
-    fn wave_time(pair: &Pair, radius: f64, density: f64) -> Option<f64> {
-        Some(pair.elastic.wave_time(radius, density))
-    }
-}
-
-impl FromParams for HertzMindlin {
-    fn from_params(values: &ParamTable) -> Self {
-        let ratio = 2.0 * (5.0_f64 / 6.0).sqrt() * damping_ratio(values.get("restitution"));
-        let tangential = values.get("tangential_damping");
-        let pair = |partner| {
-            let elastic = Elastic::of(values, partner);
-            let factors = [
-                ratio * elastic.normal_stiffness(1.0).sqrt(),
-                tangential * ratio * elastic.tangential_stiffness(1.0).sqrt(),
-            ];
-            let friction = params::friction(values, partner);
-            Pair { elastic, damping: Restitution { factors }, friction }
-        };
-        Self { pairs: Partner::ALL.map(pair) }
     }
 }
 
@@ -131,10 +83,13 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
 
 #[cfg(test)]
 mod tests {
+    use engine::contact::{Contact, ContactLaw, Partner};
+
     use super::*;
     use crate::hertz::tests::{MODULUS, OVERLAP, RADIUS_EFF, acted, beads, close, contact};
+    use crate::registry::FromParams;
 
-    fn pair(restitution: f64) -> Pair {
+    fn pair(restitution: f64) -> hertz::Pair<Restitution> {
         let more = [("restitution", restitution), ("tangential_damping", 1.0)];
         HertzMindlin::from_params(&beads(&more)).pair(Partner::Grain)
     }

@@ -1,12 +1,10 @@
 //! Hertz–Mindlin with a viscoelastic material.
 
-use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
-use engine::ledger::Channel;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
 use crate::hertz::{self, Damping, Elastic, params};
-use crate::registry::{ActsOn, FromParams, LawEntry};
+use crate::registry::{ActsOn, LawEntry};
 
 /// Hertz's normal force, Mindlin's tangential spring, a Coulomb limit, and the damping of a viscoelastic
 /// material, with which faster grains rebound less.
@@ -24,11 +22,7 @@ use crate::registry::{ActsOn, FromParams, LawEntry};
 /// Source: eqs 1–4 of the three-shape study; Brilliantov, Spahn, Hertzsch & Pöschel, Phys. Rev. E 53,
 /// 5382 (1996). Differs from the former in K_n, printed with 3/4, in G* = G/(2(2 − ν)), printed with
 /// 1 − ν, and in that nothing attracts.
-pub(crate) struct HertzMindlinViscous {
-    pairs: [Pair; 3],
-}
-
-type Pair = hertz::Pair<Viscous>;
+pub(crate) type HertzMindlinViscous = hertz::Law<Viscous>;
 
 /// Damping as time · stiffness.
 #[derive(Clone, Copy)]
@@ -38,63 +32,21 @@ pub(crate) struct Viscous {
 }
 
 impl Damping for Viscous {
+    const NAME: &'static str = "hertz-mindlin-viscous";
+
+    fn of(elastic: &Elastic, values: &ParamTable) -> Self {
+        let viscous_time = values.get("viscous_time");
+        let tangential = values.get("tangential_damping");
+        let factors = [
+            viscous_time * elastic.normal_stiffness(1.0),
+            tangential * viscous_time * elastic.tangential_stiffness(1.0),
+        ];
+        Self { factors }
+    }
+
     #[inline]
     fn coefficients(&self, contact_radius: f64, _: f64) -> [f64; 2] {
         self.factors.map(|factor| factor * contact_radius)
-    }
-}
-
-impl ContactLaw for HertzMindlinViscous {
-    const NAME: &'static str = "hertz-mindlin-viscous";
-    const SLOT: Slot = Slot::Base;
-    const CHANNELS: &'static [Channel] = hertz::CHANNELS;
-    type Pair = Pair;
-    type History = hertz::Memory;
-    type Energy = hertz::Energy;
-
-    fn pair(&self, partner: Partner) -> Pair {
-        self.pairs[partner.index()]
-    }
-
-    #[inline]
-    fn act(
-        pair: &Pair,
-        contact: &Contact,
-        _dt: f64,
-        history: &mut hertz::Memory,
-        response: &mut Response,
-        energy: &mut hertz::Energy,
-    ) {
-        hertz::act(pair, contact, history, response, energy);
-    }
-
-    fn collision_time(pair: &Pair, encounter: &Encounter) -> Option<f64> {
-        Some(pair.elastic.collision_time(encounter))
-    }
-
-    fn damping_time(pair: &Pair, encounter: &Encounter) -> Option<f64> {
-        hertz::damping_time(pair, encounter)
-    }
-
-    fn wave_time(pair: &Pair, radius: f64, density: f64) -> Option<f64> {
-        Some(pair.elastic.wave_time(radius, density))
-    }
-}
-
-impl FromParams for HertzMindlinViscous {
-    fn from_params(values: &ParamTable) -> Self {
-        let viscous_time = values.get("viscous_time");
-        let tangential = values.get("tangential_damping");
-        let pair = |partner| {
-            let elastic = Elastic::of(values, partner);
-            let factors = [
-                viscous_time * elastic.normal_stiffness(1.0),
-                tangential * viscous_time * elastic.tangential_stiffness(1.0),
-            ];
-            let friction = params::friction(values, partner);
-            Pair { elastic, damping: Viscous { factors }, friction }
-        };
-        Self { pairs: Partner::ALL.map(pair) }
     }
 }
 
@@ -128,13 +80,16 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
 
 #[cfg(test)]
 mod tests {
+    use engine::contact::{Contact, ContactLaw, Partner};
+
     use super::*;
     use crate::hertz::tests::{MODULUS, OVERLAP, RADIUS_EFF, acted, beads, close, contact};
+    use crate::registry::FromParams;
     use engine::math::Vec3;
 
     const VISCOUS_TIME: f64 = 1e-6;
 
-    fn pair(tangential_damping: f64) -> Pair {
+    fn pair(tangential_damping: f64) -> hertz::Pair<Viscous> {
         let more = [("viscous_time", VISCOUS_TIME), ("tangential_damping", tangential_damping)];
         HertzMindlinViscous::from_params(&beads(&more)).pair(Partner::Grain)
     }

@@ -4,15 +4,22 @@ mod constants;
 pub(crate) mod params;
 mod restitution;
 
-use engine::contact::{Contact, Encounter, Response};
+use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::ledger::{Channel, ChannelKind};
 use engine::math::Vec3;
+use engine::params::ParamTable;
 
 pub(crate) use constants::Elastic;
 pub(crate) use restitution::damping_ratio;
 
+use crate::registry::FromParams;
+
 /// How a law damps.
-pub(crate) trait Damping: Copy + Send + Sync {
+pub(crate) trait Damping: Copy + Send + Sync + 'static {
+    /// The name of the law in TOML.
+    const NAME: &'static str;
+    /// From the parameters of the law, for contacts with these constants.
+    fn of(elastic: &Elastic, values: &ParamTable) -> Self;
     /// c_n and c_t (N s/m) at contact radius a = `contact_radius` (m) and m* = `mass_eff` (kg).
     fn coefficients(&self, contact_radius: f64, mass_eff: f64) -> [f64; 2];
 }
@@ -24,6 +31,59 @@ pub(crate) struct Pair<D> {
     pub(crate) damping: D,
     /// μ (–).
     pub(crate) friction: f64,
+}
+
+/// A base law that damps in the way of `D`.
+pub(crate) struct Law<D> {
+    pairs: [Pair<D>; 3],
+}
+
+impl<D: Damping> ContactLaw for Law<D> {
+    const NAME: &'static str = D::NAME;
+    const SLOT: Slot = Slot::Base;
+    const CHANNELS: &'static [Channel] = CHANNELS;
+    type Pair = Pair<D>;
+    type History = Memory;
+    type Energy = Energy;
+
+    fn pair(&self, partner: Partner) -> Pair<D> {
+        self.pairs[partner.index()]
+    }
+
+    #[inline]
+    fn act(
+        pair: &Pair<D>,
+        contact: &Contact,
+        _dt: f64,
+        history: &mut Memory,
+        response: &mut Response,
+        energy: &mut Energy,
+    ) {
+        act(pair, contact, history, response, energy);
+    }
+
+    fn collision_time(pair: &Pair<D>, encounter: &Encounter) -> Option<f64> {
+        Some(pair.elastic.collision_time(encounter))
+    }
+
+    fn damping_time(pair: &Pair<D>, encounter: &Encounter) -> Option<f64> {
+        damping_time(pair, encounter)
+    }
+
+    fn wave_time(pair: &Pair<D>, radius: f64, density: f64) -> Option<f64> {
+        Some(pair.elastic.wave_time(radius, density))
+    }
+}
+
+impl<D: Damping> FromParams for Law<D> {
+    fn from_params(values: &ParamTable) -> Self {
+        let pair = |partner| {
+            let elastic = Elastic::of(values, partner);
+            let friction = params::friction(values, partner);
+            Pair { damping: D::of(&elastic, values), elastic, friction }
+        };
+        Self { pairs: Partner::ALL.map(pair) }
+    }
 }
 
 /// What a contact remembers.
@@ -217,6 +277,12 @@ pub(crate) mod tests {
     struct Undamped;
 
     impl Damping for Undamped {
+        const NAME: &'static str = "undamped";
+
+        fn of(_: &Elastic, _: &ParamTable) -> Self {
+            Self
+        }
+
         fn coefficients(&self, _: f64, _: f64) -> [f64; 2] {
             [0.0; 2]
         }
