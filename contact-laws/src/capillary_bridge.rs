@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::lanes::Lanes;
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
@@ -44,13 +45,14 @@ const LINEAR: f64 = 1.05;
 const SQUARE: f64 = 2.5;
 
 impl Pair {
-    fn pull(&self, overlap: f64, radius_eff: f64) -> Pull {
-        let radius = 2.0 * radius_eff;
-        let touch = self.pull_per_radius * radius;
-        let scale = (radius / self.volume).sqrt();
-        let s = (-overlap).max(0.0) * scale;
-        let force = touch / (1.0 + s * (LINEAR + SQUARE * s));
-        let done = touch * (work(s) / scale - overlap.max(0.0));
+    fn pull<R: Lanes>(&self, overlap: R, radius_eff: R) -> Pull<R> {
+        let [linear, square] = [LINEAR, SQUARE].map(R::splat);
+        let radius = radius_eff + radius_eff;
+        let touch = R::splat(self.pull_per_radius) * radius;
+        let scale = (radius / R::splat(self.volume)).simd_sqrt();
+        let s = (-overlap).simd_max(R::zero()) * scale;
+        let force = touch / (R::one() + s * (linear + square * s));
+        let done = touch * (s.map_lanes(work) / scale - overlap.simd_max(R::zero()));
         Pull { force: -force, adhesive_force: force, stored: done }
     }
 }
@@ -68,8 +70,8 @@ impl ContactLaw for CapillaryBridge {
     const SLOT: Slot = Slot::Normal;
     const CHANNELS: &'static [Channel] = CHANNELS;
     type Pair = Pair;
-    type History = Bond;
-    type Energy = Energy;
+    type History<R: Lanes, const N: usize> = Bond<R>;
+    type Energy<R: Lanes> = Energy<R>;
 
     fn pair(&self, _: Partner) -> Pair {
         Pair {
@@ -79,19 +81,19 @@ impl ContactLaw for CapillaryBridge {
         }
     }
 
-    #[inline]
-    fn act(
+    #[inline(always)]
+    fn act<R: Lanes, const N: usize>(
         pair: &Pair,
-        contact: &Contact,
+        contact: &Contact<R, N>,
         _dt: f64,
-        history: &mut Bond,
-        response: &mut Response,
-        energy: &mut Energy,
+        history: &mut Bond<R>,
+        response: &mut Response<R, N>,
+        energy: &mut Energy<R>,
     ) {
-        let holds =
-            contact.overlap > 0.0 || history.is_bound() && contact.overlap > -pair.rupture_gap;
-        let pull = holds.then(|| pair.pull(contact.overlap, contact.radius_eff()));
-        history.act(pull, contact, response, energy);
+        let in_reach = contact.overlap.simd_gt(R::splat(-pair.rupture_gap));
+        let holds = contact.overlaps() | history.is_bound() & in_reach;
+        let pull = pair.pull(contact.overlap, contact.radius_eff());
+        history.act((holds, pull), contact, response, energy);
     }
 
     /// Half a swing in a spring as stiff as the bridge is where it is stiffest, at the touch.
@@ -168,6 +170,7 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
 mod tests {
     use super::*;
     use crate::hertz::tests::{OVERLAP, RADIUS_EFF, acted, close, contact};
+    use engine::lanes::Record;
 
     const VOLUME: f64 = 1e-12;
 
@@ -179,7 +182,7 @@ mod tests {
 
     #[test]
     fn grains_that_touch_pull_with_two_pi_r_gamma_cos_theta() {
-        let mut bond = bytemuck::Zeroable::zeroed();
+        let mut bond = Record::zero();
         let (response, energy) = acted::<CapillaryBridge>(&pair(), &contact(), &mut bond);
         let touch = 2.0 * PI * (2.0 * RADIUS_EFF) * 0.072 * libm::cos(0.5);
         assert!(close(response.normal_force, -touch) && close(response.adhesive_force, touch));
@@ -188,7 +191,7 @@ mod tests {
 
     #[test]
     fn a_bridge_forms_at_touch_and_ruptures_where_it_should() {
-        let (pair, mut bond) = (pair(), bytemuck::Zeroable::zeroed());
+        let (pair, mut bond) = (pair(), Record::zero());
         let rupture = 1.25 * libm::cbrt(VOLUME);
         let at = |share: f64| Contact { overlap: -share * rupture, ..contact() };
         assert!(!acted::<CapillaryBridge>(&pair, &at(0.5), &mut bond).0.holds);

@@ -1,6 +1,7 @@
 //! Cohesion as a constant pull, as Derjaguin, Muller and Toporov have it.
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::lanes::Lanes;
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
@@ -36,26 +37,25 @@ impl ContactLaw for CohesionDmt {
     const SLOT: Slot = Slot::Normal;
     const CHANNELS: &'static [Channel] = CHANNELS;
     type Pair = Pair;
-    type History = Bond;
-    type Energy = Energy;
+    type History<R: Lanes, const N: usize> = Bond<R>;
+    type Energy<R: Lanes> = Energy<R>;
 
     fn pair(&self, _: Partner) -> Pair {
         Pair { pull_per_radius: std::f64::consts::TAU * self.work_of_adhesion }
     }
 
-    #[inline]
-    fn act(
+    #[inline(always)]
+    fn act<R: Lanes, const N: usize>(
         pair: &Pair,
-        contact: &Contact,
+        contact: &Contact<R, N>,
         _dt: f64,
-        history: &mut Bond,
-        response: &mut Response,
-        energy: &mut Energy,
+        history: &mut Bond<R>,
+        response: &mut Response<R, N>,
+        energy: &mut Energy<R>,
     ) {
-        let force = pair.pull_per_radius * contact.radius_eff();
+        let force = R::splat(pair.pull_per_radius) * contact.radius_eff();
         let pull = Pull { force: -force, adhesive_force: force, stored: -force * contact.overlap };
-        let pull = (contact.overlap > 0.0).then_some(pull);
-        history.act(pull, contact, response, energy);
+        history.act((contact.overlaps(), pull), contact, response, energy);
     }
 
     fn collision_time(_: &Pair, _: &Encounter) -> Option<f64> {
@@ -100,6 +100,7 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
 
 #[cfg(test)]
 mod tests {
+    use engine::lanes::Record;
     use std::f64::consts::PI;
 
     use super::*;
@@ -111,7 +112,7 @@ mod tests {
     fn grains_that_touch_pull_with_two_pi_w_r_and_store_what_that_did() {
         let pair = CohesionDmt { work_of_adhesion: WORK }.pair(Partner::Grain);
         let pull = 2.0 * PI * WORK * RADIUS_EFF;
-        let mut bond = bytemuck::Zeroable::zeroed();
+        let mut bond = Record::zero();
         let closing = Contact { overlap_step: 1.5 * OVERLAP, ..contact() };
         let (response, energy) = acted::<CohesionDmt>(&pair, &closing, &mut bond);
         assert!(close(response.normal_force, -pull) && close(response.adhesive_force, pull));

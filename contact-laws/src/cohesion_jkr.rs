@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::lanes::Lanes;
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
@@ -43,22 +44,23 @@ pub(crate) struct Pair {
 
 impl Pair {
     /// δ at which it lets go, without its sign: (3/4) (π² W² R*/E*²)^{1/3} (m).
-    fn release_gap(&self, radius_eff: f64) -> f64 {
+    fn release_gap<R: Lanes>(&self, radius_eff: R) -> R {
         let length = PI * self.work_of_adhesion / self.elastic.modulus;
-        0.75 * libm::cbrt(length * length * radius_eff)
+        R::splat(0.75) * (R::splat(length * length) * radius_eff).map_lanes(libm::cbrt)
     }
 
-    fn pull(&self, overlap: f64, radius_eff: f64) -> Pull {
-        let unit = PI * self.work_of_adhesion * radius_eff;
-        let span = 4.0 / 3.0 * self.release_gap(radius_eff);
-        let u = root(overlap / span);
+    fn pull<R: Lanes>(&self, overlap: R, radius_eff: R) -> Pull<R> {
+        let unit = R::splat(PI * self.work_of_adhesion) * radius_eff;
+        let span = R::splat(4.0 / 3.0) * self.release_gap(radius_eff);
+        let u = (overlap / span).map_lanes(root);
         let cube = u * u * u;
-        let open = overlap.max(0.0);
-        let hertz = self.elastic.normal_force((radius_eff * open).sqrt(), open);
+        let open = overlap.simd_max(R::zero());
+        let hertz = self.elastic.normal_force((radius_eff * open).simd_sqrt(), open);
+        let done = u.map_lanes(energy) - R::splat(energy_at_touch());
         Pull {
-            force: unit * cube * (cube / 6.0 - 1.0) - hertz,
-            adhesive_force: 3.0 * unit,
-            stored: unit * span * (energy(u) - energy_at_touch()) - 0.4 * hertz * open,
+            force: unit * cube * (cube / R::splat(6.0) - R::one()) - hertz,
+            adhesive_force: R::splat(3.0) * unit,
+            stored: unit * span * done - R::splat(0.4) * hertz * open,
         }
     }
 }
@@ -90,29 +92,29 @@ impl ContactLaw for CohesionJkr {
     const SLOT: Slot = Slot::Normal;
     const CHANNELS: &'static [Channel] = CHANNELS;
     type Pair = Pair;
-    type History = Bond;
-    type Energy = Energy;
+    type History<R: Lanes, const N: usize> = Bond<R>;
+    type Energy<R: Lanes> = Energy<R>;
 
     fn pair(&self, partner: Partner) -> Pair {
         let elastic = self.elastic[partner.index()];
         Pair { work_of_adhesion: self.work_of_adhesion, elastic }
     }
 
-    #[inline]
-    fn act(
+    #[inline(always)]
+    fn act<R: Lanes, const N: usize>(
         pair: &Pair,
-        contact: &Contact,
+        contact: &Contact<R, N>,
         _dt: f64,
-        history: &mut Bond,
-        response: &mut Response,
-        energy: &mut Energy,
+        history: &mut Bond<R>,
+        response: &mut Response<R, N>,
+        energy: &mut Energy<R>,
     ) {
         let radius = contact.radius_eff();
-        let holds = contact.overlap > 0.0
-            || history.is_bound() && contact.overlap > -pair.release_gap(radius);
-        let pull =
-            (holds && pair.work_of_adhesion > 0.0).then(|| pair.pull(contact.overlap, radius));
-        history.act(pull, contact, response, energy);
+        let gap = pair.release_gap(radius);
+        let held = contact.overlaps() | history.is_bound() & contact.overlap.simd_gt(-gap);
+        let adheres = R::splat(pair.work_of_adhesion).simd_gt(R::zero());
+        let pull = pair.pull(contact.overlap, radius);
+        history.act((held & adheres, pull), contact, response, energy);
     }
 
     /// Half a swing about the overlap at which two bodies rest, u³ = 6.
@@ -172,6 +174,7 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
 mod tests {
     use super::*;
     use crate::hertz::tests::{MODULUS, RADIUS_EFF, acted, beads, contact};
+    use engine::lanes::Record;
 
     const WORK: f64 = 0.05;
     const UNIT: f64 = PI * WORK * RADIUS_EFF;
@@ -232,9 +235,9 @@ mod tests {
     #[test]
     fn a_contact_holds_on_until_release_and_loses_there_what_it_stored() {
         let (pair, gap) = (pair(), pair().release_gap(RADIUS_EFF));
-        let mut bond = bytemuck::Zeroable::zeroed();
+        let mut bond = Record::zero();
         let at = |overlap: f64| Contact { overlap, ..contact() };
-        let open = |bond: &mut Bond| acted::<CohesionJkr>(&pair, &at(-0.5 * gap), bond);
+        let open = |bond: &mut Bond<f64>| acted::<CohesionJkr>(&pair, &at(-0.5 * gap), bond);
         assert!(!open(&mut bond).0.holds, "nothing holds what never touched");
         acted::<CohesionJkr>(&pair, &at(1e-12), &mut bond);
         assert!(open(&mut bond).0.holds);

@@ -1,5 +1,6 @@
 //! Hertz–Mindlin with damping that sets the restitution.
 
+use engine::lanes::Lanes;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
@@ -45,10 +46,10 @@ impl Damping for Restitution {
         Self { factors }
     }
 
-    #[inline]
-    fn coefficients(&self, contact_radius: f64, mass_eff: f64) -> [f64; 2] {
-        let root = (contact_radius * mass_eff).sqrt();
-        self.factors.map(|factor| factor * root)
+    #[inline(always)]
+    fn coefficients<R: Lanes>(&self, contact_radius: R, mass_eff: R) -> [R; 2] {
+        let root = (contact_radius * mass_eff).simd_sqrt();
+        self.factors.map(|factor| R::splat(factor) * root)
     }
 }
 
@@ -84,6 +85,7 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
 #[cfg(test)]
 mod tests {
     use engine::contact::{Contact, ContactLaw, Partner};
+    use engine::lanes::Record;
 
     use super::*;
     use crate::hertz::tests::{MODULUS, OVERLAP, RADIUS_EFF, acted, beads, close, contact};
@@ -97,7 +99,7 @@ mod tests {
     #[test]
     fn damping_is_the_ratio_times_the_root_of_stiffness_and_mass() {
         let approaching = Contact { overlap_rate: 1e-3, ..contact() };
-        let mut history = bytemuck::Zeroable::zeroed();
+        let mut history = Record::zero();
         let (response, _) = acted::<HertzMindlin>(&pair(0.5), &approaching, &mut history);
         let stiffness = 2.0 * MODULUS * (RADIUS_EFF * OVERLAP).sqrt();
         let elastic = 2.0 / 3.0 * stiffness * OVERLAP;
@@ -112,7 +114,7 @@ mod tests {
     #[test]
     fn a_contact_that_opens_fast_does_not_attract() {
         let parting = Contact { overlap_rate: -100.0, ..contact() };
-        let mut history = bytemuck::Zeroable::zeroed();
+        let mut history = Record::zero();
         let (response, _) = acted::<HertzMindlin>(&pair(0.1), &parting, &mut history);
         assert_eq!(response.normal_force.to_bits(), 0.0_f64.to_bits());
     }

@@ -1,5 +1,6 @@
 //! Hertz–Mindlin with a viscoelastic material.
 
+use engine::lanes::Lanes;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
@@ -44,9 +45,9 @@ impl Damping for Viscous {
         Self { factors }
     }
 
-    #[inline]
-    fn coefficients(&self, contact_radius: f64, _: f64) -> [f64; 2] {
-        self.factors.map(|factor| factor * contact_radius)
+    #[inline(always)]
+    fn coefficients<R: Lanes>(&self, contact_radius: R, _: R) -> [R; 2] {
+        self.factors.map(|factor| R::splat(factor) * contact_radius)
     }
 }
 
@@ -81,6 +82,7 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
 #[cfg(test)]
 mod tests {
     use engine::contact::{Contact, ContactLaw, Partner};
+    use engine::lanes::Record;
 
     use super::*;
     use crate::hertz::tests::{MODULUS, OVERLAP, RADIUS_EFF, acted, beads, close, contact};
@@ -97,7 +99,7 @@ mod tests {
     #[test]
     fn the_viscous_force_is_that_of_the_source_with_its_slips_put_right() {
         let approaching = Contact { overlap_rate: 1e-3, ..contact() };
-        let mut history = bytemuck::Zeroable::zeroed();
+        let mut history = Record::zero();
         let (response, _) = acted::<HertzMindlinViscous>(&pair(0.0), &approaching, &mut history);
         let k_n = 4.0 / 3.0 * MODULUS * RADIUS_EFF.sqrt();
         let elastic = k_n * OVERLAP * OVERLAP.sqrt();
@@ -109,7 +111,7 @@ mod tests {
     fn shear_is_damped_only_on_request() {
         let shearing = Contact { slip_velocity: Vec3::x() * 1e-6, ..contact() };
         let force = |tangential_damping: f64| {
-            let mut history = bytemuck::Zeroable::zeroed();
+            let mut history = Record::zero();
             let pair = pair(tangential_damping);
             let (response, _) = acted::<HertzMindlinViscous>(&pair, &shearing, &mut history);
             response.tangential_force.x

@@ -1,8 +1,8 @@
 //! Linear spring–dashpot with a tangential spring and a Coulomb limit.
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::lanes::{Lanes, Vector, select_vector, vector_where};
 use engine::ledger::{Channel, ChannelKind};
-use engine::math::Vec3;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
@@ -44,26 +44,27 @@ pub(crate) struct Pair {
     friction: f64,
 }
 
-/// What a contact remembers.
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub(crate) struct Memory {
-    /// ξ (m).
-    spring: Vec3,
-    /// Damping force at the end of the last step (N).
-    normal_damping: f64,
-    /// Viscous resistance at the end of the last step (N).
-    tangential_damping: Vec3,
+engine::record! {
+    /// What a contact remembers.
+    pub(crate) struct Memory<R, const N: usize> {
+        /// ξ (m).
+        spring: Vector<R, N>,
+        /// Damping force at the end of the last step (N).
+        normal_damping: R,
+        /// Viscous resistance at the end of the last step (N).
+        tangential_damping: Vector<R, N>,
+    }
 }
 
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub(crate) struct Energy {
-    normal: f64,
-    tangential: f64,
-    normal_damping: f64,
-    tangential_damping: f64,
-    sliding: f64,
+engine::record! {
+    /// One number (J) per channel.
+    pub(crate) struct Energy<R> {
+        normal: R,
+        tangential: R,
+        normal_damping: R,
+        tangential_damping: R,
+        sliding: R,
+    }
 }
 
 impl ContactLaw for LinearSpringDashpot {
@@ -71,8 +72,8 @@ impl ContactLaw for LinearSpringDashpot {
     const SLOT: Slot = Slot::Base;
     const CHANNELS: &'static [Channel] = CHANNELS;
     type Pair = Pair;
-    type History = Memory;
-    type Energy = Energy;
+    type History<R: Lanes, const N: usize> = Memory<R, N>;
+    type Energy<R: Lanes> = Energy<R>;
 
     fn pair(&self, partner: Partner) -> Pair {
         Pair {
@@ -85,44 +86,43 @@ impl ContactLaw for LinearSpringDashpot {
         }
     }
 
-    #[inline]
-    fn act(
+    #[inline(always)]
+    fn act<R: Lanes, const N: usize>(
         pair: &Pair,
-        contact: &Contact,
+        contact: &Contact<R, N>,
         _dt: f64,
-        history: &mut Memory,
-        response: &mut Response,
-        energy: &mut Energy,
+        history: &mut Memory<R, N>,
+        response: &mut Response<R, N>,
+        energy: &mut Energy<R>,
     ) {
-        let touching = contact.overlap > 0.0;
-        let overlap = contact.overlap.max(0.0);
-        let mass = if touching { contact.mass_eff() } else { 0.0 };
+        let half = R::splat(0.5);
+        let touching = contact.overlaps();
+        let overlap = contact.overlap.simd_max(R::zero());
+        let mass = contact.mass_eff().select(touching, R::zero());
 
-        let (k_n, k_t) = (pair.normal_stiffness, pair.tangential_stiffness);
-        let damping = mass * pair.normal_damping_rate * contact.overlap_rate;
+        let [k_n, k_t] = [pair.normal_stiffness, pair.tangential_stiffness].map(R::splat);
+        let damping = mass * R::splat(pair.normal_damping_rate) * contact.overlap_rate;
         let normal_force = k_n * overlap + damping;
-        energy.normal += 0.5 * k_n * overlap * overlap;
-        energy.normal_damping += 0.5 * (history.normal_damping + damping) * contact.overlap_step;
+        energy.normal += half * k_n * overlap * overlap;
+        energy.normal_damping += half * (history.normal_damping + damping) * contact.overlap_step;
 
         let pressed = response.normal_force + normal_force + response.adhesive_force;
-        let limit = pair.friction * pressed.abs();
+        let limit = R::splat(pair.friction) * pressed.simd_abs();
         let before = contact.turn(history.spring);
         let stretched = before + contact.slip_step;
-        let viscous = contact.slip_velocity * (mass * pair.tangential_damping_rate);
+        let viscous = contact.slip_velocity * (mass * R::splat(pair.tangential_damping_rate));
         let trial = -(stretched * k_t + viscous);
-        let trial_2 = trial.norm_squared();
-        let (force, spring, viscous) = if trial_2 > limit * limit {
-            let force = trial * (limit / trial_2.sqrt());
-            let spring = force * -pair.tangential_compliance;
-            let slipped = stretched - spring;
-            energy.sliding += 0.5 * k_t * (before + spring).dot(&slipped);
-            (force, spring, Vec3::zeros())
-        } else {
-            (trial, stretched, viscous)
-        };
-        energy.tangential += 0.5 * k_t * spring.norm_squared();
+        let trial_2 = trial.dot(&trial);
+        let slides = trial_2.simd_gt(limit * limit);
+        let cut = (limit / trial_2.simd_sqrt()).select(slides, R::one());
+        let force = trial * cut;
+        let cut_back = force * -R::splat(pair.tangential_compliance);
+        let spring = select_vector(slides, cut_back, stretched);
+        let viscous = vector_where(!slides, viscous);
+        energy.sliding += half * k_t * (before + spring).dot(&(stretched - spring));
+        energy.tangential += half * k_t * spring.dot(&spring);
         energy.tangential_damping +=
-            0.5 * (history.tangential_damping + viscous).dot(&contact.slip_step);
+            half * (history.tangential_damping + viscous).dot(&contact.slip_step);
 
         *history = Memory { spring, normal_damping: damping, tangential_damping: viscous };
         response.normal_force += normal_force;
@@ -233,13 +233,21 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
 
 #[cfg(test)]
 mod tests {
+    use engine::lanes::Record;
+    use engine::math::Vec3;
+
     use super::*;
 
     /// γ = 0, μ = 1/2; overlap of 1e-4 m, so F_n = 0.1 N and the limit is 0.05 N.
     const FRICTION: f64 = 0.5;
     const STIFFNESS: f64 = 1000.0;
 
-    fn act(damping_rate: f64, slip_step: f64, slip_rate: f64, history: &mut Memory) -> Outcome {
+    fn act(
+        damping_rate: f64,
+        slip_step: f64,
+        slip_rate: f64,
+        history: &mut Memory<f64, 3>,
+    ) -> Outcome {
         let law = LinearSpringDashpot {
             normal_stiffness: STIFFNESS,
             tangential_stiffness: STIFFNESS,
@@ -259,9 +267,8 @@ mod tests {
             inverse_radius_eff: 1e3,
             inverse_mass_eff: 1e4,
             rolling_mobility: 1e9,
-            partner: Partner::Grain,
         };
-        let (mut response, mut energy) = (Response::default(), bytemuck::Zeroable::zeroed());
+        let (mut response, mut energy) = (Response::default(), Record::zero());
         let pair = law.pair(Partner::Grain);
         LinearSpringDashpot::act(&pair, &contact, 1e-5, history, &mut response, &mut energy);
         Outcome { response, energy }
@@ -269,7 +276,7 @@ mod tests {
 
     struct Outcome {
         response: Response,
-        energy: Energy,
+        energy: Energy<f64>,
     }
 
     /// Sums of a handful of terms of order one.
@@ -279,7 +286,7 @@ mod tests {
 
     #[test]
     fn a_sliding_contact_resists_with_friction_times_the_normal_force_and_cuts_its_spring() {
-        let mut history = bytemuck::Zeroable::zeroed();
+        let mut history = Record::zero();
         let slip = 1e-3;
         let Outcome { response, energy } = act(0.0, slip, 100.0, &mut history);
         let limit = FRICTION * response.normal_force;
@@ -295,7 +302,7 @@ mod tests {
 
     #[test]
     fn a_sliding_contact_drops_its_viscous_part() {
-        let mut history = bytemuck::Zeroable::zeroed();
+        let mut history = Record::zero();
         let Outcome { response, energy } = act(8e3, 1e-6, 0.1, &mut history);
         assert!(close(response.tangential_force.x, -FRICTION * response.normal_force));
         assert!(close(history.spring.x, -response.tangential_force.x / STIFFNESS));
@@ -305,7 +312,7 @@ mod tests {
 
     #[test]
     fn a_sticking_contact_gives_back_what_its_spring_took() {
-        let mut history = bytemuck::Zeroable::zeroed();
+        let mut history = Record::zero();
         let there = act(0.0, 2e-5, 2.0, &mut history);
         assert!(close(there.response.tangential_force.x, -2e-5 * STIFFNESS));
         assert!(close(there.energy.tangential, 0.5 * STIFFNESS * 2e-5 * 2e-5));

@@ -1,8 +1,8 @@
 //! Rolling resistance as a constant torque.
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::lanes::{Lanes, Vector, vector_where};
 use engine::ledger::{Channel, ChannelKind};
-use engine::math::Vec3;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
@@ -41,33 +41,32 @@ impl ContactLaw for RollingConstantTorque {
     const CHANNELS: &'static [Channel] = CHANNELS;
     type Pair = Pair;
     /// The couple at the end of the last step (N m).
-    type History = [f64; 3];
-    type Energy = f64;
+    type History<R: Lanes, const N: usize> = Vector<R, N>;
+    type Energy<R: Lanes> = R;
 
     fn pair(&self, _: Partner) -> Pair {
         Pair { rolling_friction: self.rolling_friction }
     }
 
-    #[inline]
-    fn act(
+    #[inline(always)]
+    fn act<R: Lanes, const N: usize>(
         pair: &Pair,
-        contact: &Contact,
+        contact: &Contact<R, N>,
         dt: f64,
-        history: &mut [f64; 3],
-        response: &mut Response,
-        energy: &mut f64,
+        history: &mut Vector<R, N>,
+        response: &mut Response<R, N>,
+        energy: &mut R,
     ) {
-        let rolling = |spin: Vec3| spin - contact.normal * spin.dot(&contact.normal);
-        let spin = rolling(contact.relative_spin);
-        let speed = spin.norm();
-        let pressed = (response.normal_force + response.adhesive_force).max(0.0);
-        let limit = pair.rolling_friction * contact.radius_eff() * pressed;
-        let stopping = speed / (FREE_OVER_ROLLING * contact.rolling_mobility * dt);
-        let couple =
-            if speed > 0.0 { spin * (-limit.min(stopping) / speed) } else { Vec3::zeros() };
-        let before = Vec3::from(*history);
-        *energy -= 0.5 * (before + couple).dot(&rolling(contact.relative_turn));
-        *history = couple.into();
+        let spin = contact.across(contact.relative_spin);
+        let speed = spin.dot(&spin).simd_sqrt();
+        let pressed = (response.normal_force + response.adhesive_force).simd_max(R::zero());
+        let limit = R::splat(pair.rolling_friction) * contact.radius_eff() * pressed;
+        let stopping = speed / (R::splat(FREE_OVER_ROLLING * dt) * contact.rolling_mobility);
+        let rolls = speed.simd_gt(R::zero());
+        let couple = vector_where(rolls, spin * (-limit.simd_min(stopping) / speed));
+        let turned = contact.across(contact.relative_turn);
+        *energy -= R::splat(0.5) * (*history + couple).dot(&turned);
+        *history = couple;
         response.couple += couple;
     }
 
@@ -113,12 +112,13 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
 mod tests {
     use super::*;
     use crate::hertz::tests::{RADIUS_EFF, contact};
+    use engine::math::Vec3;
 
     const FRICTION: f64 = 0.1;
     const NORMAL_FORCE: f64 = 0.3;
     const DT: f64 = 1e-6;
 
-    fn act(spin: Vec3, history: &mut [f64; 3]) -> (Vec3, f64) {
+    fn act(spin: Vec3, history: &mut Vec3) -> (Vec3, f64) {
         let pair = RollingConstantTorque { rolling_friction: FRICTION }.pair(Partner::Grain);
         let contact = Contact { relative_spin: spin, relative_turn: spin * DT, ..contact() };
         let mut response = Response { normal_force: NORMAL_FORCE, ..Response::default() };
@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn the_couple_is_as_large_at_any_speed_and_leaves_twisting_alone() {
         let torque = FRICTION * RADIUS_EFF * NORMAL_FORCE;
-        let mut history = [0.0; 3];
+        let mut history = Vec3::zeros();
         for speed in [1e3, 1e5] {
             let (couple, energy) = act(Vec3::y() * speed + Vec3::z() * 50.0, &mut history);
             assert!(close(couple.y, -torque) && close(couple.z, 0.0), "{couple:?}");
@@ -147,7 +147,7 @@ mod tests {
     #[test]
     fn slow_rolling_is_not_turned_round() {
         let spin = 1e-3;
-        let (couple, _) = act(Vec3::y() * spin, &mut [0.0; 3]);
+        let (couple, _) = act(Vec3::y() * spin, &mut Vec3::zeros());
         let mobility = 3.5 * contact().rolling_mobility;
         assert!(close(couple.y * mobility * DT, -spin));
     }

@@ -1,8 +1,8 @@
 //! Rolling resistance as an elastic–plastic spring with a dashpot.
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::lanes::{Lanes, Vector, select_vector, vector_where};
 use engine::ledger::{Channel, ChannelKind};
-use engine::math::Vec3;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
@@ -40,23 +40,24 @@ pub(crate) struct Pair {
     rolling_damping_ratio: f64,
 }
 
-/// What a contact remembers.
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub(crate) struct Memory {
-    /// θ (rad).
-    angle: Vec3,
-    /// Viscous couple at the end of the last step (N m).
-    damping: Vec3,
-    /// k_r at the end of the last step (N m).
-    stiffness: f64,
+engine::record! {
+    /// What a contact remembers.
+    pub(crate) struct Memory<R, const N: usize> {
+        /// θ (rad).
+        angle: Vector<R, N>,
+        /// Viscous couple at the end of the last step (N m).
+        damping: Vector<R, N>,
+        /// k_r at the end of the last step (N m).
+        stiffness: R,
+    }
 }
 
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub(crate) struct Energy {
-    stored: f64,
-    dissipated: f64,
+engine::record! {
+    /// One number (J) per channel.
+    pub(crate) struct Energy<R> {
+        stored: R,
+        dissipated: R,
+    }
 }
 
 impl ContactLaw for RollingResistance {
@@ -64,8 +65,8 @@ impl ContactLaw for RollingResistance {
     const SLOT: Slot = Slot::Rolling;
     const CHANNELS: &'static [Channel] = CHANNELS;
     type Pair = Pair;
-    type History = Memory;
-    type Energy = Energy;
+    type History<R: Lanes, const N: usize> = Memory<R, N>;
+    type Energy<R: Lanes> = Energy<R>;
 
     fn pair(&self, _: Partner) -> Pair {
         Pair {
@@ -74,45 +75,42 @@ impl ContactLaw for RollingResistance {
         }
     }
 
-    #[inline]
-    fn act(
+    #[inline(always)]
+    fn act<R: Lanes, const N: usize>(
         pair: &Pair,
-        contact: &Contact,
+        contact: &Contact<R, N>,
         _dt: f64,
-        history: &mut Memory,
-        response: &mut Response,
-        energy: &mut Energy,
+        history: &mut Memory<R, N>,
+        response: &mut Response<R, N>,
+        energy: &mut Energy<R>,
     ) {
-        let lever = pair.rolling_friction * contact.radius_eff();
-        let k_r = 2.25 * response.normal_stiffness * lever * lever;
-        let c_r = if contact.overlap > 0.0 {
-            2.0 * pair.rolling_damping_ratio * (k_r / contact.rolling_mobility).sqrt()
-        } else {
-            0.0
-        };
-        let limit = lever * (response.normal_force + response.adhesive_force).abs();
-        let rolling = |spin: Vec3| spin - contact.normal * spin.dot(&contact.normal);
+        let (zero, half) = (R::zero(), R::splat(0.5));
+        let lever = R::splat(pair.rolling_friction) * contact.radius_eff();
+        let k_r = R::splat(2.25) * response.normal_stiffness * lever * lever;
+        let critical = (k_r / contact.rolling_mobility).simd_sqrt();
+        let damped = R::splat(2.0 * pair.rolling_damping_ratio) * critical;
+        let c_r = damped.select(contact.overlaps(), zero);
+        let limit = lever * (response.normal_force + response.adhesive_force).simd_abs();
 
-        let turned = rolling(contact.relative_turn);
+        let turned = contact.across(contact.relative_turn);
         let before = contact.turn(history.angle);
         let wound = before + turned;
-        let spring = wound.norm() * k_r;
-        let (couple, angle) = if spring > limit {
-            let angle = wound * (limit / spring);
-            energy.dissipated += 0.5 * k_r * (before + angle).dot(&(wound - angle));
-            (angle * -k_r, angle)
-        } else {
-            let trial = -(wound * k_r + rolling(contact.relative_spin) * c_r);
-            let size = trial.norm();
-            (if size > limit { trial * (limit / size) } else { trial }, wound)
-        };
+        let spring = wound.dot(&wound).simd_sqrt() * k_r;
+        let yields = spring.simd_gt(limit);
+        let angle = select_vector(yields, wound * (limit / spring), wound);
+        let plastic = half * k_r * (before + angle).dot(&(wound - angle));
+        energy.dissipated += plastic.select(yields, zero);
+        let trial = -(wound * k_r + contact.across(contact.relative_spin) * c_r);
+        let size = trial.dot(&trial).simd_sqrt();
+        let cut = (limit / size).select(size.simd_gt(limit), R::one());
+        let couple = select_vector(yields, angle * -k_r, trial * cut);
         let viscous = -couple - angle * k_r;
-        energy.dissipated += 0.5 * (history.stiffness - k_r) * before.dot(&wound);
-        energy.stored += 0.5 * k_r * angle.norm_squared();
-        energy.dissipated += 0.5 * (history.damping + viscous).dot(&turned);
+        energy.dissipated += half * (history.stiffness - k_r) * before.dot(&wound);
+        energy.stored += half * k_r * angle.dot(&angle);
+        energy.dissipated += half * (history.damping + viscous).dot(&turned);
 
         // Without stiffness nothing was wound up that could come back.
-        let angle = if k_r > 0.0 { angle } else { Vec3::zeros() };
+        let angle = vector_where(k_r.simd_gt(zero), angle);
         *history = Memory { angle, damping: viscous, stiffness: k_r };
         response.couple += couple;
     }
@@ -173,6 +171,8 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use engine::lanes::Record;
+    use engine::math::Vec3;
 
     const FRICTION: f64 = 0.1;
     /// R* is 1 mm.
@@ -180,7 +180,7 @@ mod tests {
     const NORMAL_FORCE: f64 = 0.3;
     const STIFFNESS: f64 = 3200.0;
 
-    fn act(turn: Vec3, history: &mut Memory) -> (Vec3, Energy) {
+    fn act(turn: Vec3, history: &mut Memory<f64, 3>) -> (Vec3, Energy<f64>) {
         let law = RollingResistance { rolling_friction: FRICTION, rolling_damping_ratio: 0.0 };
         let contact = Contact {
             normal: Vec3::z(),
@@ -194,14 +194,13 @@ mod tests {
             inverse_radius_eff: 1e3,
             inverse_mass_eff: 1e4,
             rolling_mobility: 1e9,
-            partner: Partner::Grain,
         };
         let mut response = Response {
             normal_force: NORMAL_FORCE,
             normal_stiffness: STIFFNESS,
             ..Response::default()
         };
-        let mut energy = bytemuck::Zeroable::zeroed();
+        let mut energy = Record::zero();
         let pair = law.pair(Partner::Grain);
         RollingResistance::act(&pair, &contact, 1e-5, history, &mut response, &mut energy);
         (response.couple, energy)
@@ -214,7 +213,7 @@ mod tests {
 
     #[test]
     fn a_rolling_contact_resists_with_the_limit_couple_and_dissipates_the_rest() {
-        let mut history = bytemuck::Zeroable::zeroed();
+        let mut history = Record::zero();
         let limit = LEVER * NORMAL_FORCE;
         act(Vec3::y(), &mut history);
         let (couple, energy) = act(Vec3::y() * 0.2, &mut history);
@@ -226,7 +225,7 @@ mod tests {
 
     #[test]
     fn a_small_turn_is_given_back_and_twisting_is_not_resisted() {
-        let mut history = bytemuck::Zeroable::zeroed();
+        let mut history = Record::zero();
         let stiffness = 2.25 * STIFFNESS * LEVER * LEVER;
         let (couple, energy) = act(Vec3::y() * 0.1 + Vec3::z() * 5.0, &mut history);
         assert!(close(couple.y, -0.1 * stiffness) && close(couple.z, 0.0));

@@ -1,6 +1,7 @@
 //! Resistance against twisting about the normal.
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::lanes::Lanes;
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
@@ -31,21 +32,22 @@ pub(crate) struct Pair {
     twisting_stiffness_ratio: f64,
 }
 
-/// What a contact remembers.
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub(crate) struct Memory {
-    /// θ (rad).
-    angle: f64,
-    /// k_o R*² at the end of the last step (N m).
-    stiffness: f64,
+engine::record! {
+    /// What a contact remembers.
+    pub(crate) struct Memory<R> {
+        /// θ (rad).
+        angle: R,
+        /// k_o R*² at the end of the last step (N m).
+        stiffness: R,
+    }
 }
 
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub(crate) struct Energy {
-    stored: f64,
-    dissipated: f64,
+engine::record! {
+    /// One number (J) per channel.
+    pub(crate) struct Energy<R> {
+        stored: R,
+        dissipated: R,
+    }
 }
 
 impl ContactLaw for TwistingResistance {
@@ -53,8 +55,8 @@ impl ContactLaw for TwistingResistance {
     const SLOT: Slot = Slot::Twisting;
     const CHANNELS: &'static [Channel] = CHANNELS;
     type Pair = Pair;
-    type History = Memory;
-    type Energy = Energy;
+    type History<R: Lanes, const N: usize> = Memory<R>;
+    type Energy<R: Lanes> = Energy<R>;
 
     fn pair(&self, _: Partner) -> Pair {
         Pair {
@@ -63,36 +65,33 @@ impl ContactLaw for TwistingResistance {
         }
     }
 
-    #[inline]
-    fn act(
+    #[inline(always)]
+    fn act<R: Lanes, const N: usize>(
         pair: &Pair,
-        contact: &Contact,
+        contact: &Contact<R, N>,
         _dt: f64,
-        history: &mut Memory,
-        response: &mut Response,
-        energy: &mut Energy,
+        history: &mut Memory<R>,
+        response: &mut Response<R, N>,
+        energy: &mut Energy<R>,
     ) {
+        let (zero, half) = (R::zero(), R::splat(0.5));
         let radius = contact.radius_eff();
-        let touching = contact.overlap > 0.0;
-        let k_n = if touching { response.normal_stiffness } else { 0.0 };
-        let stiffness = pair.twisting_stiffness_ratio * k_n * radius * radius;
-        let pressed = (response.normal_force + response.adhesive_force).max(0.0);
-        let limit = pair.twisting_friction * radius * pressed;
+        let k_n = response.normal_stiffness.select(contact.overlaps(), zero);
+        let stiffness = R::splat(pair.twisting_stiffness_ratio) * k_n * radius * radius;
+        let pressed = (response.normal_force + response.adhesive_force).simd_max(zero);
+        let limit = R::splat(pair.twisting_friction) * radius * pressed;
 
         let before = history.angle;
-        let wound = before + contact.relative_turn.dot(&contact.normal);
-        let angle = if stiffness * wound.abs() > limit {
-            (limit / stiffness).copysign(wound)
-        } else {
-            wound
-        };
+        let wound = before + contact.along(contact.relative_turn);
+        let yields = (stiffness * wound.simd_abs()).simd_gt(limit);
+        let angle = (limit / stiffness).simd_copysign(wound).select(yields, wound);
         let pull = history.stiffness * before + stiffness * angle;
         energy.dissipated +=
-            0.5 * pull * (wound - angle) + 0.5 * (history.stiffness - stiffness) * before * angle;
-        energy.stored += 0.5 * stiffness * angle * angle;
+            half * pull * (wound - angle) + half * (history.stiffness - stiffness) * before * angle;
+        energy.stored += half * stiffness * angle * angle;
         response.couple -= contact.normal * (stiffness * angle);
         // Without stiffness nothing was wound up that could come back.
-        *history = Memory { angle: if stiffness > 0.0 { angle } else { 0.0 }, stiffness };
+        *history = Memory { angle: angle.select(stiffness.simd_gt(zero), zero), stiffness };
     }
 
     fn collision_time(_: &Pair, _: &Encounter) -> Option<f64> {
@@ -150,6 +149,7 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
 
 #[cfg(test)]
 mod tests {
+    use engine::lanes::Record;
     use engine::math::Vec3;
 
     use super::*;
@@ -159,12 +159,12 @@ mod tests {
     const NORMAL_FORCE: f64 = 0.3;
     const STIFFNESS: f64 = 3200.0;
 
-    fn act(turn: Vec3, normal_stiffness: f64, history: &mut Memory) -> (Vec3, Energy) {
+    fn act(turn: Vec3, normal_stiffness: f64, history: &mut Memory<f64>) -> (Vec3, Energy<f64>) {
         let law = TwistingResistance { twisting_friction: FRICTION, twisting_stiffness_ratio: 0.1 };
         let contact = Contact { relative_turn: turn, ..contact() };
         let mut response =
             Response { normal_force: NORMAL_FORCE, normal_stiffness, ..Response::default() };
-        let mut energy = bytemuck::Zeroable::zeroed();
+        let mut energy = Record::zero();
         let pair = law.pair(Partner::Grain);
         TwistingResistance::act(&pair, &contact, 1e-6, history, &mut response, &mut energy);
         (response.couple, energy)
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn a_small_twist_is_given_back_and_rolling_is_not_resisted() {
-        let mut history = bytemuck::Zeroable::zeroed();
+        let mut history = Record::zero();
         let k = 0.1 * STIFFNESS * RADIUS_EFF * RADIUS_EFF;
         let (couple, energy) = act(Vec3::new(0.3, -0.2, 0.1), STIFFNESS, &mut history);
         assert!(close(couple.z, -0.1 * k) && close(couple.x, 0.0) && close(couple.y, 0.0));
@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_large_twist_is_resisted_with_the_limit_and_dissipated() {
-        let mut history = bytemuck::Zeroable::zeroed();
+        let mut history = Record::zero();
         let limit = FRICTION * RADIUS_EFF * NORMAL_FORCE;
         act(Vec3::z(), STIFFNESS, &mut history);
         let (couple, energy) = act(Vec3::z() * 0.2, STIFFNESS, &mut history);
@@ -197,7 +197,7 @@ mod tests {
 
     #[test]
     fn what_the_spring_gains_as_the_contact_stiffens_is_booked() {
-        let mut history = bytemuck::Zeroable::zeroed();
+        let mut history = Record::zero();
         let k = 0.1 * STIFFNESS * RADIUS_EFF * RADIUS_EFF;
         act(Vec3::z() * 0.05, STIFFNESS, &mut history);
         let (_, energy) = act(Vec3::zeros(), 2.0 * STIFFNESS, &mut history);

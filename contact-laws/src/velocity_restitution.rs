@@ -1,6 +1,7 @@
 //! Damping by a viscoelastic material, on top of a Hertz law.
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::lanes::Lanes;
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
@@ -40,27 +41,28 @@ impl ContactLaw for VelocityRestitution {
     const CHANNELS: &'static [Channel] = CHANNELS;
     type Pair = Pair;
     /// Its force at the end of the last step (N).
-    type History = f64;
-    type Energy = f64;
+    type History<R: Lanes, const N: usize> = R;
+    type Energy<R: Lanes> = R;
 
     fn pair(&self, partner: Partner) -> Pair {
         Pair { viscous_time: self.viscous_time, elastic: self.elastic[partner.index()] }
     }
 
-    #[inline]
-    fn act(
+    #[inline(always)]
+    fn act<R: Lanes, const N: usize>(
         pair: &Pair,
-        contact: &Contact,
+        contact: &Contact<R, N>,
         _dt: f64,
-        history: &mut f64,
-        response: &mut Response,
-        energy: &mut f64,
+        history: &mut R,
+        response: &mut Response<R, N>,
+        energy: &mut R,
     ) {
-        let overlap = contact.overlap.max(0.0);
-        let a = (overlap / contact.inverse_radius_eff).sqrt();
-        let damping = pair.viscous_time * pair.elastic.normal_stiffness(a) * contact.overlap_rate;
-        let force = damping.max(-pair.elastic.normal_force(a, overlap));
-        *energy += 0.5 * (*history + force) * contact.overlap_step;
+        let overlap = contact.overlap.simd_max(R::zero());
+        let a = (overlap / contact.inverse_radius_eff).simd_sqrt();
+        let stiffness = pair.elastic.normal_stiffness(a);
+        let damping = R::splat(pair.viscous_time) * stiffness * contact.overlap_rate;
+        let force = damping.simd_max(-pair.elastic.normal_force(a, overlap));
+        *energy += R::splat(0.5) * (*history + force) * contact.overlap_step;
         *history = force;
         response.normal_force += force;
     }
@@ -114,6 +116,7 @@ mod tests {
     use crate::hertz::tests::{acted, beads, contact};
     use crate::hertz_mindlin::HertzMindlin;
     use crate::hertz_mindlin_viscous::HertzMindlinViscous;
+    use engine::lanes::Record;
 
     const VISCOUS_TIME: f64 = 1e-6;
 
@@ -127,10 +130,10 @@ mod tests {
         let whole = HertzMindlinViscous::from_params(&params).pair(Partner::Grain);
         for rate in [1e-2, 1e-3, 0.0, -1e-2, -0.5] {
             let moving = Contact { overlap_rate: rate, ..contact() };
-            let mut memory = bytemuck::Zeroable::zeroed();
+            let mut memory = Record::zero();
             let (expected, _) = acted::<HertzMindlinViscous>(&whole, &moving, &mut memory);
-            let (mut response, mut memory) = (Response::default(), bytemuck::Zeroable::zeroed());
-            let (mut lost, mut energy) = (0.0, bytemuck::Zeroable::zeroed());
+            let (mut response, mut memory) = (Response::default(), Record::zero());
+            let (mut lost, mut energy) = (0.0, Record::zero());
             let history = &mut 0.0;
             VelocityRestitution::act(&effect, &moving, 0.0, history, &mut response, &mut lost);
             HertzMindlin::act(&base, &moving, 0.0, &mut memory, &mut response, &mut energy);

@@ -1,8 +1,10 @@
 //! What must hold for every registered law, whatever it says.
 
 use contact_laws::{ActsOn, LAWS, LawEntry};
-use engine::contact::stage::Batch;
+use engine::contact::stage::{Batch, Histories};
 use engine::contact::{Contact, ContactStage, Encounter, Partner, Response, Slot};
+use engine::grains::Space;
+use engine::lanes::MOST_LANES;
 use engine::math::{Quat, Vec3};
 use engine::params::{Default as Given, ParamTable};
 
@@ -54,7 +56,6 @@ fn episode() -> Vec<Contact> {
                 inverse_radius_eff: 1.0 / 2e-3 + 1.0 / 3e-3,
                 inverse_mass_eff: 1.0 / 5e-5 + 1.0 / 1e-4,
                 rolling_mobility: 1.0 / 7e-10,
-                partner: Partner::Grain,
             }
         })
         .collect()
@@ -86,18 +87,19 @@ fn swapped(contact: &Contact) -> Contact {
 
 /// What `law` answers to each contact of an episode, and what it books in all.
 fn play(law: &dyn ContactStage, episode: &[Contact]) -> (Vec<Response>, Vec<f64>) {
-    let mut history = vec![0.0; law.history_len()];
+    let mut history = vec![0.0; law.history_len(Space::Spatial)];
     let mut energy = vec![0.0; law.channels().len()];
     let responses = episode
         .iter()
         .map(|contact| {
             let mut response = before_the_law(law, contact);
             let batch = Batch {
+                partner: Partner::Grain,
                 contacts: std::slice::from_ref(contact),
-                rows: &[0],
+                records: &[[0; MOST_LANES]],
                 responses: std::slice::from_mut(&mut response),
             };
-            law.sweep(batch, DT, &mut history, &mut energy);
+            law.sweep(batch, DT, Histories { values: &mut history, offset: 0 }, &mut energy);
             response
         })
         .collect();

@@ -65,13 +65,13 @@ pub fn fields(grains: &Grains, plane: &Plane) -> Vec<FieldPoint> {
     let (n_x, n_z) = (n_points(&plane.x), n_points(&plane.z));
     let mut gathered = vec![Gathered::default(); n_x * n_z];
     for i in 0..grains.len() {
-        let position = grains.position[i];
+        let position = grains.position(i);
         let off_plane = position.y - plane.y;
         if off_plane.abs() >= c {
             continue;
         }
         let reach = (c * c - off_plane * off_plane).sqrt();
-        let (mass, velocity) = (grains.mass[i], grains.velocity[i]);
+        let (mass, velocity) = (grains.mass[i], grains.velocity(i));
         let volume = grains.space.grain_content(2.0 * grains.radius[i]);
         for row in near(position.z - plane.z.start, reach, spacing, n_z) {
             for column in near(position.x - plane.x.start, reach, spacing, n_x) {

@@ -71,8 +71,8 @@ impl Columns {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for i in here() {
             for axis in 0..2 {
-                low[axis] = low[axis].min(grains.position[i][axis] - grains.radius[i]);
-                high[axis] = high[axis].max(grains.position[i][axis] + grains.radius[i]);
+                low[axis] = low[axis].min(grains.position(i)[axis] - grains.radius[i]);
+                high[axis] = high[axis].max(grains.position(i)[axis] + grains.radius[i]);
             }
         }
         if grains.space == Space::Planar {
@@ -81,7 +81,7 @@ impl Columns {
         let n = [0, 1].map(|axis| ((high[axis] - low[axis]) / spacing).round().max(0.0) as usize);
         let mut columns = Self { low, high, spacing, n, top: vec![f64::NEG_INFINITY; n[0] * n[1]] };
         for i in here() {
-            columns.cover(grains.position[i], grains.radius[i]);
+            columns.cover(grains.position(i), grains.radius[i]);
         }
         columns
     }
@@ -136,6 +136,7 @@ fn length(x: f64, y: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dimension::Motion;
     use crate::grains::Grain;
 
     const RADIUS: f64 = 1e-3;
@@ -192,7 +193,9 @@ mod tests {
         let mut grains = bowl(Space::Planar, 0.0);
         let mut lies = vec![true; grains.len()];
         let before = crater(&grains, &lies, (40.0 * RADIUS, 0.0));
-        grains.position[20].z = 0.5;
+        let motion = grains.motion(20);
+        let up = Vec3::new(motion.position.x, motion.position.y, 0.5);
+        grains.set_motion(20, &Motion { position: up, ..motion });
         lies[20] = false;
         let after = crater(&grains, &lies, (40.0 * RADIUS, 0.0));
         assert!(after.iter().all(|at| at.position.z < 0.0));

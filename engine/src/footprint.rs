@@ -50,7 +50,6 @@ impl Footprint {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::Partner;
 
     fn contact(normal: Vec3) -> Contact {
         Contact {
@@ -65,7 +64,6 @@ mod tests {
             inverse_radius_eff: 1e3,
             inverse_mass_eff: 1e5,
             rolling_mobility: 1e9,
-            partner: Partner::Intruder,
         }
     }
 

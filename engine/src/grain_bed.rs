@@ -7,6 +7,7 @@ use crate::body::{Mechanism, Part};
 use crate::boundary::{Absorber, Container};
 use crate::contact::{ContactStage, Partner};
 use crate::contacts::{ContactSums, Contacts, Memory, SavedBlock};
+use crate::dimension::{Dimension, Load, Motion, Planar, Spatial};
 use crate::error::StepError;
 use crate::footprint::Footprint;
 use crate::grains::{Grain, Grains, Space};
@@ -131,7 +132,11 @@ impl GrainBed {
             absorber: container.absorber(resting.space),
             container,
             recessive: RecessiveWork::new(n_intruder_parts),
-            contacts: Contacts::new(stages, grains.len(), walls.len() + n_intruder_parts),
+            contacts: Contacts::new(
+                stages,
+                (grains.space, grains.len()),
+                walls.len() + n_intruder_parts,
+            ),
             sums: ContactSums::default(),
             energy: vec![GrainEnergy::default(); grains.len().div_ceil(BLOCK)],
             grid: CellGrid::default(),
@@ -250,7 +255,7 @@ impl GrainBed {
 
     /// Finds what touches and lets the laws act; forces that cross blocks are still to be gathered.
     pub(crate) fn evaluate_contacts(&mut self, intruder: &dyn Mechanism, dt: f64) {
-        self.contacts.evaluate(&mut self.grains, &self.walls, intruder.parts(), dt);
+        self.contacts.evaluate(&self.grains, &self.walls, intruder.parts(), dt);
         self.contacts.sum(&mut self.sums);
         self.recessive.book(intruder.parts(), &self.sums.unfelt[self.walls.len()..], dt);
     }
@@ -263,55 +268,44 @@ impl GrainBed {
     /// Completes the force on each grain with the parts from other blocks and gravity, and gives it
     /// the second half of its kick.
     pub(crate) fn gather_and_kick(&mut self, dt: f64) {
+        match self.grains.space {
+            Space::Planar => self.gather_and_kick_in::<Planar, 1>(dt),
+            Space::Spatial => self.gather_and_kick_in::<Spatial, 3>(dt),
+        }
+    }
+
+    fn gather_and_kick_in<D: Dimension<N>, const N: usize>(&mut self, dt: f64) {
         let half = 0.5 * dt;
         let gravity = self.gravity;
-        let weight_per_mass = gravity.norm();
         let (contacts, absorber) = (&self.contacts, &self.absorber);
-        let Grains {
-            load,
-            velocity,
-            velocity_now,
-            spin,
-            position,
-            radius,
-            mass,
-            inertia,
-            inverse_mass,
-            inverse_inertia,
-            ..
-        } = &mut self.grains;
-        (
-            load.par_chunks_mut(BLOCK),
-            velocity.par_chunks_mut(BLOCK),
-            spin.par_chunks_mut(BLOCK),
-            self.energy.par_iter_mut(),
-        )
-            .into_par_iter()
-            .enumerate()
-            .for_each(|(block, (load, velocity, spin, energy))| {
-                contacts.deliver(block, load);
-                *energy = GrainEnergy::default();
-                for k in 0..load.len() {
-                    let i = block * BLOCK + k;
-                    load[k].force += gravity * mass[i];
-                    if let Some(absorber) = absorber {
-                        let drag = mass[i] * absorber.rate(position[i]);
-                        load[k].force -= velocity_now[i] * drag;
-                        // Second order: what acts half-way, over the way of the step.
-                        let half_way = absorber.rate(position[i] - velocity[k] * half);
-                        energy.absorbed += mass[i] * half_way * velocity[k].norm_squared() * dt;
-                    }
-                    velocity[k] += load[k].force * (half * inverse_mass[i]);
-                    spin[k] += load[k].torque * (half * inverse_inertia[i]);
-                    let translation = 0.5 * mass[i] * velocity[k].norm_squared();
-                    let rotation = 0.5 * inertia[i] * spin[k].norm_squared();
-                    energy.translation += translation;
-                    energy.rotation += rotation;
-                    let lift = 2.0 * MOVING_LIFT * radius[i] * mass[i] * weight_per_mass;
-                    energy.moving += u32::from(translation + rotation > lift);
-                    energy.potential -= mass[i] * gravity.dot(&position[i]);
+        let liftable = 2.0 * MOVING_LIFT * gravity.norm();
+        self.grains.par_blocks::<D, N>().zip(&mut self.energy).for_each(|(block, energy)| {
+            contacts.deliver::<D, N>(block.block, block.loads);
+            *energy = GrainEnergy::default();
+            let states = block.states.chunks_exact_mut(D::STATE);
+            let loads = block.loads.chunks_exact_mut(D::LOAD);
+            for (k, (state, load)) in states.zip(loads).enumerate() {
+                let Motion { position, velocity, velocity_now, radius, .. } = D::unpack(state);
+                let (mass, inertia) = (block.mass[k], block.inertia[k]);
+                let mut force = gravity * mass;
+                if let Some(absorber) = absorber {
+                    let drag = mass * absorber.rate(position);
+                    force -= velocity_now * drag;
+                    // Second order: what acts half-way, over the way of the step.
+                    let half_way = absorber.rate(position - velocity * half);
+                    energy.absorbed += mass * half_way * velocity.norm_squared() * dt;
                 }
-            });
+                D::add_load(&Load { force, torque: Vec3::zeros() }, load);
+                let [speed_2, spin_2] = D::kick(state, load, half, block.inverse_inertia[k]);
+                let translation = 0.5 * mass * speed_2;
+                let rotation = 0.5 * inertia * spin_2;
+                energy.translation += translation;
+                energy.rotation += rotation;
+                let lift = liftable * radius * mass;
+                energy.moving += u32::from(translation + rotation > lift);
+                energy.potential -= mass * gravity.dot(&position);
+            }
+        });
     }
 
     fn has_recessive(&self, intruder: &dyn Mechanism) -> bool {
@@ -466,11 +460,15 @@ impl GrainBed {
     pub(crate) fn restore(&mut self, saved: SavedBed) -> bool {
         let n = self.grains.len();
         let same_parts = saved.recessive.n_parts() == self.recessive.n_parts();
-        if !same_parts || !saved.grains.is_consistent(n) || !self.contacts.restore(saved.blocks, n)
+        if !same_parts
+            || !saved.grains.is_consistent(n)
+            || !self.contacts.restore(saved.blocks, (self.grains.space, n))
         {
             return false;
         }
-        self.grains = Grains { period: self.grains.period, ..saved.grains };
+        let period = self.grains.period;
+        self.grains = saved.grains;
+        self.grains.period = period;
         self.recessive = saved.recessive;
         self.pair_list = saved.pair_list;
         self.intruder_list = saved.intruder_list;

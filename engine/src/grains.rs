@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::boundary::Period;
+use crate::dimension::{Dimension, Motion, Planar, Quad, Spatial};
 use crate::math::Vec3;
 use crate::parallel::BLOCK;
 
@@ -66,9 +67,6 @@ pub struct Grain {
 }
 
 /// All grains of a bed.
-///
-/// Between steps `velocity` and `spin` belong to the same instant as `position`; inside a step they
-/// are those of the half step, and `velocity_now`, `spin_now` are extrapolated to its end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Grains {
     /// Discs or spheres.
@@ -81,51 +79,31 @@ pub struct Grains {
     pub mass: Vec<f64>,
     /// (kg m²).
     pub inertia: Vec<f64>,
-    /// 1/r (1/m).
-    pub inverse_radius: Vec<f64>,
-    /// 1/m (1/kg).
-    pub inverse_mass: Vec<f64>,
     /// 1/I (1/(kg m²)).
-    pub inverse_inertia: Vec<f64>,
-    /// 1/(I + m r²) (1/(kg m²)), a grain's part of the inertia of rolling.
-    pub rolling_mobility: Vec<f64>,
-    /// Centres (m).
-    pub position: Vec<Vec3>,
-    /// (m/s).
-    pub velocity: Vec<Vec3>,
-    /// (rad/s).
-    pub spin: Vec<Vec3>,
-    /// Velocity extrapolated to the end of the step (m/s).
-    pub velocity_now: Vec<Vec3>,
-    /// Spin extrapolated to the end of the step (rad/s).
-    pub spin_now: Vec<Vec3>,
-    /// Force (N) and torque (N m) on each grain, gravity included.
-    pub load: Vec<Load>,
+    inverse_inertia: Vec<f64>,
+    /// As the contacts read it, see [`Dimension`].
+    states: Vec<Quad>,
+    /// Force and torque on each grain, gravity included, at the end of the last step.
+    loads: Vec<Quad>,
     /// How the space that they live in repeats; it belongs to the container and is not stored.
     #[serde(skip)]
     pub(crate) period: Period,
 }
 
-/// Force and torque on a grain.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Load {
-    /// (N).
-    pub force: Vec3,
-    /// About the centre (N m).
-    pub torque: Vec3,
-}
-
-impl Load {
-    /// No force, no torque.
-    pub const ZERO: Self =
-        Self { force: Vec3::new(0.0, 0.0, 0.0), torque: Vec3::new(0.0, 0.0, 0.0) };
-
-    /// Adds `other`.
-    #[inline]
-    pub fn add(&mut self, other: &Self) {
-        self.force += other.force;
-        self.torque += other.torque;
-    }
+/// What a block of grains does in a phase of a step.
+pub(crate) struct BlockOfGrains<'a> {
+    /// The number of the block.
+    pub(crate) block: usize,
+    /// Of its grains.
+    pub(crate) states: &'a mut [Quad],
+    /// Of its grains.
+    pub(crate) loads: &'a mut [Quad],
+    /// Of its grains (kg).
+    pub(crate) mass: &'a [f64],
+    /// Of its grains (kg m²).
+    pub(crate) inertia: &'a [f64],
+    /// Of its grains (1/(kg m²)).
+    pub(crate) inverse_inertia: &'a [f64],
 }
 
 impl Grains {
@@ -133,33 +111,102 @@ impl Grains {
     #[must_use]
     pub fn new(space: Space, list: &[Grain]) -> Self {
         let inertia = |grain: &Grain| space.grain_inertia(grain.mass, grain.radius);
-        Self {
+        let [state, load] = quads(space);
+        let mut grains = Self {
             space,
             id: list.iter().map(|grain| grain.id).collect(),
             radius: list.iter().map(|grain| grain.radius).collect(),
             mass: list.iter().map(|grain| grain.mass).collect(),
             inertia: list.iter().map(inertia).collect(),
-            inverse_radius: list.iter().map(|grain| 1.0 / grain.radius).collect(),
-            inverse_mass: list.iter().map(|grain| 1.0 / grain.mass).collect(),
             inverse_inertia: list.iter().map(|grain| 1.0 / inertia(grain)).collect(),
-            rolling_mobility: list
-                .iter()
-                .map(|grain| 1.0 / (inertia(grain) + grain.mass * grain.radius * grain.radius))
-                .collect(),
-            position: list.iter().map(|grain| grain.position).collect(),
-            velocity: list.iter().map(|grain| grain.velocity).collect(),
-            spin: list.iter().map(|grain| grain.spin).collect(),
-            velocity_now: list.iter().map(|grain| grain.velocity).collect(),
-            spin_now: list.iter().map(|grain| grain.spin).collect(),
-            load: vec![Load::ZERO; list.len()],
+            states: vec![Quad::ZERO; list.len() * state],
+            loads: vec![Quad::ZERO; list.len() * load],
             period: Period::NONE,
+        };
+        for (i, grain) in list.iter().enumerate() {
+            let rolling = inertia(grain) + grain.mass * grain.radius * grain.radius;
+            grains.set_motion(
+                i,
+                &Motion {
+                    position: grain.position,
+                    velocity: grain.velocity,
+                    spin: grain.spin,
+                    velocity_now: grain.velocity,
+                    spin_now: grain.spin,
+                    radius: grain.radius,
+                    inverse_radius: 1.0 / grain.radius,
+                    inverse_mass: 1.0 / grain.mass,
+                    rolling_mobility: 1.0 / rolling,
+                },
+            );
+        }
+        grains
+    }
+
+    /// The centre of grain `i` (m).
+    #[inline]
+    #[must_use]
+    pub fn position(&self, i: usize) -> Vec3 {
+        self.motion(i).position
+    }
+
+    /// The centres of all grains (m).
+    pub fn positions(&self) -> impl ExactSizeIterator<Item = Vec3> + '_ {
+        (0..self.len()).map(|i| self.position(i))
+    }
+
+    /// The velocity of grain `i` (m/s).
+    #[must_use]
+    pub fn velocity(&self, i: usize) -> Vec3 {
+        self.motion(i).velocity
+    }
+
+    /// The spin of grain `i` (rad/s).
+    #[must_use]
+    pub fn spin(&self, i: usize) -> Vec3 {
+        self.motion(i).spin
+    }
+
+    /// The force on grain `i` at the end of the last step, gravity included (N).
+    #[must_use]
+    pub fn force(&self, i: usize) -> Vec3 {
+        let [_, len] = quads(self.space);
+        let load = &self.loads[i * len..][..len];
+        match self.space {
+            Space::Planar => Planar::force(load),
+            Space::Spatial => Spatial::force(load),
         }
     }
 
-    /// From grain `j` to the nearest image of grain `i` (m).
+    /// The state of grain `i`.
+    #[inline]
+    pub(crate) fn motion(&self, i: usize) -> Motion {
+        match self.space {
+            Space::Planar => Planar::unpack(self.state::<Planar, 1>(i)),
+            Space::Spatial => Spatial::unpack(self.state::<Spatial, 3>(i)),
+        }
+    }
+
+    /// Gives grain `i` another state.
+    pub(crate) fn set_motion(&mut self, i: usize, motion: &Motion) {
+        let [len, _] = quads(self.space);
+        let state = &mut self.states[i * len..][..len];
+        match self.space {
+            Space::Planar => Planar::pack(motion, state),
+            Space::Spatial => Spatial::pack(motion, state),
+        }
+    }
+
+    /// The state of grain `i` of a space known to be `D`.
     #[inline(always)]
+    pub(crate) fn state<D: Dimension<N>, const N: usize>(&self, i: usize) -> &[Quad] {
+        &self.states[i * D::STATE..][..D::STATE]
+    }
+
+    /// From grain `j` to the nearest image of grain `i` (m).
+    #[inline]
     pub(crate) fn apart(&self, i: usize, j: usize) -> Vec3 {
-        self.period.shortest(self.position[i] - self.position[j])
+        self.period.shortest(self.position(i) - self.position(j))
     }
 
     /// How many there are.
@@ -176,41 +223,36 @@ impl Grains {
 
     /// Whether all arrays hold `n` finite entries, for grains that were read from a file.
     pub(crate) fn is_consistent(&self, n: usize) -> bool {
-        let scalars = [
-            &self.radius,
-            &self.mass,
-            &self.inertia,
-            &self.inverse_radius,
-            &self.inverse_mass,
-            &self.inverse_inertia,
-            &self.rolling_mobility,
-        ];
-        let vectors =
-            [&self.position, &self.velocity, &self.spin, &self.velocity_now, &self.spin_now];
-        let finite = |v: &Vec3| v.iter().all(|x| x.is_finite());
+        let scalars = [&self.radius, &self.mass, &self.inertia, &self.inverse_inertia];
+        let [state, load] = quads(self.space);
+        let finite = |quads: &[Quad]| quads.iter().all(|quad| quad.0.iter().all(|x| x.is_finite()));
         self.id.len() == n
             && scalars.iter().all(|list| list.len() == n && list.iter().all(|x| x.is_finite()))
-            && vectors.iter().all(|list| list.len() == n && list.iter().all(finite))
-            && self.load.len() == n
-            && self.load.iter().all(|load| finite(&load.force) && finite(&load.torque))
+            && self.states.len() == n * state
+            && self.loads.len() == n * load
+            && finite(&self.states)
+            && finite(&self.loads)
     }
 
     /// The grains one by one.
     pub fn iter(&self) -> impl Iterator<Item = Grain> + '_ {
-        (0..self.len()).map(|i| Grain {
-            position: self.position[i],
-            velocity: self.velocity[i],
-            spin: self.spin[i],
-            radius: self.radius[i],
-            mass: self.mass[i],
-            id: self.id[i],
+        (0..self.len()).map(|i| {
+            let Motion { position, velocity, spin, .. } = self.motion(i);
+            let (radius, mass, id) = (self.radius[i], self.mass[i], self.id[i]);
+            Grain { position, velocity, spin, radius, mass, id }
         })
     }
 
     /// Adds `velocity` (m/s) to that of every grain.
     pub(crate) fn throw(&mut self, velocity: Vec3) {
-        for of in [&mut self.velocity, &mut self.velocity_now] {
-            of.iter_mut().for_each(|own| *own += velocity);
+        for i in 0..self.len() {
+            let motion = self.motion(i);
+            let thrown = Motion {
+                velocity: motion.velocity + velocity,
+                velocity_now: motion.velocity_now + velocity,
+                ..motion
+            };
+            self.set_motion(i, &thrown);
         }
     }
 
@@ -219,44 +261,64 @@ impl Grains {
         if self.period.is_none() {
             return;
         }
-        let period = self.period;
-        self.position.par_chunks_mut(BLOCK).for_each(|positions| {
-            for position in positions {
-                *position = period.inside(*position);
+        for i in 0..self.len() {
+            let motion = self.motion(i);
+            let inside = self.period.inside(motion.position);
+            if inside != motion.position {
+                self.set_motion(i, &Motion { position: inside, ..motion });
             }
-        });
+        }
+    }
+
+    /// Calls `work` on every block of grains, in parallel.
+    pub(crate) fn par_blocks<D: Dimension<N>, const N: usize>(
+        &mut self,
+    ) -> impl IndexedParallelIterator<Item = BlockOfGrains<'_>> {
+        (
+            self.states.par_chunks_mut(BLOCK * D::STATE),
+            self.loads.par_chunks_mut(BLOCK * D::LOAD),
+            self.mass.par_chunks(BLOCK),
+            self.inertia.par_chunks(BLOCK),
+            self.inverse_inertia.par_chunks(BLOCK),
+        )
+            .into_par_iter()
+            .enumerate()
+            .map(|(block, (states, loads, mass, inertia, inverse_inertia))| {
+                BlockOfGrains { block, states, loads, mass, inertia, inverse_inertia }
+            })
     }
 
     /// Half a kick, then the drift; `dt` (s). Returns the greatest speed (m/s) of a grain.
     pub(crate) fn kick_drift(&mut self, dt: f64) -> f64 {
-        let half = 0.5 * dt;
-        let (inverse_mass, inverse_inertia, load) =
-            (&self.inverse_mass, &self.inverse_inertia, &self.load);
-        let fastest_2 = (
-            self.position.par_chunks_mut(BLOCK),
-            self.velocity.par_chunks_mut(BLOCK),
-            self.spin.par_chunks_mut(BLOCK),
-            self.velocity_now.par_chunks_mut(BLOCK),
-            self.spin_now.par_chunks_mut(BLOCK),
-        )
-            .into_par_iter()
-            .enumerate()
-            .map(|(block, (position, velocity, spin, velocity_now, spin_now))| {
-                let mut fastest_2 = 0.0_f64;
-                for k in 0..position.len() {
-                    let i = block * BLOCK + k;
-                    let dv = load[i].force * (half * inverse_mass[i]);
-                    let dw = load[i].torque * (half * inverse_inertia[i]);
-                    velocity[k] += dv;
-                    spin[k] += dw;
-                    position[k] += velocity[k] * dt;
-                    velocity_now[k] = velocity[k] + dv;
-                    spin_now[k] = spin[k] + dw;
-                    fastest_2 = fastest_2.max(velocity[k].norm_squared());
-                }
-                fastest_2
+        match self.space {
+            Space::Planar => self.kick_drift_in::<Planar, 1>(dt),
+            Space::Spatial => self.kick_drift_in::<Spatial, 3>(dt),
+        }
+    }
+
+    fn kick_drift_in<D: Dimension<N>, const N: usize>(&mut self, dt: f64) -> f64 {
+        let fastest_2 = self
+            .par_blocks::<D, N>()
+            .map(|block| {
+                let states = block.states.chunks_exact_mut(D::STATE);
+                let loads = block.loads.chunks_exact(D::LOAD);
+                states
+                    .zip(loads)
+                    .zip(block.inverse_inertia)
+                    .map(|((state, load), &inverse_inertia)| {
+                        D::kick_drift(state, load, 0.5 * dt, inverse_inertia)
+                    })
+                    .fold(0.0, f64::max)
             })
             .max_by(f64::total_cmp);
         fastest_2.unwrap_or(0.0).sqrt()
+    }
+}
+
+/// How many quads hold the state of a grain, and its load.
+fn quads(space: Space) -> [usize; 2] {
+    match space {
+        Space::Planar => [Planar::STATE, Planar::LOAD],
+        Space::Spatial => [Spatial::STATE, Spatial::LOAD],
     }
 }

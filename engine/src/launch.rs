@@ -20,8 +20,7 @@ pub fn height_in_touch(
     (x, y): (f64, f64),
 ) -> f64 {
     let reach = surface.bounding_radius();
-    let images =
-        grains.position.iter().map(|&at| grains.period.image_near(at, Vec3::new(x, y, at.z)));
+    let images = grains.positions().map(|at| grains.period.image_near(at, Vec3::new(x, y, at.z)));
     let below: Vec<(Vec3, f64)> = images
         .zip(grains.radius.iter().copied())
         .filter(|(position, radius)| {

@@ -97,11 +97,11 @@ impl CellGrid {
     /// Sorts the grains into cells of at least `reach` (m), the largest distance of centres that
     /// counts as near.
     pub(crate) fn fill(&mut self, grains: &Grains, reach: f64) {
-        let mut low = grains.position[0];
+        let mut low = grains.position(0);
         let mut high = low;
-        for position in &grains.position {
-            low = low.inf(position);
-            high = high.sup(position);
+        for position in grains.positions() {
+            low = low.inf(&position);
+            high = high.sup(&position);
         }
         let extent = high - low;
         // A grain thrown far out must not cost memory: wider cells are slower, never wrong.
@@ -125,7 +125,7 @@ impl CellGrid {
         let n = self.axes.map(|axis| axis.n);
         let mut cell_of = std::mem::take(&mut self.cell_of);
         cell_of.clear();
-        cell_of.extend(grains.position.iter().map(|&position| {
+        cell_of.extend(grains.positions().map(|position| {
             let [x, y, z] = self.cell(position);
             ((z * n[1] + y) * n[0] + x) as u32
         }));
@@ -169,7 +169,7 @@ impl CellGrid {
         keys: &mut Vec<[u32; 2]>,
     ) {
         let from = keys.len();
-        let position = grains.position[i];
+        let position = grains.position(i);
         let radius = grains.radius[i] + margin;
         let [n_x, n_y, _] = self.axes.map(|axis| axis.n);
         let cell = self.cell(position);
@@ -200,14 +200,14 @@ impl CellGrid {
 /// Order of grains in which neighbours in space are near in memory: by cell along a Morton curve,
 /// then by identity.
 pub(crate) fn spatial_order(grains: &Grains) -> Vec<usize> {
-    let low = grains.position.iter().fold(grains.position[0], |low, x| low.inf(x));
+    let low = grains.positions().fold(grains.position(0), |low, x| low.inf(&x));
     let width = 2.0 * grains.radius.iter().fold(0.0_f64, |largest, &radius| largest.max(radius));
     let axes: &[usize] = match grains.space {
         Space::Planar => &[0, 2],
         Space::Spatial => &[0, 1, 2],
     };
     let curve = |i: usize| {
-        let offset = (grains.position[i] - low) / width;
+        let offset = (grains.position(i) - low) / width;
         axes.iter().enumerate().fold(0, |key, (shift, &axis)| {
             key | interleave(offset[axis] as u32, axes.len()) << shift
         })
@@ -260,7 +260,7 @@ mod tests {
     fn all_pairs(grains: &Grains) -> Vec<[u32; 2]> {
         let near = |i: usize, j: usize| {
             let reach = grains.radius[i] + grains.radius[j] + MARGIN;
-            (grains.position[i] - grains.position[j]).norm_squared() < reach * reach
+            (grains.position(i) - grains.position(j)).norm_squared() < reach * reach
         };
         let n = grains.len();
         let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));

@@ -28,7 +28,7 @@ fn flights() -> Vec<Outcome> {
         run(&mut world, 1);
         let t = world.clock().time();
         let fallen = gravity * (0.5 * t * t);
-        let grain = world.bed().grains.position[0] - (from + thrown * t + fallen);
+        let grain = world.bed().grains.position(0) - (from + thrown * t + fallen);
         let disc = world.intruder().bodies()[0].position - (other + dropped * t + fallen);
         of_grain = of_grain.max(grain.norm());
         of_disc = of_disc.max(disc.norm());

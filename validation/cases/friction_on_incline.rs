@@ -38,7 +38,7 @@ fn block(slope: f64) -> World {
 }
 
 fn velocity(world: &World) -> f64 {
-    world.bed().grains.velocity[0].x
+    world.bed().grains.velocity(0).x
 }
 
 fn sliding(name: &str, excess: f64) -> Outcome {
@@ -60,7 +60,7 @@ fn sliding(name: &str, excess: f64) -> Outcome {
 fn standing(name: &str, excess: f64) -> [Outcome; 2] {
     let slope = S1.friction * (1.0 - excess);
     let mut world = block(slope);
-    let start = world.bed().grains.position[0].x;
+    let start = world.bed().grains.position(0).x;
     run(&mut world, 20_000);
     let cos = 1.0 / (1.0 + slope * slope).sqrt();
     let pull = SMALL.mass * GRAVITY * slope * cos;
@@ -77,7 +77,7 @@ fn standing(name: &str, excess: f64) -> [Outcome; 2] {
         ),
         Outcome::at_most(
             format!("{name} below: way in 0.2 s (m)"),
-            world.bed().grains.position[0].x - start,
+            world.bed().grains.position(0).x - start,
             4.0 * pull / S1.tangential_stiffness + overshoot,
             "twice the stretch of the tangential and the rolling spring, and the way that sliding \
              friction needs to stop the swing of the release, v²/2a",

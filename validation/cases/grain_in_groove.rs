@@ -67,7 +67,7 @@ fn ratio(ratio: f64) -> [Outcome; 2] {
     while angle(&world, centre) < TO && world.clock().time() < 3.0 * time {
         run(&mut world, 1);
     }
-    let speed = world.bed().grains.velocity[0].norm();
+    let speed = world.bed().grains.velocity(0).norm();
     let why = "1 % is what an integration may cost; the springs give way by a millionth of the ring, \
                and a grain that sticks never arrives";
     [
@@ -88,7 +88,7 @@ fn ratio(ratio: f64) -> [Outcome; 2] {
 
 /// Of the grain off the top (rad).
 fn angle(world: &World, centre: Vec3) -> f64 {
-    let place = world.bed().grains.position[0] - centre;
+    let place = world.bed().grains.position(0) - centre;
     libm::atan2(place.y, place.z)
 }
 

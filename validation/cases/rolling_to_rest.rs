@@ -46,12 +46,12 @@ fn roll(name: &str, space: Space, resistance: Resistance) -> Outcome {
     let start = (Vec3::x() * SPEED, Vec3::y() * (SPEED / lever));
     let laws = (vec![S1.stage(), resistance()], S1.normal_stiffness);
     let mut world = on_floor(space, SMALL, start, -Vec3::z() * GRAVITY, laws, DT);
-    let from = world.bed().grains.position[0].x;
+    let from = world.bed().grains.position(0).x;
     // A couple that cannot turn the rotation round leaves a creep that dies away.
-    while world.bed().grains.velocity[0].x > 1e-6 * SPEED {
+    while world.bed().grains.velocity(0).x > 1e-6 * SPEED {
         run(&mut world, 1);
     }
-    let way = world.bed().grains.position[0].x - from;
+    let way = world.bed().grains.position(0).x - from;
 
     let couple = FRICTION * SMALL.radius * SMALL.mass * GRAVITY;
     let inertia = space.grain_inertia(SMALL.mass, SMALL.radius) + SMALL.mass * lever * lever;

@@ -37,7 +37,7 @@ fn launch(name: &str, space: Space) -> [Outcome; 2] {
     let lever = SMALL.radius - 0.5 * SMALL.mass * GRAVITY / S1.normal_stiffness;
     let slip = |world: &World| {
         let grains = &world.bed().grains;
-        grains.velocity[0].x - lever * grains.spin[0].y
+        grains.velocity(0).x - lever * grains.spin(0).y
     };
     let (mut before, mut now) = (SPEED, SPEED);
     while now > 0.0 {
@@ -47,7 +47,7 @@ fn launch(name: &str, space: Space) -> [Outcome; 2] {
     let time = world.clock().time() - DT * now / (now - before);
     // Long enough for the tangential spring to come to rest.
     run(&mut world, 1_000);
-    let speed = world.bed().grains.velocity[0].x;
+    let speed = world.bed().grains.velocity(0).x;
 
     let inertia = space.grain_inertia(SMALL.mass, SMALL.radius);
     let rolling = SMALL.mass * lever * lever / inertia;

@@ -62,5 +62,5 @@ fn ways(ratio: f64, dt: f64) -> [f64; 2] {
     let mut world = World::new(bed, Box::new(intruder), dt);
     let steps = (2.5 * (reach / GRAVITY).sqrt() / DT).round() * (DT / dt).round();
     run(&mut world, steps as usize);
-    [world.bed().grains.position[0].x - grain.x, world.intruder().bodies()[0].position.x - disc.x]
+    [world.bed().grains.position(0).x - grain.x, world.intruder().bodies()[0].position.x - disc.x]
 }

@@ -252,20 +252,20 @@ impl Flight {
 
     fn overlap(&self) -> f64 {
         let (one, other) = self.places();
-        let position = &self.world.bed().grains.position;
+        let position = |i| self.world.bed().grains.position(i);
         match self.target {
-            None => self.radius - position[one].z,
-            Some(radius) => self.radius + radius - (position[one] - position[other]).norm(),
+            None => self.radius - position(one).z,
+            Some(radius) => self.radius + radius - (position(one) - position(other)).norm(),
         }
     }
 
     fn normal_force(&self) -> f64 {
-        self.world.bed().grains.load[self.places().0].force.z
+        self.world.bed().grains.force(self.places().0).z
     }
 
     fn motion(&self) -> Motion {
         let (grains, (one, _)) = (&self.world.bed().grains, self.places());
-        let velocity = grains.velocity[one];
-        Motion { normal: velocity.z, tangential: velocity.x, spin: -grains.spin[one].y }
+        let velocity = grains.velocity(one);
+        Motion { normal: velocity.z, tangential: velocity.x, spin: -grains.spin(one).y }
     }
 }

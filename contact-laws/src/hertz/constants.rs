@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use engine::contact::{Encounter, Partner};
+use engine::lanes::Lanes;
 use engine::params::ParamTable;
 
 /// The elastic constants for contacts of grains with one kind of partner.
@@ -65,26 +66,27 @@ impl Elastic {
     }
 
     /// 4/3 E* a δ (N).
-    #[inline]
-    pub(crate) fn normal_force(&self, a: f64, overlap: f64) -> f64 {
-        4.0 / 3.0 * self.modulus * a * overlap
+    #[inline(always)]
+    pub(crate) fn normal_force<R: Lanes>(&self, a: R, overlap: R) -> R {
+        R::splat(4.0 / 3.0 * self.modulus) * a * overlap
     }
 
     /// 8/15 E* a δ² (J), what an overlap holds where 1/R* is `curvature` (1/m).
-    pub(crate) fn energy(&self, curvature: f64, overlap: f64) -> f64 {
-        0.4 * self.normal_force((overlap / curvature).sqrt(), overlap) * overlap
+    #[inline(always)]
+    pub(crate) fn energy<R: Lanes>(&self, curvature: R, overlap: R) -> R {
+        R::splat(0.4) * self.normal_force((overlap / curvature).simd_sqrt(), overlap) * overlap
     }
 
     /// S_n = 2 E* a (N/m), the slope of the force.
-    #[inline]
-    pub(crate) fn normal_stiffness(&self, a: f64) -> f64 {
-        2.0 * self.modulus * a
+    #[inline(always)]
+    pub(crate) fn normal_stiffness<R: Lanes>(&self, a: R) -> R {
+        R::splat(2.0 * self.modulus) * a
     }
 
     /// k_t = 8 G* a (N/m).
-    #[inline]
-    pub(crate) fn tangential_stiffness(&self, a: f64) -> f64 {
-        8.0 * self.shear_modulus * a
+    #[inline(always)]
+    pub(crate) fn tangential_stiffness<R: Lanes>(&self, a: R) -> R {
+        R::splat(8.0 * self.shear_modulus) * a
     }
 
     /// Duration (s) of a head-on collision without damping: 2.87 (m*²/(R* E*² v))^{1/5}, Johnson (1985),

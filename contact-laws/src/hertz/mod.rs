@@ -5,8 +5,8 @@ pub(crate) mod params;
 mod restitution;
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::lanes::{Lanes, SimdBool, Vector, select_vector, vector_where};
 use engine::ledger::{Channel, ChannelKind};
-use engine::math::Vec3;
 use engine::params::ParamTable;
 
 pub(crate) use constants::Elastic;
@@ -21,7 +21,7 @@ pub(crate) trait Damping: Copy + Send + Sync + 'static {
     /// From the parameters of the law, for contacts with these constants.
     fn of(elastic: &Elastic, values: &ParamTable) -> Self;
     /// c_n and c_t (N s/m) at contact radius a = `contact_radius` (m) and m* = `mass_eff` (kg).
-    fn coefficients(&self, contact_radius: f64, mass_eff: f64) -> [f64; 2];
+    fn coefficients<R: Lanes>(&self, contact_radius: R, mass_eff: R) -> [R; 2];
 }
 
 /// A law for one kind of partner.
@@ -43,21 +43,21 @@ impl<D: Damping> ContactLaw for Law<D> {
     const SLOT: Slot = Slot::Base;
     const CHANNELS: &'static [Channel] = CHANNELS;
     type Pair = Pair<D>;
-    type History = Memory;
-    type Energy = Energy;
+    type History<R: Lanes, const N: usize> = Memory<R, N>;
+    type Energy<R: Lanes> = Energy<R>;
 
     fn pair(&self, partner: Partner) -> Pair<D> {
         self.pairs[partner.index()]
     }
 
-    #[inline]
-    fn act(
+    #[inline(always)]
+    fn act<R: Lanes, const N: usize>(
         pair: &Pair<D>,
-        contact: &Contact,
+        contact: &Contact<R, N>,
         _dt: f64,
-        history: &mut Memory,
-        response: &mut Response,
-        energy: &mut Energy,
+        history: &mut Memory<R, N>,
+        response: &mut Response<R, N>,
+        energy: &mut Energy<R>,
     ) {
         act(pair, contact, history, response, energy);
     }
@@ -86,31 +86,32 @@ impl<D: Damping> FromParams for Law<D> {
     }
 }
 
-/// What a contact remembers.
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub(crate) struct Memory {
-    /// 1/R* at the end of the last step (1/m), 0 if it did not touch.
-    curvature: f64,
-    /// ξ (m).
-    spring: Vec3,
-    /// k_t at the end of the last step (N/m).
-    tangential_stiffness: f64,
-    /// Damping force at the end of the last step (N).
-    normal_damping: f64,
-    /// Viscous resistance at the end of the last step (N).
-    tangential_damping: Vec3,
+engine::record! {
+    /// What a contact remembers.
+    pub(crate) struct Memory<R, const N: usize> {
+        /// 1/R* at the end of the last step (1/m), 0 if it did not touch.
+        curvature: R,
+        /// ξ (m).
+        spring: Vector<R, N>,
+        /// k_t at the end of the last step (N/m).
+        tangential_stiffness: R,
+        /// Damping force at the end of the last step (N).
+        normal_damping: R,
+        /// Viscous resistance at the end of the last step (N).
+        tangential_damping: Vector<R, N>,
+    }
 }
 
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub(crate) struct Energy {
-    pub(crate) normal: f64,
-    pub(crate) tangential: f64,
-    pub(crate) normal_damping: f64,
-    pub(crate) tangential_damping: f64,
-    pub(crate) sliding: f64,
-    pub(crate) stiffness_change: f64,
+engine::record! {
+    /// One number (J) per channel.
+    pub(crate) struct Energy<R> {
+        pub(crate) normal: R,
+        pub(crate) tangential: R,
+        pub(crate) normal_damping: R,
+        pub(crate) tangential_damping: R,
+        pub(crate) sliding: R,
+        pub(crate) stiffness_change: R,
+    }
 }
 
 /// The accounts of every law of this kind.
@@ -137,64 +138,61 @@ pub(crate) const CHANNELS: &[Channel] = &[
 /// Effects that damp or attract have had their say: damping takes no more than what they and the
 /// elastic force leave.
 #[inline(always)]
-pub(crate) fn act<D: Damping>(
+pub(crate) fn act<D: Damping, R: Lanes, const N: usize>(
     pair: &Pair<D>,
-    contact: &Contact,
-    history: &mut Memory,
-    response: &mut Response,
-    energy: &mut Energy,
+    contact: &Contact<R, N>,
+    history: &mut Memory<R, N>,
+    response: &mut Response<R, N>,
+    energy: &mut Energy<R>,
 ) {
-    let touching = contact.overlap > 0.0;
-    let overlap = contact.overlap.max(0.0);
-    let a = (overlap / contact.inverse_radius_eff).sqrt();
+    let (zero, half) = (R::zero(), R::splat(0.5));
+    let touching = contact.overlaps();
+    let overlap = contact.overlap.simd_max(zero);
+    let a = (overlap / contact.inverse_radius_eff).simd_sqrt();
     let elastic = pair.elastic.normal_force(a, overlap);
-    let [c_n, c_t] =
-        if touching { pair.damping.coefficients(a, contact.mass_eff()) } else { [0.0; 2] };
+    // Both vanish with a where nothing touches.
+    let [c_n, c_t] = pair.damping.coefficients(a, contact.mass_eff());
 
-    let spare = (elastic + response.normal_force + response.adhesive_force).max(0.0);
+    let spare = (elastic + response.normal_force + response.adhesive_force).simd_max(zero);
     // Damping never takes more than the elastic force, also where adhesion would hold the two together.
-    let damping = (c_n * contact.overlap_rate).max(-spare.min(elastic));
-    energy.normal += 0.4 * elastic * overlap;
-    if history.curvature > 0.0
-        && history.curvature.to_bits() != contact.inverse_radius_eff.to_bits()
-    {
+    let damping = (c_n * contact.overlap_rate).simd_max(-spare.simd_min(elastic));
+    energy.normal += R::splat(0.4) * elastic * overlap;
+    let moved =
+        history.curvature.simd_gt(zero) & history.curvature.simd_ne(contact.inverse_radius_eff);
+    if moved.any() {
         // Over an edge or along a cone the same overlap holds another energy.
-        let half_way = (overlap - 0.5 * contact.overlap_step).max(0.0);
+        let half_way = (overlap - half * contact.overlap_step).simd_max(zero);
         let held = |curvature| pair.elastic.energy(curvature, half_way);
-        energy.stiffness_change += held(history.curvature) - held(contact.inverse_radius_eff);
+        let gained = held(history.curvature) - held(contact.inverse_radius_eff);
+        energy.stiffness_change += gained.select(moved, zero);
     }
-    energy.normal_damping += 0.5 * (history.normal_damping + damping) * contact.overlap_step;
+    energy.normal_damping += half * (history.normal_damping + damping) * contact.overlap_step;
 
     let k_t = pair.elastic.tangential_stiffness(a);
     let before = contact.turn(history.spring);
     let stretched = before + contact.slip_step;
     let viscous = contact.slip_velocity * c_t;
     let trial = -(stretched * k_t + viscous);
-    let limit = pair.friction * (spare + damping);
-    let trial_2 = trial.norm_squared();
-    let (force, spring, viscous) = if trial_2 > limit * limit {
-        let force = trial * (limit / trial_2.sqrt());
-        (force, force * (-1.0 / k_t), Vec3::zeros())
-    } else {
-        (trial, stretched, viscous)
-    };
-    let softening = 0.5 * (history.tangential_stiffness - k_t) * before.dot(&spring);
-    if touching {
-        let pull = before * history.tangential_stiffness + spring * k_t;
-        energy.sliding += 0.5 * pull.dot(&(stretched - spring));
-        energy.stiffness_change += softening;
-    } else {
-        energy.sliding += softening;
-    }
-    energy.tangential += 0.5 * k_t * spring.norm_squared();
-    energy.tangential_damping +=
-        0.5 * (history.tangential_damping + viscous).dot(&contact.slip_step);
-
+    let limit = R::splat(pair.friction) * (spare + damping);
+    let trial_2 = trial.dot(&trial);
+    let slides = trial_2.simd_gt(limit * limit);
+    let cut = (limit / trial_2.simd_sqrt()).select(slides, R::one());
+    let force = trial * cut;
     // A contact that attraction holds open has no spring that could come back.
-    let spring = if touching { spring } else { Vec3::zeros() };
+    let cut_back = vector_where(touching, force * (-R::one() / k_t));
+    let spring = select_vector(slides, cut_back, stretched);
+    let viscous = vector_where(!slides, viscous);
+    let softening = half * (history.tangential_stiffness - k_t) * before.dot(&spring);
+    let pull = before * history.tangential_stiffness + spring * k_t;
+    energy.sliding += (half * pull.dot(&(stretched - spring))).select(touching, softening);
+    energy.stiffness_change += softening.select(touching, zero);
+    energy.tangential += half * k_t * spring.dot(&spring);
+    energy.tangential_damping +=
+        half * (history.tangential_damping + viscous).dot(&contact.slip_step);
+
     *history = Memory {
-        curvature: if touching { contact.inverse_radius_eff } else { 0.0 },
-        spring,
+        curvature: contact.inverse_radius_eff.select(touching, zero),
+        spring: vector_where(touching, spring),
         tangential_stiffness: k_t,
         normal_damping: damping,
         tangential_damping: viscous,
@@ -216,6 +214,8 @@ pub(crate) fn damping_time<D: Damping>(pair: &Pair<D>, encounter: &Encounter) ->
 #[cfg(test)]
 pub(crate) mod tests {
     use engine::contact::{ContactLaw, Partner};
+    use engine::lanes::Record;
+    use engine::math::Vec3;
     use engine::params::ParamTable;
 
     use super::*;
@@ -258,7 +258,6 @@ pub(crate) mod tests {
             inverse_radius_eff: 1.0 / RADIUS_EFF,
             inverse_mass_eff: 1e5,
             rolling_mobility: 1e9,
-            partner: Partner::Grain,
         }
     }
 
@@ -266,9 +265,9 @@ pub(crate) mod tests {
     pub(crate) fn acted<L: ContactLaw>(
         pair: &L::Pair,
         contact: &Contact,
-        history: &mut L::History,
-    ) -> (Response, L::Energy) {
-        let (mut response, mut energy) = (Response::default(), bytemuck::Zeroable::zeroed());
+        history: &mut L::History<f64, 3>,
+    ) -> (Response, L::Energy<f64>) {
+        let (mut response, mut energy) = (Response::default(), Record::zero());
         L::act(pair, contact, 1e-7, history, &mut response, &mut energy);
         (response, energy)
     }
@@ -283,13 +282,13 @@ pub(crate) mod tests {
             Self
         }
 
-        fn coefficients(&self, _: f64, _: f64) -> [f64; 2] {
-            [0.0; 2]
+        fn coefficients<R: Lanes>(&self, _: R, _: R) -> [R; 2] {
+            [R::zero(); 2]
         }
     }
 
-    fn undamped(contact: &Contact, history: &mut Memory) -> (Response, Energy) {
-        let (mut response, mut energy) = (Response::default(), bytemuck::Zeroable::zeroed());
+    fn undamped(contact: &Contact, history: &mut Memory<f64, 3>) -> (Response, Energy<f64>) {
+        let (mut response, mut energy) = (Response::default(), Record::zero());
         let elastic = Elastic::of(&beads(&[]), Partner::Grain);
         let pair = Pair { elastic, damping: Undamped, friction: 0.5 };
         act(&pair, contact, history, &mut response, &mut energy);
@@ -303,7 +302,7 @@ pub(crate) mod tests {
 
     #[test]
     fn the_force_is_that_of_hertz_and_its_slope_the_stiffness() {
-        let (response, energy) = undamped(&contact(), &mut bytemuck::Zeroable::zeroed());
+        let (response, energy) = undamped(&contact(), &mut Record::zero());
         let a = (RADIUS_EFF * OVERLAP).sqrt();
         assert!(close(response.normal_force, 4.0 / 3.0 * MODULUS * a * OVERLAP));
         assert!(close(response.normal_stiffness, 2.0 * MODULUS * a));
@@ -313,7 +312,7 @@ pub(crate) mod tests {
     #[test]
     fn a_small_slip_is_resisted_by_mindlin_s_spring_and_a_large_one_by_friction() {
         let a = (RADIUS_EFF * OVERLAP).sqrt();
-        let (k_t, mut history) = (8.0 * SHEAR_MODULUS * a, bytemuck::Zeroable::zeroed());
+        let (k_t, mut history) = (8.0 * SHEAR_MODULUS * a, Record::zero());
         let slip = 1e-10;
         let slid = |by: f64| Contact { slip_step: Vec3::x() * by, ..contact() };
         let (response, energy) = undamped(&slid(slip), &mut history);
@@ -328,7 +327,7 @@ pub(crate) mod tests {
 
     #[test]
     fn what_a_spring_gains_or_loses_with_its_stiffness_is_booked() {
-        let mut history = bytemuck::Zeroable::zeroed();
+        let mut history = Record::zero();
         let slip = 1e-10;
         undamped(&Contact { slip_step: Vec3::x() * slip, ..contact() }, &mut history);
         let k_t = history.tangential_stiffness;

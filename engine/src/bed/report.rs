@@ -184,7 +184,7 @@ impl Columns {
     /// Calls `chord(column, height of its middle, half its length)` for every column that cuts a
     /// grain, and every grain it cuts.
     fn for_each_chord(&self, grains: &Grains, mut chord: impl FnMut(usize, f64, f64)) {
-        for (position, &radius) in grains.position.iter().zip(&grains.radius) {
+        for (position, &radius) in grains.positions().zip(&grains.radius) {
             for y in self.images(1, position.y, radius).into_iter().flatten() {
                 self.y.for_each_chord(y, radius, |row, radius| {
                     for x in self.images(0, position.x, radius).into_iter().flatten() {

@@ -1,5 +1,6 @@
 //! Sides that are no sides: what leaves on one comes in on the other.
 
+use crate::lanes::Lanes;
 use crate::math::Vec3;
 
 /// Half the lengths (m) along x and y after which everything repeats; infinite where nothing does.
@@ -34,20 +35,23 @@ impl Period {
         *self == Self::NONE
     }
 
+    /// The coordinate along `axis` of the shortest of the vectors that lead from one point to the images of
+    /// another, given that of one between points inside of the container.
+    #[inline(always)]
+    pub(crate) fn nearest<R: Lanes>(&self, axis: usize, at: R) -> R {
+        if self.is_none() {
+            return at;
+        }
+        let [half, length] = [self.half[axis], 2.0 * self.half[axis]].map(R::splat);
+        let below = (at - length).select(at.simd_gt(half), at);
+        (at + length).select(at.simd_lt(-half), below)
+    }
+
     /// The shortest of the vectors that lead from one point to the images of another, given one of
     /// them between points inside of the container.
     #[inline(always)]
     pub(crate) fn shortest(&self, apart: Vec3) -> Vec3 {
-        let along = |at: f64, half: f64| {
-            if at > half {
-                at - 2.0 * half
-            } else if at < -half {
-                at + 2.0 * half
-            } else {
-                at
-            }
-        };
-        Vec3::new(along(apart.x, self.half[0]), along(apart.y, self.half[1]), apart.z)
+        Vec3::new(self.nearest(0, apart.x), self.nearest(1, apart.y), apart.z)
     }
 
     /// The image of `point` that is nearest to `reference`, which may lie anywhere.

@@ -1,20 +1,20 @@
 //! What a contact is and what a law makes of it: the page a physicist reads.
 //!
-//! A law sees one [`Contact`] at one instant, adds to its [`Response`] and books, from the same
-//! intermediate values, what became of the energy. The engine finds the contacts
-//! ([`geometry`]), keeps their histories ([`table`]) and lowers a law to a loop over many contacts
-//! ([`stage`]).
+//! A law sees a [`Contact`] at one instant, adds to its [`Response`] and books, from the same
+//! intermediate values, what became of the energy. It is written once, for one contact or for four side
+//! by side ([`crate::lanes`]), in a plane or in space. The engine finds the contacts ([`geometry`]),
+//! keeps their histories ([`table`]) and lowers a law to a loop over many contacts ([`stage`]).
 
 pub mod geometry;
 mod rebound;
 pub mod stage;
 pub mod table;
 
+use crate::lanes::{Lanes, Record, Vector, vector_of, vector_where};
 use crate::ledger::Channel;
-use crate::math::Vec3;
 
 pub use rebound::restitution;
-pub use stage::{ContactStage, Stage};
+pub use stage::{ContactStage, Stage, Sweep};
 
 /// What a grain touches; each kind has its own parameters of a law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,9 +38,13 @@ impl Partner {
     }
 }
 
-/// One contact of grain i with j (a grain, a wall or the intruder) at one instant, world frame.
+/// Contacts of grains i with partners j (grains, a wall or the intruder) at one instant, one in each lane.
 ///
-/// `normal` is a unit vector from j to i: a repulsive force on i is `+normal_force * normal`.
+/// Slips and spins have `N` components: three in space, in the world frame; in a plane one, along
+/// t = y × n for slips and along y for spins. A law is the same in both: whatever lies across the normal
+/// goes by [`Contact::across`], [`Contact::along`] and [`Contact::turn`].
+///
+/// The normal points from j to i: a repulsive force on i is `+normal_force * normal`.
 /// Rates belong to the end of the step, steps to what was done during it (see [`crate::step`]).
 ///
 /// A law sees a contact at every step in which it overlaps or is held together by a law that
@@ -48,80 +52,113 @@ impl Partner {
 /// `overlap <= 0`: the force is then zero and what the contact still stored has to be booked. A law
 /// that acts on overlap alone takes a contact that is held open for an opened one.
 #[derive(Clone, Copy, Debug)]
-pub struct Contact {
-    /// n, from j to i (–).
-    pub normal: Vec3,
+pub struct Contact<R: Lanes = f64, const N: usize = 3> {
+    /// n, from j to i (–); in a plane it has no component where slips and spins have theirs: zero.
+    pub normal: Vector<R, N>,
     /// δ (m); zero or less once the contact has opened.
-    pub overlap: f64,
+    pub overlap: R,
     /// dδ/dt (m/s), positive while the two approach.
-    pub overlap_rate: f64,
+    pub overlap_rate: R,
     /// Overlap gained in this step (m).
-    pub overlap_step: f64,
+    pub overlap_step: R,
     /// v_t (m/s), of i relative to j at the contact point, spin included.
-    pub slip_velocity: Vec3,
+    pub slip_velocity: Vector<R, N>,
     /// Slip made in this step (m), turned into the present contact plane.
-    pub slip_step: Vec3,
+    pub slip_step: Vector<R, N>,
     /// ω_i − ω_j (rad/s).
-    pub relative_spin: Vec3,
+    pub relative_spin: Vector<R, N>,
     /// Rotation of i relative to j in this step (rad).
-    pub relative_turn: Vec3,
+    pub relative_turn: Vector<R, N>,
     /// 1/R* = 1/R_i + 1/R_j (1/m); a flat face has no curvature.
-    pub inverse_radius_eff: f64,
+    pub inverse_radius_eff: R,
     /// 1/m* = 1/m_i + 1/m_j (1/kg); a wall has infinite mass.
-    pub inverse_mass_eff: f64,
+    pub inverse_mass_eff: R,
     /// 1/I_r = Σ 1/(I + m R²) (1/(kg m²)), I_r the inertia of rolling.
-    pub rolling_mobility: f64,
-    /// What j is.
-    pub partner: Partner,
+    pub rolling_mobility: R,
 }
 
-impl Contact {
+impl<R: Lanes, const N: usize> Contact<R, N> {
     /// R* (m).
-    #[inline]
+    #[inline(always)]
     #[must_use]
-    pub fn radius_eff(&self) -> f64 {
-        1.0 / self.inverse_radius_eff
+    pub fn radius_eff(&self) -> R {
+        R::one() / self.inverse_radius_eff
     }
 
     /// m* (kg).
-    #[inline]
+    #[inline(always)]
     #[must_use]
-    pub fn mass_eff(&self) -> f64 {
-        1.0 / self.inverse_mass_eff
+    pub fn mass_eff(&self) -> R {
+        R::one() / self.inverse_mass_eff
+    }
+
+    /// Whether the two overlap.
+    #[inline(always)]
+    #[must_use]
+    pub fn overlaps(&self) -> R::SimdBool {
+        self.overlap.simd_gt(R::zero())
+    }
+
+    /// The component of a slip or spin along the normal; zero in a plane.
+    #[inline(always)]
+    #[must_use]
+    pub fn along(&self, vector: Vector<R, N>) -> R {
+        if N == 1 { R::zero() } else { vector.dot(&self.normal) }
+    }
+
+    /// The part of a slip or spin across the normal; in a plane all of it.
+    #[inline(always)]
+    #[must_use]
+    pub fn across(&self, vector: Vector<R, N>) -> Vector<R, N> {
+        if N == 1 { vector } else { vector - self.normal * self.along(vector) }
     }
 
     /// Turns a vector that lay in an earlier contact plane into the present one, its length kept
     /// (Luding, Granul. Matter 10, 235 (2008), eq. 17).
-    #[inline]
+    #[inline(always)]
     #[must_use]
-    pub fn turn(&self, vector: Vec3) -> Vec3 {
-        let projected = vector - self.normal * vector.dot(&self.normal);
-        let projected_2 = projected.norm_squared();
-        if projected_2 > 0.0 {
-            projected * (vector.norm_squared() / projected_2).sqrt()
-        } else {
-            Vec3::zeros()
+    pub fn turn(&self, vector: Vector<R, N>) -> Vector<R, N> {
+        if N == 1 {
+            return vector;
         }
+        let projected = self.across(vector);
+        let projected_2 = projected.dot(&projected);
+        let stretch = (vector.dot(&vector) / projected_2).simd_sqrt();
+        vector_where(projected_2.simd_gt(R::zero()), projected * stretch)
     }
 }
 
-/// What the laws of a contact build up. Force and couple act on i; j receives the opposite.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Response {
+/// What the laws of contacts build up, in lanes. Force and couple act on i; j receives the opposite.
+#[derive(Clone, Copy, Debug)]
+pub struct Response<R: Lanes = f64, const N: usize = 3> {
     /// F_n (N), repulsion positive.
-    pub normal_force: f64,
+    pub normal_force: R,
     /// F_a (N), at least 0: what attraction adds to the force that friction is measured by, whose
     /// limit is μ (F_n + F_a).
-    pub adhesive_force: f64,
+    pub adhesive_force: R,
     /// Whether a law holds the contact together though it may have opened: then it is kept, with all
     /// that its laws remember, and seen again in the next step.
-    pub holds: bool,
+    pub holds: R::SimdBool,
     /// dF_n/dδ (N/m), which rolling resistance scales with.
-    pub normal_stiffness: f64,
+    pub normal_stiffness: R,
     /// F_t (N).
-    pub tangential_force: Vec3,
+    pub tangential_force: Vector<R, N>,
     /// Couple (N m) of rolling resistance; the torque of F_t about the centres is the engine's job.
-    pub couple: Vec3,
+    pub couple: Vector<R, N>,
+}
+
+impl<R: Lanes, const N: usize> Default for Response<R, N> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self {
+            normal_force: R::zero(),
+            adhesive_force: R::zero(),
+            holds: R::zero().simd_lt(R::zero()),
+            normal_stiffness: R::zero(),
+            tangential_force: vector_of(|_| R::zero()),
+            couple: vector_of(|_| R::zero()),
+        }
+    }
 }
 
 /// The order in which the laws of a contact act: a later one may use what an earlier one answered.
@@ -164,21 +201,21 @@ pub trait ContactLaw: Send + Sync + 'static {
     /// Its parameters for one kind of partner.
     type Pair: Copy + Send + Sync;
     /// What it remembers of a contact, zero at first touch.
-    type History: bytemuck::Pod;
-    /// One `f64` (J) per channel.
-    type Energy: bytemuck::Pod;
+    type History<R: Lanes, const N: usize>: Record<R>;
+    /// One number (J) per channel.
+    type Energy<R: Lanes>: Record<R>;
 
     /// Its parameters for contacts of grains with `partner`.
     fn pair(&self, partner: Partner) -> Self::Pair;
 
-    /// Adds the force of one contact to `response` and its energy to `energy`; `dt` (s) is the step.
-    fn act(
+    /// Adds the force of the contacts to `response` and their energy to `energy`; `dt` (s) is the step.
+    fn act<R: Lanes, const N: usize>(
         pair: &Self::Pair,
-        contact: &Contact,
+        contact: &Contact<R, N>,
         dt: f64,
-        history: &mut Self::History,
-        response: &mut Response,
-        energy: &mut Self::Energy,
+        history: &mut Self::History<R, N>,
+        response: &mut Response<R, N>,
+        energy: &mut Self::Energy<R>,
     );
 
     /// How long a head-on collision lasts without damping (s); `None` if this law does not decide it.

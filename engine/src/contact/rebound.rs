@@ -1,7 +1,9 @@
 //! What the laws of a contact make of a head-on collision.
 
-use crate::contact::stage::Batch;
+use crate::contact::stage::{Batch, Histories};
 use crate::contact::{Contact, ContactStage, Encounter, Partner, Response};
+use crate::grains::Space;
+use crate::lanes::MOST_LANES;
 use crate::math::Vec3;
 
 /// Steps per collision: the error of a rebound is a few times the square of its inverse.
@@ -28,7 +30,7 @@ pub fn restitution(
     }
     let dt = duration / STEPS;
     let mut history: Vec<Vec<f64>> =
-        stages.iter().map(|stage| vec![0.0; stage.history_len()]).collect();
+        stages.iter().map(|stage| vec![0.0; stage.history_len(Space::Spatial)]).collect();
     let mut energy: Vec<Vec<f64>> =
         stages.iter().map(|stage| vec![0.0; stage.channels().len()]).collect();
     let (mut overlap, mut rate, mut force) = (0.0, encounter.speed, 0.0);
@@ -48,16 +50,16 @@ pub fn restitution(
             inverse_radius_eff: 1.0 / encounter.radius_eff,
             inverse_mass_eff: 1.0 / encounter.mass_eff,
             rolling_mobility: 1.0 / (encounter.mass_eff * encounter.radius_eff.powi(2)),
-            partner,
         };
         let mut response = Response::default();
         for ((stage, history), energy) in stages.iter().zip(&mut history).zip(&mut energy) {
             let batch = Batch {
+                partner,
                 contacts: std::slice::from_ref(&contact),
-                rows: &[0],
+                records: &[[0; MOST_LANES]],
                 responses: std::slice::from_mut(&mut response),
             };
-            stage.sweep(batch, dt, history, energy);
+            stage.sweep(batch, dt, Histories { values: history, offset: 0 }, energy);
         }
         force = response.normal_force;
         rate = half - 0.5 * dt * force / encounter.mass_eff;

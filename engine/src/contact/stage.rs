@@ -1,20 +1,40 @@
 //! Lowers a contact law to a loop over many contacts: chosen by name once per run, inlined inside.
 
 use crate::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use crate::grains::Space;
+use crate::lanes::{Four, Lanes, MOST_LANES, Record};
 use crate::ledger::Channel;
 
 /// Contacts that are evaluated together, small enough to stay in the first-level cache.
-pub struct Batch<'a> {
+pub struct Batch<'a, R: Lanes, const N: usize> {
+    /// What the grains touch.
+    pub partner: Partner,
     /// The contacts.
-    pub contacts: &'a [Contact],
-    /// Row of each contact in the history of its table.
-    pub rows: &'a [u32],
+    pub contacts: &'a [Contact<R, N>],
+    /// Where in the histories the record of each lane begins, for every contact.
+    pub records: &'a [[u32; MOST_LANES]],
     /// What the stages before this one answered.
-    pub responses: &'a mut [Response],
+    pub responses: &'a mut [Response<R, N>],
+}
+
+/// The histories of a table of contacts.
+pub struct Histories<'a> {
+    /// Record after record, each with the numbers of all stages.
+    pub values: &'a mut [f64],
+    /// Where in a record those of this stage begin.
+    pub offset: usize,
+}
+
+/// A contact law as the engine runs it, for so many lanes and components.
+pub trait Sweep<R: Lanes, const N: usize> {
+    /// Evaluates a batch of contacts; `dt` (s), `energy` (J) has one entry per channel and is added to.
+    fn sweep(&self, batch: Batch<'_, R, N>, dt: f64, histories: Histories<'_>, energy: &mut [f64]);
 }
 
 /// A contact law as the engine runs it.
-pub trait ContactStage: Send + Sync {
+pub trait ContactStage:
+    Sweep<f64, 1> + Sweep<f64, 3> + Sweep<Four, 1> + Sweep<Four, 3> + Send + Sync
+{
     /// The name in TOML.
     fn name(&self) -> &'static str;
     /// When it acts.
@@ -22,10 +42,7 @@ pub trait ContactStage: Send + Sync {
     /// The accounts it books to.
     fn channels(&self) -> &'static [Channel];
     /// How many `f64` it remembers of a contact.
-    fn history_len(&self) -> usize;
-    /// Evaluates a batch of contacts; `dt` (s), `history` holds all rows of the table, `energy` (J)
-    /// has one entry per channel and is added to.
-    fn sweep(&self, batch: Batch<'_>, dt: f64, history: &mut [f64], energy: &mut [f64]);
+    fn history_len(&self, space: Space) -> usize;
     /// Duration (s) of a head-on collision, see [`ContactLaw::collision_time`].
     fn collision_time(&self, partner: Partner, encounter: &Encounter) -> Option<f64>;
     /// Shortest relaxation (s), see [`ContactLaw::damping_time`].
@@ -45,11 +62,92 @@ impl<L: ContactLaw> Stage<L> {
     /// Derives the parameters of each kind of partner.
     #[must_use]
     pub fn new(law: &L) -> Self {
-        const {
-            assert!(size_of::<L::Energy>() == size_of::<f64>() * L::CHANNELS.len());
-            assert!(size_of::<L::History>().is_multiple_of(size_of::<f64>()));
-        }
+        const { assert!(<L::Energy<f64> as Record<f64>>::LEN == L::CHANNELS.len()) }
         Self { pairs: Partner::ALL.map(|partner| law.pair(partner)) }
+    }
+}
+
+impl<L: ContactLaw, R: Lanes, const N: usize> Sweep<R, N> for Stage<L> {
+    fn sweep(
+        &self,
+        batch: Batch<'_, R, N>,
+        dt: f64,
+        mut histories: Histories<'_>,
+        energy: &mut [f64],
+    ) {
+        let pair = self.pairs[batch.partner.index()];
+        let mut booked = L::Energy::<R>::zero();
+        let evaluated = batch.contacts.iter().zip(batch.responses).zip(batch.records);
+        for ((contact, response), records) in evaluated {
+            let mut history = read::<R, L::History<R, N>>(&histories, records);
+            L::act(&pair, contact, dt, &mut history, response, &mut booked);
+            write(&history, &mut histories, records);
+        }
+        let mut channels = energy.iter_mut();
+        booked.write(&mut |part: R| {
+            if let Some(total) = channels.next() {
+                *total += part.sum_of_lanes();
+            }
+        });
+    }
+}
+
+/// Longest record of one stage.
+const MOST_NUMBERS: usize = 16;
+
+/// The records that begin at `records`, one in each lane.
+#[inline(always)]
+fn read<R: Lanes, H: Record<R>>(histories: &Histories<'_>, records: &[u32; MOST_LANES]) -> H {
+    const { assert!(H::LEN <= MOST_NUMBERS) }
+    let row = |lane: usize| -> &[f64] {
+        let from = records[lane.min(R::COUNT - 1)] as usize + histories.offset;
+        &histories.values[from..][..H::LEN]
+    };
+    let rows = [row(0), row(1), row(2), row(3)];
+    let mut numbers = [R::zero(); MOST_NUMBERS];
+    let whole = H::LEN / 4 * 4;
+    for at in (0..whole).step_by(4) {
+        let quad = |row: &[f64]| [row[at], row[at + 1], row[at + 2], row[at + 3]];
+        let quads = [quad(rows[0]), quad(rows[1]), quad(rows[2]), quad(rows[3])];
+        let columns = R::columns([&quads[0], &quads[1], &quads[2], &quads[3]]);
+        numbers[at..at + 4].copy_from_slice(&columns);
+    }
+    for at in whole..H::LEN {
+        numbers[at] = R::from_lanes(|lane| rows[lane][at]);
+    }
+    let mut at = 0;
+    H::read(&mut || {
+        at += 1;
+        numbers[at - 1]
+    })
+}
+
+/// Puts each lane of `history` back where [`read`] took it from.
+#[inline(always)]
+fn write<R: Lanes, H: Record<R>>(
+    history: &H,
+    histories: &mut Histories<'_>,
+    records: &[u32; MOST_LANES],
+) {
+    let mut numbers = [R::zero(); MOST_NUMBERS];
+    let mut at = 0;
+    history.write(&mut |value: R| {
+        numbers[at] = value;
+        at += 1;
+    });
+    let whole = H::LEN / 4 * 4;
+    for at in (0..whole).step_by(4) {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| numbers[at + k]);
+        let rows = R::rows([a, b, c, d]);
+        for lane in 0..R::COUNT {
+            let from = records[lane] as usize + histories.offset + at;
+            histories.values[from..][..4].copy_from_slice(&rows[lane]);
+        }
+    }
+    for (at, number) in numbers.iter().enumerate().take(H::LEN).skip(whole) {
+        for lane in 0..R::COUNT {
+            histories.values[records[lane] as usize + histories.offset + at] = number.lane(lane);
+        }
     }
 }
 
@@ -66,22 +164,10 @@ impl<L: ContactLaw> ContactStage for Stage<L> {
         L::CHANNELS
     }
 
-    fn history_len(&self) -> usize {
-        size_of::<L::History>() / size_of::<f64>()
-    }
-
-    fn sweep(&self, batch: Batch<'_>, dt: f64, history: &mut [f64], energy: &mut [f64]) {
-        let history: &mut [L::History] = bytemuck::cast_slice_mut(history);
-        let mut booked: L::Energy = bytemuck::Zeroable::zeroed();
-        for ((contact, &row), response) in
-            batch.contacts.iter().zip(batch.rows).zip(batch.responses)
-        {
-            let pair = &self.pairs[contact.partner.index()];
-            L::act(pair, contact, dt, &mut history[row as usize], response, &mut booked);
-        }
-        let booked: &[f64] = bytemuck::cast_slice(std::slice::from_ref(&booked));
-        for (total, part) in energy.iter_mut().zip(booked) {
-            *total += part;
+    fn history_len(&self, space: Space) -> usize {
+        match space {
+            Space::Planar => <L::History<f64, 1> as Record<f64>>::LEN,
+            Space::Spatial => <L::History<f64, 3> as Record<f64>>::LEN,
         }
     }
 

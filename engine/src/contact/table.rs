@@ -4,16 +4,23 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
+/// Marks a candidate that remembers nothing, because it does not touch.
+const APART: u32 = u32::MAX;
+
 /// Candidate contacts sorted by key, with the history of those that touch.
 ///
-/// A rebuild of the neighbour list joins the old keys with the new ones by merging the two sorted
-/// lists, so a history moves with its contact and no order depends on anything but the keys.
+/// About half of the candidates touch; only they have a record in the histories. A rebuild of the
+/// neighbour list joins the old keys with the new ones by merging the two sorted lists, so a record
+/// stays where it is, and no order depends on anything but the keys.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactTable {
     keys: Vec<[u32; 2]>,
-    touching: Vec<bool>,
-    /// Per stage, `history_len` values per row.
-    history: Vec<Vec<f64>>,
+    /// Per candidate: where its record begins, or [`APART`].
+    records: Vec<u32>,
+    histories: Vec<f64>,
+    /// Records that nobody uses.
+    free: Vec<u32>,
+    /// Numbers of each stage in a record.
     history_len: Vec<usize>,
     #[serde(skip)]
     spare: Spare,
@@ -21,8 +28,7 @@ pub struct ContactTable {
 
 #[derive(Clone, Debug, Default)]
 struct Spare {
-    touching: Vec<bool>,
-    history: Vec<f64>,
+    records: Vec<u32>,
 }
 
 impl PartialEq for Spare {
@@ -35,11 +41,7 @@ impl ContactTable {
     /// An empty table whose stages remember `history_len` values per contact each.
     #[must_use]
     pub fn new(history_len: &[usize]) -> Self {
-        Self {
-            history: vec![Vec::new(); history_len.len()],
-            history_len: history_len.to_vec(),
-            ..Self::default()
-        }
+        Self { history_len: history_len.to_vec(), ..Self::default() }
     }
 
     /// The candidates: (grain i, partner j), ascending.
@@ -51,18 +53,13 @@ impl ContactTable {
     /// Whether the contact of `row` was touching when last evaluated.
     #[must_use]
     pub fn is_touching(&self, row: usize) -> bool {
-        self.touching[row]
-    }
-
-    /// All rows: keys, whether each touches, and the history of each stage.
-    pub(crate) fn rows_mut(&mut self) -> (&[[u32; 2]], &mut [bool], &mut [Vec<f64>]) {
-        (&self.keys, &mut self.touching, &mut self.history)
+        self.records[row] != APART
     }
 
     /// How many contacts touch.
     #[must_use]
     pub fn n_touching(&self) -> usize {
-        self.touching.iter().filter(|&&touching| touching).count()
+        self.records.iter().filter(|&&record| record != APART).count()
     }
 
     /// Length of one row of each stage's history.
@@ -71,18 +68,62 @@ impl ContactTable {
         &self.history_len
     }
 
-    /// The history of `row` under `stage`.
+    /// The history of `row` under `stage`; nothing if it does not touch.
     #[must_use]
     pub fn history(&self, stage: usize, row: usize) -> &[f64] {
-        let len = self.history_len[stage];
-        &self.history[stage][row * len..(row + 1) * len]
+        if !self.is_touching(row) {
+            return &[];
+        }
+        let from = self.records[row] as usize + self.offset(stage);
+        &self.histories[from..][..self.history_len[stage]]
+    }
+
+    /// Where in a record the numbers of `stage` begin.
+    fn offset(&self, stage: usize) -> usize {
+        self.history_len[..stage].iter().sum()
+    }
+
+    /// All histories, record after record.
+    pub(crate) fn histories_mut(&mut self) -> &mut [f64] {
+        &mut self.histories
+    }
+
+    /// Where the record of `row` begins; a new one, all zero, if it has none.
+    #[inline]
+    pub(crate) fn record(&mut self, row: usize) -> u32 {
+        let record = self.records[row];
+        if record != APART {
+            return record;
+        }
+        let len = self.history_len.iter().sum::<usize>();
+        let record = self.free.pop().unwrap_or_else(|| {
+            let end = self.histories.len();
+            // A law without memory needs records that differ all the same.
+            self.histories.resize(end + len.max(1), 0.0);
+            end as u32
+        });
+        self.records[row] = record;
+        record
+    }
+
+    /// The contact of `row` has opened: its record is forgotten.
+    pub(crate) fn open(&mut self, row: usize) {
+        let record = std::mem::replace(&mut self.records[row], APART);
+        self.forget(record);
+    }
+
+    fn forget(&mut self, record: u32) {
+        if record != APART {
+            let len = self.history_len.iter().sum::<usize>();
+            self.histories[record as usize..][..len].fill(0.0);
+            self.free.push(record);
+        }
     }
 
     /// Marks `row` as touching with the given history of `stage`.
     pub(crate) fn restore_row(&mut self, stage: usize, row: usize, values: &[f64]) {
-        let len = self.history_len[stage];
-        self.touching[row] = true;
-        self.history[stage][row * len..(row + 1) * len].copy_from_slice(values);
+        let from = self.record(row) as usize + self.offset(stage);
+        self.histories[from..][..values.len()].copy_from_slice(values);
     }
 
     /// Replaces the candidates by `keys` (ascending); a contact in both lists keeps its history.
@@ -90,23 +131,22 @@ impl ContactTable {
     pub(crate) fn rekey(&mut self, keys: &mut Vec<[u32; 2]>) {
         debug_assert!(keys.is_sorted());
         std::mem::swap(&mut self.keys, keys);
-        let old = &keys[..];
-        let spare = &mut self.spare;
-        spare.touching.clear();
-        spare.touching.resize(self.keys.len(), false);
-        join(old, &self.keys, |from, to| spare.touching[to] = self.touching[from]);
-        for (rows, &len) in self.history.iter_mut().zip(&self.history_len) {
-            spare.history.clear();
-            spare.history.resize(self.keys.len() * len, 0.0);
-            join(old, &self.keys, |from, to| {
-                if self.touching[from] {
-                    spare.history[to * len..(to + 1) * len]
-                        .copy_from_slice(&rows[from * len..(from + 1) * len]);
-                }
-            });
-            std::mem::swap(rows, &mut spare.history);
+        let mut records = std::mem::take(&mut self.spare.records);
+        records.clear();
+        records.resize(self.keys.len(), APART);
+        std::mem::swap(&mut self.records, &mut records);
+        let mut to = 0;
+        for (&key, &record) in keys.iter().zip(&records) {
+            while to < self.keys.len() && self.keys[to] < key {
+                to += 1;
+            }
+            if to < self.keys.len() && self.keys[to] == key {
+                self.records[to] = record;
+            } else {
+                self.forget(record);
+            }
         }
-        std::mem::swap(&mut self.touching, &mut spare.touching);
+        self.spare.records = records;
     }
 
     /// Whether the parts fit together, for a table that was read from a file: contacts of the grains
@@ -118,30 +158,23 @@ impl ContactTable {
         n_grains: usize,
         history_len: &[usize],
     ) -> bool {
+        let len = history_len.iter().sum::<usize>().max(1);
+        let fits = |&record: &u32| {
+            (record as usize).is_multiple_of(len) && record as usize + len <= self.histories.len()
+        };
+        let touching = || self.records.iter().filter(|&&record| record != APART);
+        let mut used: Vec<u32> = touching().chain(&self.free).copied().collect();
+        used.sort_unstable();
         self.history_len == history_len
-            && self.touching.len() == self.keys.len()
+            && self.records.len() == self.keys.len()
             && self.keys.is_sorted()
             && self
                 .keys
                 .iter()
                 .all(|&[i, j]| own.contains(&(i as usize)) && (j as usize) < n_grains)
-            && self.history.len() == history_len.len()
-            && self.history.iter().zip(history_len).all(|(rows, len)| {
-                rows.len() == self.keys.len() * len && rows.iter().all(|value| value.is_finite())
-            })
-    }
-}
-
-/// Calls `both(from, to)` for each key that stands in both ascending lists.
-fn join(old: &[[u32; 2]], new: &[[u32; 2]], mut both: impl FnMut(usize, usize)) {
-    let mut from = 0;
-    for (to, key) in new.iter().enumerate() {
-        while from < old.len() && old[from] < *key {
-            from += 1;
-        }
-        if from < old.len() && old[from] == *key {
-            both(from, to);
-        }
+            && used.iter().all(fits)
+            && used.windows(2).all(|pair| pair[0] < pair[1])
+            && self.histories.iter().all(|value| value.is_finite())
     }
 }
 
@@ -151,13 +184,25 @@ mod tests {
 
     #[test]
     fn a_contact_keeps_its_history_when_others_come_and_go() {
-        let mut table = ContactTable::new(&[2]);
+        let mut table = ContactTable::new(&[1, 2]);
         table.rekey(&mut vec![[0, 3], [1, 2], [4, 7]]);
-        table.restore_row(0, 1, &[5.0, 6.0]);
+        table.restore_row(1, 1, &[5.0, 6.0]);
+        table.restore_row(0, 2, &[7.0]);
         table.rekey(&mut vec![[0, 1], [1, 2], [1, 9]]);
         assert!(table.is_touching(1) && !table.is_touching(0) && !table.is_touching(2));
-        assert_eq!(table.history(0, 1), [5.0, 6.0]);
-        assert_eq!(table.history(0, 0), [0.0, 0.0]);
+        assert_eq!(table.history(1, 1), [5.0, 6.0]);
+        assert_eq!(table.history(0, 1), [0.0]);
         assert_eq!(table.n_touching(), 1);
+    }
+
+    #[test]
+    fn a_contact_that_touches_anew_remembers_nothing() {
+        let mut table = ContactTable::new(&[2]);
+        table.rekey(&mut vec![[0, 3], [1, 2]]);
+        table.restore_row(0, 0, &[5.0, 6.0]);
+        table.open(0);
+        let record = table.record(1) as usize;
+        assert_eq!(table.histories_mut()[record..record + 2], [0.0, 0.0]);
+        assert!(table.is_consistent(0..2, 4, &[2]));
     }
 }

@@ -1,30 +1,33 @@
 //! The contacts of one block of grains: what the threads work on.
 
+use arrayvec::ArrayVec;
+
 use crate::body::Part;
-use crate::contact::geometry::{
-    between_grains, loads_on_grain_and_part, loads_on_grains, with_surface,
-};
-use crate::contact::stage::Batch;
+use crate::contact::geometry::{loads_on_grain_and_part, with_surface};
+use crate::contact::stage::{Batch, Histories, Sweep};
 use crate::contact::table::ContactTable;
 use crate::contact::{Contact, ContactStage, Partner, Response};
+use crate::dimension::{Dimension, Frame, Motion, Quad};
 use crate::footprint::Footprint;
-use crate::grains::{Grains, Load};
+use crate::grains::Grains;
+use crate::lanes::{Four, Lanes, MOST_LANES, SimdBool};
 use crate::math::Vec3;
 use crate::surface::{SurfacePoint, Wrench};
 
-/// Contacts evaluated together.
-pub(super) const BATCH: usize = 128;
-
-/// Marks a contact whose second grain lies in the same block.
-pub(super) const INSIDE: u32 = u32::MAX;
+/// Groups of as many contacts as there are lanes that are evaluated together.
+const GROUPS: usize = 16;
 
 /// The contacts of the grains of one block.
 pub(super) struct Block {
+    /// Its first grain.
     pub(super) first: usize,
     pub(super) pairs: ContactTable,
-    /// Per pair: where in the outbox the force on the second grain goes, or [`INSIDE`].
-    pub(super) outbox_slot: Vec<u32>,
-    pub(super) outbox: Vec<Load>,
+    /// Per pair: whose load the second grain has, counted in grains of the block and then of the halo.
+    pub(super) targets: Vec<u32>,
+    /// Grains of other blocks that are listed in pairs of this one, ascending.
+    pub(super) halo: Vec<u32>,
+    /// What contacts do to the grains of the block, then to those of the halo.
+    pub(super) loads: Vec<Quad>,
     pub(super) inbox: Vec<Delivery>,
     /// Per part of walls and intruder.
     pub(super) surfaces: Vec<ContactTable>,
@@ -32,10 +35,11 @@ pub(super) struct Block {
     pub(super) bench: Bench,
 }
 
-/// A force from another block's outbox.
+/// Loads from the halo of another block.
 pub(super) struct Delivery {
     pub(super) block: u32,
-    pub(super) slot: u32,
+    /// Whose they are, counted as in [`Block::loads`].
+    pub(super) from: u32,
     /// Index of the grain within its block.
     pub(super) grain: u32,
 }
@@ -66,12 +70,9 @@ pub(super) struct Tally {
     pub(super) overlap: Deepest,
 }
 
-/// Contacts waiting to be evaluated, in buffers that are kept.
+/// Buffers that are kept from step to step.
 #[derive(Default)]
 pub(super) struct Bench {
-    contacts: Vec<Contact>,
-    rows: Vec<u32>,
-    responses: Vec<Response>,
     pub(super) points: Vec<Vec3>,
     points_half: Vec<Vec3>,
     pub(super) nearest: Vec<SurfacePoint>,
@@ -80,55 +81,58 @@ pub(super) struct Bench {
     pub(super) keys: Vec<[u32; 2]>,
 }
 
-impl Bench {
-    pub(super) fn clear(&mut self) {
-        self.contacts.clear();
-        self.rows.clear();
+/// Groups of contacts on their way through the laws.
+struct Evaluation<R: Lanes, const N: usize> {
+    contacts: ArrayVec<Contact<R, N>, GROUPS>,
+    responses: ArrayVec<Response<R, N>, GROUPS>,
+    records: ArrayVec<[u32; MOST_LANES], GROUPS>,
+}
+
+impl<R: Lanes, const N: usize> Evaluation<R, N>
+where
+    dyn ContactStage: Sweep<R, N>,
+{
+    fn new() -> Self {
+        Self { contacts: ArrayVec::new(), responses: ArrayVec::new(), records: ArrayVec::new() }
     }
 
     #[inline(always)]
-    fn push(&mut self, contact: Contact, row: usize) {
+    fn push(&mut self, contact: Contact<R, N>, records: [u32; MOST_LANES]) {
         self.contacts.push(contact);
-        self.rows.push(row as u32);
+        self.responses.push(Response::default());
+        self.records.push(records);
     }
 
-    fn is_full(&self) -> bool {
-        self.contacts.len() == BATCH
-    }
-
-    /// Lets every law act on the waiting contacts; those that have opened lose their history.
+    /// Lets every law act.
     fn evaluate(
         &mut self,
+        partner: Partner,
         stages: &[Box<dyn ContactStage>],
         dt: f64,
-        touching: &mut [bool],
-        history: &mut [Vec<f64>],
+        table: &mut ContactTable,
         energy: &mut [f64],
     ) {
-        self.responses.clear();
-        self.responses.resize(self.contacts.len(), Response::default());
-        let mut energy = energy;
-        for (stage, history) in stages.iter().zip(history.iter_mut()) {
+        let (mut energy, mut offset) = (energy, 0);
+        for (k, stage) in stages.iter().enumerate() {
             let (own, rest) = energy.split_at_mut(stage.channels().len());
             energy = rest;
             let batch = Batch {
+                partner,
                 contacts: &self.contacts,
-                rows: &self.rows,
+                records: &self.records,
                 responses: &mut self.responses,
             };
-            stage.sweep(batch, dt, history, own);
+            let len = table.history_len()[k];
+            let histories = Histories { values: table.histories_mut(), offset };
+            Sweep::<R, N>::sweep(&**stage, batch, dt, histories, own);
+            offset += len;
         }
-        let evaluated = self.contacts.iter().zip(&self.responses);
-        for ((contact, response), &row) in evaluated.zip(&self.rows) {
-            let row = row as usize;
-            touching[row] = contact.overlap > 0.0 || response.holds;
-            if !touching[row] {
-                for (stage, rows) in stages.iter().zip(history.iter_mut()) {
-                    let len = stage.history_len();
-                    rows[row * len..(row + 1) * len].fill(0.0);
-                }
-            }
-        }
+    }
+
+    /// Whether each lane of the group still touches, as bits.
+    #[inline(always)]
+    fn touching(&self, group: usize) -> u64 {
+        (self.contacts[group].overlaps() | self.responses[group].holds).bitmask()
     }
 }
 
@@ -142,134 +146,181 @@ impl Tally {
         self.overlap = Deepest::default();
     }
 
-    /// Takes note of a contact of `grain`; `curvature` (1/m) is that of the smaller grain.
-    fn note_overlap(&mut self, contact: &Contact, grain: usize, curvature: f64) {
-        let relative = contact.overlap * curvature;
-        if relative > self.overlap.relative {
-            self.overlap = Deepest { relative, overlap: contact.overlap, grain: grain as u32 };
+    /// Takes note of contacts of `grains`; `curvature` (1/m) is that of the smaller grain.
+    #[inline(always)]
+    fn note_overlap<R: Lanes>(&mut self, overlap: R, curvature: R, grain: impl Fn(usize) -> u32) {
+        let relative = overlap * curvature;
+        if relative.simd_gt(R::splat(self.overlap.relative)).any() {
+            for lane in 0..R::COUNT {
+                let (relative, overlap) = (relative.lane(lane), overlap.lane(lane));
+                if relative > self.overlap.relative {
+                    self.overlap = Deepest { relative, overlap, grain: grain(lane) };
+                }
+            }
         }
     }
 }
 
 impl Block {
-    pub(super) fn sweep_pairs(
+    /// Evaluates the contacts between grains: four at a time, then what is left over one by one.
+    pub(super) fn sweep_pairs<D: Dimension<N>, const N: usize>(
         &mut self,
         grains: &Grains,
         stages: &[Box<dyn ContactStage>],
-        load: &mut [Load],
         dt: f64,
-    ) {
-        let (keys, touching, history) = self.pairs.rows_mut();
-        // Without a branch: about half of the candidates touch, and which ones cannot be foreseen.
+    ) where
+        dyn ContactStage: Sweep<f64, N> + Sweep<Four, N>,
+    {
+        self.find_near::<D, N>(grains);
+        let near = std::mem::take(&mut self.bench.near_rows);
+        let in_lanes = near.len() - near.len() % Four::COUNT;
+        for rows in near[..in_lanes].chunks(GROUPS * Four::COUNT) {
+            self.sweep_rows::<D, Four, N>(grains, stages, rows, dt);
+        }
+        if in_lanes < near.len() {
+            self.sweep_rows::<D, f64, N>(grains, stages, &near[in_lanes..], dt);
+        }
+        self.bench.near_rows = near;
+    }
+
+    /// Which candidates overlap, or did a step ago.
+    fn find_near<D: Dimension<N>, const N: usize>(&mut self, grains: &Grains) {
         let near = &mut self.bench.near_rows;
+        let keys = self.pairs.keys();
+        // Without a branch: about half of the candidates touch, and which ones cannot be foreseen.
         near.resize(keys.len(), 0);
         let mut n_near = 0;
-        for (row, (&[i, j], &touched)) in keys.iter().zip(&*touching).enumerate() {
-            let (i, j) = (i as usize, j as usize);
-            let reach = grains.radius[i] + grains.radius[j];
-            let apart = grains.apart(i, j);
+        for (row, &[i, j]) in keys.iter().enumerate() {
+            let [i, j] = [i, j].map(|grain| &grains.state::<D, N>(grain as usize)[0]);
             near[n_near] = row as u32;
-            n_near += usize::from((apart.norm_squared() < reach * reach) | touched);
+            let touches = D::touch(i, j, &grains.period) | self.pairs.is_touching(row);
+            n_near += usize::from(touches);
         }
-        let mut next = 0;
-        while next < n_near {
-            self.bench.clear();
-            while next < n_near && !self.bench.is_full() {
-                let row = self.bench.near_rows[next] as usize;
-                let [i, j] = keys[row].map(|k| k as usize);
-                self.bench.push(between_grains(grains, i, j, dt), row);
-                next += 1;
-            }
-            self.bench.evaluate(stages, dt, touching, history, &mut self.tally.energy);
-            let evaluated = self.bench.contacts.iter().zip(&self.bench.responses);
-            for ((contact, response), &row) in evaluated.zip(&self.bench.rows) {
-                let [i, j] = keys[row as usize].map(|k| k as usize);
-                let (r_i, r_j) = (grains.radius[i], grains.radius[j]);
-                let (on_i, on_j) = loads_on_grains(contact, response, r_i, r_j);
-                load[i - self.first].add(&on_i);
-                match self.outbox_slot[row as usize] {
-                    INSIDE => load[j - self.first].add(&on_j),
-                    slot => self.outbox[slot as usize] = on_j,
+        near.truncate(n_near);
+    }
+
+    fn sweep_rows<D: Dimension<N>, R: Lanes, const N: usize>(
+        &mut self,
+        grains: &Grains,
+        stages: &[Box<dyn ContactStage>],
+        rows: &[u32],
+        dt: f64,
+    ) where
+        dyn ContactStage: Sweep<R, N>,
+    {
+        let mut evaluation = Evaluation::<R, N>::new();
+        let mut frames = ArrayVec::<(Frame<R>, [[u32; 2]; MOST_LANES]), GROUPS>::new();
+        for group in rows.chunks_exact(R::COUNT) {
+            let lanes = [0, 1, 2, 3].map(|lane: usize| group[lane.min(R::COUNT - 1)] as usize);
+            let keys = lanes.map(|row| self.pairs.keys()[row]);
+            let i = keys.map(|[i, _]| grains.state::<D, N>(i as usize));
+            let j = keys.map(|[_, j]| grains.state::<D, N>(j as usize));
+            let (contact, frame) = D::between::<R>(&i, &j, &grains.period, dt);
+            evaluation.push(contact, lanes.map(|row| self.pairs.record(row)));
+            let first = self.first as u32;
+            let targets = [0, 1, 2, 3].map(|k| [keys[k][0] - first, self.targets[lanes[k]]]);
+            frames.push((frame, targets));
+        }
+        let energy = &mut self.tally.energy;
+        evaluation.evaluate(Partner::Grain, stages, dt, &mut self.pairs, energy);
+        for (group, (frame, targets)) in frames.iter().enumerate() {
+            let response = &evaluation.responses[group];
+            D::scatter(frame, response, targets, &mut self.loads);
+            let first = self.first as u32;
+            let overlap = evaluation.contacts[group].overlap;
+            let grain = |lane: usize| targets[lane][0] + first;
+            self.tally.note_overlap(overlap, frame.curvature, grain);
+            let touching = evaluation.touching(group);
+            if touching.trailing_ones() < R::COUNT as u32 {
+                for lane in (0..R::COUNT).filter(|lane| touching >> lane & 1 == 0) {
+                    self.pairs.open(rows[group * R::COUNT + lane] as usize);
                 }
-                let curvature = grains.inverse_radius[i].max(grains.inverse_radius[j]);
-                self.tally.note_overlap(contact, i, curvature);
             }
         }
     }
 
-    pub(super) fn sweep_surface(
+    /// Evaluates the contacts of grains with a wall or a part of the intruder.
+    pub(super) fn sweep_surface<D: Dimension<N>, const N: usize>(
         &mut self,
         grains: &Grains,
         stages: &[Box<dyn ContactStage>],
-        load: &mut [Load],
         part: (usize, &Part),
         dt: f64,
-    ) {
+    ) where
+        dyn ContactStage: Sweep<f64, N>,
+    {
         let (index, part) = part;
-        let (keys, touching, history) = self.surfaces[index].rows_mut();
-        if keys.is_empty() {
+        let table = &mut self.surfaces[index];
+        if table.keys().is_empty() {
             return;
         }
         let placement = &part.placement;
         let bench = &mut self.bench;
+        let grain = |i: u32| {
+            let motion = D::unpack(grains.state::<D, N>(i as usize));
+            let position = grains.period.image_near(motion.position, placement.position);
+            Motion { position, ..motion }
+        };
         bench.points.clear();
-        let image =
-            |i: u32| grains.period.image_near(grains.position[i as usize], placement.position);
-        bench.points.extend(keys.iter().map(|&[i, _]| placement.to_body(image(i))));
+        bench
+            .points
+            .extend(table.keys().iter().map(|&[i, _]| placement.to_body(grain(i).position)));
         part.surface.closest_many(&bench.points, &mut bench.nearest);
         bench.near_rows.clear();
-        bench.points.clear();
         bench.points_half.clear();
-        for (row, (&[index, _], nearest)) in keys.iter().zip(&bench.nearest).enumerate() {
-            let i = index as usize;
-            if nearest.gap < grains.radius[i] || touching[row] {
+        for (row, (&[i, _], nearest)) in table.keys().iter().zip(&bench.nearest).enumerate() {
+            let grain = grain(i);
+            if nearest.gap < grain.radius || table.is_touching(row) {
                 bench.near_rows.push(row as u32);
-                let half = image(index) - grains.velocity[i] * (0.5 * dt);
+                let half = grain.position - grain.velocity * (0.5 * dt);
                 bench.points_half.push(placement.to_body_half(half));
             }
         }
         part.surface.closest_many(&bench.points_half, &mut bench.nearest_half);
 
         let is_wall = part.partner == Partner::Wall;
-        let mut next = 0;
-        while next < bench.near_rows.len() {
-            bench.clear();
-            while next < bench.near_rows.len() && !bench.is_full() {
-                let row = bench.near_rows[next] as usize;
-                let i = keys[row][0];
-                let grain = (i as usize, image(i));
-                let (now, half) = (bench.nearest[row], bench.nearest_half[next]);
-                let side = (placement, part.partner);
-                bench.push(with_surface(grains, grain, side, &now, &half, dt), row);
-                next += 1;
+        let halves = bench.nearest_half.chunks(GROUPS);
+        for (rows, halves) in bench.near_rows.chunks(GROUPS).zip(halves) {
+            let mut evaluation = Evaluation::<f64, N>::new();
+            let mut contacts = ArrayVec::<(Contact, Motion), GROUPS>::new();
+            for (&row, half) in rows.iter().zip(halves) {
+                let grain = grain(table.keys()[row as usize][0]);
+                let now = &bench.nearest[row as usize];
+                let contact = with_surface(&grain, placement, now, half, dt);
+                let record = table.record(row as usize);
+                evaluation.push(D::narrow(&contact), [record; MOST_LANES]);
+                contacts.push((contact, grain));
             }
             let energy = if is_wall { &mut self.tally.wall_energy } else { &mut self.tally.energy };
-            bench.evaluate(stages, dt, touching, history, energy);
-            let evaluated = bench.contacts.iter().zip(&bench.responses);
-            for ((contact, response), &row) in evaluated.zip(&bench.rows) {
-                let i = keys[row as usize][0] as usize;
-                let apart = image(i as u32) - placement.position;
+            evaluation.evaluate(part.partner, stages, dt, table, energy);
+            for (k, (contact, grain)) in contacts.iter().enumerate() {
+                let row = rows[k] as usize;
+                let response = D::widen(&evaluation.responses[k], contact.normal);
+                let apart = grain.position - placement.position;
                 let (on_grain, on_part) =
-                    loads_on_grain_and_part(contact, response, grains.radius[i], apart);
-                load[i - self.first].add(&on_grain);
-                if contact.overlap > 0.0 || response.holds {
-                    let felt = bench.nearest[row as usize].felt;
+                    loads_on_grain_and_part(contact, &response, grain.radius, apart);
+                let i = table.keys()[row][0];
+                let at = (i as usize - self.first) * D::LOAD;
+                D::add_load(&on_grain, &mut self.loads[at..at + D::LOAD]);
+                if evaluation.touching(k) == 0 {
+                    table.open(row);
+                } else {
+                    let felt = bench.nearest[row].felt;
                     let wrenches = match felt {
                         true => &mut self.tally.wrenches,
                         false => &mut self.tally.unfelt,
                     };
                     wrenches[index].add(&on_part);
                     if felt && !is_wall && contact.overlap > 0.0 {
-                        let radius = grains.radius[i];
                         self.tally.footprints[index].add_grain(
                             contact,
-                            radius,
-                            grains.space.grain_cross_section(radius),
+                            grain.radius,
+                            grains.space.grain_cross_section(grain.radius),
                             placement.velocity_at(apart),
                         );
                     }
                 }
-                self.tally.note_overlap(contact, i, grains.inverse_radius[i]);
+                self.tally.note_overlap(contact.overlap, grain.inverse_radius, |_| i);
             }
         }
     }

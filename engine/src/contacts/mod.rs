@@ -1,9 +1,9 @@
 //! All contacts of a bed: found, evaluated and summed block by block.
 //!
 //! A block owns the contacts of its grains: with grains behind them in memory, with walls and with
-//! the intruder. A contact is evaluated once. Its force goes straight to the grains of the block; a
-//! grain of another block finds it in this block's outbox, in a second pass. Nothing is locked, and
-//! every sum has one order.
+//! the intruder. A contact is evaluated once. Its force is added to the loads that the block holds for
+//! its own grains and for its halo, grains of other blocks that touch them; those are delivered in a
+//! second pass. Nothing is locked, and every sum has one order.
 
 mod block;
 
@@ -12,16 +12,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::body::Part;
 use crate::contact::table::ContactTable;
-use crate::contact::{ContactStage, Partner};
+use crate::contact::{ContactStage, Partner, Sweep};
+use crate::dimension::{Dimension, Planar, Quad, Spatial};
 use crate::footprint::Footprint;
-use crate::grains::{Grains, Load};
+use crate::grains::{Grains, Space};
+use crate::lanes::Four;
 use crate::math::Vec3;
 use crate::neighbours::CellGrid;
 use crate::parallel::{BLOCK, block_of};
 use crate::surface::Wrench;
 
 pub(crate) use block::Deepest;
-use block::{Bench, Block, Delivery, INSIDE, Tally};
+use block::{Bench, Block, Delivery, Tally};
 
 /// The contacts of a bed, by block of grains.
 pub(crate) struct Contacts {
@@ -46,15 +48,20 @@ pub(crate) struct ContactSums {
 }
 
 impl Contacts {
-    pub(crate) fn new(stages: Vec<Box<dyn ContactStage>>, n_grains: usize, n_parts: usize) -> Self {
-        let history_len: Vec<usize> = stages.iter().map(|stage| stage.history_len()).collect();
+    pub(crate) fn new(
+        stages: Vec<Box<dyn ContactStage>>,
+        (space, n_grains): (Space, usize),
+        n_parts: usize,
+    ) -> Self {
+        let history_len: Vec<usize> = stages.iter().map(|stage| stage.history_len(space)).collect();
         let n_channels = stages.iter().map(|stage| stage.channels().len()).sum();
         let blocks = (0..n_grains.div_ceil(BLOCK))
             .map(|block| Block {
                 first: block * BLOCK,
                 pairs: ContactTable::new(&history_len),
-                outbox_slot: Vec::new(),
-                outbox: Vec::new(),
+                targets: Vec::new(),
+                halo: Vec::new(),
+                loads: Vec::new(),
                 inbox: Vec::new(),
                 surfaces: vec![ContactTable::new(&history_len); n_parts],
                 tally: Tally {
@@ -92,7 +99,7 @@ impl Contacts {
             block.pairs.rekey(&mut keys);
             block.bench.keys = keys;
         });
-        self.address_outboxes();
+        self.address_loads(grains.len());
     }
 
     /// Lists again which grains are nearer to `part` than `margin` (m).
@@ -104,9 +111,9 @@ impl Contacts {
             let here = block.first..end;
             let placement = &part.placement;
             let image = |x: Vec3| grains.period.image_near(x, placement.position);
-            let positions = &grains.position[here.clone()];
             bench.points.clear();
-            bench.points.extend(positions.iter().map(|&x| placement.to_body(image(x))));
+            let positions = here.clone().map(|i| grains.position(i));
+            bench.points.extend(positions.map(|x| placement.to_body(image(x))));
             part.surface.closest_many(&bench.points, &mut bench.nearest);
             let mut keys = std::mem::take(&mut bench.keys);
             keys.clear();
@@ -120,64 +127,83 @@ impl Contacts {
         });
     }
 
-    /// Gives every contact across blocks a place in its block's outbox and a line in the other's
-    /// inbox.
-    fn address_outboxes(&mut self) {
-        for block in &mut self.blocks {
-            block.inbox.clear();
-        }
-        for from in 0..self.blocks.len() {
-            let block = &mut self.blocks[from];
-            let mut slots = std::mem::take(&mut block.outbox_slot);
-            slots.clear();
-            let mut n_out = 0;
-            for row in 0..self.blocks[from].pairs.keys().len() {
-                let [_, j] = self.blocks[from].pairs.keys()[row];
-                let to = block_of(j as usize);
-                if to == from {
-                    slots.push(INSIDE);
-                    continue;
+    /// Says for every pair whose load its second grain has, and for every grain of a halo where the
+    /// block that owns it finds its load.
+    fn address_loads(&mut self, n_grains: usize) {
+        self.blocks.par_iter_mut().for_each(|block| {
+            let own = block.first..(block.first + BLOCK).min(n_grains);
+            let is_own = |j: u32| own.contains(&(j as usize));
+            let partners = || block.pairs.keys().iter().map(|&[_, j]| j);
+            block.halo.clear();
+            block.halo.extend(partners().filter(|&j| !is_own(j)));
+            block.halo.sort_unstable();
+            block.halo.dedup();
+            block.targets.clear();
+            block.targets.extend(partners().map(|j| {
+                if is_own(j) {
+                    j - own.start as u32
+                } else {
+                    (own.len() + block.halo.partition_point(|&halo| halo < j)) as u32
                 }
-                let grain = (j as usize - self.blocks[to].first) as u32;
-                self.blocks[to].inbox.push(Delivery { block: from as u32, slot: n_out, grain });
-                slots.push(n_out);
-                n_out += 1;
+            }));
+            block.inbox.clear();
+        });
+        for from in 0..self.blocks.len() {
+            let own = (self.blocks[from].first + BLOCK).min(n_grains) - self.blocks[from].first;
+            for k in 0..self.blocks[from].halo.len() {
+                let grain = self.blocks[from].halo[k] as usize;
+                let to = block_of(grain);
+                let grain = (grain - self.blocks[to].first) as u32;
+                let delivery = Delivery { block: from as u32, from: (own + k) as u32, grain };
+                self.blocks[to].inbox.push(delivery);
             }
-            let block = &mut self.blocks[from];
-            block.outbox_slot = slots;
-            block.outbox.clear();
-            block.outbox.resize(n_out as usize, Load::ZERO);
         }
     }
 
-    /// Finds what touches, lets the laws act, and sums forces within each block into `grains.load`
-    /// (set anew); [`Contacts::deliver`] adds the rest.
-    pub(crate) fn evaluate(
+    /// Finds what touches, lets the laws act, and sums forces within each block;
+    /// [`Contacts::deliver`] puts them together.
+    pub(crate) fn evaluate(&mut self, grains: &Grains, walls: &[Part], intruder: &[Part], dt: f64) {
+        match grains.space {
+            Space::Planar => self.evaluate_in::<Planar, 1>(grains, [walls, intruder], dt),
+            Space::Spatial => self.evaluate_in::<Spatial, 3>(grains, [walls, intruder], dt),
+        }
+    }
+
+    fn evaluate_in<D: Dimension<N>, const N: usize>(
         &mut self,
-        grains: &mut Grains,
-        walls: &[Part],
-        intruder: &[Part],
+        grains: &Grains,
+        parts: [&[Part]; 2],
         dt: f64,
-    ) {
-        let mut load = std::mem::take(&mut grains.load);
-        let (grains_now, stages) = (&*grains, &self.stages[..]);
-        self.blocks.par_iter_mut().zip(load.par_chunks_mut(BLOCK)).for_each(|(block, load)| {
-            load.fill(Load::ZERO);
+    ) where
+        dyn ContactStage: Sweep<f64, N> + Sweep<Four, N>,
+    {
+        let stages = &self.stages[..];
+        self.blocks.par_iter_mut().for_each(|block| {
+            let own = (block.first + BLOCK).min(grains.len()) - block.first;
+            block.loads.clear();
+            block.loads.resize((own + block.halo.len()) * D::LOAD, Quad::ZERO);
             block.tally.clear();
-            block.outbox.fill(Load::ZERO);
-            block.sweep_pairs(grains_now, stages, load, dt);
-            for (index, part) in walls.iter().chain(intruder).enumerate() {
-                block.sweep_surface(grains_now, stages, load, (index, part), dt);
+            block.sweep_pairs::<D, N>(grains, stages, dt);
+            for (index, part) in parts.into_iter().flatten().enumerate() {
+                block.sweep_surface::<D, N>(grains, stages, (index, part), dt);
             }
         });
-        grains.load = load;
     }
 
-    /// Adds the forces that other blocks hold for the grains of `block`.
-    pub(crate) fn deliver(&self, block: usize, load: &mut [Load]) {
+    /// The loads that contacts make on the grains of `block`.
+    pub(crate) fn deliver<D: Dimension<N>, const N: usize>(
+        &self,
+        block: usize,
+        loads: &mut [Quad],
+    ) {
+        loads.copy_from_slice(&self.blocks[block].loads[..loads.len()]);
         for delivery in &self.blocks[block].inbox {
-            let sent = &self.blocks[delivery.block as usize].outbox[delivery.slot as usize];
-            load[delivery.grain as usize].add(sent);
+            let from = delivery.from as usize * D::LOAD;
+            let sent = &self.blocks[delivery.block as usize].loads[from..from + D::LOAD];
+            let to = delivery.grain as usize * D::LOAD;
+            for (load, sent) in loads[to..to + D::LOAD].iter_mut().zip(sent) {
+                load.add(sent);
+            }
         }
     }
 
@@ -272,8 +298,13 @@ impl Contacts {
     }
 
     /// Takes back what [`Contacts::save`] gave; `false` if it does not fit.
-    pub(crate) fn restore(&mut self, saved: Vec<SavedBlock>, n_grains: usize) -> bool {
-        let history_len: Vec<usize> = self.stages.iter().map(|stage| stage.history_len()).collect();
+    pub(crate) fn restore(
+        &mut self,
+        saved: Vec<SavedBlock>,
+        (space, n_grains): (Space, usize),
+    ) -> bool {
+        let history_len: Vec<usize> =
+            self.stages.iter().map(|stage| stage.history_len(space)).collect();
         let fits = saved.len() == self.blocks.len()
             && saved.iter().zip(&self.blocks).all(|(saved, block)| {
                 saved.surfaces.len() == block.surfaces.len()
@@ -287,7 +318,7 @@ impl Contacts {
                 block.pairs = saved.pairs;
                 block.surfaces = saved.surfaces;
             }
-            self.address_outboxes();
+            self.address_loads(n_grains);
         }
         fits
     }

@@ -43,7 +43,7 @@ fn spheres_settle_to_the_packing_and_the_contacts_of_a_bed_with_friction() {
         assert!((0.55..0.66).contains(&report.packing_fraction), "{report:?}");
         // From the 4 of rigid spheres with much friction to the 6 of those without, walls counted.
         assert!((4.0..6.5).contains(&report.coordination), "{report:?}");
-        assert!(settling.bed().grains.position.iter().all(|x| {
+        assert!(settling.bed().grains.positions().all(|x| {
             let inside = |at: f64| at > 1.4e-3 && at < 0.03 - 1.4e-3;
             inside(x.x) && inside(x.y) && x.z > 1.4e-3
         }));

@@ -115,11 +115,10 @@ impl Chain {
         let thickness = layer.map_or(0.0, |layer| layer.thickness);
         let kinetic = |world: &World| -> f64 {
             let grains = &world.bed().grains;
-            let before_layer =
-                grains.position.iter().zip(&grains.velocity).filter(|(position, _)| {
-                    position.x > thickness && position.x < length - thickness
-                });
-            before_layer.map(|(_, velocity)| velocity.norm_squared()).sum()
+            let before_layer = grains.iter().filter(|grain| {
+                grain.position.x > thickness && grain.position.x < length - thickness
+            });
+            before_layer.map(|grain| grain.velocity.norm_squared()).sum()
         };
         let start = kinetic(&world);
         // To the wall and back to the middle.
@@ -191,7 +190,7 @@ fn grains_between_periodic_sides_keep_their_momentum() {
         let mut world = World::new(bed, Box::new(NoIntruder), 1e-5);
         let momentum = |world: &World| -> Vec3 {
             let grains = &world.bed().grains;
-            grains.velocity.iter().zip(&grains.mass).map(|(v, m)| v * *m).sum()
+            grains.iter().map(|grain| grain.velocity * grain.mass).sum()
         };
         let start = momentum(&world);
         let scale: f64 = grains.iter().map(|grain| grain.mass * grain.velocity.norm()).sum();
@@ -204,7 +203,7 @@ fn grains_between_periodic_sides_keep_their_momentum() {
         // Round-off of 3 000 steps.
         assert!((momentum(&world) - start).norm() < 1e-13 * scale);
         let [width, depth] = container.extents();
-        assert!(world.bed().grains.position.iter().all(|at| {
+        assert!(world.bed().grains.positions().all(|at| {
             (0.0..width).contains(&at.x) && (space == Space::Planar || (0.0..depth).contains(&at.y))
         }));
     }
@@ -226,7 +225,7 @@ fn a_collision_across_a_periodic_side_is_that_in_the_middle() {
         run(&mut world, 3_000);
         let grains = &world.bed().grains;
         let of = |id: u32| grains.id.iter().position(|own| *own == id).expect("it is there");
-        (grains.velocity[of(0)] - grains.velocity[of(1)], grains.spin[of(0)], grains.spin[of(1)])
+        (grains.velocity(of(0)) - grains.velocity(of(1)), grains.spin(of(0)), grains.spin(of(1)))
     };
     let (across, middle) = (after(0.0), after(0.5 * width));
     assert!((middle.0 - Vec3::new(1.2, 0.0, 0.1)).norm() > 0.1, "they have met");
@@ -247,7 +246,7 @@ fn where_nothing_comes_near_them_periodic_sides_change_no_bit() {
         let bed = bed((Space::Planar, container), Vec3::zeros(), &grains, vec![S1.stage()], 0);
         let mut world = World::new(bed, Box::new(NoIntruder), 1e-5);
         run(&mut world, 2_000);
-        world.bed().grains.position.clone()
+        world.bed().grains.positions().collect::<Vec<_>>()
     };
     let walled = after(Container::walled_box(1.0, 0.0));
     assert_eq!(walled, after(periodic(1.0, 0.0)));
@@ -275,7 +274,7 @@ fn spheres_settle_inside_of_a_cylinder() {
         assert!(settling.clock().time() < 1.0, "no rest: {}", settling.restlessness());
     }
     let mut at_side = 0;
-    for position in &settling.bed().grains.position {
+    for position in settling.bed().grains.positions() {
         let from_axis = (position - Vec3::new(0.015, 0.015, position.z)).norm();
         // The load of the bed is some grains' weight: an overlap of 1e-5 m or less.
         assert!(from_axis < 0.015 - 1.5e-3 + 2e-5 && position.z > 1.5e-3 - 2e-5);

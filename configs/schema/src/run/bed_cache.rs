@@ -114,7 +114,7 @@ fn settle(
     control: &mut dyn Control,
 ) -> Result<Option<RestingBed>, RunError> {
     let mut settling = recipe(model)?;
-    let height = settling.bed().grains.position.iter().fold(0.0_f64, |top, x| top.max(x.z));
+    let height = settling.bed().grains.positions().fold(0.0_f64, |top, x| top.max(x.z));
     let patience = PATIENCE * (2.0 * height / model.medium.gravity).sqrt();
     if let Ok((saved, _)) = checkpoint::load_latest::<SavedSettling>(unfinished, key)
         && !settling.restore(saved)

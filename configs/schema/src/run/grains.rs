@@ -348,10 +348,10 @@ impl Run<'_> {
             })
             .collect();
         let mut samples = (0..grains.len()).map(|i| GrainSample {
-            position: grains.position[i],
+            position: grains.position(i),
             radius: grains.radius[i],
-            speed: grains.velocity[i].norm(),
-            force: (grains.load[i].force - bed.gravity * grains.mass[i]).norm(),
+            speed: grains.velocity(i).norm(),
+            force: (grains.force(i) - bed.gravity * grains.mass[i]).norm(),
             id: grains.id[i],
         });
         self.log.frame(at, &frames, &mut samples)?;

@@ -1,0 +1,208 @@
+//! Spheres in space.
+
+use super::{Dimension, Frame, Load, Motion, Quad, States, gather, inverse_nearby};
+use crate::boundary::Period;
+use crate::contact::{Contact, Response};
+use crate::lanes::{Lanes, MOST_LANES, Vector};
+use crate::math::Vec3;
+
+/// A state is (x, r), (v, 1/m), (ω, mobility), (v at the end of the step, 1/r), (ω at the end of the step,
+/// 0); a load (F, 0), (M, 0).
+pub(crate) struct Spatial;
+
+fn quad(vector: Vec3, last: f64) -> Quad {
+    Quad([vector.x, vector.y, vector.z, last])
+}
+
+#[inline(always)]
+fn split(quad: &Quad) -> (Vec3, f64) {
+    let [x, y, z, last] = quad.0;
+    (Vec3::new(x, y, z), last)
+}
+
+/// The vector and the number of one quad of the states, in lanes.
+#[inline(always)]
+fn gather_split<R: Lanes>(states: &States<'_>, quad: usize) -> (Vector<R, 3>, R) {
+    let [x, y, z, last] = gather(states, quad);
+    (Vector::from([x, y, z]), last)
+}
+
+impl Dimension<3> for Spatial {
+    const STATE: usize = 5;
+    const LOAD: usize = 2;
+
+    fn pack(motion: &Motion, state: &mut [Quad]) {
+        state[0] = quad(motion.position, motion.radius);
+        state[1] = quad(motion.velocity, motion.inverse_mass);
+        state[2] = quad(motion.spin, motion.rolling_mobility);
+        state[3] = quad(motion.velocity_now, motion.inverse_radius);
+        state[4] = quad(motion.spin_now, 0.0);
+    }
+
+    #[inline(always)]
+    fn unpack(state: &[Quad]) -> Motion {
+        let (position, radius) = split(&state[0]);
+        let (velocity, inverse_mass) = split(&state[1]);
+        let (spin, rolling_mobility) = split(&state[2]);
+        let (velocity_now, inverse_radius) = split(&state[3]);
+        let (spin_now, _) = split(&state[4]);
+        Motion {
+            position,
+            velocity,
+            spin,
+            velocity_now,
+            spin_now,
+            radius,
+            inverse_radius,
+            inverse_mass,
+            rolling_mobility,
+        }
+    }
+
+    #[inline(always)]
+    fn touch(i: &Quad, j: &Quad, period: &Period) -> bool {
+        let x = period.nearest(0, i.0[0] - j.0[0]);
+        let y = period.nearest(1, i.0[1] - j.0[1]);
+        let z = i.0[2] - j.0[2];
+        let reach = i.0[3] + j.0[3];
+        x * x + y * y + z * z < reach * reach
+    }
+
+    #[inline(always)]
+    fn between<R: Lanes>(
+        i: &States<'_>,
+        j: &States<'_>,
+        period: &Period,
+        dt: f64,
+    ) -> (Contact<R, 3>, Frame<R>) {
+        let half = R::splat(0.5);
+        let step = R::splat(dt);
+        let ((x_i, r_i), (x_j, r_j)) = (gather_split::<R>(i, 0), gather_split::<R>(j, 0));
+        let mut apart = x_i - x_j;
+        apart[0] = period.nearest(0, apart[0]);
+        apart[1] = period.nearest(1, apart[1]);
+        let reach = r_i + r_j;
+        let distance = apart.dot(&apart).simd_sqrt();
+        let inverse = R::one() / distance;
+        let normal = apart * inverse;
+        let overlap = reach - distance;
+        let arms = [half * overlap - r_i, r_j - half * overlap];
+
+        let ((v_i, curvature_i), (v_j, curvature_j)) = (gather_split(i, 3), gather_split(j, 3));
+        let ((w_i, _), (w_j, _)) = (gather_split(i, 4), gather_split(j, 4));
+        let velocity = v_i - v_j + (w_i * arms[0] - w_j * arms[1]).cross(&normal);
+        let along = velocity.dot(&normal);
+
+        // The same in the middle of the step, over the way made in it.
+        let ((v_i, inverse_mass_i), (v_j, inverse_mass_j)) =
+            (gather_split(i, 1), gather_split(j, 1));
+        let ((spin_i, mobility_i), (spin_j, mobility_j)) = (gather_split(i, 2), gather_split(j, 2));
+        let (turn_i, turn_j) = (spin_i * step, spin_j * step);
+        let way = (v_i - v_j) * step;
+        let apart_half = apart - way * half;
+        let change = apart_half.dot(&apart_half) * (inverse * inverse) - R::one();
+        let inverse_half = inverse_nearby(inverse, change);
+        let normal_half = apart_half * inverse_half;
+        let overlap_half = reach - apart_half.dot(&normal_half);
+        let arms_half = [half * overlap_half - r_i, r_j - half * overlap_half];
+        let moved = way + (turn_i * arms_half[0] - turn_j * arms_half[1]).cross(&normal_half);
+        let overlap_step = -moved.dot(&normal_half);
+        let slip = moved + normal_half * overlap_step;
+        // Turning the slip of one step changes its length by the square of the angle of half a step:
+        // second order in the step, so the projection does.
+        let slip_step = slip - normal * slip.dot(&normal);
+
+        let contact = Contact {
+            normal,
+            overlap,
+            overlap_rate: -along,
+            overlap_step,
+            slip_velocity: velocity - normal * along,
+            slip_step,
+            relative_spin: w_i - w_j,
+            relative_turn: turn_i - turn_j,
+            inverse_radius_eff: curvature_i + curvature_j,
+            inverse_mass_eff: inverse_mass_i + inverse_mass_j,
+            rolling_mobility: mobility_i + mobility_j,
+        };
+        let frame = Frame { normal, arms, curvature: curvature_i.simd_max(curvature_j) };
+        (contact, frame)
+    }
+
+    #[inline(always)]
+    fn scatter<R: Lanes>(
+        frame: &Frame<R>,
+        response: &Response<R, 3>,
+        targets: &[[u32; 2]; MOST_LANES],
+        loads: &mut [Quad],
+    ) {
+        let force = frame.normal * response.normal_force + response.tangential_force;
+        let twist = frame.normal.cross(&response.tangential_force);
+        let on_i = twist * frame.arms[0] + response.couple;
+        let on_j = -(twist * frame.arms[1]) - response.couple;
+        let rows = |of: Vector<R, 3>| R::rows([of[0], of[1], of[2], R::zero()]);
+        let (push, pull, on_i, on_j) = (rows(force), rows(-force), rows(on_i), rows(on_j));
+        for lane in 0..R::COUNT {
+            let [i, j] = targets[lane].map(|target| target as usize * Self::LOAD);
+            let loads_i = &mut loads[i..i + Self::LOAD];
+            loads_i[0].add(&Quad(push[lane]));
+            loads_i[1].add(&Quad(on_i[lane]));
+            let loads_j = &mut loads[j..j + Self::LOAD];
+            loads_j[0].add(&Quad(pull[lane]));
+            loads_j[1].add(&Quad(on_j[lane]));
+        }
+    }
+
+    #[inline(always)]
+    fn narrow(contact: &Contact) -> Contact<f64, 3> {
+        *contact
+    }
+
+    #[inline(always)]
+    fn widen(response: &Response<f64, 3>, _: Vec3) -> Response {
+        *response
+    }
+
+    #[inline(always)]
+    fn add_load(load: &Load, to: &mut [Quad]) {
+        to[0].add(&quad(load.force, 0.0));
+        to[1].add(&quad(load.torque, 0.0));
+    }
+
+    fn force(load: &[Quad]) -> Vec3 {
+        split(&load[0]).0
+    }
+
+    #[inline(always)]
+    fn kick_drift(state: &mut [Quad], load: &[Quad], half: f64, inverse_inertia: f64) -> f64 {
+        let [_, _, _, inverse_mass] = state[1].0;
+        let (dv, dw) = (half * inverse_mass, half * inverse_inertia);
+        let mut speed_2 = 0.0;
+        for at in 0..3 {
+            let kick = load[0].0[at] * dv;
+            let velocity = state[1].0[at] + kick;
+            state[1].0[at] = velocity;
+            state[3].0[at] = velocity + kick;
+            state[0].0[at] += velocity * (2.0 * half);
+            speed_2 += velocity * velocity;
+            let kick = load[1].0[at] * dw;
+            state[2].0[at] += kick;
+            state[4].0[at] = state[2].0[at] + kick;
+        }
+        speed_2
+    }
+
+    #[inline(always)]
+    fn kick(state: &mut [Quad], load: &[Quad], half: f64, inverse_inertia: f64) -> [f64; 2] {
+        let [_, _, _, inverse_mass] = state[1].0;
+        let (dv, dw) = (half * inverse_mass, half * inverse_inertia);
+        let mut squares = [0.0; 2];
+        for at in 0..3 {
+            state[1].0[at] += load[0].0[at] * dv;
+            state[2].0[at] += load[1].0[at] * dw;
+            squares[0] += state[1].0[at] * state[1].0[at];
+            squares[1] += state[2].0[at] * state[2].0[at];
+        }
+        squares
+    }
+}
