@@ -282,10 +282,11 @@ impl GrainBed {
         self.grains.par_blocks::<D, N>().zip(&mut self.energy).for_each(|(block, energy)| {
             contacts.deliver::<D, N>(block.block, block.loads);
             *energy = GrainEnergy::default();
-            let states = block.states.chunks_exact_mut(D::STATE);
+            let moved = block.places.iter().zip(block.motions.chunks_exact_mut(D::MOTION));
             let loads = block.loads.chunks_exact_mut(D::LOAD);
-            for (k, (state, load)) in states.zip(loads).enumerate() {
-                let Motion { position, velocity, velocity_now, radius, .. } = D::unpack(state);
+            for (k, ((place, motion), load)) in moved.zip(loads).enumerate() {
+                let Motion { position, velocity, velocity_now, radius, .. } =
+                    D::unpack(place, motion);
                 let (mass, inertia) = (block.mass[k], block.inertia[k]);
                 let mut force = gravity * mass;
                 if let Some(absorber) = absorber {
@@ -296,7 +297,7 @@ impl GrainBed {
                     energy.absorbed += mass * half_way * velocity.norm_squared() * dt;
                 }
                 D::add_load(&Load { force, torque: Vec3::zeros() }, load);
-                let [speed_2, spin_2] = D::kick(state, load, half, block.inverse_inertia[k]);
+                let [speed_2, spin_2] = D::kick(motion, load, half, block.inverse_inertia[k]);
                 let translation = 0.5 * mass * speed_2;
                 let rotation = 0.5 * inertia * spin_2;
                 energy.translation += translation;

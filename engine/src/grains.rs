@@ -81,8 +81,10 @@ pub struct Grains {
     pub inertia: Vec<f64>,
     /// 1/I (1/(kg m²)).
     inverse_inertia: Vec<f64>,
-    /// As the contacts read it, see [`Dimension`].
-    states: Vec<Quad>,
+    /// Where each grain is and how large, see [`Dimension`].
+    places: Vec<Quad>,
+    /// How each grain moves, see [`Dimension`].
+    motions: Vec<Quad>,
     /// Force and torque on each grain, gravity included, at the end of the last step.
     loads: Vec<Quad>,
     /// How the space that they live in repeats; it belongs to the container and is not stored.
@@ -95,7 +97,9 @@ pub(crate) struct BlockOfGrains<'a> {
     /// The number of the block.
     pub(crate) block: usize,
     /// Of its grains.
-    pub(crate) states: &'a mut [Quad],
+    pub(crate) places: &'a mut [Quad],
+    /// Of its grains.
+    pub(crate) motions: &'a mut [Quad],
     /// Of its grains.
     pub(crate) loads: &'a mut [Quad],
     /// Of its grains (kg).
@@ -111,7 +115,7 @@ impl Grains {
     #[must_use]
     pub fn new(space: Space, list: &[Grain]) -> Self {
         let inertia = |grain: &Grain| space.grain_inertia(grain.mass, grain.radius);
-        let [state, load] = quads(space);
+        let [motion, load] = quads(space);
         let mut grains = Self {
             space,
             id: list.iter().map(|grain| grain.id).collect(),
@@ -119,7 +123,8 @@ impl Grains {
             mass: list.iter().map(|grain| grain.mass).collect(),
             inertia: list.iter().map(inertia).collect(),
             inverse_inertia: list.iter().map(|grain| 1.0 / inertia(grain)).collect(),
-            states: vec![Quad::ZERO; list.len() * state],
+            places: vec![Quad::ZERO; list.len()],
+            motions: vec![Quad::ZERO; list.len() * motion],
             loads: vec![Quad::ZERO; list.len() * load],
             period: Period::NONE,
         };
@@ -182,25 +187,37 @@ impl Grains {
     #[inline]
     pub(crate) fn motion(&self, i: usize) -> Motion {
         match self.space {
-            Space::Planar => Planar::unpack(self.state::<Planar, 1>(i)),
-            Space::Spatial => Spatial::unpack(self.state::<Spatial, 3>(i)),
+            Space::Planar => self.motion_in::<Planar, 1>(i),
+            Space::Spatial => self.motion_in::<Spatial, 3>(i),
         }
     }
 
     /// Gives grain `i` another state.
-    pub(crate) fn set_motion(&mut self, i: usize, motion: &Motion) {
+    pub(crate) fn set_motion(&mut self, i: usize, state: &Motion) {
         let [len, _] = quads(self.space);
-        let state = &mut self.states[i * len..][..len];
+        let (place, motion) = (&mut self.places[i], &mut self.motions[i * len..][..len]);
         match self.space {
-            Space::Planar => Planar::pack(motion, state),
-            Space::Spatial => Spatial::pack(motion, state),
+            Space::Planar => Planar::pack(state, place, motion),
+            Space::Spatial => Spatial::pack(state, place, motion),
         }
     }
 
     /// The state of grain `i` of a space known to be `D`.
     #[inline(always)]
-    pub(crate) fn state<D: Dimension<N>, const N: usize>(&self, i: usize) -> &[Quad] {
-        &self.states[i * D::STATE..][..D::STATE]
+    pub(crate) fn motion_in<D: Dimension<N>, const N: usize>(&self, i: usize) -> Motion {
+        D::unpack(self.place(i), self.moves::<D, N>(i))
+    }
+
+    /// Where grain `i` is and how large.
+    #[inline(always)]
+    pub(crate) fn place(&self, i: usize) -> &Quad {
+        &self.places[i]
+    }
+
+    /// How grain `i` of a space known to be `D` moves.
+    #[inline(always)]
+    pub(crate) fn moves<D: Dimension<N>, const N: usize>(&self, i: usize) -> &[Quad] {
+        &self.motions[i * D::MOTION..][..D::MOTION]
     }
 
     /// From grain `j` to the nearest image of grain `i` (m).
@@ -224,13 +241,15 @@ impl Grains {
     /// Whether all arrays hold `n` finite entries, for grains that were read from a file.
     pub(crate) fn is_consistent(&self, n: usize) -> bool {
         let scalars = [&self.radius, &self.mass, &self.inertia, &self.inverse_inertia];
-        let [state, load] = quads(self.space);
+        let [motion, load] = quads(self.space);
         let finite = |quads: &[Quad]| quads.iter().all(|quad| quad.0.iter().all(|x| x.is_finite()));
         self.id.len() == n
             && scalars.iter().all(|list| list.len() == n && list.iter().all(|x| x.is_finite()))
-            && self.states.len() == n * state
+            && self.places.len() == n
+            && self.motions.len() == n * motion
             && self.loads.len() == n * load
-            && finite(&self.states)
+            && finite(&self.places)
+            && finite(&self.motions)
             && finite(&self.loads)
     }
 
@@ -275,7 +294,8 @@ impl Grains {
         &mut self,
     ) -> impl IndexedParallelIterator<Item = BlockOfGrains<'_>> {
         (
-            self.states.par_chunks_mut(BLOCK * D::STATE),
+            self.places.par_chunks_mut(BLOCK),
+            self.motions.par_chunks_mut(BLOCK * D::MOTION),
             self.loads.par_chunks_mut(BLOCK * D::LOAD),
             self.mass.par_chunks(BLOCK),
             self.inertia.par_chunks(BLOCK),
@@ -283,8 +303,8 @@ impl Grains {
         )
             .into_par_iter()
             .enumerate()
-            .map(|(block, (states, loads, mass, inertia, inverse_inertia))| {
-                BlockOfGrains { block, states, loads, mass, inertia, inverse_inertia }
+            .map(|(block, (places, motions, loads, mass, inertia, inverse_inertia))| {
+                BlockOfGrains { block, places, motions, loads, mass, inertia, inverse_inertia }
             })
     }
 
@@ -300,13 +320,12 @@ impl Grains {
         let fastest_2 = self
             .par_blocks::<D, N>()
             .map(|block| {
-                let states = block.states.chunks_exact_mut(D::STATE);
-                let loads = block.loads.chunks_exact(D::LOAD);
-                states
+                let moved = block.places.iter_mut().zip(block.motions.chunks_exact_mut(D::MOTION));
+                let loads = block.loads.chunks_exact(D::LOAD).zip(block.inverse_inertia);
+                moved
                     .zip(loads)
-                    .zip(block.inverse_inertia)
-                    .map(|((state, load), &inverse_inertia)| {
-                        D::kick_drift(state, load, 0.5 * dt, inverse_inertia)
+                    .map(|((place, motion), (load, &inverse_inertia))| {
+                        D::kick_drift(place, motion, load, 0.5 * dt, inverse_inertia)
                     })
                     .fold(0.0, f64::max)
             })
@@ -315,10 +334,10 @@ impl Grains {
     }
 }
 
-/// How many quads hold the state of a grain, and its load.
+/// How many quads say how a grain moves, and hold its load.
 fn quads(space: Space) -> [usize; 2] {
     match space {
-        Space::Planar => [Planar::STATE, Planar::LOAD],
-        Space::Spatial => [Spatial::STATE, Spatial::LOAD],
+        Space::Planar => [Planar::MOTION, Planar::LOAD],
+        Space::Spatial => [Spatial::MOTION, Spatial::LOAD],
     }
 }

@@ -191,7 +191,7 @@ impl Block {
         near.resize(keys.len(), 0);
         let mut n_near = 0;
         for (row, &[i, j]) in keys.iter().enumerate() {
-            let [i, j] = [i, j].map(|grain| &grains.state::<D, N>(grain as usize)[0]);
+            let [i, j] = [i, j].map(|grain| grains.place(grain as usize));
             near[n_near] = row as u32;
             let touches = D::touch(i, j, &grains.period) | self.pairs.is_touching(row);
             n_near += usize::from(touches);
@@ -213,9 +213,10 @@ impl Block {
         for group in rows.chunks_exact(R::COUNT) {
             let lanes = [0, 1, 2, 3].map(|lane: usize| group[lane.min(R::COUNT - 1)] as usize);
             let keys = lanes.map(|row| self.pairs.keys()[row]);
-            let i = keys.map(|[i, _]| grains.state::<D, N>(i as usize));
-            let j = keys.map(|[_, j]| grains.state::<D, N>(j as usize));
-            let (contact, frame) = D::between::<R>(&i, &j, &grains.period, dt);
+            let places = [0, 1].map(|side| keys.map(|key| grains.place(key[side] as usize)));
+            let moves = [0, 1].map(|side| keys.map(|key| grains.moves::<D, N>(key[side] as usize)));
+            let (i, j) = ((&places[0], &moves[0]), (&places[1], &moves[1]));
+            let (contact, frame) = D::between::<R>(i, j, &grains.period, dt);
             evaluation.push(contact, lanes.map(|row| self.pairs.record(row)));
             let first = self.first as u32;
             let targets = [0, 1, 2, 3].map(|k| [keys[k][0] - first, self.targets[lanes[k]]]);
@@ -257,7 +258,7 @@ impl Block {
         let placement = &part.placement;
         let bench = &mut self.bench;
         let grain = |i: u32| {
-            let motion = D::unpack(grains.state::<D, N>(i as usize));
+            let motion = grains.motion_in::<D, N>(i as usize);
             let position = grains.period.image_near(motion.position, placement.position);
             Motion { position, ..motion }
         };

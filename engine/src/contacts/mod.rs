@@ -180,8 +180,8 @@ impl Contacts {
         let stages = &self.stages[..];
         self.blocks.par_iter_mut().for_each(|block| {
             let own = (block.first + BLOCK).min(grains.len()) - block.first;
-            block.loads.clear();
             block.loads.resize((own + block.halo.len()) * D::LOAD, Quad::ZERO);
+            block.loads.fill(Quad::ZERO);
             block.tally.clear();
             block.sweep_pairs::<D, N>(grains, stages, dt);
             for (index, part) in parts.into_iter().flatten().enumerate() {

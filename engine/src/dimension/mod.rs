@@ -76,29 +76,33 @@ pub(crate) struct Frame<R: Lanes> {
     pub(crate) curvature: R,
 }
 
-/// The states of a grain in each lane.
-pub(crate) type States<'a> = [&'a [Quad]; MOST_LANES];
+/// Where a grain is and how large, apart from how it moves: the search for what touches reads only this.
+/// One in each lane.
+pub(crate) type Places<'a> = [&'a Quad; MOST_LANES];
+
+/// How a grain moves, in each lane.
+pub(crate) type Motions<'a> = [&'a [Quad]; MOST_LANES];
 
 /// A kind of space, in which slips and spins have `N` components.
 pub(crate) trait Dimension<const N: usize>: Send + Sync + 'static {
-    /// Quads of a grain's state.
-    const STATE: usize;
+    /// Quads that say how a grain moves.
+    const MOTION: usize;
     /// Quads of a grain's load.
     const LOAD: usize;
 
     /// Writes the state of a grain.
-    fn pack(motion: &Motion, state: &mut [Quad]);
+    fn pack(state: &Motion, place: &mut Quad, motion: &mut [Quad]);
 
     /// Reads the state of a grain.
-    fn unpack(state: &[Quad]) -> Motion;
+    fn unpack(place: &Quad, motion: &[Quad]) -> Motion;
 
-    /// Whether two grains overlap, by the first quads of their states.
+    /// Whether grains at two places overlap.
     fn touch(i: &Quad, j: &Quad, period: &Period) -> bool;
 
     /// The contacts of the grains `i` with `j`; `dt` (s) is the step.
     fn between<R: Lanes>(
-        i: &States<'_>,
-        j: &States<'_>,
+        i: (&Places<'_>, &Motions<'_>),
+        j: (&Places<'_>, &Motions<'_>),
         period: &Period,
         dt: f64,
     ) -> (Contact<R, N>, Frame<R>);
@@ -125,16 +129,28 @@ pub(crate) trait Dimension<const N: usize>: Send + Sync + 'static {
 
     /// Half a kick by `load`, then the drift, then the velocities extrapolated to its end. `half` is half
     /// the step (s), `inverse_inertia` 1/I (1/(kg m²)). Returns the square of the speed (m²/s²).
-    fn kick_drift(state: &mut [Quad], load: &[Quad], half: f64, inverse_inertia: f64) -> f64;
+    fn kick_drift(
+        place: &mut Quad,
+        motion: &mut [Quad],
+        load: &[Quad],
+        half: f64,
+        inverse_inertia: f64,
+    ) -> f64;
 
     /// Half a kick. Returns the squares of speed (m²/s²) and spin (rad²/s²).
-    fn kick(state: &mut [Quad], load: &[Quad], half: f64, inverse_inertia: f64) -> [f64; 2];
+    fn kick(motion: &mut [Quad], load: &[Quad], half: f64, inverse_inertia: f64) -> [f64; 2];
 }
 
-/// The four numbers of one quad of the states, in lanes.
+/// The four numbers of a place, in lanes.
 #[inline(always)]
-fn gather<R: Lanes>(states: &States<'_>, quad: usize) -> [R; 4] {
-    R::columns(states.map(|state| &state[quad].0))
+fn gather_place<R: Lanes>(places: &Places<'_>) -> [R; 4] {
+    R::columns(places.map(|place| &place.0))
+}
+
+/// The four numbers of one quad of how grains move, in lanes.
+#[inline(always)]
+fn gather<R: Lanes>(motions: &Motions<'_>, quad: usize) -> [R; 4] {
+    R::columns(motions.map(|motion| &motion[quad].0))
 }
 
 /// 1/|d + s| from 1/|d|, where `change` = |d + s|²/|d|² − 1 is that of less than a step: the error is a

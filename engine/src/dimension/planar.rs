@@ -2,14 +2,16 @@
 //!
 //! Slips go along t = y × n, so that the tangential spring is one number that needs no turning.
 
-use super::{Dimension, Frame, Load, Motion, Quad, States, gather, inverse_nearby};
+use super::{
+    Dimension, Frame, Load, Motion, Motions, Places, Quad, gather, gather_place, inverse_nearby,
+};
 use crate::boundary::Period;
 use crate::contact::{Contact, Response};
 use crate::lanes::{Lanes, MOST_LANES, Vector};
 use crate::math::Vec3;
 
-/// A state is (x, z, r, 1/r), (v_x, v_z, ω, 1/m), (v_x, v_z, ω at the end of the step, mobility); a load
-/// (F_x, F_z, M, 0).
+/// A place is (x, z, r, 1/r), a motion (v_x, v_z, ω, 1/m), (v_x, v_z, ω at the end of the step, mobility),
+/// a load (F_x, F_z, M, 0).
 pub(crate) struct Planar;
 
 /// (F_x, F_z, M) of a load: the components that a plane has.
@@ -22,25 +24,25 @@ fn in_plane(x: f64, z: f64) -> Vec3 {
 }
 
 impl Dimension<1> for Planar {
-    const STATE: usize = 3;
+    const MOTION: usize = 2;
     const LOAD: usize = 1;
 
-    fn pack(motion: &Motion, state: &mut [Quad]) {
+    fn pack(state: &Motion, place: &mut Quad, motion: &mut [Quad]) {
         let quad = |velocity, spin, last| {
             let [x, z, turn] = components(velocity, spin);
             Quad([x, z, turn, last])
         };
-        let Motion { position, radius, .. } = *motion;
-        state[0] = Quad([position.x, position.z, radius, motion.inverse_radius]);
-        state[1] = quad(motion.velocity, motion.spin, motion.inverse_mass);
-        state[2] = quad(motion.velocity_now, motion.spin_now, motion.rolling_mobility);
+        let Motion { position, radius, .. } = *state;
+        *place = Quad([position.x, position.z, radius, state.inverse_radius]);
+        motion[0] = quad(state.velocity, state.spin, state.inverse_mass);
+        motion[1] = quad(state.velocity_now, state.spin_now, state.rolling_mobility);
     }
 
     #[inline(always)]
-    fn unpack(state: &[Quad]) -> Motion {
-        let [x, z, radius, inverse_radius] = state[0].0;
-        let [v_x, v_z, spin, inverse_mass] = state[1].0;
-        let [now_x, now_z, spin_now, rolling_mobility] = state[2].0;
+    fn unpack(place: &Quad, motion: &[Quad]) -> Motion {
+        let [x, z, radius, inverse_radius] = place.0;
+        let [v_x, v_z, spin, inverse_mass] = motion[0].0;
+        let [now_x, now_z, spin_now, rolling_mobility] = motion[1].0;
         Motion {
             position: in_plane(x, z),
             velocity: in_plane(v_x, v_z),
@@ -64,15 +66,15 @@ impl Dimension<1> for Planar {
 
     #[inline(always)]
     fn between<R: Lanes>(
-        i: &States<'_>,
-        j: &States<'_>,
+        (place_i, i): (&Places<'_>, &Motions<'_>),
+        (place_j, j): (&Places<'_>, &Motions<'_>),
         period: &Period,
         dt: f64,
     ) -> (Contact<R, 1>, Frame<R>) {
         let half = R::splat(0.5);
         let step = R::splat(dt);
-        let [x_i, z_i, r_i, curvature_i] = gather::<R>(i, 0);
-        let [x_j, z_j, r_j, curvature_j] = gather::<R>(j, 0);
+        let [x_i, z_i, r_i, curvature_i] = gather_place::<R>(place_i);
+        let [x_j, z_j, r_j, curvature_j] = gather_place::<R>(place_j);
         let x = period.nearest(0, x_i - x_j);
         let z = z_i - z_j;
         let reach = r_i + r_j;
@@ -82,15 +84,15 @@ impl Dimension<1> for Planar {
         let overlap = reach - distance;
         let arms = [half * overlap - r_i, r_j - half * overlap];
 
-        let [x_i, z_i, spin_i, mobility_i] = gather::<R>(i, 2);
-        let [x_j, z_j, spin_j, mobility_j] = gather::<R>(j, 2);
+        let [x_i, z_i, spin_i, mobility_i] = gather::<R>(i, 1);
+        let [x_j, z_j, spin_j, mobility_j] = gather::<R>(j, 1);
         let (v_x, v_z) = (x_i - x_j, z_i - z_j);
         let overlap_rate = -(v_x * n_x + v_z * n_z);
         let slip_velocity = v_x * n_z - v_z * n_x + (spin_i * arms[0] - spin_j * arms[1]);
 
         // The same in the middle of the step, over the way made in it.
-        let [x_i, z_i, turn_i, inverse_mass_i] = gather::<R>(i, 1);
-        let [x_j, z_j, turn_j, inverse_mass_j] = gather::<R>(j, 1);
+        let [x_i, z_i, turn_i, inverse_mass_i] = gather::<R>(i, 0);
+        let [x_j, z_j, turn_j, inverse_mass_j] = gather::<R>(j, 0);
         let (d_x, d_z) = ((x_i - x_j) * step, (z_i - z_j) * step);
         let turns = [turn_i * step, turn_j * step];
         let (h_x, h_z) = (x - half * d_x, z - half * d_z);
@@ -190,25 +192,31 @@ impl Dimension<1> for Planar {
     }
 
     #[inline(always)]
-    fn kick_drift(state: &mut [Quad], load: &[Quad], half: f64, inverse_inertia: f64) -> f64 {
+    fn kick_drift(
+        place: &mut Quad,
+        motion: &mut [Quad],
+        load: &[Quad],
+        half: f64,
+        inverse_inertia: f64,
+    ) -> f64 {
         let [f_x, f_z, torque, _] = load[0].0;
-        let [_, _, _, inverse_mass] = state[1].0;
+        let [_, _, _, inverse_mass] = motion[0].0;
         let (dv, dw) = (half * inverse_mass, half * inverse_inertia);
         let change = [f_x * dv, f_z * dv, torque * dw];
         for (at, change) in change.into_iter().enumerate() {
-            state[1].0[at] += change;
-            state[2].0[at] = state[1].0[at] + change;
+            motion[0].0[at] += change;
+            motion[1].0[at] = motion[0].0[at] + change;
         }
-        let [v_x, v_z, ..] = state[1].0;
-        state[0].0[0] += v_x * (2.0 * half);
-        state[0].0[1] += v_z * (2.0 * half);
+        let [v_x, v_z, ..] = motion[0].0;
+        place.0[0] += v_x * (2.0 * half);
+        place.0[1] += v_z * (2.0 * half);
         v_x * v_x + v_z * v_z
     }
 
     #[inline(always)]
-    fn kick(state: &mut [Quad], load: &[Quad], half: f64, inverse_inertia: f64) -> [f64; 2] {
+    fn kick(motion: &mut [Quad], load: &[Quad], half: f64, inverse_inertia: f64) -> [f64; 2] {
         let [f_x, f_z, torque, _] = load[0].0;
-        let [v_x, v_z, spin, inverse_mass] = &mut state[1].0;
+        let [v_x, v_z, spin, inverse_mass] = &mut motion[0].0;
         let (dv, dw) = (half * *inverse_mass, half * inverse_inertia);
         *v_x += f_x * dv;
         *v_z += f_z * dv;

@@ -1,13 +1,15 @@
 //! Spheres in space.
 
-use super::{Dimension, Frame, Load, Motion, Quad, States, gather, inverse_nearby};
+use super::{
+    Dimension, Frame, Load, Motion, Motions, Places, Quad, gather, gather_place, inverse_nearby,
+};
 use crate::boundary::Period;
 use crate::contact::{Contact, Response};
 use crate::lanes::{Lanes, MOST_LANES, Vector};
 use crate::math::Vec3;
 
-/// A state is (x, r), (v, 1/m), (ω, mobility), (v at the end of the step, 1/r), (ω at the end of the step,
-/// 0); a load (F, 0), (M, 0).
+/// A place is (x, r), a motion (v, 1/m), (ω, mobility), (v at the end of the step, 1/r), (ω at the end of
+/// the step, 0), a load (F, 0), (M, 0).
 pub(crate) struct Spatial;
 
 fn quad(vector: Vec3, last: f64) -> Quad {
@@ -20,32 +22,32 @@ fn split(quad: &Quad) -> (Vec3, f64) {
     (Vec3::new(x, y, z), last)
 }
 
-/// The vector and the number of one quad of the states, in lanes.
+/// The vector and the number of one quad of how grains move, in lanes.
 #[inline(always)]
-fn gather_split<R: Lanes>(states: &States<'_>, quad: usize) -> (Vector<R, 3>, R) {
-    let [x, y, z, last] = gather(states, quad);
+fn gather_split<R: Lanes>(motions: &Motions<'_>, quad: usize) -> (Vector<R, 3>, R) {
+    let [x, y, z, last] = gather(motions, quad);
     (Vector::from([x, y, z]), last)
 }
 
 impl Dimension<3> for Spatial {
-    const STATE: usize = 5;
+    const MOTION: usize = 4;
     const LOAD: usize = 2;
 
-    fn pack(motion: &Motion, state: &mut [Quad]) {
-        state[0] = quad(motion.position, motion.radius);
-        state[1] = quad(motion.velocity, motion.inverse_mass);
-        state[2] = quad(motion.spin, motion.rolling_mobility);
-        state[3] = quad(motion.velocity_now, motion.inverse_radius);
-        state[4] = quad(motion.spin_now, 0.0);
+    fn pack(state: &Motion, place: &mut Quad, motion: &mut [Quad]) {
+        *place = quad(state.position, state.radius);
+        motion[0] = quad(state.velocity, state.inverse_mass);
+        motion[1] = quad(state.spin, state.rolling_mobility);
+        motion[2] = quad(state.velocity_now, state.inverse_radius);
+        motion[3] = quad(state.spin_now, 0.0);
     }
 
     #[inline(always)]
-    fn unpack(state: &[Quad]) -> Motion {
-        let (position, radius) = split(&state[0]);
-        let (velocity, inverse_mass) = split(&state[1]);
-        let (spin, rolling_mobility) = split(&state[2]);
-        let (velocity_now, inverse_radius) = split(&state[3]);
-        let (spin_now, _) = split(&state[4]);
+    fn unpack(place: &Quad, motion: &[Quad]) -> Motion {
+        let (position, radius) = split(place);
+        let (velocity, inverse_mass) = split(&motion[0]);
+        let (spin, rolling_mobility) = split(&motion[1]);
+        let (velocity_now, inverse_radius) = split(&motion[2]);
+        let (spin_now, _) = split(&motion[3]);
         Motion {
             position,
             velocity,
@@ -70,17 +72,18 @@ impl Dimension<3> for Spatial {
 
     #[inline(always)]
     fn between<R: Lanes>(
-        i: &States<'_>,
-        j: &States<'_>,
+        (place_i, i): (&Places<'_>, &Motions<'_>),
+        (place_j, j): (&Places<'_>, &Motions<'_>),
         period: &Period,
         dt: f64,
     ) -> (Contact<R, 3>, Frame<R>) {
         let half = R::splat(0.5);
         let step = R::splat(dt);
-        let ((x_i, r_i), (x_j, r_j)) = (gather_split::<R>(i, 0), gather_split::<R>(j, 0));
-        let mut apart = x_i - x_j;
-        apart[0] = period.nearest(0, apart[0]);
-        apart[1] = period.nearest(1, apart[1]);
+        let [[x_i, y_i, z_i, r_i], [x_j, y_j, z_j, r_j]] =
+            [place_i, place_j].map(gather_place::<R>);
+        let x = period.nearest(0, x_i - x_j);
+        let y = period.nearest(1, y_i - y_j);
+        let apart = Vector::from([x, y, z_i - z_j]);
         let reach = r_i + r_j;
         let distance = apart.dot(&apart).simd_sqrt();
         let inverse = R::one() / distance;
@@ -88,15 +91,15 @@ impl Dimension<3> for Spatial {
         let overlap = reach - distance;
         let arms = [half * overlap - r_i, r_j - half * overlap];
 
-        let ((v_i, curvature_i), (v_j, curvature_j)) = (gather_split(i, 3), gather_split(j, 3));
-        let ((w_i, _), (w_j, _)) = (gather_split(i, 4), gather_split(j, 4));
+        let ((v_i, curvature_i), (v_j, curvature_j)) = (gather_split(i, 2), gather_split(j, 2));
+        let ((w_i, _), (w_j, _)) = (gather_split(i, 3), gather_split(j, 3));
         let velocity = v_i - v_j + (w_i * arms[0] - w_j * arms[1]).cross(&normal);
         let along = velocity.dot(&normal);
 
         // The same in the middle of the step, over the way made in it.
         let ((v_i, inverse_mass_i), (v_j, inverse_mass_j)) =
-            (gather_split(i, 1), gather_split(j, 1));
-        let ((spin_i, mobility_i), (spin_j, mobility_j)) = (gather_split(i, 2), gather_split(j, 2));
+            (gather_split(i, 0), gather_split(j, 0));
+        let ((spin_i, mobility_i), (spin_j, mobility_j)) = (gather_split(i, 1), gather_split(j, 1));
         let (turn_i, turn_j) = (spin_i * step, spin_j * step);
         let way = (v_i - v_j) * step;
         let apart_half = apart - way * half;
@@ -174,34 +177,40 @@ impl Dimension<3> for Spatial {
     }
 
     #[inline(always)]
-    fn kick_drift(state: &mut [Quad], load: &[Quad], half: f64, inverse_inertia: f64) -> f64 {
-        let [_, _, _, inverse_mass] = state[1].0;
+    fn kick_drift(
+        place: &mut Quad,
+        motion: &mut [Quad],
+        load: &[Quad],
+        half: f64,
+        inverse_inertia: f64,
+    ) -> f64 {
+        let [_, _, _, inverse_mass] = motion[0].0;
         let (dv, dw) = (half * inverse_mass, half * inverse_inertia);
         let mut speed_2 = 0.0;
         for at in 0..3 {
             let kick = load[0].0[at] * dv;
-            let velocity = state[1].0[at] + kick;
-            state[1].0[at] = velocity;
-            state[3].0[at] = velocity + kick;
-            state[0].0[at] += velocity * (2.0 * half);
+            let velocity = motion[0].0[at] + kick;
+            motion[0].0[at] = velocity;
+            motion[2].0[at] = velocity + kick;
+            place.0[at] += velocity * (2.0 * half);
             speed_2 += velocity * velocity;
             let kick = load[1].0[at] * dw;
-            state[2].0[at] += kick;
-            state[4].0[at] = state[2].0[at] + kick;
+            motion[1].0[at] += kick;
+            motion[3].0[at] = motion[1].0[at] + kick;
         }
         speed_2
     }
 
     #[inline(always)]
-    fn kick(state: &mut [Quad], load: &[Quad], half: f64, inverse_inertia: f64) -> [f64; 2] {
-        let [_, _, _, inverse_mass] = state[1].0;
+    fn kick(motion: &mut [Quad], load: &[Quad], half: f64, inverse_inertia: f64) -> [f64; 2] {
+        let [_, _, _, inverse_mass] = motion[0].0;
         let (dv, dw) = (half * inverse_mass, half * inverse_inertia);
         let mut squares = [0.0; 2];
         for at in 0..3 {
-            state[1].0[at] += load[0].0[at] * dv;
-            state[2].0[at] += load[1].0[at] * dw;
-            squares[0] += state[1].0[at] * state[1].0[at];
-            squares[1] += state[2].0[at] * state[2].0[at];
+            motion[0].0[at] += load[0].0[at] * dv;
+            motion[1].0[at] += load[1].0[at] * dw;
+            squares[0] += motion[0].0[at] * motion[0].0[at];
+            squares[1] += motion[1].0[at] * motion[1].0[at];
         }
         squares
     }
