@@ -14,7 +14,7 @@ const ALLOWED: [(&str, &[&str]); 8] = [
     ("intruders", &["engine"]),
     ("configs", &["engine", "contact-laws", "intruders"]),
     ("exchange", &["engine", "configs"]),
-    ("validation", &["engine", "contact-laws", "intruders", "configs"]),
+    ("validation", &["engine", "contact-laws", "intruders", "configs", "exchange"]),
     ("plunge", &["engine", "configs", "exchange", "validation"]),
     ("xtask", &[]),
 ];
