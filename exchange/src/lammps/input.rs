@@ -90,7 +90,8 @@ fn walls(model: GrainModel<'_>, space: Space, contacts: &Contacts) -> String {
     let wall = |name: &str, plane: &str, from: &str, to: &str| {
         format!("fix {name} grains wall/gran {} {plane} {from} {to}\n", contacts.wall)
     };
-    let side = |name: &str, plane: &str, length: f64| wall(name, plane, "0", &format!("{length:?}"));
+    let side =
+        |name: &str, plane: &str, length: f64| wall(name, plane, "0", &format!("{length:?}"));
     let mut text = match space {
         Space::Planar => wall("bottom", "yplane", "0", "NULL"),
         Space::Spatial => wall("bottom", "zplane", "0", "NULL"),

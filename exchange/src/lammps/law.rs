@@ -62,9 +62,8 @@ fn linear(params: &ParamTable) -> Contacts {
     let one_friction = friction(Partner::Grain).to_bits() == friction(Partner::Intruder).to_bits();
     if one_friction || rate_n <= 0.0 {
         // The older style is the faster one; the last number switches tangential damping on.
-        let terms = |partner| {
-            format!("{k_n:?} {k_t:?} {rate_n:?} {rate_t:?} {:?} 1", friction(partner))
-        };
+        let terms =
+            |partner| format!("{k_n:?} {k_t:?} {rate_n:?} {rate_t:?} {:?} 1", friction(partner));
         let style = format!("pair_style gran/hooke/history {}", terms(Partner::Grain));
         let wall = format!("hooke/history {}", terms(Partner::Wall));
         return Contacts { pair: vec![style, "pair_coeff * *".to_owned()], wall };

@@ -26,7 +26,8 @@ pub(super) fn checked(
         refused.push("an absorbing bottom (container.bottom)".to_owned());
     }
     if !["disc", "sphere"].contains(&intruder.shape.name) {
-        refused.push(format!("an intruder that is a {} and no sphere or disc", intruder.shape.name));
+        refused
+            .push(format!("an intruder that is a {} and no sphere or disc", intruder.shape.name));
     }
     if intruder.recessive_wall {
         refused.push("a recessive wall (intruder.recessive_wall)".to_owned());

@@ -20,7 +20,7 @@ const ALLOWED: [(&str, &[&str]); 8] = [
 ];
 
 /// Crates of others that are kept behind one of ours (two where a second reads what the first writes).
-const ONLY: [(&str, &[&str]); 26] = [
+const ONLY: [(&str, &[&str]); 27] = [
     ("annotate-snippets", &["configs"]),
     ("anyhow", &["plunge", "xtask"]),
     ("argmin", &["validation"]),
@@ -43,6 +43,7 @@ const ONLY: [(&str, &[&str]); 26] = [
     ("prost-reflect", &["exchange"]),
     ("rayon", &["engine", "validation"]),
     ("roots", &["engine"]),
+    ("rustix", &["validation"]),
     ("signal-hook", &["plunge"]),
     ("statrs", &["validation"]),
     ("toml", &["configs"]),
