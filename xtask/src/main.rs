@@ -7,7 +7,7 @@
 mod lint;
 mod tidy;
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -88,14 +88,16 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
 
 /// The benchmark that the first of `args` names; without a name, that of beds of grains.
 fn benchmark(mut args: Vec<OsString>) -> Result<Task, lexopt::Error> {
-    match args.first().map(|name| name.to_string_lossy()).as_deref() {
+    let name = args.first().map(|name| name.to_string_lossy().into_owned());
+    match name.as_deref() {
         Some("diagnosis") => {
             args.remove(0);
             Ok(Task::BenchDiagnosis(args))
         }
         Some("resistive") if args.len() == 1 => Ok(Task::BenchResistive),
         Some(name) if !name.starts_with('-') => {
-            Err(format!("no benchmark is called `{}`", args.join(" ".as_ref()).display()).into())
+            let named = args.join(OsStr::new(" "));
+            Err(format!("no benchmark is called `{}`", named.display()).into())
         }
         _ => Ok(Task::Bench(args)),
     }

@@ -132,7 +132,6 @@ impl Problem {
             let width = f64::from(tiles) * TILE;
             sets.push(format!("container.width=\"{width} m\""));
             sets.push(format!("container.depth=\"{width} m\""));
-            sets.push("contact_law.restitution=0.5".to_owned());
         }
         sets
     }
