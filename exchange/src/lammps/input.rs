@@ -21,10 +21,10 @@ pub(super) fn text(model: GrainModel<'_>, simulation: &Simulation, contacts: &Co
     let grains = &simulation.bed().grains;
     let mean_diameter = 2.0 * grains.radius.iter().sum::<f64>() / grains.len() as f64;
     let dt = simulation.clock().dt;
-    let sides = if model.medium.container.sides == SidesKind::Periodic { "p" } else { "s" };
+    let sides = if model.medium.container.sides == SidesKind::Periodic { "p" } else { "m" };
     let (up, boundary, processors, planar_dimension) = match space {
-        Space::Planar => ("y", format!("{sides} fs p"), "* 1 1", "dimension 2\n"),
-        Space::Spatial => ("z", format!("{sides} {sides} fs"), "* * 1", ""),
+        Space::Planar => ("y", format!("{sides} fm p"), "* 1 1", "dimension 2\n"),
+        Space::Spatial => ("z", format!("{sides} {sides} fm"), "* * 1", ""),
     };
     let lines = [
         header(model, space),

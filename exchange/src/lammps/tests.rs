@@ -1,4 +1,5 @@
 use std::fs;
+use std::process::Command;
 
 use configs::{LoadOptions, Loaded, Model, ModelSource};
 use tempfile::TempDir;
@@ -90,7 +91,7 @@ fn a_planar_bed_stands_in_the_plane_of_lammps_with_its_masses_and_its_turns() {
     assert!((start[5] - 0.015).abs() < 1e-9, "{start:?}");
     assert_eq!(section(&data, "Velocities")[3], "4 0.0 -2.0 0.0 0.0 0.0 3.0");
     for line in [
-        "boundary s fs p",
+        "boundary m fm p",
         "pair_style gran/hooke/history 3200.0 3200.0 10000.0 8000.0 0.28 1",
         "fix gravity all gravity 9.81 vector 0 -1 0",
         "fix sides grains wall/gran hooke/history 3200.0 3200.0 10000.0 8000.0 0.28 1 xplane 0 0.04",
@@ -125,7 +126,7 @@ fn a_bed_in_space_has_the_stiffness_and_damping_of_hertz_and_mindlin() {
         "container.depth = \"60 mm\"",
     ];
     let Deck { input, .. } = written(3, HERTZ, &periodic);
-    assert!(input.contains("boundary p p fs\n") && !input.contains("fix sides"), "{input}");
+    assert!(input.contains("boundary p p fm\n") && !input.contains("fix sides"), "{input}");
     let found = numbers(&input, "pair_coeff 1 1 ");
     let [_, _, k_n, told, k_t, shear, friction] = found[..] else { panic!("{found:?}") };
     // Equal bodies: E* = E/(2 (1 − ν²)), G* = G/(2 (2 − ν)); β = 0.25526 for e = 1/2, within 2e-5.
@@ -174,4 +175,45 @@ fn both_files_are_written_into_a_new_folder() {
     deck.write(&into).expect("it can be written");
     let read = |name: &str| fs::read_to_string(into.join(name)).expect("a file");
     assert_eq!((read(INPUT), read(DATA)), (deck.input, deck.data));
+}
+
+/// The velocity (m/s) of the intruder of `loaded` after so many steps, by LAMMPS and by plunge.
+fn velocities(lammps: &std::ffi::OsStr, loaded: &Loaded, steps: u64) -> [[f64; 2]; 2] {
+    let grains = loaded.model.grains().expect("a bed");
+    let resting = grains.read_bed().expect("a table");
+    let folder = tempfile::tempdir().expect("a folder");
+    let deck = Deck::of(grains, &resting).expect("a model that LAMMPS can express");
+    deck.write(folder.path()).expect("it can be written");
+    let mut command = Command::new(lammps);
+    command.current_dir(folder.path()).args(["-in", INPUT, "-log", "none", "-var", "steps"]);
+    let output = command.arg(steps.to_string()).output().expect("PLUNGE_LAMMPS names a program");
+    let said = String::from_utf8_lossy(&output.stdout);
+    let state = said.lines().rfind(|line| line.starts_with("intruder at the end")).expect(&said);
+    let state: Vec<f64> = state.split([',', ' ']).filter_map(|word| word.parse().ok()).collect();
+    let (x, z) = (state[state.len() / 2 + 1], state[state.len() - 1]);
+
+    let condition = loaded.model.conditions()[0];
+    let mut simulation = grains.simulation(&resting, &condition).expect("a simulation");
+    for _ in 0..steps {
+        simulation.advance().expect("a step");
+    }
+    let velocity = simulation.intruder().bodies()[0].velocity;
+    [[x, z], [velocity.x, velocity.z]]
+}
+
+/// Needs a LAMMPS, which `PLUNGE_LAMMPS` names: `cargo test -p exchange -- --ignored`.
+#[test]
+#[ignore = "needs LAMMPS"]
+fn lammps_moves_the_intruder_as_plunge_does() {
+    let lammps = std::env::var_os("PLUNGE_LAMMPS").expect("PLUNGE_LAMMPS names an lmp");
+    // An oblique hit with spin, so that springs, damping and friction all act.
+    let sets =
+        ["impact.angle = \"80 deg\"", "impact.spin = \"20 rad/s\"", "impact.speed = \"1 m/s\""];
+    for (dimension, law) in [(2, LINEAR), (3, HERTZ)] {
+        let (_folder, loaded) = model(dimension, law, &sets);
+        let [theirs, ours] = velocities(&lammps, &loaded, 200);
+        let apart = (theirs[0] - ours[0]).hypot(theirs[1] - ours[1]);
+        // Of the speed of the impact; damping of the half step and sliding springs differ.
+        assert!(apart < 0.02, "{dimension}D: {theirs:?} in LAMMPS, {ours:?} here");
+    }
 }

@@ -26,7 +26,7 @@ Usage: cargo xtask bench [--problem NAME]... [--peers] [--quick] [--repeats N] [
                   times (all)
   --peers         LAMMPS too, on the same beds, laws and steps; it is installed below target/peers, unless
                   PLUNGE_LAMMPS names an lmp
-  --quick         a quarter of the steps, three repeats
+  --quick         a quarter of the steps, but 100 at least; three repeats
   --repeats N     how often each is timed (5)
   --out DIR       where speed.json, speed.md, problems and decks are written (target/bench)
   --cache DIR     the folder of prepared beds (else $PLUNGE_CACHE, else runs/.cache)

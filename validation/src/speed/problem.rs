@@ -48,7 +48,7 @@ pub static PROBLEMS: [Problem; 4] = [
     Problem {
         name: "2d-15k",
         about: "15 000 discs, linear law",
-        span: Span { warm_up: 300, steps: 2000 },
+        span: Span { warm_up: 300, steps: 1000 },
         base: Base::Discs,
     },
     Problem {
