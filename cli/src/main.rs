@@ -11,6 +11,7 @@ mod compare_runs;
 mod control;
 mod diagnose;
 mod effects;
+mod export;
 mod new;
 mod next;
 mod output;
@@ -47,6 +48,8 @@ enum Command {
     Add(add::Args),
     /// Describe the laws and effects that a model can use.
     Effects(effects::Args),
+    /// Write an impact on a bed for another simulator.
+    Export(export::Args),
     /// Write a commented starter model.
     New(new::Args),
     /// Save everything readable of a damaged or unfinished log.
@@ -70,6 +73,7 @@ fn main() -> ExitCode {
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Add(args) => add::run(&args),
         Command::Effects(args) => effects::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::New(args) => new::run(&args),
         Command::Recover(args) => recover::run(&args),
     };

@@ -16,6 +16,7 @@ mod rolling_resistance;
 mod twisting_resistance;
 mod velocity_restitution;
 
+pub use hertz::damping_ratio;
 pub use registry::{ActsOn, FromParams, LawEntry};
 pub use resistance::{
     Acts, Coefficients, Direction, Draft, Effect, Expression, Facts, ForceError, Needs, OwnEffect,

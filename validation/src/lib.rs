@@ -55,6 +55,7 @@ mod score;
 pub mod sensitivity;
 mod signature;
 mod significance;
+pub mod speed;
 pub mod spheres;
 pub mod suggestion;
 #[cfg(test)]

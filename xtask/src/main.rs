@@ -7,7 +7,7 @@
 mod lint;
 mod tidy;
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -22,7 +22,8 @@ Usage: cargo xtask <task>
 
   lint               fmt, clippy, doc and tidy, then cargo-deny and typos where installed
   tidy               the rules of the repository that no other tool knows
-  bench              impacts per second on resistive media, in release
+  bench [ARG]...     grain-steps per second, in release; the arguments go to the program
+  bench resistive    impacts per second on resistive media, in release
   bench diagnosis [ARG]...
                      how often the diagnosis is right, in release; the arguments go to the program
   three-shapes [ARG]...
@@ -36,8 +37,9 @@ Exit status: 0 done, 1 something was found, 2 the command line was not understoo
 /// What the command line asks for.
 #[derive(Debug, PartialEq, Eq)]
 enum Task {
-    Bench,
+    Bench(Vec<OsString>),
     BenchDiagnosis(Vec<OsString>),
+    BenchResistive,
     Help,
     Lint,
     Tidy,
@@ -64,10 +66,10 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
     let Some(first) = parser.next()? else {
         return Err("a task is missing".into());
     };
-    let mut task = match first {
+    let task = match first {
         Arg::Short('h') | Arg::Long("help") => return Ok(Task::Help),
         Arg::Value(name) => match name.to_str() {
-            Some("bench") => Task::Bench,
+            Some("bench") => return benchmark(parser.raw_args()?.collect()),
             Some("help") => Task::Help,
             Some("lint") => Task::Lint,
             Some("tidy") => Task::Tidy,
@@ -77,18 +79,27 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
         },
         other => return Err(other.unexpected()),
     };
-    let mut next = parser.next()?;
-    if let (Task::Bench, Some(Arg::Value(what))) = (&task, &next) {
-        if what != "diagnosis" {
-            return Err(format!("no benchmark is called `{}`", what.display()).into());
-        }
-        task = Task::BenchDiagnosis(parser.raw_args()?.collect());
-        next = None;
-    }
-    match next {
+    match parser.next()? {
         None => Ok(task),
         Some(Arg::Short('h') | Arg::Long("help")) => Ok(Task::Help),
         Some(other) => Err(other.unexpected()),
+    }
+}
+
+/// The benchmark that the first of `args` names; without a name, that of beds of grains.
+fn benchmark(mut args: Vec<OsString>) -> Result<Task, lexopt::Error> {
+    let name = args.first().map(|name| name.to_string_lossy().into_owned());
+    match name.as_deref() {
+        Some("diagnosis") => {
+            args.remove(0);
+            Ok(Task::BenchDiagnosis(args))
+        }
+        Some("resistive") if args.len() == 1 => Ok(Task::BenchResistive),
+        Some(name) if !name.starts_with('-') => {
+            let named = args.join(OsStr::new(" "));
+            Err(format!("no benchmark is called `{}`", named.display()).into())
+        }
+        _ => Ok(Task::Bench(args)),
     }
 }
 
@@ -107,8 +118,9 @@ fn run(task: Task) -> Result<ExitCode> {
             sh.change_dir(root()?);
             tidy::run(&sh)
         }
-        Task::Bench => program(&sh, "bench", &[]),
+        Task::Bench(args) => program(&sh, "speed", &args),
         Task::BenchDiagnosis(args) => program(&sh, "diagnosis", &args),
+        Task::BenchResistive => program(&sh, "bench", &[]),
         Task::ThreeShapes(args) => program(&sh, "three_shapes", &args),
         Task::Validate(args) => program(&sh, "validate", &args),
     }
@@ -143,7 +155,8 @@ mod tests {
     fn each_task_is_reached_by_its_name() {
         assert_eq!(parsed(&["lint"]), Ok(Task::Lint));
         assert_eq!(parsed(&["tidy"]), Ok(Task::Tidy));
-        assert_eq!(parsed(&["bench"]), Ok(Task::Bench));
+        assert_eq!(parsed(&["bench"]), Ok(Task::Bench(Vec::new())));
+        assert_eq!(parsed(&["bench", "resistive"]), Ok(Task::BenchResistive));
         for help in ["help", "-h", "--help"] {
             assert_eq!(parsed(&[help]), Ok(Task::Help));
         }
@@ -168,7 +181,11 @@ mod tests {
             parsed(&["bench", "diagnoses"]),
             Err("no benchmark is called `diagnoses`".into())
         );
-        assert_eq!(parsed(&["bench", "--help"]), Ok(Task::Help));
+        assert!(parsed(&["bench", "resistive", "--quick"]).is_err());
+        // The one without a name takes everything else, its own help included.
+        let args = ["--peers", "--help"];
+        let task = Task::Bench(args.map(OsString::from).into());
+        assert_eq!(parsed(&["bench", args[0], args[1]]), Ok(task));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::params::ParamTable;
 
 pub(crate) use constants::Elastic;
-pub(crate) use restitution::damping_ratio;
+pub use restitution::damping_ratio;
 
 use crate::registry::FromParams;
 

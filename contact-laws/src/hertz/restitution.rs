@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// −ln e = (π − 2α) tan α, β = sin α; beyond critical damping −ln e = 2η coth η, β = cosh η
 ///
 /// A law that may attract has π β/√(1 − β²) there, and a smaller β: 0.21545 for 1/2, against 0.25526.
-pub(crate) fn damping_ratio(restitution: f64) -> f64 {
+pub fn damping_ratio(restitution: f64) -> f64 {
     let loss = -libm::log(restitution);
     if loss <= 2.0 {
         libm::sin(rising_root(|alpha| (PI - 2.0 * alpha) * libm::tan(alpha), loss, FRAC_PI_2))

@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: how many impacts on a resistive medium one core integrates in a second.
+//! `cargo xtask bench resistive`: how many impacts on a resistive medium one core integrates in a second.
 
 #![allow(clippy::print_stdout, reason = "stdout is where a command's result belongs")]
 

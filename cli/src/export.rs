@@ -1,0 +1,71 @@
+//! `plunge export`: an impact on a bed, written for another simulator.
+
+use std::path::PathBuf;
+
+use configs::run::prepare;
+use exchange::lammps::{DATA, Deck, INPUT, LammpsError};
+use serde_json::json;
+
+use crate::common::Common;
+use crate::control::Terminal;
+use crate::output::{self, CommandError, CommandResult};
+
+/// Arguments of `plunge export`.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// A model file, or the name of a shipped model.
+    model: PathBuf,
+    /// What to write it for.
+    #[arg(long, value_name = "SIMULATOR")]
+    to: Simulator,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// What reads an export.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Simulator {
+    /// An input script and a data file of LAMMPS.
+    Lammps,
+}
+
+pub(crate) fn run(args: &Args) -> CommandResult {
+    let Args { model, to: Simulator::Lammps, common } = args;
+    let model = common.load(model)?.model;
+    let grains = model.grains().ok_or_else(|| {
+        let kind = model.medium.kind();
+        CommandError::bad_input(format!("LAMMPS cannot express a medium of the kind \"{kind}\""))
+    })?;
+    Deck::check(grains).map_err(refused)?;
+    common.refuse_too_large(&model)?;
+    let mut terminal = Terminal::new(common.quiet)?;
+    let cache = common.cache_folder();
+    let prepared = common.on_threads(|| prepare(grains, &cache, &mut terminal))?;
+    terminal.clear();
+    let Some(bed) = prepared.map_err(CommandError::from)? else {
+        return Err(terminal.interrupted("the same command goes on from here"));
+    };
+    let deck = Deck::of(grains, &bed.resting).map_err(refused)?;
+    let folder = common
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("runs").join(format!("{}-lammps", model.run.name)));
+    deck.write(&folder).map_err(refused)?;
+    if common.json {
+        // Not the paths themselves: one that is not UTF-8 cannot be encoded.
+        return output::json_to_stdout(&json!({
+            "folder": folder.to_string_lossy(),
+            "files": [INPUT, DATA],
+            "grains": bed.resting.grains.len(),
+        }));
+    }
+    let folder = folder.display();
+    output::to_stdout(&format!("{folder}: {INPUT} and {DATA}; run lmp -in {INPUT} there\n"))
+}
+
+fn refused(error: LammpsError) -> CommandError {
+    match error {
+        LammpsError::Io { .. } => CommandError::Failed(error.into()),
+        LammpsError::Inexpressible(_) | LammpsError::Build(_) => CommandError::bad_input(error),
+    }
+}

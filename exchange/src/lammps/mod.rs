@@ -1,0 +1,104 @@
+//! An impact on a bed of grains, written for LAMMPS: the way out when a bed outgrows one machine, and
+//! a second opinion on a small one.
+//!
+//! [`Deck::of`] gives two files: [`DATA`] with the grains and the intruder as they stand at first
+//! contact, and [`INPUT`], which runs them under the same law, walls, gravity and step. What LAMMPS cannot
+//! express is refused by name ([`LammpsError::Inexpressible`]) and never left out.
+//!
+//! Two things differ, and the input says so: a data file holds no contact histories, so every contact
+//! starts without its tangential spring; and where a contact slides, LAMMPS keeps the viscous part of the
+//! tangential force and lets the spring make up the rest, where plunge keeps the spring alone.
+
+mod data;
+mod input;
+mod law;
+mod refusal;
+#[cfg(test)]
+mod tests;
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use configs::engine::grain_bed::RestingBed;
+use configs::{BuildError, GrainModel};
+use thiserror::Error;
+
+/// Name of the input script.
+pub const INPUT: &str = "in.impact";
+
+/// Name of the file with grains and intruder.
+pub const DATA: &str = "bed.data";
+
+/// Atom types: grains and the intruder.
+const GRAIN: usize = 1;
+const INTRUDER: usize = 2;
+
+/// An impact as LAMMPS reads it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Deck {
+    /// Text of [`INPUT`].
+    pub input: String,
+    /// Text of [`DATA`].
+    pub data: String,
+}
+
+/// Why a model cannot be handed to LAMMPS.
+#[derive(Debug, Error)]
+pub enum LammpsError {
+    /// It has something that LAMMPS has no word for.
+    #[error("LAMMPS cannot express {}", .0.join("; nor "))]
+    Inexpressible(Vec<String>),
+    /// It cannot be built at all.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// A file cannot be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// The operating system's answer.
+        source: io::Error,
+    },
+}
+
+impl Deck {
+    /// Whether LAMMPS can express `model`, before its bed is prepared.
+    ///
+    /// # Errors
+    /// If it cannot.
+    pub fn check(model: GrainModel<'_>) -> Result<(), LammpsError> {
+        refusal::checked(model, &model.model.conditions()).map(|_| ())
+    }
+
+    /// The impact of `model` on its bed `resting`.
+    ///
+    /// # Errors
+    /// If LAMMPS cannot express it, or the model cannot be built.
+    pub fn of(model: GrainModel<'_>, resting: &RestingBed) -> Result<Self, LammpsError> {
+        let conditions = model.model.conditions();
+        let contacts = refusal::checked(model, &conditions)?;
+        let simulation = model.simulation(resting, &conditions[0])?;
+        Ok(Self {
+            input: input::text(model, &simulation, &contacts),
+            data: data::text(model, &simulation),
+        })
+    }
+
+    /// Writes both files into `folder`, which is made if it is missing.
+    ///
+    /// # Errors
+    /// If the system refuses.
+    pub fn write(&self, folder: &Path) -> Result<(), LammpsError> {
+        let io = |path: &Path| {
+            let path = path.to_owned();
+            |source| LammpsError::Io { path, source }
+        };
+        fs::create_dir_all(folder).map_err(io(folder))?;
+        for (name, text) in [(INPUT, &self.input), (DATA, &self.data)] {
+            let path = folder.join(name);
+            fs::write(&path, text).map_err(io(&path))?;
+        }
+        Ok(())
+    }
+}

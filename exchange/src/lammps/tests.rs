@@ -1,0 +1,219 @@
+use std::fs;
+use std::process::Command;
+
+use configs::{LoadOptions, Loaded, Model, ModelSource};
+use tempfile::TempDir;
+
+use super::{DATA, Deck, INPUT, LammpsError};
+
+const LINEAR: &str = "\
+name = \"linear-spring-dashpot\"
+normal_stiffness = \"3200 N/m\"
+normal_damping_rate = \"1e4 1/s\"
+tangential_damping_rate = \"8e3 1/s\"
+friction = 0.28
+";
+
+const HERTZ: &str = "\
+name = \"hertz-mindlin\"
+young_modulus = \"50 MPa\"
+poisson_ratio = 0.25
+restitution = 0.5
+friction = 0.3
+";
+
+/// A model of three discs, or spheres, on the floor, and its folder.
+fn model(dimension: usize, law: &str, sets: &[&str]) -> (TempDir, Loaded) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (table, depth, shape) = match dimension {
+        2 => ("x_m,y_m,radius_m,mass_kg\n", "", "disc"),
+        _ => ("x_m,y_m,z_m,radius_m,mass_kg\n", "depth = \"20 mm\"\n", "sphere"),
+    };
+    let mut table = table.to_owned();
+    for x in ["0.01", "0.02", "0.03"] {
+        let y = if dimension == 2 { "" } else { "0.01," };
+        table.push_str(&format!("{x},{y}0.005,0.005,0.001\n"));
+    }
+    fs::write(folder.path().join("grains.csv"), table).expect("a table");
+    let text = format!(
+        "[run]\nname = \"three\"\nduration = \"10 ms\"\ntime_step = \"10 us\"\nseed = 1\n\n\
+         [medium]\nkind = \"grains\"\ndimension = {dimension}\ngravity = \"9.81 m/s^2\"\n\n\
+         [container]\nshape = \"box\"\nwidth = \"40 mm\"\n{depth}sides = \"wall\"\nbottom = \"wall\"\n\n\
+         [bed]\nsource = \"csv\"\nfile = \"grains.csv\"\n\n[contact_law]\n{law}\n\
+         [intruder]\nshape = \"{shape}\"\ndiameter = \"1 cm\"\nmass = \"10 g\"\n\n\
+         [impact]\nspeed = \"2 m/s\"\nangle = \"90 deg\"\n"
+    );
+    let source = ModelSource::Text { name: "three".into(), text, folder: folder.path().to_owned() };
+    let sets = sets.iter().map(|&set| set.to_owned()).collect();
+    let options = LoadOptions { sets, ..LoadOptions::default() };
+    let loaded = Model::load(source, &options).unwrap_or_else(|error| {
+        panic!("{}", error.render(configs::Color::Off));
+    });
+    (folder, loaded)
+}
+
+fn deck(dimension: usize, law: &str, sets: &[&str]) -> Result<Deck, LammpsError> {
+    let (_folder, loaded) = model(dimension, law, sets);
+    let grains = loaded.model.grains().expect("a bed");
+    Deck::of(grains, &grains.read_bed().expect("a table"))
+}
+
+fn written(dimension: usize, law: &str, sets: &[&str]) -> Deck {
+    deck(dimension, law, sets).expect("a model that LAMMPS can express")
+}
+
+/// The lines of `text` after `header`, up to the next empty one.
+fn section(text: &str, header: &str) -> Vec<String> {
+    let lines = text.lines().skip_while(|line| *line != header).skip(2);
+    lines.take_while(|line| !line.is_empty()).map(str::to_owned).collect()
+}
+
+/// The numbers of the first line of `text` with `start`.
+fn numbers(text: &str, start: &str) -> Vec<f64> {
+    let line = text.lines().find(|line| line.contains(start)).expect("a line");
+    line.split_whitespace().filter_map(|word| word.parse().ok()).collect()
+}
+
+#[test]
+fn a_planar_bed_stands_in_the_plane_of_lammps_with_its_masses_and_its_turns() {
+    let Deck { data, input } = written(2, LINEAR, &["impact.spin = \"3 rad/s\""]);
+    assert!(data.contains("\n4 atoms\n2 atom types\n\n0.0 0.04 xlo xhi\n-0.01 "), "{data}");
+    let atoms = section(&data, "Atoms # sphere");
+    assert_eq!(atoms.len(), 4);
+    let first = numbers(&data, "1 1 0.01 ");
+    // Mass over the volume of a sphere, which LAMMPS multiplies with again.
+    let density = 0.001 / (4.0 / 3.0 * std::f64::consts::PI * 1.25e-7);
+    assert!((first[3] / density - 1.0).abs() < 1e-14, "{first:?}");
+    assert_eq!(atoms[0].split(' ').skip(4).collect::<Vec<_>>(), ["0.01", "0.005", "0.0"]);
+    // The intruder stands on the middle grain and comes straight down; what turns from x to z (up) turns
+    // from x to y.
+    let start = numbers(&data, "4 2 0.01 ");
+    assert!((start[5] - 0.015).abs() < 1e-9, "{start:?}");
+    assert_eq!(section(&data, "Velocities")[3], "4 0.0 -2.0 0.0 0.0 0.0 3.0");
+    for line in [
+        "boundary m fm p",
+        "pair_style gran/hooke/history 3200.0 3200.0 10000.0 8000.0 0.28 1",
+        "fix gravity all gravity 9.81 vector 0 -1 0",
+        "fix sides grains wall/gran hooke/history 3200.0 3200.0 10000.0 8000.0 0.28 1 xplane 0 0.04",
+        "fix motion_of_intruder intruder nve/sphere disc",
+        "fix plane all enforce2d",
+        "timestep 1e-5",
+        "variable steps index 1000",
+    ] {
+        assert!(input.lines().any(|found| found == line), "no line `{line}` in\n{input}");
+    }
+}
+
+#[test]
+fn an_intruder_with_a_friction_of_its_own_has_a_pair_of_its_own() {
+    let Deck { input, .. } = written(2, LINEAR, &["contact_law.intruder_friction = 0.1"]);
+    for line in [
+        "pair_style granular",
+        "pair_coeff 1 1 hooke 3200.0 10000.0 tangential linear_history 3200.0 0.8 0.28 \
+         damping mass_velocity",
+        "pair_coeff 1 2 hooke 3200.0 10000.0 tangential linear_history 3200.0 0.8 0.1 \
+         damping mass_velocity",
+    ] {
+        assert!(input.lines().any(|found| found == line), "no line `{line}` in\n{input}");
+    }
+}
+
+#[test]
+fn a_bed_in_space_has_the_stiffness_and_damping_of_hertz_and_mindlin() {
+    let periodic = [
+        "container.sides = \"periodic\"",
+        "container.width = \"60 mm\"",
+        "container.depth = \"60 mm\"",
+    ];
+    let Deck { input, .. } = written(3, HERTZ, &periodic);
+    assert!(input.contains("boundary p p fm\n") && !input.contains("fix sides"), "{input}");
+    let found = numbers(&input, "pair_coeff 1 1 ");
+    let [_, _, k_n, told, k_t, shear, friction] = found[..] else { panic!("{found:?}") };
+    // Equal bodies: E* = E/(2 (1 − ν²)), G* = G/(2 (2 − ν)); β = 0.25526 for e = 1/2, within 2e-5.
+    let modulus = 50e6 / (2.0 * (1.0 - 0.0625));
+    let shear_modulus = 50e6 / 2.5 / (2.0 * 1.75);
+    let close = |value: f64, expected: f64, by: f64| (value / expected - 1.0).abs() < by;
+    assert!(close(k_n, 4.0 / 3.0 * modulus, 1e-14) && close(k_t, 8.0 * shear_modulus, 1e-14));
+    assert!(close(shear, (8.0 * shear_modulus / (2.0 * modulus)).sqrt(), 1e-14));
+    let log = libm::log(told);
+    let ratio = -log / (std::f64::consts::PI.powi(2) + log * log).sqrt();
+    assert!(close(ratio, 0.25526, 8e-5), "{ratio}");
+    assert_eq!(friction.to_bits(), 0.3_f64.to_bits());
+}
+
+#[test]
+fn what_lammps_cannot_express_is_refused_by_name_and_all_at_once() {
+    let rolling =
+        format!("{LINEAR}\n[[effect]]\nname = \"rolling-resistance\"\nrolling_friction = 0.05\n");
+    let sets = ["container.sides = \"absorbing\"", "conditions.speed = [\"1 m/s\", \"2 m/s\"]"];
+    let message = deck(2, &rolling, &sets).expect_err("much to refuse").to_string();
+    for what in ["rolling-resistance", "absorbing sides", "a list of 2 impacts"] {
+        assert!(message.contains(what), "`{what}` is not in: {message}");
+    }
+    let viscous = HERTZ.replace("hertz-mindlin", "hertz-mindlin-viscous");
+    let viscous = viscous.replace("restitution = 0.5", "viscous_time = \"1 us\"");
+    for (law, sets, what) in [
+        (viscous.as_str(), &[][..], "hertz-mindlin-viscous"),
+        (HERTZ, &["contact_law.restitution = 0.1"], "beyond critical"),
+        (HERTZ, &["container.bottom = \"absorbing\""], "absorbing bottom"),
+        (
+            HERTZ,
+            &["intruder.shape = \"cylinder\"", "intruder.height = \"1 cm\""],
+            "an intruder that is a cylinder",
+        ),
+    ] {
+        let message = deck(3, law, sets).expect_err(what).to_string();
+        assert!(message.contains(what), "`{what}` is not in: {message}");
+    }
+}
+
+#[test]
+fn both_files_are_written_into_a_new_folder() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let into = folder.path().join("deep/er");
+    let deck = written(2, LINEAR, &[]);
+    deck.write(&into).expect("it can be written");
+    let read = |name: &str| fs::read_to_string(into.join(name)).expect("a file");
+    assert_eq!((read(INPUT), read(DATA)), (deck.input, deck.data));
+}
+
+/// The velocity (m/s) of the intruder of `loaded` after so many steps, by LAMMPS and by plunge.
+fn velocities(lammps: &std::ffi::OsStr, loaded: &Loaded, steps: u64) -> [[f64; 2]; 2] {
+    let grains = loaded.model.grains().expect("a bed");
+    let resting = grains.read_bed().expect("a table");
+    let folder = tempfile::tempdir().expect("a folder");
+    let deck = Deck::of(grains, &resting).expect("a model that LAMMPS can express");
+    deck.write(folder.path()).expect("it can be written");
+    let mut command = Command::new(lammps);
+    command.current_dir(folder.path()).args(["-in", INPUT, "-log", "none", "-var", "steps"]);
+    let output = command.arg(steps.to_string()).output().expect("PLUNGE_LAMMPS names a program");
+    let said = String::from_utf8_lossy(&output.stdout);
+    let state = said.lines().rfind(|line| line.starts_with("intruder at the end")).expect(&said);
+    let state: Vec<f64> = state.split([',', ' ']).filter_map(|word| word.parse().ok()).collect();
+    let (x, z) = (state[state.len() / 2 + 1], state[state.len() - 1]);
+
+    let condition = loaded.model.conditions()[0];
+    let mut simulation = grains.simulation(&resting, &condition).expect("a simulation");
+    for _ in 0..steps {
+        simulation.advance().expect("a step");
+    }
+    let velocity = simulation.intruder().bodies()[0].velocity;
+    [[x, z], [velocity.x, velocity.z]]
+}
+
+/// Needs a LAMMPS, which `PLUNGE_LAMMPS` names: `cargo test -p exchange -- --ignored`.
+#[test]
+#[ignore = "needs LAMMPS"]
+fn lammps_moves_the_intruder_as_plunge_does() {
+    let lammps = std::env::var_os("PLUNGE_LAMMPS").expect("PLUNGE_LAMMPS names an lmp");
+    // An oblique hit with spin, so that springs, damping and friction all act.
+    let sets =
+        ["impact.angle = \"80 deg\"", "impact.spin = \"20 rad/s\"", "impact.speed = \"1 m/s\""];
+    for (dimension, law) in [(2, LINEAR), (3, HERTZ)] {
+        let (_folder, loaded) = model(dimension, law, &sets);
+        let [theirs, ours] = velocities(&lammps, &loaded, 200);
+        let apart = (theirs[0] - ours[0]).hypot(theirs[1] - ours[1]);
+        // Of the speed of the impact; damping of the half step and sliding springs differ.
+        assert!(apart < 0.02, "{dimension}D: {theirs:?} in LAMMPS, {ours:?} here");
+    }
+}

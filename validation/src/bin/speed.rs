@@ -1,0 +1,169 @@
+//! `cargo xtask bench`: how fast beds of grains are stepped, alone or beside a peer.
+
+#![allow(clippy::print_stdout, reason = "stdout is where a command's result belongs")]
+
+use std::error::Error;
+use std::ffi::OsString;
+use std::fs;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use lexopt::Parser;
+use lexopt::prelude::{Long, Short, Value, ValueExt};
+use validation::benchmark::document;
+use validation::speed::lammps::Lammps;
+use validation::speed::plan::{self, Plan};
+use validation::speed::problem::{PROBLEMS, Problem};
+use validation::speed::report;
+use validation::speed::trial::{Order, Span};
+
+const HELP: &str = "\
+Grain-steps per second of beds under an impact: of the time loop alone, in processes of their own, in turns.
+
+Usage: cargo xtask bench [--problem NAME]... [--peers] [--quick] [--repeats N] [--out DIR] [--cache DIR] [--write]
+
+  --problem NAME  2d-15k, 3d-12k, 3d-50k, 3d-200k, or growth for those in space; may be given several
+                  times (all)
+  --peers         LAMMPS too, on the same beds, laws and steps; it is installed below target/peers, unless
+                  PLUNGE_LAMMPS names an lmp
+  --quick         a quarter of the steps, but 100 at least; three repeats
+  --repeats N     how often each is timed (5)
+  --out DIR       where speed.json, speed.md, problems and decks are written (target/bench)
+  --cache DIR     the folder of prepared beds (else $PLUNGE_CACHE, else runs/.cache)
+  --write         the tables to docs/performance.md
+
+Exit status: 0 done, 1 failed or a peer disagrees, 2 the command line was not understood.
+";
+
+/// What the command line asks for.
+enum Wish {
+    Help,
+    Bench(Bench),
+    /// One trial, for the benchmark itself.
+    Trial(Order),
+}
+
+/// A benchmark.
+struct Bench {
+    problems: Vec<&'static Problem>,
+    peers: bool,
+    repeats: usize,
+    shorter: u64,
+    out: PathBuf,
+    cache: PathBuf,
+    write: bool,
+}
+
+fn main() -> ExitCode {
+    let done = match parse(Parser::from_env()) {
+        Ok(Wish::Help) => {
+            print!("{HELP}");
+            return ExitCode::SUCCESS;
+        }
+        Ok(Wish::Trial(order)) => trial(&order),
+        Ok(Wish::Bench(wish)) => bench(&wish),
+        Err(message) => {
+            eprintln!("error: {message}\n\n{HELP}");
+            return ExitCode::from(2);
+        }
+    };
+    done.unwrap_or_else(|error| {
+        eprintln!("error: {error}");
+        ExitCode::FAILURE
+    })
+}
+
+fn parse(mut args: Parser) -> Result<Wish, lexopt::Error> {
+    let (mut problems, mut peers, mut write) = (Vec::new(), false, false);
+    let (mut repeats, mut shorter) = (None, 1);
+    let (mut out, mut cache) = (PathBuf::from("target/bench"), None);
+    while let Some(arg) = args.next()? {
+        match arg {
+            Value(word) if word == "trial" => return order(&mut args).map(Wish::Trial),
+            Long("problem") => problems.extend(args.value()?.parse_with(named)?),
+            Long("peers") => peers = true,
+            Long("quick") => shorter = 4,
+            Long("repeats") => repeats = Some(args.value()?.parse_with(count)?),
+            Long("out") => out = PathBuf::from(args.value()?),
+            Long("cache") => cache = Some(PathBuf::from(args.value()?)),
+            Long("write") => write = true,
+            Short('h') | Long("help") => return Ok(Wish::Help),
+            other => return Err(other.unexpected()),
+        }
+    }
+    if problems.is_empty() {
+        problems = PROBLEMS.iter().collect();
+    }
+    let from_environment = || std::env::var_os("PLUNGE_CACHE").filter(|folder| !folder.is_empty());
+    let cache = cache.or_else(|| from_environment().map(PathBuf::from));
+    Ok(Wish::Bench(Bench {
+        problems,
+        peers,
+        repeats: repeats.unwrap_or(if shorter > 1 { 3 } else { 5 }),
+        shorter,
+        out,
+        cache: cache.unwrap_or_else(|| PathBuf::from("runs/.cache")),
+        write,
+    }))
+}
+
+/// The problems that `name` stands for.
+fn named(name: &str) -> Result<Vec<&'static Problem>, String> {
+    if name == "growth" {
+        return Ok(PROBLEMS.iter().filter(|problem| problem.name.starts_with("3d")).collect());
+    }
+    let known = || PROBLEMS.iter().map(|problem| problem.name).collect::<Vec<_>>().join(", ");
+    let problem = Problem::find(name);
+    let unknown = || format!("no problem is called `{name}`; there are {}, growth", known());
+    problem.map(|problem| vec![problem]).ok_or_else(unknown)
+}
+
+fn count(text: &str) -> Result<usize, String> {
+    let found = text.parse().ok().filter(|n| (1..=100).contains(n));
+    found.ok_or(format!("`{text}` is no number of 1 to 100"))
+}
+
+/// What a process of the benchmark is told: model, steps of warm-up, steps, threads, folder of the log.
+fn order(args: &mut Parser) -> Result<Order, lexopt::Error> {
+    let model = PathBuf::from(args.value()?);
+    let mut number = || args.value()?.parse::<u64>();
+    let (warm_up, steps, threads) = (number()?, number()?, number()?);
+    let log_into = args.raw_args()?.next().map(|folder: OsString| PathBuf::from(folder));
+    Ok(Order { model, span: Span { warm_up, steps }, threads: threads as usize, log_into })
+}
+
+fn trial(order: &Order) -> Result<ExitCode, Box<dyn Error>> {
+    println!("{}", serde_json::to_string(&order.here()?)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn bench(wish: &Bench) -> Result<ExitCode, Box<dyn Error>> {
+    let environment = PathBuf::from("target/peers");
+    let lammps = wish.peers.then(|| Lammps::find_or_install(&environment)).transpose()?;
+    let plan = Plan {
+        problems: wish.problems.clone(),
+        repeats: wish.repeats,
+        shorter: wish.shorter,
+        folder: wish.out.join("problems"),
+        cache: wish.cache.clone(),
+        lammps,
+    };
+    let results = plan::run(&plan, &|what| eprintln!("{what}"))?;
+    let (json, markdown) = (report::as_json(&plan, &results), report::as_markdown(&plan, &results));
+    fs::create_dir_all(&wish.out)?;
+    fs::write(wish.out.join("speed.json"), format!("{json:#}\n"))?;
+    fs::write(wish.out.join("speed.md"), &markdown)?;
+    println!("{markdown}");
+    if wish.write {
+        let path = "docs/performance.md";
+        let page = fs::read_to_string(path).map_err(|error| format!("{path}: {error}"))?;
+        fs::write(path, document::with_tables(&page, &[("speed", &markdown)])?)?;
+    }
+    let agrees = |apart: f64| apart <= report::AGREEMENT;
+    let agree = results.measured.iter().filter_map(plan::Measured::disagreement).all(agrees);
+    if !agree {
+        eprintln!("error: an intruder moves otherwise than in LAMMPS; see `velocity apart`");
+        return Ok(ExitCode::FAILURE);
+    }
+    Ok(ExitCode::SUCCESS)
+}

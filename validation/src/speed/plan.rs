@@ -1,0 +1,179 @@
+//! Trials in turns: every repeat goes once through all problems and programs, so that whatever else the
+//! machine does falls on all of them alike.
+
+use std::path::{Path, PathBuf};
+use std::thread::available_parallelism;
+
+use serde::Serialize;
+
+use super::SpeedError;
+use super::lammps::{Lammps, export};
+use super::problem::{BedTime, Problem};
+use super::spread::Spread;
+use super::trial::{Order, Span, Trial};
+
+/// How much is done.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The problems.
+    pub problems: Vec<&'static Problem>,
+    /// How often each is timed.
+    pub repeats: usize,
+    /// By how much the spans of the problems are shortened.
+    pub shorter: u64,
+    /// Where problems, decks and logs are written.
+    pub folder: PathBuf,
+    /// The folder of prepared beds.
+    pub cache: PathBuf,
+    /// The peer, if there is to be one.
+    pub lammps: Option<Lammps>,
+}
+
+/// What was measured of one problem.
+#[derive(Debug)]
+pub struct Measured {
+    /// The problem.
+    pub problem: &'static Problem,
+    /// Which steps were timed.
+    pub span: Span,
+    /// plunge on one thread.
+    pub one: Vec<Trial>,
+    /// plunge on two threads.
+    pub two: Vec<Trial>,
+    /// LAMMPS on one core.
+    pub lammps_one: Vec<Trial>,
+    /// LAMMPS on two.
+    pub lammps_two: Vec<Trial>,
+}
+
+impl Measured {
+    /// How far the speed of the intruder at the end is from that of LAMMPS, over the latter (–).
+    #[must_use]
+    pub fn disagreement(&self) -> Option<f64> {
+        let [own, peer] = [&self.one, &self.lammps_one].map(|trials| {
+            let [x, y, z] = trials.first()?.velocity_m_per_s?;
+            Some([x, y, z])
+        });
+        let (own, peer) = (own?, peer?);
+        let square = |v: [f64; 3]| v.iter().map(|component| component * component).sum::<f64>();
+        let apart = std::array::from_fn(|axis| own[axis] - peer[axis]);
+        Some((square(apart) / square(peer)).sqrt())
+    }
+}
+
+/// What a part of plunge costs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Batch {
+    /// Impacts at the same time, each on one thread.
+    pub impacts: usize,
+    /// Grain-steps per second of all of them together (1/s).
+    pub together: f64,
+    /// The same of one impact alone, times the number of impacts (1/s).
+    pub expected: f64,
+}
+
+impl Batch {
+    /// What is lost by running them together (–).
+    #[must_use]
+    pub fn loss(&self) -> f64 {
+        1.0 - self.together / self.expected
+    }
+}
+
+/// Everything that was measured.
+#[derive(Debug)]
+pub struct Results {
+    /// By problem.
+    pub measured: Vec<Measured>,
+    /// How long beds took, first to prepare or find them, then to find them again.
+    pub beds: Vec<[BedTime; 2]>,
+    /// CPU time of a step with the default log over that without one, less one (–); of the problem in a
+    /// plane.
+    pub logging: Option<Spread>,
+    /// Impacts in parallel, of the problem in a plane.
+    pub batch: Option<Batch>,
+}
+
+/// Carries out `plan`; `say` is told what comes next.
+///
+/// # Errors
+/// If a problem cannot be written or a trial fails.
+pub fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Results, SpeedError> {
+    let mut written = Vec::new();
+    let mut beds = Vec::new();
+    for problem in &plan.problems {
+        say(&format!("{}: bed", problem.name));
+        let (_, first) = problem.write(&plan.folder, &plan.cache)?;
+        let (model, again) = problem.write(&plan.folder, &plan.cache)?;
+        if plan.lammps.is_some() {
+            export(&model, &deck(plan, problem))?;
+        }
+        written.push(model);
+        beds.push([first, again]);
+    }
+    let mut measured: Vec<Measured> =
+        plan.problems.iter().map(|problem| nothing_of(problem, plan.shorter)).collect();
+    let mut logging = Vec::new();
+    for repeat in 1..=plan.repeats {
+        for (one, model) in measured.iter_mut().zip(&written) {
+            say(&format!("{}: {repeat} of {}", one.problem.name, plan.repeats));
+            take_turns(plan, one, model)?;
+            if is_planar(one.problem) {
+                logging.push(cost_of_logging(plan, one, model)?);
+            }
+        }
+    }
+    let planar = measured.iter().zip(&written).find(|(one, _)| is_planar(one.problem));
+    let batch = planar.map(|(one, model)| in_parallel(one, model, say)).transpose()?;
+    Ok(Results { measured, beds, logging: Spread::of(logging), batch })
+}
+
+fn nothing_of(problem: &'static Problem, shorter: u64) -> Measured {
+    let Span { warm_up, steps } = problem.span;
+    // A run looks at its progress every 50 steps.
+    let span = Span { warm_up, steps: (steps / shorter).max(100) };
+    let [one, two, lammps_one, lammps_two] = [const { Vec::new() }; 4];
+    Measured { problem, span, one, two, lammps_one, lammps_two }
+}
+
+fn is_planar(problem: &Problem) -> bool {
+    problem.name.starts_with("2d")
+}
+
+fn deck(plan: &Plan, problem: &Problem) -> PathBuf {
+    plan.folder.join(problem.name).join("lammps")
+}
+
+/// One trial of each program.
+fn take_turns(plan: &Plan, measured: &mut Measured, model: &Path) -> Result<(), SpeedError> {
+    let span = measured.span;
+    let order = |threads| Order { model: model.to_owned(), span, threads, log_into: None };
+    measured.one.push(order(1).in_a_process()?);
+    if let Some(lammps) = &plan.lammps {
+        measured.lammps_one.push(lammps.trial(&deck(plan, measured.problem), span, 1)?);
+    }
+    measured.two.push(order(2).in_a_process()?);
+    if let Some(lammps) = plan.lammps.as_ref().filter(|lammps| lammps.has_ranks()) {
+        measured.lammps_two.push(lammps.trial(&deck(plan, measured.problem), span, 2)?);
+    }
+    Ok(())
+}
+
+/// CPU time per step of a run with the default log over that of the last trial without one, less one.
+fn cost_of_logging(plan: &Plan, of: &Measured, model: &Path) -> Result<f64, SpeedError> {
+    let log_into = Some(plan.folder.join(of.problem.name).join("logged"));
+    let order = Order { model: model.to_owned(), span: of.span, threads: 1, log_into };
+    let logged = order.in_a_process()?;
+    let bare = of.one.last().map_or(f64::NAN, Trial::per_cpu_second);
+    Ok(bare / logged.per_cpu_second() - 1.0)
+}
+
+/// As many impacts as there are cores, at the same time.
+fn in_parallel(of: &Measured, model: &Path, say: &dyn Fn(&str)) -> Result<Batch, SpeedError> {
+    let impacts = available_parallelism().map_or(1, usize::from);
+    say(&format!("{}: {impacts} impacts at the same time", of.problem.name));
+    let order = Order { model: model.to_owned(), span: of.span, threads: 1, log_into: None };
+    let alone = order.in_a_process()?.per_wall_second();
+    let together = order.in_processes(impacts)?.iter().map(Trial::per_wall_second).sum();
+    Ok(Batch { impacts, together, expected: impacts as f64 * alone })
+}

@@ -1,0 +1,231 @@
+//! What is stepped: beds at rest, each under an intruder that has just touched it.
+//!
+//! A problem is a folder with a model and the table of its grains, made from a bed in the cache. A table
+//! holds no contact histories, so every program that reads it starts from the same state.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use configs::run::{Control, Progress, prepare};
+use configs::{LoadOptions, Model, ModelSource, find_shipped};
+use engine::grains::{Grain, Space};
+use serde::Serialize;
+
+use super::SpeedError;
+use super::trial::Span;
+
+/// Of which a larger bed of spheres is made.
+const SPHERES: &str = include_str!("../../speed/spheres.toml");
+
+/// Width and depth of that bed (m).
+const TILE: f64 = 0.1;
+
+/// One bed, intruder and law.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// How the command line calls it.
+    pub name: &'static str,
+    /// What it is, in a few words.
+    pub about: &'static str,
+    /// What is timed.
+    pub span: Span,
+    base: Base,
+}
+
+/// Where a bed comes from.
+#[derive(Debug, PartialEq, Eq)]
+enum Base {
+    /// That of the shipped model `vertical-2d`.
+    Discs,
+    /// So many by so many tiles of spheres.
+    Spheres(u32),
+}
+
+/// Every problem, the smallest of its kind first.
+pub static PROBLEMS: [Problem; 4] = [
+    Problem {
+        name: "2d-15k",
+        about: "15 000 discs, linear law",
+        span: Span { warm_up: 300, steps: 1000 },
+        base: Base::Discs,
+    },
+    Problem {
+        name: "3d-12k",
+        about: "12 500 spheres, Hertz–Mindlin",
+        span: Span { warm_up: 100, steps: 1200 },
+        base: Base::Spheres(1),
+    },
+    Problem {
+        name: "3d-50k",
+        about: "50 000 spheres, Hertz–Mindlin",
+        span: Span { warm_up: 100, steps: 300 },
+        base: Base::Spheres(2),
+    },
+    Problem {
+        name: "3d-200k",
+        about: "200 000 spheres, Hertz–Mindlin",
+        span: Span { warm_up: 50, steps: 100 },
+        base: Base::Spheres(4),
+    },
+];
+
+/// How long a bed took.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BedTime {
+    /// Name of the model that it is of.
+    pub bed: String,
+    /// `"miss"`: settled now; `"hit"`: read from the cache.
+    pub cache: &'static str,
+    /// (s) of wall time.
+    pub seconds: f64,
+}
+
+impl Problem {
+    /// The problem called `name`.
+    #[must_use]
+    pub fn find(name: &str) -> Option<&'static Self> {
+        PROBLEMS.iter().find(|problem| problem.name == name)
+    }
+
+    /// Writes the problem into a folder below `folder`, from its bed in `cache`, which is settled if it is not
+    /// there; gives the path of the model, and how long the bed took.
+    ///
+    /// # Errors
+    /// If the bed cannot be prepared, or a file not be written.
+    pub fn write(&self, folder: &Path, cache: &Path) -> Result<(PathBuf, BedTime), SpeedError> {
+        let folder = folder.join(self.name);
+        fs::create_dir_all(&folder).map_err(SpeedError::file(&folder))?;
+        let (text, tiles) = match self.base {
+            Base::Discs => (find_shipped("vertical-2d").map_or("", |shipped| shipped.text), 1),
+            Base::Spheres(tiles) => (SPHERES, tiles),
+        };
+        let load = |sets: Vec<String>| {
+            let (name, text) = (self.name.to_owned(), text.to_owned());
+            let source = ModelSource::Text { name, text, folder: folder.clone() };
+            Model::load(source, &LoadOptions { sets, ..LoadOptions::default() })
+        };
+        let model = load(Vec::new())?.model;
+        let grains = model.grains().ok_or_else(|| SpeedError::NoTable(folder.clone()))?;
+        let clock = Instant::now();
+        let bed = prepare(grains, cache, &mut Told::default())?.ok_or(SpeedError::Stopped)?;
+        let seconds = clock.elapsed().as_secs_f64();
+        let time = BedTime { bed: model.run.name.clone(), cache: bed.cache, seconds };
+
+        let table = folder.join("grains.csv");
+        fs::write(&table, csv(bed.resting.space, &tiled(&bed.resting.grains, tiles)))
+            .map_err(SpeedError::file(&table))?;
+        let model = load(self.sets(tiles))?.model;
+        let path = folder.join("model.toml");
+        fs::write(&path, model.resolved_toml()).map_err(SpeedError::file(&path))?;
+        Ok((path, time))
+    }
+
+    /// What makes the problem of the model of its bed.
+    fn sets(&self, tiles: u32) -> Vec<String> {
+        let mut sets = vec![
+            format!("run.name=\"speed-{}\"", self.name),
+            "bed={ source = \"csv\", file = \"grains.csv\" }".to_owned(),
+        ];
+        if let Base::Spheres(_) = self.base {
+            let width = f64::from(tiles) * TILE;
+            sets.push(format!("container.width=\"{width} m\""));
+            sets.push(format!("container.depth=\"{width} m\""));
+        }
+        sets
+    }
+}
+
+/// `grains`, which lie between periodic sides, so many times in a row along x and along y.
+fn tiled(grains: &[Grain], tiles: u32) -> Vec<Grain> {
+    let places = (0..tiles).flat_map(|i| (0..tiles).map(move |j| (i, j)));
+    let shifted = places.flat_map(|(i, j)| {
+        grains.iter().map(move |grain| {
+            let mut grain = *grain;
+            grain.position.x += f64::from(i) * TILE;
+            grain.position.y += f64::from(j) * TILE;
+            grain
+        })
+    });
+    shifted.collect()
+}
+
+/// The table of a model, with every digit.
+fn csv(space: Space, grains: &[Grain]) -> String {
+    let mut text = match space {
+        Space::Planar => "x_m,y_m,radius_m,mass_kg\n".to_owned(),
+        Space::Spatial => "x_m,y_m,z_m,radius_m,mass_kg\n".to_owned(),
+    };
+    for Grain { position, radius, mass, .. } in grains {
+        let _ = match space {
+            Space::Planar => write!(text, "{:?},", position.x),
+            Space::Spatial => write!(text, "{:?},{:?},", position.x, position.y),
+        };
+        let _ = writeln!(text, "{:?},{radius:?},{mass:?}", position.z);
+    }
+    text
+}
+
+/// Says on stderr that a bed settles, as it may take a while.
+#[derive(Default)]
+struct Told {
+    before: f64,
+}
+
+impl Control for Told {
+    fn progress(&mut self, progress: &Progress) {
+        if let Progress::Settling { time, restlessness, .. } = *progress
+            && time - self.before >= 0.05
+        {
+            self.before = time;
+            eprintln!("  bed at {time:.2} s: {restlessness:.1e} times the energy of rest");
+        }
+    }
+
+    fn warn(&mut self, message: &str) {
+        eprintln!("warning: {message}");
+    }
+
+    fn wants_to_stop(&self) -> bool {
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use engine::math::Vec3;
+
+    use super::*;
+
+    #[test]
+    fn tiles_repeat_every_grain_at_the_width_of_a_tile() {
+        let grain = Grain {
+            position: Vec3::new(0.03, 0.04, 0.05),
+            velocity: Vec3::zeros(),
+            spin: Vec3::zeros(),
+            radius: 0.0025,
+            mass: 1e-4,
+            id: 0,
+        };
+        let tiles = tiled(&[grain], 2);
+        let text = csv(Space::Spatial, &tiles);
+        assert_eq!(tiles.len(), 4);
+        assert!(text.contains("\n0.13,0.04,0.05,0.0025,0.0001\n"), "{text}");
+        assert_eq!(
+            csv(Space::Planar, &[grain]),
+            "x_m,y_m,radius_m,mass_kg\n0.03,0.05,0.0025,0.0001\n"
+        );
+    }
+
+    #[test]
+    fn the_tile_is_as_wide_as_its_model_and_can_be_run() {
+        let source =
+            ModelSource::Text { name: "spheres".into(), text: SPHERES.into(), folder: ".".into() };
+        let model = Model::load(source, &LoadOptions::default()).expect("a model").model;
+        let grains = model.grains().expect("a bed");
+        assert_eq!(grains.medium.container.width.to_bits(), TILE.to_bits());
+        assert_eq!(grains.medium.container.depth.to_bits(), TILE.to_bits());
+        assert_eq!(grains.n_grains(), 12_500);
+    }
+}

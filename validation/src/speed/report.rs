@@ -1,0 +1,257 @@
+//! What came of a plan: one JSON object, and a page in Markdown.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::thread::available_parallelism;
+
+use serde_json::{Value, json};
+
+use super::lammps::SETTINGS;
+use super::plan::{Measured, Plan, Results};
+use super::spread::Spread;
+use super::trial::Trial;
+
+/// How far the velocity of the intruder may be from that of a peer (–).
+pub const AGREEMENT: f64 = 0.02;
+
+/// The processor and how many cores it has.
+fn machine() -> String {
+    let cores = available_parallelism().map_or(1, usize::from);
+    let text = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = text.lines().find(|line| line.starts_with("model name"));
+    let model = model.and_then(|line| line.split_once(": ")).map_or("processor", |(_, name)| name);
+    format!("{model}, {cores} cores")
+}
+
+fn by_cpu(trials: &[Trial]) -> Option<Spread> {
+    Spread::of(trials.iter().map(Trial::per_cpu_second))
+}
+
+fn by_wall(trials: &[Trial]) -> Option<Spread> {
+    Spread::of(trials.iter().map(Trial::per_wall_second))
+}
+
+fn ratio(own: Option<Spread>, peer: Option<Spread>) -> Option<f64> {
+    Some(own?.median / peer?.median)
+}
+
+/// Memory of the process per grain (byte), what it started with included.
+fn memory_per_grain(measured: &Measured) -> Option<f64> {
+    let trial = measured.one.first()?;
+    Some(trial.peak_bytes? as f64 / trial.grains as f64)
+}
+
+/// CPU time per grain and step of each bed of spheres over that of the smallest (–), with its grains.
+fn growth(results: &Results) -> Vec<(usize, f64)> {
+    let spheres = results.measured.iter().filter(|one| one.problem.name.starts_with("3d"));
+    let rates = spheres.filter_map(|one| Some((one.one.first()?.grains, by_cpu(&one.one)?.median)));
+    let rates: Vec<(usize, f64)> = rates.collect();
+    let smallest = rates.first().map_or(f64::NAN, |(_, rate)| *rate);
+    rates.into_iter().map(|(grains, rate)| (grains, smallest / rate)).collect()
+}
+
+/// Everything as one JSON object.
+#[must_use]
+pub fn as_json(plan: &Plan, results: &Results) -> Value {
+    let problem = |one: &Measured| {
+        json!({
+            "name": one.problem.name,
+            "about": one.problem.about,
+            "warm_up_steps": one.span.warm_up,
+            "steps": one.span.steps,
+            "plunge": {
+                "one_core_grain_steps_per_cpu_s": by_cpu(&one.one),
+                "two_threads_grain_steps_per_cpu_s": by_cpu(&one.two),
+                "two_threads_grain_steps_per_wall_s": by_wall(&one.two),
+                "memory_per_grain_bytes": memory_per_grain(one),
+                "trials": { "one": one.one, "two": one.two },
+            },
+            "lammps": plan.lammps.as_ref().map(|_| json!({
+                "one_core_grain_steps_per_cpu_s": by_cpu(&one.lammps_one),
+                "two_ranks_grain_steps_per_wall_s": by_wall(&one.lammps_two),
+                "trials": { "one": one.lammps_one, "two": one.lammps_two },
+            })),
+            "plunge_over_lammps": {
+                "one_core": ratio(by_cpu(&one.one), by_cpu(&one.lammps_one)),
+                "two_cores": ratio(by_wall(&one.two), by_wall(&one.lammps_two)),
+            },
+            "intruder_velocity_apart": one.disagreement(),
+            "agrees": one.disagreement().map(|apart| apart <= AGREEMENT),
+        })
+    };
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "machine": machine(),
+        "repeats": plan.repeats,
+        "peer": plan.lammps.as_ref().map(|lammps| json!({
+            "name": "LAMMPS", "version": lammps.version, "settings": SETTINGS,
+        })),
+        "problems": results.measured.iter().map(problem).collect::<Vec<_>>(),
+        "growth": growth(results).iter().map(|(grains, factor)| json!({
+            "grains": grains, "cpu_per_grain_step_over_smallest": factor,
+        })).collect::<Vec<_>>(),
+        // The engine has no way yet to step without its ledger.
+        "ledger_cost": Value::Null,
+        "logging_cost": results.logging,
+        "batch": results.batch.map(|batch| json!({
+            "impacts": batch.impacts,
+            "grain_steps_per_s": batch.together,
+            "one_alone_times_impacts": batch.expected,
+            "loss": batch.loss(),
+        })),
+        "beds": results.beds,
+    })
+}
+
+/// A rate (1/s) in millions.
+fn millions(rate: Option<Spread>) -> String {
+    let shown = |rate: f64| format!("{:.2}", 1e-6 * rate);
+    rate.map_or("–".to_owned(), |Spread { median, least, most }| {
+        format!("**{}** ({} to {})", shown(median), shown(least), shown(most))
+    })
+}
+
+fn share(value: f64) -> String {
+    format!("{:.1} %", 100.0 * value)
+}
+
+/// The tables of the page on performance.
+#[must_use]
+pub fn as_markdown(plan: &Plan, results: &Results) -> String {
+    let or_dash = |value: Option<String>| value.unwrap_or_else(|| "–".to_owned());
+    let mut text = format!(
+        "On {}, {} repeats. Millions of grain-steps per second: median (least to most).\n",
+        machine(),
+        plan.repeats
+    );
+    if let Some(lammps) = &plan.lammps {
+        let _ = writeln!(text, "LAMMPS {}: {SETTINGS}.", lammps.version);
+    }
+    text.push_str(
+        "\n| problem | plunge, one core, per CPU-second | LAMMPS | ratio | plunge, two threads, per second \
+         | LAMMPS, two ranks | ratio | byte per grain | velocity apart |\n\
+         | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+    );
+    for one in &results.measured {
+        let [own, peer] = [&one.one, &one.lammps_one].map(|trials| by_cpu(trials));
+        let [own_two, peer_two] = [&one.two, &one.lammps_two].map(|trials| by_wall(trials));
+        let cells = [
+            format!("{}: {}", one.problem.name, one.problem.about),
+            millions(own),
+            millions(peer),
+            or_dash(ratio(own, peer).map(|ratio| format!("{ratio:.2}"))),
+            millions(own_two),
+            millions(peer_two),
+            or_dash(ratio(own_two, peer_two).map(|ratio| format!("{ratio:.2}"))),
+            or_dash(memory_per_grain(one).map(|bytes| format!("{bytes:.0}"))),
+            or_dash(one.disagreement().map(share)),
+        ];
+        let _ = writeln!(text, "| {} |", cells.join(" | "));
+    }
+    text.push('\n');
+    let growth = growth(results);
+    if growth.len() > 1 {
+        let steps = growth.iter().map(|(grains, factor)| format!("{factor:.2} at {grains}"));
+        let steps = steps.collect::<Vec<_>>().join(", ");
+        let _ = writeln!(
+            text,
+            "- Growth, CPU time per grain and step over the smallest bed of spheres: {steps}."
+        );
+    }
+    if let Some(Spread { median, least, most }) = results.logging {
+        let [median, least, most] = [median, least, most].map(share);
+        let _ = writeln!(
+            text,
+            "- The default log: {median} of a step ({least} to {most}), in a plane."
+        );
+    }
+    text.push_str("- The ledger: not measured, as the engine has no way to step without it.\n");
+    if let Some(batch) = results.batch {
+        let _ = writeln!(
+            text,
+            "- {} impacts at the same time, each on one thread, in a plane: {} lost against one alone.",
+            batch.impacts,
+            share(batch.loss())
+        );
+    }
+    for [first, again] in &results.beds {
+        let verb = if first.cache == "miss" { "settled in" } else { "was cached, read in" };
+        let _ = writeln!(
+            text,
+            "- Bed of {}: {verb} {:.2} s; found again in {:.3} s.",
+            first.bed, first.seconds, again.seconds
+        );
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::*;
+    use crate::speed::problem::PROBLEMS;
+
+    fn trial(grains: usize, cpu_s: f64, velocity: f64) -> Trial {
+        Trial {
+            grains,
+            steps: 100,
+            wall_s: cpu_s,
+            cpu_s,
+            peak_bytes: Some(1000 * grains as u64),
+            velocity_m_per_s: Some([0.0, 0.0, velocity]),
+        }
+    }
+
+    fn results() -> (Plan, Results) {
+        let measured = [1, 3].map(|index| {
+            let problem = &PROBLEMS[index];
+            let grains = 1000 * index;
+            let seconds = 0.1 * (index * index) as f64;
+            Measured {
+                problem,
+                span: problem.span,
+                one: vec![trial(grains, seconds, -1.01)],
+                two: Vec::new(),
+                lammps_one: vec![trial(grains, 0.5 * seconds, -1.0)],
+                lammps_two: Vec::new(),
+            }
+        });
+        let plan = Plan {
+            problems: Vec::new(),
+            repeats: 1,
+            shorter: 1,
+            folder: PathBuf::new(),
+            cache: PathBuf::new(),
+            lammps: None,
+        };
+        let measured = measured.into();
+        (plan, Results { measured, beds: Vec::new(), logging: None, batch: None })
+    }
+
+    #[test]
+    fn rates_ratios_growth_and_agreement_follow_from_the_trials() {
+        let (plan, results) = results();
+        let json = as_json(&plan, &results);
+        let first = &json["problems"][0];
+        assert_eq!(first["plunge"]["one_core_grain_steps_per_cpu_s"]["median"], 1e6);
+        assert_eq!(first["plunge_over_lammps"]["one_core"], 0.5);
+        assert_eq!(first["plunge"]["memory_per_grain_bytes"], 1000.0);
+        assert_eq!(
+            (&first["agrees"], &first["plunge_over_lammps"]["two_cores"]),
+            (&json!(true), &Value::Null)
+        );
+        // Three times the grains in nine times the time.
+        let growth = json["growth"][1]["cpu_per_grain_step_over_smallest"].as_f64();
+        assert!(growth.is_some_and(|factor| (factor - 3.0).abs() < 1e-12), "{json:#}");
+    }
+
+    #[test]
+    fn the_page_has_a_row_per_problem_and_a_dash_where_nothing_was_measured() {
+        let (plan, results) = results();
+        let page = as_markdown(&plan, &results);
+        let row = page.lines().find(|line| line.starts_with("| 3d-12k")).expect("a row");
+        assert!(row.contains("| **1.00** (1.00 to 1.00) | **2.00** (2.00 to 2.00) | 0.50 | – | – | – | 1000 | 1.0 % |"), "{row}");
+        assert!(page.contains("3.00 at 3000"), "{page}");
+    }
+}
