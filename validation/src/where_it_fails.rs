@@ -23,7 +23,7 @@ use crate::residual::{Residual, residuals};
 use crate::verdict::Diagnosis;
 
 /// Names of all files that there may be.
-pub const FILES: [&str; 10] = [
+pub const FILES: [&str; 11] = [
     "force_errors.csv",
     "residuals.csv",
     "signatures.csv",
@@ -33,6 +33,7 @@ pub const FILES: [&str; 10] = [
     "residuals.svg",
     "covariates.svg",
     "errors.svg",
+    "trajectories.svg",
     "signatures.svg",
 ];
 
@@ -154,6 +155,7 @@ impl<'a> WhereItFails<'a> {
             picture::residuals(self)?,
             picture::covariates(self)?,
             picture::errors(self)?,
+            picture::trajectories(self)?,
             picture::signatures(self)?,
         ];
         let named = FILES.iter().zip(texts);
