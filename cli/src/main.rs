@@ -16,6 +16,7 @@ mod next;
 mod output;
 mod own_effects;
 mod recover;
+mod report;
 mod run;
 mod workbench;
 
@@ -49,6 +50,8 @@ enum Command {
     Effects(effects::Args),
     /// Write a commented starter model.
     New(new::Args),
+    /// Make the HTML report of a run, a list of runs, a comparison or a diagnosis again.
+    Report(report::Args),
     /// Save everything readable of a damaged or unfinished log.
     Recover(recover::Args),
 }
@@ -71,6 +74,7 @@ fn main() -> ExitCode {
         Command::Add(args) => add::run(&args),
         Command::Effects(args) => effects::run(&args),
         Command::New(args) => new::run(&args),
+        Command::Report(args) => report::run(&args),
         Command::Recover(args) => recover::run(&args),
     };
     output::conclude(result)

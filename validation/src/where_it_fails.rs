@@ -23,7 +23,7 @@ use crate::residual::{Residual, residuals};
 use crate::verdict::Diagnosis;
 
 /// Names of all files that there may be.
-pub const FILES: [&str; 11] = [
+pub const FILES: [&str; 12] = [
     "force_errors.csv",
     "residuals.csv",
     "signatures.csv",
@@ -33,6 +33,7 @@ pub const FILES: [&str; 11] = [
     "residuals.svg",
     "covariates.svg",
     "errors.svg",
+    "revisions.svg",
     "trajectories.svg",
     "signatures.svg",
 ];
@@ -155,6 +156,7 @@ impl<'a> WhereItFails<'a> {
             picture::residuals(self)?,
             picture::covariates(self)?,
             picture::errors(self)?,
+            picture::revisions(self)?,
             picture::trajectories(self)?,
             picture::signatures(self)?,
         ];
