@@ -158,16 +158,17 @@ fn card(at: usize, effect: &Value, named: &[String]) -> Card {
         ("ranked first if there", fixed(effect["predicted_top1"].as_f64(), 2)),
         ("detection limit", four_digits(&effect["detection_limit"])),
     ]);
-    facts.extend(law.map(|law| ("law", law.formula.to_owned())));
+    let mut notes: Vec<_> = law.map(|law| ("law", law.formula.to_owned())).into_iter().collect();
     let note = text(&effect["note"]);
     if !note.is_empty() {
-        facts.push(("told apart", note));
+        notes.push(("told apart", note));
     }
-    facts.extend(law.map(|law| ("source", law.source.to_owned())));
+    notes.extend(law.map(|law| ("source", law.source.to_owned())));
     Card {
         rank: format!("{}.", at + 1),
         summary: law.map_or("A formula of your own.".to_owned(), |law| law.summary.to_owned()),
         facts,
+        notes,
         named: named.contains(&id),
         title: id,
     }

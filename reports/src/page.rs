@@ -64,6 +64,8 @@ pub(crate) struct Card {
     pub(crate) summary: String,
     /// Names and values.
     pub(crate) facts: Vec<(&'static str, String)>,
+    /// Names and texts.
+    pub(crate) notes: Vec<(&'static str, String)>,
     /// Whether it is among those that the verdict names.
     pub(crate) named: bool,
 }

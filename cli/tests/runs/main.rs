@@ -12,6 +12,7 @@ mod folders;
 mod kill;
 mod log;
 mod recover;
+mod reports;
 mod resistive;
 mod shapes;
 mod space;

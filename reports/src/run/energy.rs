@@ -77,6 +77,11 @@ impl Budget {
     }
 }
 
+/// Letters of the numbers along an axis, the same in panels of any height.
+fn small() -> TextStyle<'static> {
+    ("sans-serif", 11.0).into_font().into()
+}
+
 /// What a term of the log counts as.
 enum Account {
     /// A layer of the stack, by name.
@@ -166,6 +171,7 @@ impl Budget {
             .disable_x_mesh()
             .x_labels(0)
             .y_labels(6)
+            .label_style(small())
             .y_desc(format!("energy ({prefix}J)"))
             .axis_desc_style(letters())
             .light_line_style(WHITE)
@@ -204,6 +210,7 @@ impl Budget {
             .disable_x_mesh()
             .x_labels(8)
             .y_labels(3)
+            .label_style(small())
             .x_desc("time (ms)")
             .y_desc(format!("missing (1e{exponent})"))
             .axis_desc_style(letters())

@@ -168,8 +168,9 @@ fn bed(bed: Option<&BedSummary>) -> Vec<Part> {
     row("coordination", format!("{:.2}", bed.coordination));
     if let Some(activity) = &bed.activity {
         row("largest share in motion", format!("{:.1} %", 100.0 * activity.largest_moving_share));
-        let time = fixed(activity.dissipation_time_s.map(|time| 1e3 * time), 1);
-        row("time to dissipate its motion", format!("{time} ms"));
+        if let Some(time) = activity.dissipation_time_s {
+            row("time to dissipate its motion", format!("{:.1} ms", 1e3 * time));
+        }
     }
     let warnings = bed.warnings.iter().map(|warning| Part::Text(format!("Warning: {warning}.")));
     [Part::Table(table)].into_iter().chain(warnings).collect()

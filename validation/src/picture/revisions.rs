@@ -10,7 +10,7 @@ use crate::errors::Errors;
 use crate::measurement::Kind;
 use crate::where_it_fails::WhereItFails;
 
-/// Height (pixels), least width, and width of a step.
+/// Height (pixels), least width, and least width of a step.
 const HEIGHT: u32 = 300;
 const WIDTH: u32 = 640;
 const STEP: u32 = 150;
@@ -40,10 +40,11 @@ pub(crate) fn revisions(found: &WhereItFails<'_>) -> Result<Option<String>, Pict
         return Ok(None);
     }
     let rows = stairs.rows();
-    let wide = (LEFT + STEP * stairs.names.len() as u32).max(WIDTH);
+    let step = ((WIDTH - LEFT) / stairs.names.len() as u32).max(STEP);
+    let wide = LEFT + step * stairs.names.len() as u32;
     svg((wide, HEIGHT + legend::height(rows.len())), |area| {
         let (chart, below) = area.split_vertically(HEIGHT);
-        stairs.draw(&chart)?;
+        stairs.draw(&chart, step)?;
         legend::draw(&below, &rows)
     })
     .map(Some)
@@ -86,7 +87,7 @@ impl Stairs {
         rows
     }
 
-    fn draw(&self, area: &Area<'_>) -> Drawn {
+    fn draw(&self, area: &Area<'_>, step: u32) -> Drawn {
         let n = self.names.len();
         let all = self.errors.iter().flatten().chain(&self.floors).flatten();
         let highest = all.fold(1e-9_f64, |highest, error| highest.max(*error));
@@ -128,7 +129,7 @@ impl Stairs {
         let left = area.get_pixel_range().0.start;
         for (at, name) in self.names.iter().enumerate() {
             let (x, _) = plot.map_coordinate(&(at as f64 + 0.5, 0.0));
-            let name = fitting(name, STEP - 8);
+            let name = fitting(name, step - 8);
             area.draw(&Text::new(name, (x - left, HEIGHT as i32 - 18), centred()))?;
         }
         Ok(())
