@@ -8,9 +8,11 @@ mod check_set;
 mod common;
 mod compare;
 mod compare_runs;
+mod completions;
 mod control;
 mod diagnose;
 mod effects;
+mod export;
 mod new;
 mod next;
 mod output;
@@ -22,7 +24,7 @@ mod workbench;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 /// Impacts on granular beds: simulate them, compare them with measurements, find what is missing.
 #[derive(Debug, Parser)]
@@ -52,8 +54,14 @@ enum Command {
     New(new::Args),
     /// Make the HTML report of a run, a list of runs, a comparison or a diagnosis again.
     Report(report::Args),
+    /// Write a run as files of other programs: tables for notebooks, grains for ParaView and OVITO.
+    Export(export::Args),
     /// Save everything readable of a damaged or unfinished log.
     Recover(recover::Args),
+    /// Print what makes a shell complete the arguments.
+    Completions(completions::CompletionArgs),
+    /// Write manual pages.
+    Man(completions::ManArgs),
 }
 
 fn main() -> ExitCode {
@@ -75,7 +83,10 @@ fn main() -> ExitCode {
         Command::Effects(args) => effects::run(&args),
         Command::New(args) => new::run(&args),
         Command::Report(args) => report::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Recover(args) => recover::run(&args),
+        Command::Completions(args) => completions::completions(&args, Cli::command()),
+        Command::Man(args) => completions::man(&args, Cli::command()),
     };
     output::conclude(result)
 }

@@ -1,4 +1,5 @@
 //! Files in and out of plunge: what reads, repairs and converts logs.
 
+pub mod export;
 pub mod read;
 pub mod recover;

@@ -21,7 +21,7 @@ const ALLOWED: [(&str, &[&str]); 9] = [
 ];
 
 /// Crates of others that are kept behind one of ours (two where a second reads what the first writes).
-const ONLY: [(&str, &[&str]); 28] = [
+const ONLY: [(&str, &[&str]); 30] = [
     ("annotate-snippets", &["configs"]),
     ("anyhow", &["plunge", "xtask"]),
     ("askama", &["reports"]),
@@ -29,6 +29,8 @@ const ONLY: [(&str, &[&str]); 28] = [
     ("argmin-math", &["validation"]),
     ("arrow", &["exchange"]),
     ("clap", &["plunge"]),
+    ("clap_complete", &["plunge"]),
+    ("clap_mangen", &["plunge"]),
     ("comfy-table", &["plunge"]),
     ("exmex", &["contact-laws"]),
     ("foxglove", &["engine"]),
