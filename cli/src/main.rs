@@ -14,6 +14,7 @@ mod diagnose;
 mod effects;
 mod export;
 mod new;
+mod new_set;
 mod next;
 mod output;
 mod own_effects;
@@ -50,7 +51,7 @@ enum Command {
     Add(add::Args),
     /// Describe the laws and effects that a model can use.
     Effects(effects::Args),
-    /// Write a commented starter model.
+    /// Write a commented starter model, or, called `measurements`, a measurement set.
     New(new::Args),
     /// Make the HTML report of a run, a list of runs, a comparison or a diagnosis again.
     Report(report::Args),

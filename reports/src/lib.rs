@@ -1,4 +1,4 @@
-//! Reports: one HTML page per run, list of runs, comparison or diagnosis.
+//! Reports: one HTML page per run, list of runs, comparison, diagnosis or measurement set.
 //!
 //! A page holds its figures, its style and its script, asks nothing of any network, and reads on
 //! screen, in the dark and on paper. It is made of the files of one folder and of nothing else, so that
@@ -13,6 +13,7 @@ mod list;
 mod numbers;
 mod page;
 pub mod run;
+mod set;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -26,6 +27,8 @@ use thiserror::Error;
 use validation::picture::PictureError;
 
 pub use diagnosis::verdict_in_words;
+pub use run::sparkline;
+pub use set::of_set;
 
 /// Name of a report in its folder.
 pub const FILE: &str = "report.html";

@@ -7,6 +7,7 @@ mod common;
 mod compare_runs;
 mod conditions;
 mod csv;
+mod export;
 mod failures;
 mod folders;
 mod kill;

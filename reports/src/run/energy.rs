@@ -30,9 +30,9 @@ pub(super) struct Budget {
     layers: Vec<Layer>,
     /// What the impact, the weights and whatever puts energy in have supplied (J), at each time.
     supplied: Vec<f64>,
-    /// (J), at each time.
-    unaccounted: Vec<f64>,
-    /// What `unaccounted` is counted in (J).
+    /// What is supplied and in no layer (J), at each time.
+    missing: Vec<f64>,
+    /// What `missing` is counted in (J).
     scale: f64,
 }
 
@@ -71,7 +71,7 @@ impl Budget {
             time: energy.time.iter().map(|time| 1e3 * time).collect(),
             layers,
             supplied,
-            unaccounted: energy.unaccounted.clone(),
+            missing: energy.unaccounted.iter().map(|energy| -energy).collect(),
             scale,
         })
     }
@@ -194,7 +194,7 @@ impl Budget {
     }
 
     fn draw_rest(&self, area: &Area<'_>) -> Drawn {
-        let shares: Vec<f64> = self.unaccounted.iter().map(|value| value / self.scale).collect();
+        let shares: Vec<f64> = self.missing.iter().map(|value| value / self.scale).collect();
         let most = shares.iter().fold(1e-15_f64, |most, share| most.max(share.abs()));
         // Labels of such numbers fit no axis as they are.
         let exponent = libm::log10(most).floor();
@@ -219,7 +219,7 @@ impl Budget {
             .draw()?;
         let line = self.time.iter().zip(&shares).map(|(t, share)| (*t, factor * share));
         chart.draw_series(LineSeries::new(line, colour(1).stroke_width(2)))?;
-        let text = |place: usize| format!("unaccounted for: {:.2e} of the impact", shares[place]);
+        let text = |place: usize| format!("missing: {:.2e} of the impact", shares[place]);
         chart.draw_series(
             self.columns(text)
                 .into_iter()
@@ -268,7 +268,7 @@ mod tests {
             .into(),
             time: vec![0.0, 1.0],
             values: vec![vec![1.0, 0.0], vec![0.2, 0.7], vec![0.0, 0.49]],
-            unaccounted: vec![0.0, 0.01],
+            unaccounted: vec![0.0, -0.01],
             closure: vec![0.0, 0.01],
         };
         Course { bodies: Vec::new(), energy: Some(budget), complete: true }
@@ -280,7 +280,7 @@ mod tests {
         assert_eq!(budget.supplied, [1.0, 0.5]);
         let stacked: f64 = budget.layers.iter().map(|layer| layer.values[1]).sum();
         // Sums of three numbers near one.
-        assert!((budget.supplied[1] - stacked - budget.unaccounted[1]).abs() < 1e-15);
+        assert!((budget.supplied[1] - stacked - budget.missing[1]).abs() < 1e-15);
         assert!((budget.scale - 1.0).abs() < 1e-12, "the energy at impact, by a division");
     }
 
@@ -292,7 +292,7 @@ mod tests {
             time: vec![0.0],
             layers: vec![layer(&[2.0]), layer(&[-1.0]), layer(&[3.0])],
             supplied: vec![4.0],
-            unaccounted: vec![0.0],
+            missing: vec![0.0],
             scale: 1.0,
         };
         let edges: Vec<(f64, f64)> = budget.edges().into_iter().flatten().collect();

@@ -12,6 +12,7 @@ use configs::run::{BedSummary, ForceSummary, LinkSummary, StopSummary, Summary};
 pub use course::Course;
 pub(crate) use pair::page as pair_page;
 pub use pair::picture as pair_picture;
+pub use sparkline::sparkline;
 
 use crate::ReportError;
 use crate::figure::figure;
@@ -134,7 +135,7 @@ fn energy_section(summary: &Summary, course: &Course) -> Result<Vec<Part>, Repor
         row("of the grains, more than before", energy.at_end.grains);
     }
     row("in springs, more than before", energy.at_end.elastic);
-    row("unaccounted for", energy.unaccounted);
+    row("unaccounted for", -energy.unaccounted);
     parts.push(Part::Table(table));
     Ok(parts)
 }
