@@ -1,7 +1,7 @@
 //! Runs as files of other programs: tables for notebooks, grains for ParaView and OVITO.
 //!
-//! A [`Format`] is one file of this folder: tables of numbers go through [`tables`], states of grains
-//! through [`grains`]. A file has its name once it is whole.
+//! A [`Format`] is one file of this folder: tables of numbers go through `tables.rs`, states of grains
+//! through `grains.rs`. A file has its name once it is whole.
 
 mod csv;
 mod extended_xyz;
