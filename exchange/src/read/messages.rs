@@ -68,7 +68,7 @@ pub(crate) fn each_message<R: Receiver>(path: &Path, receiver: &mut R) -> Result
                     let message = schemas
                         .get(&channel.schema_id)
                         .ok_or_else(|| "its messages come without a descriptor".to_owned())
-                        .and_then(|schema| described(schema))
+                        .and_then(described)
                         .map_err(refusal)?;
                     let known = receiver.introduce(&channel.topic, &message).map_err(refusal)?;
                     channels.insert(channel.id, known);
