@@ -1,13 +1,16 @@
 //! `plunge check SET`: what is understood of a measurement set.
 
+use std::fs;
 use std::path::Path;
 
+use anyhow::Context as _;
 use configs::{Color, Sources, document, limits, paths};
 use serde_json::{Value, json};
-use validation::measurement::{Loaded, MeasurementSet, Role};
+use validation::measurement::{Loaded, MeasurementSet, Role, Run};
 
 use crate::common::Common;
 use crate::output::{self, CommandError, CommandResult, stderr_color};
+use crate::workbench::write_whole;
 
 /// The file of a set, in its folder.
 const SET: &str = "measurement.toml";
@@ -42,10 +45,54 @@ pub(crate) fn run(path: &Path, common: &Common) -> CommandResult {
     if !common.quiet {
         output::to_stderr(&loaded.render_warnings(stderr_color()));
     }
+    if let Some(out) = &common.out {
+        draw(&loaded, out, common.force)?;
+    }
     match common.json {
         true => output::json_to_stdout(&as_json(&loaded)),
-        false => output::to_stdout(&loaded.describe()),
+        false => output::to_stdout(&as_text(&loaded, common.out.as_deref())),
     }
+}
+
+/// Leaves the page of a set in the folder `out`.
+fn draw(loaded: &Loaded, out: &Path, replace: bool) -> CommandResult {
+    let file = out.join(reports::FILE);
+    if file.exists() && !replace {
+        return Err(CommandError::bad_input(format!(
+            "{} exists already; choose another --out, or --force to replace it",
+            file.display()
+        )));
+    }
+    let page = reports::of_set(loaded).map_err(anyhow::Error::new)?;
+    fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
+    write_whole(&file, &page)
+}
+
+/// Width of a path in the text (characters).
+const SPARKLINE: usize = 32;
+
+fn as_text(loaded: &Loaded, out: Option<&Path>) -> String {
+    let mut text = loaded.describe();
+    let moving = loaded.set.runs.iter().filter(|run| !run.frames.is_empty());
+    let lines: Vec<String> = moving.map(path).collect();
+    if !lines.is_empty() {
+        text.push_str(&format!("\ndepth over time, from first contact\n{}", lines.concat()));
+    }
+    if let Some(out) = out {
+        text.push_str(&format!("\n-> {}\n", out.join(reports::FILE).display()));
+    }
+    text
+}
+
+/// A run as one line: its name, its path and how far that goes.
+fn path(run: &Run) -> String {
+    let frames = run.frames.iter().filter(|frame| frame.t >= 0.0);
+    let points: Vec<(f64, f64)> = frames.map(|frame| (frame.t, frame.z.max(0.0))).collect();
+    let deepest = points.iter().fold(0.0_f64, |most, point| most.max(point.1));
+    let last = points.last().map_or(0.0, |point| point.0);
+    let curve = reports::sparkline(&points, SPARKLINE);
+    let (name, deepest, last) = (&run.name, 1e3 * deepest, 1e3 * last);
+    format!("  {name:<12} {curve}  {deepest:.2} mm in {last:.1} ms\n")
 }
 
 fn as_json(loaded: &Loaded) -> Value {

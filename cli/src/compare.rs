@@ -14,6 +14,7 @@ use validation::where_it_fails::WhereItFails;
 
 use crate::compare_runs::{self, Found};
 use crate::output::{self, CommandError, CommandResult};
+use crate::report;
 use crate::workbench::{Flags, failed};
 
 /// Arguments of `plunge compare`.
@@ -81,6 +82,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let where_it_fails =
         WhereItFails::of_comparison(&measured.set, &measured.observed, &comparison);
     files.extend(where_it_fails.files().map_err(anyhow::Error::new)?);
+    files.extend(report::of_results(&files, flags.quiet));
     results.write(&files)?;
     match flags.json {
         true => output::json_to_stdout(&object),

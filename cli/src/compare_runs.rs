@@ -7,11 +7,13 @@ use std::path::{Path, PathBuf};
 use anyhow::Context as _;
 use configs::run::Summary;
 use exchange::read::{BodyStates, Keep, read_run};
+use reports::run::Course;
 use serde_json::{Map, Value, json};
 use validation::runs::{Change, PathDifference, StopDifference, Track, TrackPoint, Values};
 
 use crate::compare::{lines, table};
 use crate::output::{self, CommandError, CommandResult};
+use crate::report;
 use crate::workbench::Flags;
 
 /// The summary of a run, or of a list of them.
@@ -93,7 +95,7 @@ pub(crate) fn run(folders: [&Path; 2], flags: &Flags) -> CommandResult {
     let object = as_json(&runs, &paths, &stops);
     let results = flags.chosen_results(&inputs(folders)?)?;
     if let Some(results) = &results {
-        results.write(&[("comparison.json".to_owned(), format!("{object:#}\n"))])?;
+        results.write(&files(&runs, folders, &object, flags.quiet)?)?;
     }
     if flags.json {
         return output::json_to_stdout(&object);
@@ -101,11 +103,33 @@ pub(crate) fn run(folders: [&Path; 2], flags: &Flags) -> CommandResult {
     let mut text = as_text(&runs, &paths, &stops);
     match results {
         Some(results) => {
-            text.push_str(&format!("\nwritten to {}: comparison.json\n", results.shown()));
+            let shown = results.shown();
+            let names = format!("comparison.json, paths.svg, {}", reports::FILE);
+            text.push_str(&format!("\nwritten to {shown}: {names}\n"));
         }
         None => text.push_str("\nnothing was written; --out says where to\n"),
     }
     output::to_stdout(&text)
+}
+
+/// Names and texts of what is written.
+fn files(
+    runs: &[Run; 2],
+    folders: [&Path; 2],
+    object: &Value,
+    quiet: bool,
+) -> Result<Vec<(String, String)>, CommandError> {
+    let courses = [Course::read(folders[0]), Course::read(folders[1])];
+    let [first, second] = courses.map(|course| course.map_err(CommandError::bad_input));
+    let (first, second) = (first?, second?);
+    let picture = reports::run::pair_picture([(&runs[0].name, &first), (&runs[1].name, &second)])
+        .map_err(|error| CommandError::Failed(error.into()))?;
+    let mut files = vec![
+        ("comparison.json".to_owned(), format!("{object:#}\n")),
+        ("paths.svg".to_owned(), picture),
+    ];
+    files.extend(report::of_results(&files, quiet));
+    Ok(files)
 }
 
 /// A run as far as it is compared.

@@ -15,6 +15,7 @@ use crate::add::from_diagnosis;
 use crate::compare::{lines, noise_words, probability, table};
 use crate::next;
 use crate::output::{self, CommandError, CommandResult};
+use crate::report;
 use crate::workbench::{Candidate, Flags, failed};
 
 /// Arguments of `plunge diagnose`.
@@ -48,12 +49,13 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let where_it_fails = WhereItFails::of_diagnosis(&bench, &model.name, &diagnosis, flags.seed)
         .map_err(|error| failed(error, &model.name))?;
     files.extend(where_it_fails.files().map_err(anyhow::Error::new)?);
+    files.extend(report::of_results(&files, flags.quiet));
     results.write(&files)?;
     if flags.json {
         return output::to_stdout(&text);
     }
     let n = [&measured.observed.fit, &measured.observed.holdout].map(Vec::len);
-    let mut text = as_text(&model.name, &diagnosis, n);
+    let mut text = as_text(&model.name, (&diagnosis, &object), n);
     text.push_str(&next::as_text(&diagnosis, &next));
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     text.push_str(&format!("\nwritten to {}: {}\n", results.shown(), names.join(", ")));
@@ -86,7 +88,11 @@ fn propose(
         .collect()
 }
 
-fn as_text(model: &str, diagnosis: &Diagnosis, [n_fit, n_holdout]: [usize; 2]) -> String {
+fn as_text(
+    model: &str,
+    (diagnosis, object): (&Diagnosis, &Value),
+    [n_fit, n_holdout]: [usize; 2],
+) -> String {
     let mut text = format!(
         "Model {model}: {n_fit} conditions to fit, {n_holdout} held out. Errors {}.\n",
         noise_words(&diagnosis.noise)
@@ -105,7 +111,7 @@ fn as_text(model: &str, diagnosis: &Diagnosis, [n_fit, n_holdout]: [usize; 2]) -
     if let Some(p) = diagnosis.p_lof_with {
         text.push_str(&format!("\nLack of fit with the best: p {}.\n", probability(p)));
     }
-    text.push_str(&format!("\nVERDICT  {}\n", verdict(diagnosis)));
+    text.push_str(&format!("\nVERDICT  {}\n", reports::verdict_in_words(object)));
     if !diagnosis.unexplained.hint.is_empty() {
         text.push_str(&format!("{}.\n", diagnosis.unexplained.hint));
     }
@@ -159,27 +165,6 @@ fn ranking(diagnosis: &Diagnosis) -> String {
         text.push_str(&format!(" not testable: {} ({})\n", effect.id, effect.note));
     }
     text
-}
-
-fn verdict(diagnosis: &Diagnosis) -> String {
-    let suggested = match diagnosis.strength {
-        validation::verdict::Strength::Supported => "",
-        validation::verdict::Strength::Suggested => " (suggested)",
-    };
-    match diagnosis.verdict {
-        Verdict::NothingDetected => "nothing detected: the data are explained".to_owned(),
-        Verdict::Supported => format!("supported: {}{suggested}", diagnosis.effects.join(", ")),
-        Verdict::NotSeparable => format!(
-            "one of {{{}}}{suggested}: these data cannot tell them apart",
-            diagnosis.not_separable.join(", ")
-        ),
-        Verdict::Pair => format!(
-            "pair: {}{suggested}, or one effect outside the list",
-            diagnosis.effects.join(" + ")
-        ),
-        Verdict::NoneOfTheCandidates => "none of the candidates".to_owned(),
-        Verdict::CannotTell => "cannot tell".to_owned(),
-    }
 }
 
 fn held_out(diagnosis: &Diagnosis) -> String {

@@ -8,21 +8,24 @@ mod check_set;
 mod common;
 mod compare;
 mod compare_runs;
+mod completions;
 mod control;
 mod diagnose;
 mod effects;
 mod export;
 mod new;
+mod new_set;
 mod next;
 mod output;
 mod own_effects;
 mod recover;
+mod report;
 mod run;
 mod workbench;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 /// Impacts on granular beds: simulate them, compare them with measurements, find what is missing.
 #[derive(Debug, Parser)]
@@ -48,12 +51,18 @@ enum Command {
     Add(add::Args),
     /// Describe the laws and effects that a model can use.
     Effects(effects::Args),
-    /// Write an impact on a bed for another simulator.
-    Export(export::Args),
-    /// Write a commented starter model.
+    /// Write a commented starter model, or, called `measurements`, a measurement set.
     New(new::Args),
+    /// Make the HTML report of a run, a list of runs, a comparison or a diagnosis again.
+    Report(report::Args),
+    /// Write a run or an impact as files of other programs: tables, grains for viewers, a LAMMPS input.
+    Export(export::Args),
     /// Save everything readable of a damaged or unfinished log.
     Recover(recover::Args),
+    /// Print what makes a shell complete the arguments.
+    Completions(completions::CompletionArgs),
+    /// Write manual pages.
+    Man(completions::ManArgs),
 }
 
 fn main() -> ExitCode {
@@ -73,9 +82,12 @@ fn main() -> ExitCode {
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Add(args) => add::run(&args),
         Command::Effects(args) => effects::run(&args),
-        Command::Export(args) => export::run(&args),
         Command::New(args) => new::run(&args),
+        Command::Report(args) => report::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Recover(args) => recover::run(&args),
+        Command::Completions(args) => completions::completions(&args, Cli::command()),
+        Command::Man(args) => completions::man(&args, Cli::command()),
     };
     output::conclude(result)
 }

@@ -8,12 +8,14 @@ use anyhow::Context;
 use configs::{SHIPPED, Shipped, find_shipped, nearest};
 use serde_json::json;
 
+use crate::new_set;
 use crate::output::{self, CommandError, CommandResult};
 
 /// Arguments of `plunge new`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// Name of the model and, with .toml, of the file: a-z, 0-9, - and _.
+    /// Name of the model and, with .toml, of the file: a-z, 0-9, - and _. The name `measurements` makes a
+    /// folder of that name with a measurement set.
     #[arg(required_unless_present = "list")]
     name: Option<String>,
     /// The shipped model to start from.
@@ -35,6 +37,9 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         (Some(name), false) => name,
         _ => return list(args.json),
     };
+    if name == new_set::NAME {
+        return new_set::run(args.json, args.quiet);
+    }
     let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
     if name.is_empty() || name.len() > 64 || !name.chars().all(fits) {
         return Err(CommandError::bad_input(format!(

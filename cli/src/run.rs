@@ -6,10 +6,15 @@ use std::path::{Path, PathBuf};
 use configs::run::{
     BedSummary, CostSummary, Existing, LinkSummary, ListSummary, Outcome, Places, Scatter, Summary,
 };
+use reports::run::Course;
 
 use crate::common::Common;
 use crate::control::Terminal;
 use crate::output::{self, CommandError, CommandResult};
+use crate::report;
+
+/// Width of a curve in the text (characters).
+const SPARKLINE: usize = 40;
 
 /// Arguments of `plunge run`.
 #[derive(clap::Args, Debug)]
@@ -40,16 +45,18 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     terminal.clear();
     match outcome.map_err(CommandError::from)? {
         Outcome::One(summary) => {
-            report(common.json, &*summary, || one_as_text(&summary, &places.out))
+            let course = report::of_run(&places.out, &summary, common.quiet);
+            show(common.json, &*summary, || one_as_text(&summary, course.as_ref(), &places.out))
         }
         Outcome::List(summary) => {
-            report(common.json, &*summary, || list_as_text(&summary, &places.out))
+            report::of_list(&places.out, &summary, common.quiet);
+            show(common.json, &*summary, || list_as_text(&summary, &places.out))
         }
         Outcome::Interrupted => Err(terminal.interrupted("--resume goes on from here")),
     }
 }
 
-fn report<T: serde::Serialize>(
+fn show<T: serde::Serialize>(
     json: bool,
     summary: &T,
     text: impl FnOnce() -> String,
@@ -61,7 +68,7 @@ fn report<T: serde::Serialize>(
     }
 }
 
-fn one_as_text(summary: &Summary, out: &Path) -> String {
+fn one_as_text(summary: &Summary, course: Option<&Course>, out: &Path) -> String {
     let Summary { impact, stop, energy, cost, .. } = summary;
     let ground = match &summary.bed {
         Some(bed) => format!("onto {} grains", bed.grains),
@@ -89,6 +96,10 @@ fn one_as_text(summary: &Summary, out: &Path) -> String {
     line("at rest after", time(stop.rest_time_s));
     line("depth", format!("{:.2} mm", 1e3 * stop.depth_m));
     line("range", format!("{:.2} mm", 1e3 * stop.range_m));
+    if let Some([depth, speed]) = course.map(|course| course.sparklines(SPARKLINE)) {
+        line("depth over time", depth);
+        line("speed over time", speed);
+    }
     if let Some(bed) = &summary.bed {
         line("bed", bed_as_text(bed));
     }

@@ -21,7 +21,8 @@ const SEED: u64 = 1;
 const INPUTS: &str = "inputs.blake3";
 
 /// What these commands write, besides proposed models and [`where_it_fails::FILES`].
-const RESULTS: [&str; 4] = [INPUTS, "comparison.json", "comparison.svg", "diagnosis.json"];
+const RESULTS: [&str; 6] =
+    [INPUTS, "comparison.json", "comparison.svg", "diagnosis.json", "paths.svg", reports::FILE];
 
 /// The flags of commands about a measurement set.
 #[derive(Args, Clone, Debug)]
@@ -40,7 +41,7 @@ pub(crate) struct Flags {
     pub(crate) json: bool,
     /// No notes and no warnings.
     #[arg(long)]
-    quiet: bool,
+    pub(crate) quiet: bool,
     /// Replace results of other inputs.
     #[arg(long)]
     force: bool,

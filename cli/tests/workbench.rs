@@ -141,6 +141,7 @@ fn where_a_model_fails_is_written_and_listed_and_old_views_do_not_stay() {
         "errors.svg",
         "force_errors.csv",
         "map-speed-angle.svg",
+        "report.html",
         "residuals.csv",
         "where_it_fails.json",
     ];

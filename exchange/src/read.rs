@@ -5,6 +5,7 @@
 //! carries: fields are found by their names, wherever a version of plunge has put them.
 
 mod fields;
+pub(crate) mod messages;
 mod records;
 mod series;
 #[cfg(test)]

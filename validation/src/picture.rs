@@ -1,28 +1,38 @@
 //! Pictures of a report, as SVG: the same input gives the same bytes.
 
+mod canvas;
 mod comparison;
 mod covariates;
 mod depth;
 mod errors;
-mod legend;
+pub mod legend;
+mod measured;
 mod multiples;
 mod residuals;
+mod revisions;
 mod signatures;
 mod signed;
 mod speed_angle;
+mod trajectories;
+
+use std::cell::RefCell;
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use thiserror::Error;
 
+pub use self::canvas::{Canvas, Hover};
 pub use self::comparison::comparison;
 pub(crate) use self::covariates::covariates;
 pub(crate) use self::depth::depth;
 pub(crate) use self::errors::errors;
+pub use self::measured::measured;
 pub(crate) use self::residuals::residuals;
+pub(crate) use self::revisions::revisions;
 pub(crate) use self::signatures::signatures;
 pub(crate) use self::speed_angle::speed_angle;
+pub(crate) use self::trajectories::trajectories;
 
 /// Why there is no picture.
 #[derive(Debug, Error)]
@@ -41,7 +51,7 @@ const COLOURS: [RGBColor; 7] = [
 ];
 
 /// Bands, and what is not known.
-const GREY: RGBColor = RGBColor(222, 222, 222);
+pub const GREY: RGBColor = RGBColor(222, 222, 222);
 
 /// Standard errors to either side that 95 % of normal numbers lie within.
 const TWO_SIDED_95: f64 = 1.96;
@@ -52,34 +62,42 @@ const LETTERS: f64 = 13.0;
 /// Width of a letter of that size, on average (pixels).
 const LETTER: f64 = 6.6;
 
-pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// A part of a picture.
+pub type Area<'a> = DrawingArea<Canvas<'a>, Shift>;
 
-pub(crate) type Drawn =
-    Result<(), DrawingAreaErrorKind<<SVGBackend<'static> as DrawingBackend>::ErrorType>>;
+/// What drawing comes to.
+pub type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 /// A picture of `size` (pixels) on white.
-pub(crate) fn svg(
+///
+/// # Errors
+/// What `draw` comes to.
+pub fn svg(
     size: (u32, u32),
     draw: impl for<'a> FnOnce(&Area<'a>) -> Drawn,
 ) -> Result<String, PictureError> {
     let mut text = String::new();
+    let hovers = RefCell::default();
     {
-        let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
+        let area = Canvas::new(&mut text, size, &hovers).into_drawing_area();
         area.fill(&WHITE)
             .and_then(|()| draw(&area))
             .and_then(|()| area.present())
             .map_err(|error| PictureError(error.to_string()))?;
     }
+    canvas::lay_over(&mut text, &hovers.into_inner());
     Ok(text)
 }
 
 /// The colour of model, effect or series `index`.
-pub(crate) fn colour(index: usize) -> RGBColor {
+#[must_use]
+pub fn colour(index: usize) -> RGBColor {
     COLOURS[index % COLOURS.len()]
 }
 
 /// Letters that begin at their place.
-fn letters() -> TextStyle<'static> {
+#[must_use]
+pub fn letters() -> TextStyle<'static> {
     ("sans-serif", LETTERS).into_font().into()
 }
 
@@ -94,7 +112,8 @@ fn upright() -> TextStyle<'static> {
 }
 
 /// A number as labels have it: three digits, no zeros behind the point.
-fn short(value: f64) -> String {
+#[must_use]
+pub fn short(value: f64) -> String {
     let text = format!("{value:.2e}");
     text.parse::<f64>().map_or(text, |value| value.to_string())
 }

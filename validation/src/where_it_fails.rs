@@ -23,7 +23,7 @@ use crate::residual::{Residual, residuals};
 use crate::verdict::Diagnosis;
 
 /// Names of all files that there may be.
-pub const FILES: [&str; 10] = [
+pub const FILES: [&str; 12] = [
     "force_errors.csv",
     "residuals.csv",
     "signatures.csv",
@@ -33,6 +33,8 @@ pub const FILES: [&str; 10] = [
     "residuals.svg",
     "covariates.svg",
     "errors.svg",
+    "revisions.svg",
+    "trajectories.svg",
     "signatures.svg",
 ];
 
@@ -154,6 +156,8 @@ impl<'a> WhereItFails<'a> {
             picture::residuals(self)?,
             picture::covariates(self)?,
             picture::errors(self)?,
+            picture::revisions(self)?,
+            picture::trajectories(self)?,
             picture::signatures(self)?,
         ];
         let named = FILES.iter().zip(texts);

@@ -40,6 +40,31 @@ fn a_set_by_another_name_is_known_by_its_table() {
 }
 
 #[test]
+fn a_new_set_is_drawn_compared_and_not_written_over() {
+    let here = folder();
+    let call = |arguments: &[&str]| Call::new(arguments).inside(here.path());
+    let written = call(&["new", "measurements", "--json"]).done().json();
+    assert_eq!(written["files"][0], "measurement.toml");
+    assert!(call(&["new", "measurements"]).fails(2).contains("exists already"));
+    let text = call(&["check", "measurements", "--out", "seen"]).done().stdout;
+    // Twelve runs with their paths, which end at the height of a full block.
+    assert_eq!(
+        text.lines().filter(|line| line.contains('█') && line.contains(" mm in ")).count(),
+        12
+    );
+    let page = fs::read_to_string(here.path().join("seen/report.html")).expect("a page");
+    assert!(page.matches("</title></").count() > 150, "every reading says its value");
+    assert!(call(&["check", "measurements", "--out", "seen"]).fails(2).contains("--force"));
+    let found = call(&["compare", "measurements", "--json"]).done().json();
+    // Coefficients were drawn to 5 % around those of another sphere, readings to 0.1 mm.
+    let error = found["models"][0]["rms"]["fit"]["z_m"].as_f64().expect("an error");
+    assert!(error < 1e-3, "{found}");
+    let report = here.path().join("runs/my-drops-compare/report.html");
+    let report = fs::read_to_string(report).expect("a report");
+    assert!(report.contains("Measured paths and velocities"), "trajectories are drawn");
+}
+
+#[test]
 fn a_bad_set_is_bad_input_with_the_place() {
     let here = folder();
     let text = fs::read_to_string(shipped("katsuragi-durian").join("measurement.toml"));

@@ -39,7 +39,8 @@ fn every_condition_has_its_folder_and_the_summary_has_their_mean_and_scatter() {
     let expected = [(1.0, 90.0), (1.0, 30.0), (2.0, 90.0), (2.0, 30.0)];
     for (index, run) in runs.iter().enumerate() {
         let sub = out.path().join(format!("{:03}", index + 1));
-        let files = [".lock", "grains.mcap", "model.toml", "run.mcap", "summary.json"];
+        let files =
+            [".lock", "grains.mcap", "model.toml", "report.html", "run.mcap", "summary.json"];
         assert_eq!(names(&sub), files);
         assert_eq!(*run, summary(&sub));
         let (speed, angle) = expected[index / 3];

@@ -187,6 +187,7 @@ fn force_removes_every_file_of_earlier_runs_and_no_other() {
         "2024",
         "grains.mcap",
         "model.toml",
+        "report.html",
         "run.mcap",
         "summary.json",
     ];

@@ -72,7 +72,10 @@ fn every_shipped_model_stops_with_a_closed_ledger() {
         // The ledger's own closure, and the round-off of a dozen terms.
         assert!((found / initial - 1.0).abs() < 1e-8, "{model}: {found} J of {initial} J");
         assert!(summary.get("bed").is_none() && summary.get("links").is_none());
-        assert_eq!(names(out.path()), [".lock", "model.toml", "run.mcap", "summary.json"]);
+        assert_eq!(
+            names(out.path()),
+            [".lock", "model.toml", "report.html", "run.mcap", "summary.json"]
+        );
     }
 }
 
@@ -179,7 +182,10 @@ fn a_list_of_conditions_gives_a_folder_each_and_is_reported_again_as_it_is() {
     assert_eq!(list["medium"], "resistive-force");
     assert_eq!(list["runs"].as_array().expect("runs").len(), 4);
     let found = names(out.path());
-    assert_eq!(found, [".lock", "001", "002", "003", "004", "model.toml", "summary.json"]);
+    assert_eq!(
+        found,
+        [".lock", "001", "002", "003", "004", "model.toml", "report.html", "summary.json"]
+    );
     assert_eq!(list["runs"][3]["impact"]["angle_deg"], 60.0);
     assert_eq!(run("two-term-components", out.path(), &set).json(), list);
 }
@@ -197,7 +203,10 @@ fn other_inputs_are_refused_and_an_unfinished_run_starts_again() {
     again().arg("--resume").done();
     let read = |folder: &Path| fs::read(folder.join("run.mcap")).expect("a log");
     assert!(read(out.path()) == read(whole.path()));
-    assert_eq!(names(out.path()), [".lock", "model.toml", "run.mcap", "summary.json"]);
+    assert_eq!(
+        names(out.path()),
+        [".lock", "model.toml", "report.html", "run.mcap", "summary.json"]
+    );
 }
 
 #[test]

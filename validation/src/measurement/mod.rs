@@ -25,12 +25,14 @@ mod row;
 mod runs;
 mod signs;
 mod table;
+mod template;
 mod trajectories;
 mod unstated;
 mod write;
 
 pub use feasible::Feasible;
 pub use load::{Loaded, SetError};
+pub use template::TEMPLATE;
 pub use write::WriteError;
 
 /// Measurements of impacts under one or more conditions.

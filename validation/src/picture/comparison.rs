@@ -3,7 +3,7 @@
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
-use super::{Area, COLOURS, Drawn, PictureError, svg};
+use super::{Area, COLOURS, Drawn, Hover, PictureError, short, svg};
 use crate::compare::Comparison;
 use crate::measurement::{MeasurementSet, Role};
 use crate::observable::Observable;
@@ -16,6 +16,7 @@ const DASHES: [(u32, u32); 4] = [(4, 3), (1, 0), (9, 3), (2, 2)];
 
 /// A number of one condition, measured and predicted.
 struct Point {
+    condition: String,
     angle_deg: f64,
     speed: f64,
     measured: f64,
@@ -29,6 +30,26 @@ struct Panel {
     title: &'static str,
     scale: f64,
     points: Vec<Point>,
+}
+
+impl Panel {
+    /// The numbers of `point`, as whoever points at it reads them; `names` are those of the revisions.
+    fn says(&self, point: &Point, names: &[&str]) -> String {
+        let shown = |value: f64| short(self.scale * value);
+        let mut text = format!(
+            "{}: {} m/s, {}\u{b0}\n{}\nmeasured {} \u{b1} {}",
+            point.condition,
+            point.speed,
+            point.angle_deg,
+            self.title,
+            shown(point.measured),
+            shown(point.error)
+        );
+        for (name, predicted) in names.iter().zip(&point.predicted) {
+            text.push_str(&format!("\n{name}: {}", shown(*predicted)));
+        }
+        text
+    }
 }
 
 /// Scalars over speed, a colour per angle and a dash per revision, as SVG; `None` where a set has
@@ -64,6 +85,7 @@ fn panels(set: &MeasurementSet, comparison: &Comparison) -> Vec<Panel> {
         };
         let condition = &set.conditions[number.condition];
         panels[panel].points.push(Point {
+            condition: condition.id.clone(),
             angle_deg: condition.angle_deg,
             speed: condition.speed,
             measured: number.measured,
@@ -83,7 +105,7 @@ fn panels(set: &MeasurementSet, comparison: &Comparison) -> Vec<Panel> {
 fn draw(area: &Area<'_>, panels: &[Panel], names: &[&str]) -> Drawn {
     let (charts, legend) = area.split_vertically(PANEL.1);
     for (panel, chart) in panels.iter().zip(charts.split_evenly((1, panels.len()))) {
-        draw_panel(&chart, panel)?;
+        draw_panel(&chart, panel, names)?;
     }
     let font = ("sans-serif", 14).into_font();
     for (row, name) in names.iter().enumerate() {
@@ -100,7 +122,7 @@ fn draw(area: &Area<'_>, panels: &[Panel], names: &[&str]) -> Drawn {
     legend.draw(&Text::new(note, (80, y - 7), font))
 }
 
-fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
+fn draw_panel(area: &Area<'_>, panel: &Panel, names: &[&str]) -> Drawn {
     let mut angles: Vec<f64> = panel.points.iter().map(|point| point.angle_deg).collect();
     angles.sort_by(f64::total_cmp);
     angles.dedup();
@@ -137,6 +159,8 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
             let fill = if point.held_out { WHITE.filled() } else { colour.filled() };
             chart.draw_series([Circle::new(at(point.measured), 4, fill)])?;
             chart.draw_series([Circle::new(at(point.measured), 4, colour.stroke_width(1))])?;
+            let hover = Hover::at(at(point.measured), panel.says(point, names));
+            chart.draw_series([hover])?;
         }
         if angles.len() > 1
             && let Some(last) = points.last()

@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 
 use super::legend::{self, Sign};
-use super::{Area, Drawn, PictureError, TWO_SIDED_95, colour, letters, padded, svg};
+use super::{Area, Drawn, Hover, PictureError, TWO_SIDED_95, colour, letters, padded, short, svg};
 use crate::covariate::{self, Covariate};
 use crate::force_error::{ForceError, Trend};
 use crate::where_it_fails::WhereItFails;
@@ -15,6 +15,7 @@ const COLUMNS: usize = 3;
 
 /// Errors and trend of one model.
 struct Series<'a> {
+    model: &'a str,
     errors: Vec<&'a ForceError>,
     trend: Option<&'a Trend>,
 }
@@ -65,6 +66,7 @@ fn series<'a>(found: &'a WhereItFails<'_>, name: &str) -> Vec<Series<'a>> {
         let errors = &model.force_errors;
         let groups = errors.groups.iter().map(|group| &group.error);
         Series {
+            model: &model.model,
             errors: groups.filter(|error| error.over == name).collect(),
             trend: errors.trends.iter().find(|trend| trend.over == name),
         }
@@ -90,11 +92,12 @@ fn draw_panel(area: &Area<'_>, covariate: Covariate, all: &[Series<'_>]) -> Draw
         .build_cartesian_2d(across, padded(-100.0 * highest, 100.0 * highest))?;
     let Covariate { heading, unit, .. } = covariate;
     let heading = if unit == "1" { heading.to_owned() } else { format!("{heading} ({unit})") };
+    let axis = heading.clone();
     chart
         .configure_mesh()
         .x_labels(6)
         .y_labels(6)
-        .x_desc(heading)
+        .x_desc(axis)
         .y_desc("force error (%)")
         .axis_desc_style(letters())
         .light_line_style(WHITE)
@@ -114,6 +117,14 @@ fn draw_panel(area: &Area<'_>, covariate: Covariate, all: &[Series<'_>]) -> Draw
             ];
             chart.draw_series(bars.map(|bar| PathElement::new(bar, colour.stroke_width(1))))?;
             chart.draw_series([Circle::new((middle, y), 4, colour.filled())])?;
+            let (from, to) = (short(error.from), short(error.to));
+            let values = if from == to { from } else { format!("{from} to {to}") };
+            let se = 100.0 * error.se;
+            let text = format!(
+                "{}\n{heading}: {values}\nforce error {y:+.1} \u{b1} {se:.1} %",
+                series.model
+            );
+            chart.draw_series([Hover::at((middle, y), text)])?;
         }
         let Some(trend) = series.trend else { continue };
         let line = [low, high].map(|value| {

@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 
 use super::signed::{self, Scale};
-use super::{Area, Drawn, LETTER, PictureError, fitting, legend, letters, svg, upright};
+use super::{Area, Drawn, Hover, LETTER, PictureError, fitting, legend, letters, svg, upright};
 use crate::force_error::ForceCell;
 use crate::where_it_fails::{Failing, WhereItFails};
 
@@ -94,6 +94,14 @@ fn draw_map(
         if cell.significant {
             legend::mark(&inside, pixel(place + 0.5, 0.5 * (cell.from + cell.to)))?;
         }
+        let text = format!(
+            "{}, {:.1} to {:.1} mm deep\n{}",
+            names[place as usize],
+            1e3 * cell.from,
+            1e3 * cell.to,
+            signed::in_words(cell)
+        );
+        inside.draw(&Hover::over(corners, text))?;
     }
     let bottom = (ABOVE + MAP + 6) as i32;
     for (place, name) in names.iter().enumerate() {

@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 
 use super::legend::{self, Sign};
-use super::{Area, Drawn, PictureError, centred, fitting, letters, svg};
+use super::{Area, Drawn, Hover, PictureError, centred, fitting, letters, short, svg};
 use crate::errors::Errors;
 use crate::observable::Observable;
 use crate::where_it_fails::WhereItFails;
@@ -33,8 +33,9 @@ impl Kind {
 }
 
 /// A panel: the errors of each model, those that were fitted to first, and the noise of each role.
-struct Panel {
+struct Panel<'a> {
     title: &'static str,
+    models: Vec<&'a str>,
     bars: Vec<[Option<f64>; 2]>,
     floors: [Option<f64>; 2],
 }
@@ -58,7 +59,7 @@ pub(crate) fn errors(found: &WhereItFails<'_>) -> Result<Option<String>, Picture
     .map(Some)
 }
 
-fn panels(found: &WhereItFails<'_>) -> Vec<Panel> {
+fn panels<'a>(found: &'a WhereItFails<'_>) -> Vec<Panel<'a>> {
     let kind = |title, scale, observable| Kind { title, scale, observable };
     let kinds = [
         kind("depth over time (mm)", 1e3, Some(Observable::Depth)),
@@ -71,6 +72,7 @@ fn panels(found: &WhereItFails<'_>) -> Vec<Panel> {
     let floors = found.noise_floors();
     let panel = |kind: &Kind| Panel {
         title: kind.title,
+        models: found.models.iter().map(|model| model.model.as_str()).collect(),
         bars: found
             .models
             .iter()
@@ -78,7 +80,7 @@ fn panels(found: &WhereItFails<'_>) -> Vec<Panel> {
             .collect(),
         floors: floors.each_ref().map(|errors| kind.of(errors)),
     };
-    let drawn = |panel: &Panel| panel.bars.iter().flatten().any(Option::is_some);
+    let drawn = |panel: &Panel<'_>| panel.bars.iter().flatten().any(Option::is_some);
     kinds.iter().map(panel).filter(drawn).collect()
 }
 
@@ -96,7 +98,7 @@ fn rows(found: &WhereItFails<'_>) -> Vec<(Sign, String)> {
     rows
 }
 
-fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
+fn draw_panel(area: &Area<'_>, panel: &Panel<'_>) -> Drawn {
     let title = fitting(panel.title, PANEL.0 - 50);
     area.draw(&Text::new(title, (48, 8), letters()))?;
     let heights = panel.bars.iter().flatten().chain(&panel.floors).flatten();
@@ -127,6 +129,15 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
                 let line = [(left - 0.02, floor), (left + 0.38, floor)];
                 chart.draw_series(DashedLineSeries::new(line, 5, 3, BLACK.stroke_width(2)))?;
             }
+            let noise = floor.map_or(String::new(), |floor| format!(", noise {}", short(floor)));
+            let text = format!(
+                "{}, {}\n{}: {}{noise}",
+                panel.models[model],
+                ["fitted", "held out"][role],
+                panel.title,
+                short(*height)
+            );
+            chart.draw_series([Hover::over([bar[0], (bar[1].0, 1.08 * highest)], text)])?;
         }
     }
     let plot = chart.plotting_area();

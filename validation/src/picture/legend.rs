@@ -10,7 +10,7 @@ const ROW: u32 = 20;
 
 /// A sign of a legend.
 #[derive(Clone, Copy)]
-pub(super) enum Sign {
+pub enum Sign {
     /// A line.
     Line(RGBColor),
     /// A dashed line.
@@ -26,12 +26,16 @@ pub(super) enum Sign {
 }
 
 /// Height of a legend of `rows` (pixels).
-pub(super) fn height(rows: usize) -> u32 {
+#[must_use]
+pub fn height(rows: usize) -> u32 {
     ROW * rows as u32 + 14
 }
 
 /// Draws `rows` from the top of `area`.
-pub(super) fn draw(area: &Area<'_>, rows: &[(Sign, String)]) -> Drawn {
+///
+/// # Errors
+/// If the drawing fails.
+pub fn draw(area: &Area<'_>, rows: &[(Sign, String)]) -> Drawn {
     for (row, (sign, text)) in rows.iter().enumerate() {
         let y = (4 + ROW / 2 + ROW * row as u32) as i32;
         draw_sign(area, *sign, y)?;

@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 
 use super::legend::{self, Sign};
-use super::{Area, Drawn, GREY, PictureError, TWO_SIDED_95, fitting, letters, padded, svg};
+use super::{Area, Drawn, GREY, Hover, PictureError, TWO_SIDED_95, fitting, letters, padded, svg};
 use crate::observable::Observable;
 use crate::residual::Residual;
 use crate::where_it_fails::WhereItFails;
@@ -53,6 +53,13 @@ impl Track {
         let axis = if self.observable == Observable::Depth { "z" } else { "x" };
         let (id, speed, angle) = (&condition.id, condition.speed, condition.angle_deg);
         format!("{axis}, {id}: {speed} m/s, {angle}\u{b0}")
+    }
+
+    /// Root mean square of the residuals in standard errors.
+    pub(super) fn misfit(&self, residuals: &[Residual]) -> f64 {
+        let square = |one: &Residual| ((one.measured - one.predicted) / one.standard_error).powi(2);
+        let sum: f64 = self.places.iter().map(|&place| square(&residuals[place])).sum();
+        (sum / self.places.len() as f64).sqrt()
     }
 
     /// Standard errors over time.
@@ -127,5 +134,19 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
     }
     let points = panel.points.iter().map(|(t, y)| (1e3 * t, 1e3 * y));
     chart.draw_series(points.map(|place| Circle::new(place, 2, BLACK.filled())))?;
+    chart.draw_series(panel.values().map(|(place, text)| Hover::at(place, text)))?;
     Ok(())
+}
+
+impl Panel {
+    /// Places (ms, mm) with what they say.
+    fn values(&self) -> impl Iterator<Item = ((f64, f64), String)> {
+        let lines = self.lines.iter().flat_map(|(_, line)| line);
+        let noise = |t: f64| self.band.iter().find(|(at, _)| at.to_bits() == t.to_bits());
+        lines.chain(&self.points).map(move |&(t, y)| {
+            let (t_ms, y_mm) = (1e3 * t, 1e3 * y);
+            let se = noise(t).map_or(String::new(), |(_, se)| format!(" \u{b1} {:.3}", 1e3 * se));
+            ((t_ms, y_mm), format!("{}\n{t_ms:.1} ms: {y_mm:+.3}{se} mm", self.title))
+        })
+    }
 }

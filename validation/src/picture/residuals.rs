@@ -16,7 +16,7 @@ pub(crate) fn residuals(found: &WhereItFails<'_>) -> Result<Option<String>, Pict
     let Some(first) = found.models.first() else { return Ok(None) };
     let mut worst: Vec<(f64, Track)> = tracks(&first.residuals)
         .into_iter()
-        .map(|track| (misfit(&track, &first.residuals), track))
+        .map(|track| (track.misfit(&first.residuals), track))
         .collect();
     if worst.is_empty() {
         return Ok(None);
@@ -57,11 +57,4 @@ pub(crate) fn residuals(found: &WhereItFails<'_>) -> Result<Option<String>, Pict
         ),
     ));
     multiples::picture(&panels, COLUMNS, &rows).map(Some)
-}
-
-/// Root mean square of a track in standard errors.
-fn misfit(track: &Track, residuals: &[Residual]) -> f64 {
-    let square = |one: &Residual| ((one.measured - one.predicted) / one.standard_error).powi(2);
-    let sum: f64 = track.places.iter().map(|&place| square(&residuals[place])).sum();
-    (sum / track.places.len() as f64).sqrt()
 }

@@ -5,7 +5,7 @@ use plotters::prelude::*;
 use super::legend::{self, Sign};
 use super::multiples::{self, Panel, Track, tracks};
 use super::{
-    Area, Drawn, LETTER, PictureError, TWO_SIDED_95, colour, fitting, letters, svg, upright,
+    Area, Drawn, Hover, LETTER, PictureError, TWO_SIDED_95, colour, fitting, letters, svg, upright,
 };
 use crate::observable::Observable;
 use crate::residual::Residual;
@@ -163,7 +163,21 @@ impl Scalars<'_> {
                 let x = x + 0.2 * (2.0 * at as f64 - 1.0);
                 let dot = Circle::new((x, change(signature, place)), 4, colour(at).filled());
                 chart.draw_series([dot])?;
+                let text = format!(
+                    "{}\n{} adds {:+.2}",
+                    self.names[condition],
+                    signature.effect,
+                    change(signature, place)
+                );
+                chart.draw_series([Hover::at((x, change(signature, place)), text)])?;
             }
+            let text = format!(
+                "{}\nmeasured less predicted {:+.2} \u{b1} {:.2}",
+                self.names[condition],
+                left(place),
+                half(place) / TWO_SIDED_95
+            );
+            chart.draw_series([Hover::at((x, left(place)), text)])?;
         }
         let plot = chart.plotting_area();
         let corner = area.get_pixel_range();

@@ -18,6 +18,13 @@ const STEPS: i32 = 20;
 /// Height of the scale with its explanations (pixels).
 pub(super) const HEIGHT: u32 = 110;
 
+/// The force error of `cell` in words.
+pub(super) fn in_words(cell: &ForceCell) -> String {
+    let significant = if cell.significant { ", significant" } else { "" };
+    let (error, se) = (100.0 * cell.force_error, 100.0 * cell.se);
+    format!("force error {error:+.1} \u{b1} {se:.1} %{significant}")
+}
+
 /// Blue where the force is smaller than in the model, vermilion where it is larger, white between.
 pub(super) struct Scale {
     limit: f64,

@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 
 use super::signed::{self, Scale};
-use super::{Area, Drawn, PictureError, fitting, legend, letters, padded, short, svg};
+use super::{Area, Drawn, Hover, PictureError, fitting, legend, letters, padded, short, svg};
 use crate::force_error::ForceCell;
 use crate::measurement::Condition;
 use crate::where_it_fails::WhereItFails;
@@ -115,6 +115,9 @@ fn draw_panel(area: &Area<'_>, panel: &Panel<'_>, scale: &Scale) -> Drawn {
         if cell.significant {
             legend::mark(&inside, (x, y))?;
         }
+        let Condition { id, speed, angle_deg, .. } = condition;
+        let text = format!("{id}: {speed} m/s, {angle_deg}\u{b0}\n{}", signed::in_words(cell));
+        inside.draw(&Hover::over(place, text))?;
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 
 use super::{Case, FRICTIONS, Outcome, RUBBED, SHAPES, SPEEDS, group, mean_and_error};
-use crate::picture::{Area, Drawn, PictureError, colour, svg};
+use crate::picture::{Area, Canvas, Drawn, PictureError, colour, svg};
 
 const SIZE: (u32, u32) = (560, 400);
 
@@ -99,7 +99,7 @@ fn draw_frictions(area: &Area<'_>, results: &[(Case, Outcome)]) -> Drawn {
 
 type Chart<'a, 'b> = ChartContext<
     'a,
-    SVGBackend<'b>,
+    Canvas<'b>,
     Cartesian2d<plotters::coord::types::RangedCoordf64, plotters::coord::types::RangedCoordf64>,
 >;
 

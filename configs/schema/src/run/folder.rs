@@ -32,10 +32,11 @@ pub(super) enum Found {
 }
 
 /// The files a finished run of one condition leaves.
-const RESULTS: [&str; 5] = ["run.mcap", "grains.mcap", "summary.json", "model.toml", "grains.csv"];
+const RESULTS: [&str; 6] =
+    ["run.mcap", "grains.mcap", "summary.json", "model.toml", "grains.csv", "report.html"];
 
 /// The files an unfinished run may have left.
-const UNFINISHED: [&str; 10] = [
+const UNFINISHED: [&str; 11] = [
     "run.mcap.partial",
     "run.mcap.partial.new",
     "grains.mcap.partial",
@@ -43,6 +44,7 @@ const UNFINISHED: [&str; 10] = [
     "summary.json.partial",
     "model.toml.partial",
     "grains.csv.partial",
+    "report.html.partial",
     "checkpoint",
     "checkpoint.partial",
     "checkpoint.prev",

@@ -1,6 +1,6 @@
-//! `plunge export`: an impact on a bed, written for another simulator.
+//! An impact on a bed, written for another simulator.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use configs::run::prepare;
 use exchange::lammps::{DATA, Deck, INPUT, LammpsError};
@@ -10,27 +10,8 @@ use crate::common::Common;
 use crate::control::Terminal;
 use crate::output::{self, CommandError, CommandResult};
 
-/// Arguments of `plunge export`.
-#[derive(clap::Args, Debug)]
-pub(crate) struct Args {
-    /// A model file, or the name of a shipped model.
-    model: PathBuf,
-    /// What to write it for.
-    #[arg(long, value_name = "SIMULATOR")]
-    to: Simulator,
-    #[command(flatten)]
-    common: Common,
-}
-
-/// What reads an export.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Simulator {
-    /// An input script and a data file of LAMMPS.
-    Lammps,
-}
-
-pub(crate) fn run(args: &Args) -> CommandResult {
-    let Args { model, to: Simulator::Lammps, common } = args;
+/// Writes the impact of `model` as an input of LAMMPS.
+pub(super) fn write(model: &Path, common: &Common) -> CommandResult {
     let model = common.load(model)?.model;
     let grains = model.grains().ok_or_else(|| {
         let kind = model.medium.kind();

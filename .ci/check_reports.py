@@ -1,0 +1,94 @@
+"""Opens reports in headless Chromium, from disk, and fails where one is not what it should be.
+
+usage: check_reports.py CHROMIUM SCREENSHOTS REPORT...
+
+A report asks nothing of any network and leaves no error in the console; its figures have a size and
+something drawn in them; pointing at a value shows it; it turns dark where the reader wants that, and
+prints. A picture of each is left in the folder SCREENSHOTS, to be looked at.
+"""
+
+import sys
+from pathlib import Path
+
+from playwright.sync_api import sync_playwright
+
+# A figure without curves still has a frame, ticks and labels: fewer shapes than these are none.
+FEWEST_SHAPES = 12
+
+FIGURES = """() => [...document.querySelectorAll("figure svg")].map((svg) => {
+  const box = svg.getBoundingClientRect();
+  const shapes = [...svg.querySelectorAll("path, polyline, polygon, line, rect, circle")]
+    .filter((shape) => !shape.closest(".hover"));
+  const broken = shapes.filter((shape) => [...shape.attributes].some((a) => /NaN|inf/i.test(a.value)));
+  return { width: box.width, height: box.height, shapes: shapes.length, broken: broken.length };
+})"""
+
+
+def require(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
+def check(browser, report, screenshots):
+    faults, requests = [], []
+    page = browser.new_page(viewport={"width": 1100, "height": 900}, color_scheme="light")
+    page.on("console", lambda m: faults.append(m.text) if m.type in ("error", "warning") else None)
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.on("request", lambda request: requests.append(request.url))
+    page.goto(report.resolve().as_uri())
+    require(page.locator("h1").inner_text().strip(), "no title")
+
+    figures = page.evaluate(FIGURES)
+    require(figures, "no figure")
+    for number, figure in enumerate(figures, 1):
+        require(figure["width"] > 200 and figure["height"] > 100, f"figure {number} has no size: {figure}")
+        require(figure["shapes"] >= FEWEST_SHAPES, f"figure {number} is empty: {figure}")
+        require(figure["broken"] == 0, f"figure {number} has numbers that are none: {figure}")
+    width = page.evaluate("document.documentElement.scrollWidth")
+    require(width <= 1100, f"the page is {width} pixels wide and the window 1100")
+
+    said = [text.strip() for text in page.locator("figure .hover title").all_text_contents()]
+    require(said and all(said), "nothing says its value")
+    mark = page.locator("figure .hover > *").nth(len(said) // 2)
+    mark.scroll_into_view_if_needed()
+    box = mark.bounding_box()
+    # Marks may lie over each other: then the uppermost speaks.
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    tip = page.locator("#tip")
+    require(tip.is_visible() and tip.inner_text().strip() in said, "the tip says no value")
+    page.mouse.move(2, 2)
+    require(tip.is_hidden(), "the tip stays")
+
+    page.screenshot(path=str(screenshots / f"{report.parent.name}.png"), full_page=True)
+    background = "getComputedStyle(document.body).backgroundColor"
+    light = page.evaluate(background)
+    page.emulate_media(color_scheme="dark")
+    require(page.evaluate(background) != light, "it does not turn dark")
+    page.screenshot(path=str(screenshots / f"{report.parent.name}-dark.png"), full_page=True)
+    page.emulate_media(media="print", color_scheme="dark")
+    require(page.evaluate(background) == "rgb(255, 255, 255)", "paper is not white")
+    require(len(page.pdf()) > 10_000, "nothing is printed")
+
+    require(not faults, f"console: {faults}")
+    require(requests == [report.resolve().as_uri()], f"it asked for {requests[1:]}")
+    page.close()
+    return len(figures), len(said)
+
+
+def main():
+    chromium, screenshots, *reports = sys.argv[1:]
+    screenshots = Path(screenshots)
+    screenshots.mkdir(parents=True, exist_ok=True)
+    with sync_playwright() as playwright:
+        # Without a sandbox of its own: a container gives it none, and it opens nothing but our pages.
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        for report in map(Path, reports):
+            try:
+                figures, values = check(browser, report, screenshots)
+            except AssertionError as fault:
+                sys.exit(f"{report}: {fault}")
+            print(f"{report}: {figures} figures, {values} values")
+        browser.close()
+
+
+main()

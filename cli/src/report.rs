@@ -1,0 +1,93 @@
+//! `plunge report`, and the reports that other commands leave beside their results.
+
+use std::path::{Path, PathBuf};
+
+use configs::run::{ListSummary, Summary};
+use reports::run::Course;
+use reports::{FILE, ReportError};
+use serde_json::json;
+
+use crate::output::{self, CommandError, CommandResult};
+use crate::workbench::write_whole;
+
+/// Arguments of `plunge report`.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// The folder of a run, of a list of runs, of a comparison or of a diagnosis.
+    folder: PathBuf,
+    /// Print one JSON object to stdout.
+    #[arg(long)]
+    json: bool,
+    /// Say nothing when it went well.
+    #[arg(long)]
+    quiet: bool,
+}
+
+pub(crate) fn run(args: &Args) -> CommandResult {
+    let page = reports::of_folder(&args.folder).map_err(CommandError::bad_input)?;
+    let file = args.folder.join(FILE);
+    write_whole(&file, &page)?;
+    match (args.json, args.quiet) {
+        (true, _) => output::json_to_stdout(&json!({ "report": file.display().to_string() })),
+        (false, true) => Ok(()),
+        (false, false) => output::to_stdout(&format!("{} written\n", file.display())),
+    }
+}
+
+/// Leaves the report of the run `summary` in its `folder`, unless it has one, and gives the course of
+/// the run if its log can be read. A report that cannot be made is told, and fails nothing.
+pub(crate) fn of_run(folder: &Path, summary: &Summary, quiet: bool) -> Option<Course> {
+    let course = match Course::read(folder) {
+        Ok(course) => course,
+        Err(error) => {
+            tell(folder, &error, quiet);
+            return None;
+        }
+    };
+    leave(folder, || reports::run::page(summary, &course), quiet);
+    Some(course)
+}
+
+/// Likewise of a list of runs, and of each of them.
+pub(crate) fn of_list(folder: &Path, summary: &ListSummary, quiet: bool) {
+    for (index, run) in summary.runs.iter().enumerate() {
+        let member = folder.join(format!("{:03}", index + 1));
+        if !member.join(FILE).exists() {
+            of_run(&member, run, quiet);
+        }
+    }
+    leave(folder, || reports::of_list(summary), quiet);
+}
+
+/// The page of the results in `files`, as one more of them; one that cannot be made is told.
+pub(crate) fn of_results(files: &[(String, String)], quiet: bool) -> Option<(String, String)> {
+    match reports::of_texts(&files.iter().cloned().collect())? {
+        Ok(page) => Some((FILE.to_owned(), page)),
+        Err(error) => {
+            tell(Path::new(""), &error, quiet);
+            None
+        }
+    }
+}
+
+fn leave(folder: &Path, page: impl FnOnce() -> Result<String, ReportError>, quiet: bool) {
+    let file = folder.join(FILE);
+    if file.exists() {
+        return;
+    }
+    match page() {
+        Ok(page) => {
+            if let Err(CommandError::Failed(error)) = write_whole(&file, &page) {
+                tell(folder, &error, quiet);
+            }
+        }
+        Err(error) => tell(folder, &error, quiet),
+    }
+}
+
+fn tell(folder: &Path, why: &dyn std::fmt::Display, quiet: bool) {
+    if !quiet {
+        let text = format!("{}: {why}", folder.join(FILE).display());
+        output::to_stderr(&format!("warning: {}\n", configs::printable(&text)));
+    }
+}

@@ -1,0 +1,135 @@
+//! Runs as files of other programs: tables for notebooks, grains for ParaView and OVITO.
+//!
+//! A [`Format`] is one file of this folder: tables of numbers go through `tables.rs`, states of grains
+//! through `grains.rs`. A file has its name once it is whole.
+
+mod csv;
+mod extended_xyz;
+mod grains;
+mod lammps_dump;
+mod parquet;
+mod tables;
+mod vtp;
+mod whole_file;
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::read::ReadError;
+
+/// What a run can be exported to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Comma-separated tables, one per topic of scalars.
+    Csv,
+    /// The same as Apache Parquet.
+    Parquet,
+    /// VTK poly data, one file per frame, with a ParaView index over time.
+    Vtp,
+    /// A LAMMPS dump of all frames.
+    LammpsDump,
+    /// Extended XYZ of all frames.
+    ExtendedXyz,
+}
+
+impl Format {
+    /// All of them.
+    pub const ALL: [Self; 5] =
+        [Self::Csv, Self::Parquet, Self::Vtp, Self::LammpsDump, Self::ExtendedXyz];
+
+    /// Its name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Parquet => "parquet",
+            Self::Vtp => "vtp",
+            Self::LammpsDump => "lammps-dump",
+            Self::ExtendedXyz => "extxyz",
+        }
+    }
+
+    /// What it is for, in a few words.
+    #[must_use]
+    pub fn purpose(self) -> &'static str {
+        match self {
+            Self::Csv => "tables of energies, states and loads, as text",
+            Self::Parquet => "the same tables, smaller and read faster",
+            Self::Vtp => "grains for ParaView: open the .pvd",
+            Self::LammpsDump => "grains for OVITO and tools of LAMMPS",
+            Self::ExtendedXyz => "grains for OVITO and ASE",
+        }
+    }
+}
+
+/// Why a run is not exported.
+#[derive(Debug, Error)]
+pub enum ExportError {
+    /// The log.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// A file that cannot be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        source: io::Error,
+    },
+    /// A log without what the format holds.
+    #[error("{} has no {what}", path.display())]
+    Nothing {
+        /// The log.
+        path: PathBuf,
+        /// What is missing.
+        what: &'static str,
+    },
+    /// A run that is not there.
+    #[error("{} is neither a log nor a folder with a {log}", path.display())]
+    NoRun {
+        /// What was named.
+        path: PathBuf,
+        /// The name of the log in a folder.
+        log: &'static str,
+    },
+}
+
+/// What was written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exported {
+    /// The files, in the order in which they were finished.
+    pub files: Vec<PathBuf>,
+    /// Whether the log is finished; one that is not ends with its last whole chunk.
+    pub complete: bool,
+}
+
+/// Writes `run`, a log or the folder of a run, as `format` into the folder `out`, which is made if it is
+/// not there. The same log gives the same bytes.
+///
+/// # Errors
+/// If the log cannot be read or has nothing of what the format holds, or a file cannot be written.
+pub fn export(run: &Path, format: Format, out: &Path) -> Result<Exported, ExportError> {
+    let of_grains = match format {
+        Format::Csv | Format::Parquet => false,
+        Format::Vtp | Format::LammpsDump | Format::ExtendedXyz => true,
+    };
+    let log = if of_grains { "grains.mcap" } else { "run.mcap" };
+    let path = match run.is_dir() {
+        true => run.join(log),
+        false => run.to_owned(),
+    };
+    if !path.is_file() {
+        return Err(ExportError::NoRun { path: run.to_owned(), log });
+    }
+    std::fs::create_dir_all(out)
+        .map_err(|source| ExportError::Write { path: out.to_owned(), source })?;
+    match format {
+        Format::Csv => tables::export(&path, out, csv::Csv::create),
+        Format::Parquet => tables::export(&path, out, parquet::Parquet::create),
+        Format::Vtp => grains::export(&path, vtp::Vtp::new(out)),
+        Format::LammpsDump => grains::export(&path, lammps_dump::LammpsDump::create(out)?),
+        Format::ExtendedXyz => grains::export(&path, extended_xyz::ExtendedXyz::create(out)?),
+    }
+}

@@ -1,0 +1,213 @@
+//! The report of a comparison: how wrong each revision of a model is, and where.
+
+use serde_json::{Map, Value};
+
+use crate::figure::figure;
+use crate::numbers::{fixed, four_digits, list, probability, text};
+use crate::page::{Number, Page, Part, Section, Table};
+use crate::{ReportError, Texts, object};
+
+/// The file whose presence means a comparison.
+pub(crate) const RESULT: &str = "comparison.json";
+
+/// Errors of a table: their key, heading, and what they are multiplied with.
+const ERRORS: [(&str, &str, f64); 6] = [
+    ("z_m", "z (mm)", 1e3),
+    ("x_m", "x (mm)", 1e3),
+    ("stop_time_s", "stop time (ms)", 1e3),
+    ("final_z_m", "depth (mm)", 1e3),
+    ("final_x_m", "range (mm)", 1e3),
+    ("rms_relative", "relative (%)", 1e2),
+];
+
+/// Views of a comparison or diagnosis, each with its heading and what it shows.
+const VIEWS: [(&str, &str, &str); 7] = [
+    (
+        "revisions.svg",
+        "The error falls",
+        "Root mean square error, revision after revision; the dashed lines are what the noise of the \
+         means alone would give.",
+    ),
+    (
+        "trajectories.svg",
+        "Measured paths and velocities",
+        "Measured positions and velocities under the predictions. Velocities are differences between \
+         readings.",
+    ),
+    (
+        "signatures.svg",
+        "Signatures",
+        "What the model leaves over, and what the two best effects would add. Where both follow it \
+         alike, no verdict can choose between them.",
+    ),
+    (
+        "map-speed-angle.svg",
+        "Where the force is wrong: speed and angle",
+        "By how much the measured force is larger than in the model, over the whole path of each \
+         condition.",
+    ),
+    (
+        "map-depth.svg",
+        "Where the force is wrong: depth",
+        "The same around six depths of each condition.",
+    ),
+    (
+        "covariates.svg",
+        "Where the force is wrong: everything that was varied",
+        "The same over each covariate, with its trend.",
+    ),
+    (
+        "residuals.svg",
+        "What is left over time",
+        "Measured less predicted; the band holds 95 % of the means, if the model were right.",
+    ),
+];
+
+pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
+    let comparison = object(texts, RESULT)?;
+    let models = list(&comparison["models"]);
+    if models.is_empty() {
+        return crate::run::pair_page(texts, &comparison);
+    }
+    let mut sections = vec![Section::new("Errors", vec![Part::Table(errors(models))])];
+    if let Some(svg) = texts.get("comparison.svg") {
+        let caption = "Measured numbers with their errors, under what each revision predicts.";
+        sections.push(Section::new("Measured and predicted", vec![figure(svg, caption)]));
+    }
+    sections.push(Section::new("Parameters, refitted", parameters(models)));
+    sections.extend(views(texts).into_iter().map(Some));
+    sections.push(Section::new("Errors by kind of number", by_kind(texts)));
+    sections.push(Section::new("Where the force is wrong, in numbers", failures(models)));
+    let names: Vec<String> = models.iter().map(|model| text(&model["model"])).collect();
+    let page = Page {
+        title: text(&comparison["set"]),
+        kind: "comparison",
+        lead: format!("{} against the measurements.", names.join(", ")),
+        headline: headline(models),
+        sections: sections.into_iter().flatten().collect(),
+        origin: vec![("plunge", env!("CARGO_PKG_VERSION").to_owned())],
+    };
+    page.html()
+}
+
+/// A section for each of [`VIEWS`] that there is.
+pub(crate) fn views(texts: &Texts) -> Vec<Section> {
+    let view = |&(name, heading, caption): &(&str, &str, &str)| {
+        Section::new(heading, vec![figure(texts.get(name)?, caption)])
+    };
+    VIEWS.iter().filter_map(view).collect()
+}
+
+/// The figure of errors by kind of number.
+pub(crate) fn by_kind(texts: &Texts) -> Vec<Part> {
+    let caption = "Root mean square errors where the model was fitted and where it was not.";
+    texts.get("errors.svg").map(|svg| figure(svg, caption)).into_iter().collect()
+}
+
+fn headline(models: &[Value]) -> Vec<Number> {
+    let of = |model: &Value, role: &str| {
+        let (_, heading, scale, value) = main_error(&model["rms"][role])?;
+        Some((format!("{:.3}", scale * value), heading.to_owned()))
+    };
+    let (first, last) = (&models[0], &models[models.len() - 1]);
+    let mut numbers = Vec::new();
+    for (role, name) in [("fit", "error where fitted"), ("holdout", "error held out")] {
+        let Some((after, heading)) = of(last, role) else { continue };
+        let value = match of(first, role).filter(|_| models.len() > 1) {
+            Some((before, _)) => format!("{before} \u{2192} {after}"),
+            None => after,
+        };
+        numbers.push(Number::new(name, value, heading));
+    }
+    let fit = last["chi2_per_n"].as_f64();
+    numbers.push(Number::new(
+        "\u{3c7}\u{b2} per number",
+        fixed(fit, 2),
+        "about 1 if the model is right",
+    ));
+    numbers.push(Number::new(
+        "lack of fit",
+        format!("p {}", probability(last["p_lof"].as_f64())),
+        text(&last["model"]),
+    ));
+    numbers
+}
+
+/// The error that a headline shows: key, heading, scale and value.
+fn main_error(errors: &Value) -> Option<(&'static str, &'static str, f64, f64)> {
+    let find = |&(key, heading, scale): &(&'static str, &'static str, f64)| {
+        Some((key, heading, scale, errors[key].as_f64()?))
+    };
+    // Along the path where there is one, else relative.
+    ERRORS.iter().take(1).chain(ERRORS.iter().rev()).find_map(find)
+}
+
+fn errors(models: &[Value]) -> Table {
+    let measured: Vec<_> = ERRORS
+        .iter()
+        .filter(|(key, ..)| models.iter().any(|model| !model["rms"]["fit"][*key].is_null()))
+        .collect();
+    let mut head = vec!["model", ""];
+    head.extend(measured.iter().map(|(_, heading, _)| *heading));
+    head.extend(["\u{3c7}\u{b2}/n", "p (lack of fit)"]);
+    let mut table = Table::new(&head);
+    for model in models {
+        for (role, shown) in [("fit", "fitted"), ("holdout", "held out")] {
+            let errors = &model["rms"][role];
+            if errors.is_null() {
+                continue;
+            }
+            let fit = role == "fit";
+            let mut row = vec![if fit { text(&model["model"]) } else { String::new() }];
+            row.push(shown.to_owned());
+            row.extend(
+                measured.iter().map(|(key, _, scale)| {
+                    fixed(errors[*key].as_f64().map(|error| scale * error), 3)
+                }),
+            );
+            row.push(if fit { fixed(model["chi2_per_n"].as_f64(), 2) } else { String::new() });
+            row.push(if fit { probability(model["p_lof"].as_f64()) } else { String::new() });
+            table.rows.push(row);
+        }
+    }
+    table
+}
+
+fn parameters(models: &[Value]) -> Vec<Part> {
+    let mut table = Table::new(&["model", "parameter", "value", "standard error", "unit"]);
+    let none = Map::new();
+    for model in models {
+        let parameters = model["parameters"].as_object().unwrap_or(&none);
+        for (at, (name, entry)) in parameters.iter().enumerate() {
+            table.rows.push(vec![
+                if at == 0 { text(&model["model"]) } else { String::new() },
+                name.clone(),
+                four_digits(&entry["value"]),
+                four_digits(&entry["se"]),
+                text(&entry["unit"]),
+            ]);
+        }
+    }
+    if table.rows.is_empty() { Vec::new() } else { vec![Part::Table(table)] }
+}
+
+fn failures(models: &[Value]) -> Vec<Part> {
+    let mut table = Table::new(&["model", "over", "from", "to", "force error (%)", "se (%)"]);
+    for model in models {
+        for fail in list(&model["fails"]) {
+            let percent = |key: &str| fixed(fail[key].as_f64().map(|value| 100.0 * value), 1);
+            table.rows.push(vec![
+                text(&model["model"]),
+                text(&fail["over"]),
+                four_digits(&fail["from"]),
+                four_digits(&fail["to"]),
+                percent("force_error"),
+                percent("se"),
+            ]);
+        }
+    }
+    match table.rows.is_empty() {
+        true => vec![Part::Text("Nowhere, at a false-discovery rate of 5 %.".to_owned())],
+        false => vec![Part::Table(table)],
+    }
+}

@@ -1,0 +1,316 @@
+//! The report of a diagnosis: which effect is missing, what else it could be, and what to measure next.
+
+use configs::contact_laws::find_resistance;
+use serde_json::Value;
+
+use crate::comparison::{by_kind, views};
+use crate::numbers::{fixed, four_digits, list, probability, text, texts};
+use crate::page::{Card, Number, Page, Part, Section, Table};
+use crate::{ReportError, Texts, object};
+
+/// The file whose presence means a diagnosis.
+pub(crate) const RESULT: &str = "diagnosis.json";
+
+/// Most effects with a card of their own; the table has all.
+const CARDS: usize = 6;
+
+/// The verdict of a diagnosis, the object of its `diagnosis.json`, in a sentence.
+#[must_use]
+pub fn verdict_in_words(diagnosis: &Value) -> String {
+    let suggested = if diagnosis["strength"] == "suggested" { " (suggested)" } else { "" };
+    let effects = texts(&diagnosis["effects"]);
+    match diagnosis["verdict"].as_str().unwrap_or_default() {
+        "nothing-detected" => "nothing detected: the data are explained".to_owned(),
+        "supported" => format!("supported: {}{suggested}", effects.join(", ")),
+        "not-separable" => format!(
+            "one of {{{}}}{suggested}: these data cannot tell them apart",
+            texts(&diagnosis["not_separable"]).join(", ")
+        ),
+        "pair" => {
+            format!("pair: {}{suggested}, or one effect outside the list", effects.join(" + "))
+        }
+        "none-of-the-candidates" => "none of the candidates".to_owned(),
+        _ => "cannot tell".to_owned(),
+    }
+}
+
+pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
+    let diagnosis = object(texts, RESULT)?;
+    let found = object(texts, "where_it_fails.json")?;
+    let model = text(&found["models"][0]["model"]);
+    let set = text(&found["set"]);
+    let mut sections = vec![
+        Section::new("Verdict", verdict(&diagnosis)),
+        Section::new("Effects", effects(&diagnosis)),
+    ];
+    sections.extend(views(texts).into_iter().map(Some));
+    sections.extend([
+        Section::new("Errors by kind of number", by_kind(texts)),
+        Section::new("What to measure next", next(&diagnosis)),
+        Section::new("Corrected parameters", corrected(&diagnosis)),
+        Section::new("All effects", ranking(&diagnosis)),
+    ]);
+    let page = Page {
+        title: if set.is_empty() { "diagnosis".to_owned() } else { set },
+        kind: "diagnosis",
+        lead: match model.as_str() {
+            "" => "What the model lacks.".to_owned(),
+            model => format!("What {model} lacks."),
+        },
+        headline: headline(&diagnosis),
+        sections: sections.into_iter().flatten().collect(),
+        origin: vec![("plunge", env!("CARGO_PKG_VERSION").to_owned())],
+    };
+    page.html()
+}
+
+fn headline(diagnosis: &Value) -> Vec<Number> {
+    let number = |key: &str| diagnosis[key].as_f64();
+    let mut numbers = vec![
+        Number::new("model as it is", format!("p {}", probability(number("p_lof"))), "lack of fit"),
+        Number::new(
+            "best effect by chance",
+            format!("p {}", probability(number("p1"))),
+            "over all that were tried",
+        ),
+    ];
+    if let Some(p) = number("p_lof_with") {
+        numbers.push(Number::new("with it", format!("p {}", probability(Some(p))), "lack of fit"));
+    }
+    let held_out = &diagnosis["holdout"];
+    let shown = |key: &str| {
+        let error = held_out[key].as_f64()?;
+        Some(match held_out["unit"].as_str() {
+            Some("m") => format!("{:.3} mm", 1e3 * error),
+            _ => format!("{:.1} %", 100.0 * error),
+        })
+    };
+    if let (Some(before), Some(after), Some(floor)) =
+        (shown("before"), shown("after"), shown("noise_floor"))
+    {
+        let value = format!("{before} \u{2192} {after}");
+        numbers.push(Number::new("error held out", value, format!("noise of the means {floor}")));
+    }
+    numbers
+}
+
+fn verdict(diagnosis: &Value) -> Vec<Part> {
+    let mut parts = vec![Part::Answer(verdict_in_words(diagnosis))];
+    if diagnosis["strength"] == "suggested" && diagnosis["verdict"] != "nothing-detected" {
+        parts.push(Part::Text(
+            "Suggested, not supported: it rests on stated errors, on few repeats, or on predictions \
+             of held-out conditions that did not become better by more than chance."
+                .to_owned(),
+        ));
+    }
+    let unexplained = &diagnosis["unexplained"];
+    let hint = text(&unexplained["hint"]);
+    if !hint.is_empty() {
+        parts.push(Part::Text(format!("{hint}.")));
+    }
+    let depends_on = texts(&unexplained["depends_on"]);
+    if !depends_on.is_empty() {
+        let on = depends_on.join(", ");
+        parts.push(Part::Text(format!("What remains of the force depends on {on}.")));
+    }
+    if let Some(suggestion) = unexplained["suggestion"].as_str() {
+        parts.push(Part::Text(
+            "A suggestion, not a finding: put this into the model file and diagnose again."
+                .to_owned(),
+        ));
+        parts.push(Part::Listing(suggestion.to_owned()));
+    }
+    parts
+}
+
+/// The name of an effect, with the unit of its amplitude where that is no pure number.
+fn in_unit(effect: &Value) -> String {
+    match effect["unit"].as_str() {
+        None | Some("1" | "") => text(&effect["id"]),
+        Some(unit) => format!("{} ({unit})", text(&effect["id"])),
+    }
+}
+
+fn testable(diagnosis: &Value) -> impl Iterator<Item = &Value> {
+    list(&diagnosis["ranking"]).iter().filter(|effect| effect["testable"] == true)
+}
+
+fn effects(diagnosis: &Value) -> Vec<Part> {
+    let mut named = texts(&diagnosis["effects"]);
+    named.extend(texts(&diagnosis["not_separable"]));
+    let cards: Vec<Card> = testable(diagnosis)
+        .enumerate()
+        .filter(|(at, effect)| *at < CARDS || named.contains(&text(&effect["id"])))
+        .map(|(at, effect)| card(at, effect, &named))
+        .collect();
+    if cards.is_empty() { Vec::new() } else { vec![Part::Cards(cards)] }
+}
+
+fn card(at: usize, effect: &Value, named: &[String]) -> Card {
+    let id = text(&effect["id"]);
+    let law = find_resistance(&id);
+    let unit = effect["unit"].as_str().filter(|unit| *unit != "1").unwrap_or_default();
+    let amplitude =
+        format!("{} \u{b1} {} {unit}", four_digits(&effect["q"]), four_digits(&effect["se"]));
+    let mut facts = vec![("amplitude", amplitude.trim_end().to_owned())];
+    facts.extend([
+        ("fall of \u{3c7}\u{b2}", fixed(effect["delta"].as_f64(), 1)),
+        ("ranked first if there", fixed(effect["predicted_top1"].as_f64(), 2)),
+        ("detection limit", four_digits(&effect["detection_limit"])),
+    ]);
+    let mut notes: Vec<_> = law.map(|law| ("law", law.formula.to_owned())).into_iter().collect();
+    let note = text(&effect["note"]);
+    if !note.is_empty() {
+        notes.push(("told apart", note));
+    }
+    notes.extend(law.map(|law| ("source", law.source.to_owned())));
+    Card {
+        rank: format!("{}.", at + 1),
+        summary: law.map_or("A formula of your own.".to_owned(), |law| law.summary.to_owned()),
+        facts,
+        notes,
+        named: named.contains(&id),
+        title: id,
+    }
+}
+
+fn ranking(diagnosis: &Value) -> Vec<Part> {
+    let head =
+        ["effect", "q", "se", "fall of \u{3c7}\u{b2}", "behind", "ranked first if there", "limit"];
+    let mut table = Table::new(&head);
+    let best = testable(diagnosis).next().and_then(|effect| effect["delta"].as_f64());
+    for effect in testable(diagnosis) {
+        let delta = effect["delta"].as_f64();
+        let behind = best.zip(delta).map(|(best, delta)| best - delta);
+        table.rows.push(vec![
+            in_unit(effect),
+            four_digits(&effect["q"]),
+            four_digits(&effect["se"]),
+            fixed(delta, 1),
+            fixed(behind, 1),
+            fixed(effect["predicted_top1"].as_f64(), 2),
+            four_digits(&effect["detection_limit"]),
+        ]);
+    }
+    let mut parts = Vec::new();
+    if !table.rows.is_empty() {
+        parts.push(Part::Table(table));
+    }
+    let mut refused = Table::new(&["not testable with these data", "why"]);
+    let not_testable = list(&diagnosis["ranking"]).iter().filter(|one| one["testable"] != true);
+    refused.rows.extend(not_testable.map(|one| vec![text(&one["id"]), text(&one["note"])]));
+    if !refused.rows.is_empty() {
+        parts.push(Part::Table(refused));
+    }
+    parts
+}
+
+fn next(diagnosis: &Value) -> Vec<Part> {
+    let head = [
+        "separates",
+        "speed (m/s)",
+        "angle (deg)",
+        "intruder",
+        "diameter (m)",
+        "mass (kg)",
+        "runs",
+        "expected fall",
+        "separated",
+    ];
+    let mut table = Table::new(&head);
+    for one in list(&diagnosis["next"]) {
+        table.rows.push(vec![
+            texts(&one["separates"]).join(" from "),
+            four_digits(&one["speed_m_per_s"]),
+            four_digits(&one["angle_deg"]),
+            text(&one["shape"]),
+            four_digits(&one["diameter_m"]),
+            four_digits(&one["mass_kg"]),
+            four_digits(&one["repeats"]),
+            fixed(one["expected_delta"].as_f64(), 1),
+            fixed(one["probability_separated"].as_f64(), 2),
+        ]);
+    }
+    let Some(best) = list(&diagnosis["next"]).first() else { return Vec::new() };
+    let runs = four_digits(&best["repeats"]);
+    let intro = match best["expected_delta"].as_f64() {
+        // Odds of 20 to 1.
+        Some(delta) if delta >= 6.0 => format!("One of these conditions, {runs} runs of it:"),
+        _ => format!(
+            "No feasible condition separates {} with {runs} runs; the best would be:",
+            texts(&best["separates"]).join(" and ")
+        ),
+    };
+    vec![Part::Text(intro), Part::Table(table)]
+}
+
+fn corrected(diagnosis: &Value) -> Vec<Part> {
+    let mut table = Table::new(&["", "value", "standard error", "unit"]);
+    for amplitude in list(&diagnosis["amplitudes"]) {
+        let name = format!("{}, amplitude", text(&amplitude["id"]));
+        let (q, se) = (four_digits(&amplitude["q"]), four_digits(&amplitude["se"]));
+        table.rows.push(vec![name, q, se, String::new()]);
+    }
+    for (name, entry) in diagnosis["parameters"].as_object().into_iter().flatten() {
+        let (value, se) = (four_digits(&entry["value"]), four_digits(&entry["se"]));
+        table.rows.push(vec![name.clone(), value, se, text(&entry["unit"])]);
+    }
+    if table.rows.is_empty() { Vec::new() } else { vec![Part::Table(table)] }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    /// As `plunge diagnose` writes it, with two effects that the data do not tell apart.
+    fn texts_of_a_diagnosis() -> Texts {
+        let effect = |id: &str, delta: f64| {
+            json!({
+                "id": id, "q": 0.5, "se": 0.1, "unit": "1", "delta": delta, "predicted_top1": 0.5,
+                "testable": true, "detection_limit": 0.2, "note": "from the other by depth"
+            })
+        };
+        let hidden = json!({ "id": "magnus", "testable": false, "note": "no run spins" });
+        let diagnosis = json!({
+            "verdict": "not-separable", "strength": "suggested", "effects": ["janssen"],
+            "not_separable": ["janssen", "depth-exponent"],
+            "ranking": [effect("janssen", 30.0), effect("depth-exponent", 29.0), hidden],
+            "p1": 1e-5, "p_lof": 1e-6, "p_lof_with": 0.4,
+            "holdout": { "before": 0.1, "after": 0.02, "noise_floor": 0.06, "unit": "1" },
+            "unexplained": { "depends_on": [], "hint": "" },
+            "next": [], "parameters": {}, "amplitudes": [{ "id": "janssen", "q": 0.5, "se": 0.1 }]
+        });
+        let found = json!({ "set": "a-set", "models": [{ "model": "two-term-vector" }] });
+        let svg = validation::picture::svg((30, 20), |_| Ok(())).expect("a picture");
+        Texts::from([
+            (RESULT.to_owned(), diagnosis.to_string()),
+            ("where_it_fails.json".to_owned(), found.to_string()),
+            ("signatures.svg".to_owned(), svg),
+        ])
+    }
+
+    #[test]
+    fn a_diagnosis_shows_its_whole_set_and_what_it_could_not_test() {
+        let html = page(&texts_of_a_diagnosis()).expect("a page");
+        assert!(html.contains("one of {janssen, depth-exponent} (suggested)"), "{html}");
+        assert_eq!(html.matches("<article class=\"named\">").count(), 2, "a card for both");
+        assert!(html.contains("no run spins"), "{html}");
+        assert!(html.contains("10.0 % \u{2192} 2.0 %"), "{html}");
+        assert_eq!(html.matches("<svg").count(), 1, "the view that there is");
+    }
+
+    #[test]
+    fn the_same_files_give_the_same_page() {
+        let texts = texts_of_a_diagnosis();
+        assert_eq!(page(&texts).expect("a page"), page(&texts).expect("a page"));
+    }
+
+    #[test]
+    fn a_diagnosis_that_is_no_json_is_named() {
+        let texts = Texts::from([(RESULT.to_owned(), "{".to_owned())]);
+        let error = page(&texts).expect_err("no page").to_string();
+        assert!(error.starts_with("diagnosis.json cannot be understood"), "{error}");
+    }
+}

@@ -1,0 +1,145 @@
+//! Reports: one HTML page per run, list of runs, comparison, diagnosis or measurement set.
+//!
+//! A page holds its figures, its style and its script, asks nothing of any network, and reads on
+//! screen, in the dark and on paper. It is made of the files of one folder and of nothing else, so that
+//! [`of_folder`] makes it again, with the same bytes: wall times stay in `summary.json`.
+//!
+//! What a page consists of is in `page.rs`, what it looks like in `templates/`.
+
+mod comparison;
+mod diagnosis;
+mod figure;
+mod list;
+mod numbers;
+mod page;
+pub mod run;
+mod set;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use configs::run::{ListSummary, Summary};
+use exchange::read::ReadError;
+use serde_json::Value;
+use thiserror::Error;
+use validation::picture::PictureError;
+
+pub use diagnosis::verdict_in_words;
+pub use run::sparkline;
+pub use set::of_set;
+
+/// Name of a report in its folder.
+pub const FILE: &str = "report.html";
+
+/// Why there is no report.
+#[derive(Debug, Error)]
+pub enum ReportError {
+    /// A file cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        source: io::Error,
+    },
+    /// A folder without results.
+    #[error(
+        "{} holds no finished run, comparison or diagnosis: no summary.json, comparison.json or \
+         diagnosis.json",
+        folder.display()
+    )]
+    Nothing {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A file of results that is not what its name says.
+    #[error("{file} cannot be understood: {why}")]
+    Misunderstood {
+        /// The file.
+        file: String,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// The log of a run.
+    #[error(transparent)]
+    Log(#[from] ReadError),
+    /// A figure.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// The page itself.
+    #[error("cannot write a page: {0}")]
+    Page(#[from] askama::Error),
+}
+
+/// The results of a comparison or diagnosis, by the names of their files.
+pub type Texts = BTreeMap<String, String>;
+
+/// The page of what `folder` holds: a finished run, a list of them, a comparison or a diagnosis.
+///
+/// # Errors
+/// If the folder holds none of them, or a file cannot be read or understood.
+pub fn of_folder(folder: &Path) -> Result<String, ReportError> {
+    let summary = folder.join("summary.json");
+    if summary.is_file() {
+        let text = read(&summary)?;
+        let why = |error: serde_json::Error| misunderstood(&summary.display().to_string(), &error);
+        let value: Value = serde_json::from_str(&text).map_err(why)?;
+        return match value.get("runs") {
+            Some(_) => of_list(&serde_json::from_value(value).map_err(why)?),
+            None => {
+                let summary: Summary = serde_json::from_value(value).map_err(why)?;
+                run::page(&summary, &run::Course::read(folder)?)
+            }
+        };
+    }
+    let entries = fs::read_dir(folder).map_err(|source| io_error(folder, source))?;
+    let mut texts = Texts::new();
+    for entry in entries {
+        let path = entry.map_err(|source| io_error(folder, source))?.path();
+        let shown = path.extension().is_some_and(|end| end == "json" || end == "svg");
+        if let Some(name) = path.file_name().and_then(|name| name.to_str()).filter(|_| shown) {
+            texts.insert(name.to_owned(), read(&path)?);
+        }
+    }
+    match of_texts(&texts) {
+        Some(page) => page,
+        None => Err(ReportError::Nothing { folder: folder.to_owned() }),
+    }
+}
+
+/// The page of the results of a comparison or a diagnosis; `None` if `texts` are of neither.
+#[must_use]
+pub fn of_texts(texts: &Texts) -> Option<Result<String, ReportError>> {
+    if texts.contains_key(diagnosis::RESULT) {
+        return Some(diagnosis::page(texts));
+    }
+    texts.contains_key(comparison::RESULT).then(|| comparison::page(texts))
+}
+
+/// The page of a list of runs.
+///
+/// # Errors
+/// If a figure cannot be drawn.
+pub fn of_list(summary: &ListSummary) -> Result<String, ReportError> {
+    list::page(summary)
+}
+
+fn read(path: &Path) -> Result<String, ReportError> {
+    fs::read_to_string(path).map_err(|source| io_error(path, source))
+}
+
+fn io_error(path: &Path, source: io::Error) -> ReportError {
+    ReportError::Io { path: path.to_owned(), source }
+}
+
+fn misunderstood(file: &str, why: &dyn std::fmt::Display) -> ReportError {
+    ReportError::Misunderstood { file: file.to_owned(), why: why.to_string() }
+}
+
+/// The JSON object in the file `name` of `texts`.
+fn object(texts: &Texts, name: &str) -> Result<Value, ReportError> {
+    let text = texts.get(name).map_or("null", String::as_str);
+    serde_json::from_str(text).map_err(|error| misunderstood(name, &error))
+}

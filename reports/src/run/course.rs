@@ -1,0 +1,69 @@
+//! The course of a run, thinned to what figures show.
+
+use std::path::Path;
+
+use exchange::read::{BodyState, BodyStates, EnergyBudgets, Keep, ReadError, read_run};
+
+use super::sparkline::sparkline;
+use super::thin::places;
+
+/// Most samples of a curve.
+const SAMPLES: usize = 320;
+
+/// The log of a run.
+const LOG: &str = "run.mcap";
+
+/// Where the bodies of a run were and where its energy was, over time.
+#[derive(Clone, Debug)]
+pub struct Course {
+    /// The bodies, each at its own times.
+    pub(super) bodies: Vec<BodyStates>,
+    /// The energy budget; none if the log has none.
+    pub(super) energy: Option<EnergyBudgets>,
+    /// Whether the log is whole.
+    pub(super) complete: bool,
+}
+
+impl Course {
+    /// Of the run in `folder`.
+    ///
+    /// # Errors
+    /// If its log cannot be read.
+    pub fn read(folder: &Path) -> Result<Self, ReadError> {
+        let log = read_run(&folder.join(LOG), Keep::StatesAndEnergy)?;
+        Ok(Self {
+            bodies: log.bodies.iter().map(thinned).collect(),
+            energy: log.energy.as_ref().map(thinned_budget),
+            complete: log.complete,
+        })
+    }
+
+    /// Depth and speed of the first body over time, each as a line of `width` characters.
+    #[must_use]
+    pub fn sparklines(&self, width: usize) -> [String; 2] {
+        let states = self.bodies.first().map_or(&[][..], |body| &body.states);
+        let line = |of: fn(&BodyState) -> f64| {
+            let points: Vec<(f64, f64)> = states.iter().map(|one| (one.time, of(one))).collect();
+            sparkline(&points, width)
+        };
+        [line(|one| one.depth.max(0.0)), line(|one| one.velocity.norm())]
+    }
+}
+
+fn thinned(body: &BodyStates) -> BodyStates {
+    let times: Vec<f64> = body.states.iter().map(|state| state.time).collect();
+    let states = places(&times, SAMPLES).into_iter().map(|place| body.states[place]).collect();
+    BodyStates { name: body.name.clone(), states }
+}
+
+fn thinned_budget(budget: &EnergyBudgets) -> EnergyBudgets {
+    let places = places(&budget.time, SAMPLES);
+    let of = |series: &[f64]| places.iter().map(|&place| series[place]).collect();
+    EnergyBudgets {
+        terms: budget.terms.clone(),
+        time: of(&budget.time),
+        values: budget.values.iter().map(|series| of(series)).collect(),
+        unaccounted: of(&budget.unaccounted),
+        closure: of(&budget.closure),
+    }
+}

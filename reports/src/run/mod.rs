@@ -1,0 +1,178 @@
+//! The report of one run: where the intruder went, and where its energy went.
+
+mod course;
+mod energy;
+mod pair;
+mod path;
+mod sparkline;
+mod thin;
+
+use configs::run::{BedSummary, ForceSummary, LinkSummary, StopSummary, Summary};
+
+pub use course::Course;
+pub(crate) use pair::page as pair_page;
+pub use pair::picture as pair_picture;
+pub use sparkline::sparkline;
+
+use crate::ReportError;
+use crate::figure::figure;
+use crate::numbers::{fixed, with_prefix};
+use crate::page::{Number, Page, Part, Section, Table};
+
+/// The page of the run that `summary` and `course` are of.
+///
+/// # Errors
+/// If a figure cannot be drawn.
+pub fn page(summary: &Summary, course: &Course) -> Result<String, ReportError> {
+    let sections = [
+        Section::new("Path", path_section(summary, course)?),
+        Section::new("Energy", energy_section(summary, course)?),
+        Section::new("Links", links(&summary.links)),
+        Section::new("Bed", bed(summary.bed.as_ref())),
+    ];
+    let page = Page {
+        title: summary.name.clone(),
+        kind: "run",
+        lead: lead(summary),
+        headline: headline(summary),
+        sections: sections.into_iter().flatten().collect(),
+        origin: origin(&summary.version, &summary.model_hash),
+    };
+    page.html()
+}
+
+/// Where a page is from.
+pub(crate) fn origin(version: &str, model_hash: &str) -> Vec<(&'static str, String)> {
+    vec![("plunge", version.to_owned()), ("model", model_hash.to_owned())]
+}
+
+fn lead(summary: &Summary) -> String {
+    let ground = match &summary.bed {
+        Some(bed) => format!("onto a bed of {} grains", bed.grains),
+        None => "into a resistive medium".to_owned(),
+    };
+    let (speed, angle) = (summary.impact.speed_m_per_s, summary.impact.angle_deg);
+    format!("An impact at {speed} m/s, {angle}\u{b0} from the horizontal, {ground}.")
+}
+
+fn headline(summary: &Summary) -> Vec<Number> {
+    let StopSummary { stopped, stopping_time_s, stopping_time_z_s, stopping_time_x_s, .. } =
+        summary.stop;
+    let milliseconds = |time: Option<f64>| match time {
+        Some(time) => format!("{:.1} ms", 1e3 * time),
+        None => "not reached".to_owned(),
+    };
+    let components = format!(
+        "vertical {}, horizontal {}",
+        milliseconds(stopping_time_z_s),
+        milliseconds(stopping_time_x_s)
+    );
+    let depth_note = if stopped { "" } else { "still moving at the end" };
+    let energy = &summary.energy;
+    vec![
+        Number::new("depth", format!("{:.2} mm", 1e3 * summary.stop.depth_m), depth_note),
+        Number::new("range", format!("{:.2} mm", 1e3 * summary.stop.range_m), ""),
+        Number::new("stopping time", milliseconds(stopping_time_s), components),
+        Number::new("at rest after", milliseconds(summary.stop.rest_time_s), ""),
+        Number::new("energy at impact", with_prefix(energy.initial, "J"), ""),
+        Number::new(
+            "closure",
+            format!("{:.1e}", energy.closure),
+            "largest energy unaccounted for, over that at impact",
+        ),
+    ]
+}
+
+fn path_section(summary: &Summary, course: &Course) -> Result<Vec<Part>, ReportError> {
+    let caption = "Depth of the lowest point below the undisturbed surface, and distance along the \
+                   horizontal motion; velocity downward and along it. The dashed line is the stop.";
+    let mut parts = vec![figure(&path::picture(course, summary)?, caption)];
+    if !course.complete {
+        parts.push(Part::Text("The log is cut: curves go as far as it does.".to_owned()));
+    }
+    parts.extend(summary.forces.as_ref().map(|forces| Part::Text(forces_text(forces))));
+    Ok(parts)
+}
+
+fn forces_text(forces: &ForceSummary) -> String {
+    let newton = |force| match force {
+        Some(force) => with_prefix(force, "N"),
+        None => "not known".to_owned(),
+    };
+    let overtakes = match forces.static_overtakes_s {
+        Some(time) => format!("Friction becomes the larger part of the force after {time:.4} s"),
+        None => "Friction never becomes the larger part of the force".to_owned(),
+    };
+    let (whole, friction) = (newton(forces.force_at_stop), newton(forces.static_at_stop));
+    format!("{overtakes}; at the stop the force is {whole}, of which {friction} is friction.")
+}
+
+fn energy_section(summary: &Summary, course: &Course) -> Result<Vec<Part>, ReportError> {
+    let mut parts = Vec::new();
+    if let Some(budget) = energy::Budget::of(course) {
+        parts.push(figure(
+            &energy::picture(&budget)?,
+            "What the impact and the weight have supplied (dashed), and what has become of it. What \
+             the stack misses of the line is not accounted for; below, in parts of the energy at \
+             impact.",
+        ));
+    }
+    let energy = &summary.energy;
+    let mut table = Table::new(&["in the end", "energy", "of that at impact"]);
+    let mut row = |name: &str, value: f64| {
+        let share = (energy.initial > 0.0).then(|| 100.0 * value / energy.initial);
+        let share = share.map_or(String::new(), |share| format!("{share:.2} %"));
+        table.rows.push(vec![name.to_owned(), with_prefix(value, "J"), share]);
+    };
+    for (name, value) in &energy.dissipated {
+        row(&format!("lost to {}", name.replace('_', " ")), *value);
+    }
+    for (name, value) in &energy.input {
+        row(&format!("put in by {}", name.replace('_', " ")), *value);
+    }
+    row("of the intruder, in motion and height", energy.at_end.intruder);
+    if summary.bed.is_some() {
+        row("of the grains, more than before", energy.at_end.grains);
+    }
+    row("in springs, more than before", energy.at_end.elastic);
+    row("unaccounted for", -energy.unaccounted);
+    parts.push(Part::Table(table));
+    Ok(parts)
+}
+
+fn links(links: &[LinkSummary]) -> Vec<Part> {
+    if links.is_empty() {
+        return Vec::new();
+    }
+    let head = ["link", "contact (s)", "stops after (s)", "depth (mm)", "given (J)", "of all (%)"];
+    let mut table = Table::new(&head);
+    for (index, link) in links.iter().enumerate() {
+        table.rows.push(vec![
+            (index + 1).to_string(),
+            fixed(link.contact_s, 4),
+            fixed(link.stopping_time_s, 4),
+            fixed(Some(1e3 * link.depth_m), 2),
+            format!("{:.4e}", link.given),
+            fixed(link.given_share.map(|share| 100.0 * share), 1),
+        ]);
+    }
+    vec![Part::Table(table)]
+}
+
+fn bed(bed: Option<&BedSummary>) -> Vec<Part> {
+    let Some(bed) = bed else { return Vec::new() };
+    let mut table = Table::new(&["", ""]);
+    let mut row = |name: &str, value: String| table.rows.push(vec![name.to_owned(), value]);
+    row("grains", bed.grains.to_string());
+    row("packing fraction", format!("{:.4}", bed.packing_fraction));
+    row("height", format!("{:.1} mm", 1e3 * bed.height_m));
+    row("coordination", format!("{:.2}", bed.coordination));
+    if let Some(activity) = &bed.activity {
+        row("largest share in motion", format!("{:.1} %", 100.0 * activity.largest_moving_share));
+        if let Some(time) = activity.dissipation_time_s {
+            row("time to dissipate its motion", format!("{:.1} ms", 1e3 * time));
+        }
+    }
+    let warnings = bed.warnings.iter().map(|warning| Part::Text(format!("Warning: {warning}.")));
+    [Part::Table(table)].into_iter().chain(warnings).collect()
+}

@@ -1,0 +1,50 @@
+//! The page of a measurement set as it was understood.
+
+use validation::measurement::{Kind, Loaded, Role};
+use validation::picture;
+
+use crate::ReportError;
+use crate::figure::figure;
+use crate::page::{Number, Page, Part, Section};
+
+/// The page of `loaded`, before anything is fitted to it.
+///
+/// # Errors
+/// If the figure cannot be drawn.
+pub fn of_set(loaded: &Loaded) -> Result<String, ReportError> {
+    let set = &loaded.set;
+    let caption = match set.kind {
+        Kind::Trajectory => {
+            "Every reading of every run, in SI and counted downward. A run that does not start along \
+             the dashed line has another sign, unit or zero than the set says."
+        }
+        Kind::Scalar => "Every number of every run over the stated impact speed.",
+    };
+    let held_out = set.conditions.iter().filter(|one| one.role == Role::Holdout).count();
+    let readings: usize = set.runs.iter().map(|run| run.frames.len()).sum();
+    let notes: Vec<Part> = set.notes.iter().cloned().map(Part::Text).collect();
+    let page = Page {
+        title: set.id.clone(),
+        kind: "measurement set",
+        lead: set.source.clone().unwrap_or_else(|| "What was understood of the files.".to_owned()),
+        headline: vec![
+            Number::new(
+                "conditions",
+                set.conditions.len().to_string(),
+                format!("{held_out} held out"),
+            ),
+            Number::new("runs", set.runs.len().to_string(), ""),
+            Number::new("readings", readings.to_string(), ""),
+        ],
+        sections: [
+            Section::new("What was read", vec![figure(&picture::measured(set)?, caption)]),
+            Section::new("Notes", notes),
+            Section::new("In words", vec![Part::Listing(loaded.describe())]),
+        ]
+        .into_iter()
+        .flatten()
+        .collect(),
+        origin: vec![("plunge", env!("CARGO_PKG_VERSION").to_owned())],
+    };
+    page.html()
+}
