@@ -1,0 +1,4 @@
+//! Beds of grains on the workbench, with small beds.
+
+mod campaign;
+mod world;
