@@ -122,6 +122,11 @@ impl Record {
             let down = condition.speed * sine * time + 0.5 * gravity * time * time;
             return (down, condition.speed * cosine * time);
         }
+        self.since_contact(time)
+    }
+
+    /// Likewise, not before contact.
+    fn since_contact(&self, time: f64) -> (f64, f64) {
         let place = time / self.interval;
         let at = place as usize;
         let last = self.depth.len().saturating_sub(1);
@@ -131,6 +136,12 @@ impl Record {
         let share = place - at as f64;
         let between = |of: &[f64]| of[at] + share * (of[at + 1] - of[at]);
         (between(&self.depth), between(&self.range))
+    }
+
+    /// Depth and range (m) at `times` (s) since first contact.
+    #[must_use]
+    pub fn path(&self, times: &[f64]) -> Vec<(f64, f64)> {
+        times.iter().map(|&time| self.since_contact(time)).collect()
     }
 
     /// The observables that `layout` asks for, as `set` defines them.

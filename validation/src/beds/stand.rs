@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use configs::{BedSource, LoadOptions, Medium, Model, ModelSource};
+use configs::{BedSource, GrainMedium, GrainModel, LoadOptions, Medium, Model, ModelSource};
 use engine::bed::random;
 use engine::grains::Space;
 use rand::RngExt;
@@ -67,6 +67,7 @@ pub struct Draw {
 pub struct Stand<'a> {
     /// The model.
     pub model: &'a Model,
+    medium: &'a GrainMedium,
     /// The set.
     pub set: &'a MeasurementSet,
     text: String,
@@ -106,6 +107,7 @@ impl<'a> Stand<'a> {
         let n_places = ((x_range.1 - x_range.0) / (APART * widest)).floor() as usize;
         Ok(Self {
             model,
+            medium,
             set,
             text: model.resolved_toml().to_owned(),
             allow_paths,
@@ -114,6 +116,18 @@ impl<'a> Stand<'a> {
             x_range,
             expected: (0..set.conditions.len()).map(|at| expected(model, set, at)).collect(),
         })
+    }
+
+    /// The model, as what it is.
+    #[must_use]
+    pub fn grains(&self) -> GrainModel<'a> {
+        GrainModel { model: self.model, medium: self.medium }
+    }
+
+    /// How many impacts fall on one bed, each on grains that the others leave alone.
+    #[must_use]
+    pub fn n_places(&self) -> usize {
+        self.n_places
     }
 
     /// `n` draws, behind the first `skipped`: several places of a bed before the next bed. Draws that are
