@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use super::baseline::Baseline;
 use super::switches::Switch;
 use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
+use crate::held_out::noise_floor;
 use crate::measurement::MeasurementSet;
 use crate::rounding::rounded;
 
@@ -174,6 +175,21 @@ impl BedForward {
             "path_force_sd": rounded(noise.spread.path),
             "conditions": conditions.collect::<Vec<_>>(),
         })
+    }
+
+    /// Standard errors of the means of the runs of the model, by kind of number: no error below it says
+    /// anything of the model.
+    #[must_use]
+    pub fn noise_floor(&self) -> Value {
+        let observed = &self.baseline.observed;
+        noise_floor(observed, &observed.fit).to_json()
+    }
+
+    /// The names of those of `effects` that are switches of the simulation.
+    #[must_use]
+    pub fn of_the_bed(&self, effects: &[(usize, f64)]) -> Vec<&'static str> {
+        let switches = effects.iter().filter_map(|&(index, _)| self.switch(index));
+        switches.map(|at| self.screened[at].switch.id).collect()
     }
 
     /// What the effects of the apparatus among `effects` change of the observables.

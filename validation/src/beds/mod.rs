@@ -25,10 +25,12 @@ pub use campaign::{CampaignError, Outstanding, Place, Progress, Stage, Unattende
 pub use confirmation::{Channel, Confirmation};
 pub use emulator::BedForward;
 pub use job::Job;
-pub use plan::{Plan, PlannedStage, SIZES, Size};
+pub use plan::{Plan, PlannedStage, SIZES, Size, Wish};
 pub use rate::grain_steps_per_second;
 pub use record::Record;
 pub use stand::{Draw, Stand, StandError};
 pub use switches::{SWITCHES, Switch};
 pub use variation::Variation;
-pub use workflow::{BedDiagnosis, BedError, COMPARED, bed_forward, diagnose_bed};
+pub use workflow::{
+    BedDiagnosis, BedError, COMPARED, bed_forward, compare_jobs, diagnose_bed, unaffordable,
+};

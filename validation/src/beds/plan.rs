@@ -80,6 +80,18 @@ const STANDARD: usize = 2;
 /// Sizes below this one suggest; from it on, they support.
 const SUPPORTS: usize = 1;
 
+/// What is asked of a diagnosis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wish {
+    /// Time that may be spent (s); the standard plan without.
+    pub budget: Option<f64>,
+    /// Switches that are parameters of the model: they compensate what they can before any effect is
+    /// ranked.
+    pub free: Vec<String>,
+    /// Switches that are candidates, the free ones aside; all of them if there are none.
+    pub candidates: Vec<String>,
+}
+
 /// What is run, stage by stage.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -99,8 +111,8 @@ pub struct Plan {
     pub rate: f64,
     /// Impacts at a time.
     pub workers: usize,
-    /// The time that was given (s), if one was.
-    pub budget: Option<f64>,
+    /// What was asked for.
+    pub wish: Wish,
 }
 
 /// A stage of a plan.
@@ -126,37 +138,43 @@ pub(super) struct Draws {
 }
 
 impl Plan {
-    /// The largest plan for `stand` that is done in `budget` (s), or the standard one; the smallest, if
+    /// The largest plan for `stand` that is done in the budget of `wish`, or the standard one; the smallest, if
     /// none is, which [`Plan::fits`] then denies.
     ///
     /// # Errors
-    /// If a condition is no model.
+    /// If a condition is no model, or a name no candidate.
     pub fn new(
         stand: &Stand<'_>,
         observed: &Observed,
         place: &Place<'_>,
-        budget: Option<f64>,
+        wish: &Wish,
     ) -> Result<Self, BedError> {
+        let listed = switches(stand, &[]);
+        for id in wish.free.iter().chain(&wish.candidates) {
+            if listed.iter().all(|one| one.id != *id) {
+                let known = listed.iter().map(|one| one.id).collect();
+                return Err(BedError::UnknownCandidate { id: id.clone(), known });
+            }
+        }
         let rate = grain_steps_per_second(place.cache, stand.grains())?;
-        let Some(budget) = budget else {
-            return Self::sized(stand, observed, place, (STANDARD, rate));
-        };
-        let mut chosen = Self::sized(stand, observed, place, (0, rate))?;
+        let sized = |at| Self::sized(stand, observed, place, (at, rate, wish));
+        let Some(budget) = wish.budget else { return sized(STANDARD) };
+        let mut chosen = sized(0)?;
         for at in 1..SIZES.len() {
-            let larger = Self::sized(stand, observed, place, (at, rate))?;
+            let larger = sized(at)?;
             if larger.seconds() > budget {
                 break;
             }
             chosen = larger;
         }
-        Ok(Self { budget: Some(budget), ..chosen })
+        Ok(chosen)
     }
 
     fn sized(
         stand: &Stand<'_>,
         observed: &Observed,
         place: &Place<'_>,
-        (at, rate): (usize, f64),
+        (at, rate, wish): (usize, f64, &Wish),
     ) -> Result<Self, BedError> {
         let size = SIZES[at];
         let fit = spread_over(&observed.fit, size.conditions);
@@ -174,7 +192,7 @@ impl Plan {
             stages: Vec::new(),
             rate,
             workers: place.n_workers(),
-            budget: None,
+            wish: wish.clone(),
         };
         plan.stages = plan.stages_of(stand, place)?;
         Ok(plan)
@@ -230,7 +248,7 @@ impl Plan {
     /// Whether it is done within the budget, as far as is known.
     #[must_use]
     pub fn fits(&self) -> bool {
-        self.budget.is_none_or(|budget| self.seconds() <= budget)
+        self.wish.budget.is_none_or(|budget| self.seconds() <= budget)
     }
 
     /// As JSON; times are estimates of this machine.
@@ -307,11 +325,20 @@ impl Plan {
     }
 
     pub(super) fn screening(&self, stand: &Stand<'_>) -> Screening {
-        let switches: Vec<&'static Switch> =
-            SWITCHES.iter().filter(|one| one.lacks(stand.grains()).is_none()).collect();
+        let Wish { free, candidates, .. } = &self.wish;
+        let only =
+            if candidates.is_empty() { Vec::new() } else { [&free[..], candidates].concat() };
+        let switches = switches(stand, &only);
         let first = self.draws(stand).screening;
         Screening::new(switches, self.fit.clone(), self.size.repeats, |n| stand.draws(first, n))
     }
+}
+
+/// The switches of the model of `stand`: those that are named in `only`, all of them if there are none.
+fn switches(stand: &Stand<'_>, only: &[String]) -> Vec<&'static Switch> {
+    let wanted = |one: &&Switch| only.is_empty() || only.iter().any(|id| id == one.id);
+    let of_model = |one: &&Switch| one.lacks(stand.grains()).is_none();
+    SWITCHES.iter().filter(of_model).filter(wanted).collect()
 }
 
 /// `count` of `all`, evenly spaced, first and last among them; the middle where one is wanted.

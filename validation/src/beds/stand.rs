@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use configs::{BedSource, GrainMedium, GrainModel, LoadOptions, Medium, Model, ModelSource};
+use configs::{
+    BedSource, ConfigError, GrainMedium, GrainModel, LoadOptions, Medium, Model, ModelSource,
+};
 use engine::bed::random;
 use engine::grains::Space;
 use rand::RngExt;
@@ -50,7 +52,7 @@ pub enum StandError {
         /// Id of the condition.
         condition: String,
         /// What is wrong with it.
-        source: configs::ConfigError,
+        source: ConfigError,
     },
 }
 
@@ -159,26 +161,47 @@ impl<'a> Stand<'a> {
         before.extend(variation.before.iter().cloned());
         let mut during = before.clone();
         during.extend(variation.during.iter().cloned());
-        for (at, (name, values)) in (self.n_effects..).zip(&variation.effects) {
-            during.push(format!("effect.{at}.name=\"{name}\""));
-            during.extend(values.iter().map(|(key, value)| format!("effect.{at}.{key}={value}")));
-        }
+        during.extend(self.added(variation));
         let of_condition = &self.set.conditions[condition];
         during.extend(sets_of(of_condition));
         during.push(format!("impact.x=\"{:?} m\"", self.x(draw)));
-        let load = |sets: Vec<String>| {
-            let source = ModelSource::Text {
-                name: format!("an impact of {}", self.model.run.name),
-                text: self.text.clone(),
-                folder: PathBuf::from("."),
-            };
-            let allow_paths = self.allow_paths.clone();
-            let options = LoadOptions { sets, seed: None, allow_paths };
-            Model::load(source, &options)
-                .map(|loaded| Arc::new(loaded.model))
+        let load = |sets| {
+            self.load(sets)
+                .map(Arc::new)
                 .map_err(|source| StandError::Config { condition: of_condition.id.clone(), source })
         };
         Ok(Job { model: load(during)?, bed: load(before)?, expected: self.expected[condition] })
+    }
+
+    /// The model with `variation`, complete and in SI.
+    ///
+    /// # Errors
+    /// If that is no model.
+    pub fn proposal(&self, variation: &Variation) -> Result<String, ConfigError> {
+        let mut sets = [&variation.before[..], &variation.during[..]].concat();
+        sets.extend(self.added(variation));
+        Ok(self.load(sets)?.resolved_toml().to_owned())
+    }
+
+    /// The assignments that add the effects of `variation`.
+    fn added(&self, variation: &Variation) -> Vec<String> {
+        let mut sets = Vec::new();
+        for (at, (name, values)) in (self.n_effects..).zip(&variation.effects) {
+            sets.push(format!("effect.{at}.name=\"{name}\""));
+            sets.extend(values.iter().map(|(key, value)| format!("effect.{at}.{key}={value}")));
+        }
+        sets
+    }
+
+    /// The model with `sets`.
+    fn load(&self, sets: Vec<String>) -> Result<Model, ConfigError> {
+        let source = ModelSource::Text {
+            name: format!("an impact of {}", self.model.run.name),
+            text: self.text.clone(),
+            folder: PathBuf::from("."),
+        };
+        let options = LoadOptions { sets, seed: None, allow_paths: self.allow_paths.clone() };
+        Ok(Model::load(source, &options)?.model)
     }
 
     /// Where the intruder lands (m): somewhere in its part of the range, drawn with the seed.

@@ -8,6 +8,7 @@ use super::baseline::{Baseline, BaselineError};
 use super::campaign::{CampaignError, Place};
 use super::confirmation::Confirmation;
 use super::emulator::BedForward;
+use super::job::Job;
 use super::line_search::{Against, LineSearch};
 use super::plan::{LEADERS, Plan};
 use super::record::Record;
@@ -44,8 +45,8 @@ pub enum BedError {
     #[error(transparent)]
     Bench(#[from] BenchError),
     /// A name that is no candidate of the model.
-    #[error("there is no candidate `{id}` to be free; there are: {}", known.join(", "))]
-    UnknownFree {
+    #[error("there is no candidate `{id}` for this model; there are: {}", known.join(", "))]
+    UnknownCandidate {
         /// What was asked for.
         id: String,
         /// What there is.
@@ -80,29 +81,25 @@ pub fn bed_forward(
     observed: &Observed,
     place: &Place<'_>,
 ) -> Result<BedForward, BedError> {
-    let conditions: Vec<usize> = observed.fit.iter().chain(&observed.holdout).copied().collect();
-    let draws = stand.draws(0, COMPARED);
-    let runs = plain_runs(stand, &conditions, &draws, place)?;
+    let records = place.run(&compare_jobs(stand, observed)?)?;
     let mut by_condition = vec![Vec::new(); observed.conditions.len()];
-    for (&condition, runs) in conditions.iter().zip(runs) {
-        by_condition[condition] = runs.into_iter().flatten().collect();
+    let conditions = observed.fit.iter().chain(&observed.holdout);
+    for (&condition, runs) in conditions.zip(records.chunks(COMPARED)) {
+        by_condition[condition] = runs.iter().flatten().cloned().collect();
     }
     let baseline = Baseline::of(stand, &observed.layouts(), &by_condition)?;
     Ok(BedForward::new(baseline, Vec::new(), &[]))
 }
 
-/// Records of the model as it stands, per condition and draw.
-fn plain_runs(
-    stand: &Stand<'_>,
-    conditions: &[usize],
-    draws: &[Draw],
-    place: &Place<'_>,
-) -> Result<Vec<Vec<Option<Record>>>, BedError> {
-    let plain = Variation::default();
-    let all = conditions.iter().flat_map(|&at| draws.iter().map(move |&draw| (at, draw)));
-    let jobs = all.map(|(at, draw)| stand.job(at, draw, &plain)).collect::<Result<Vec<_>, _>>()?;
-    let records = place.run(&jobs)?;
-    Ok(records.chunks(draws.len().max(1)).map(<[_]>::to_vec).collect())
+/// What [`bed_forward`] would run.
+///
+/// # Errors
+/// If a condition is no model.
+pub fn compare_jobs(stand: &Stand<'_>, observed: &Observed) -> Result<Vec<Job>, BedError> {
+    let conditions = observed.fit.iter().chain(&observed.holdout);
+    let (draws, plain) = (stand.draws(0, COMPARED), Variation::default());
+    let all = conditions.flat_map(|&at| draws.iter().map(move |&draw| (at, draw)));
+    Ok(all.map(|(at, draw)| stand.job(at, draw, &plain)).collect::<Result<_, _>>()?)
 }
 
 /// A diagnosis under way.
@@ -117,8 +114,8 @@ struct Work<'a> {
     impacts: usize,
 }
 
-/// Diagnoses the model of `stand` by the runs of `plan`; the switches `free` are parameters of the model,
-/// which compensate what they can before any effect is ranked.
+/// Diagnoses the model of `stand` by the runs of `plan`; of a plan that does not fit its budget
+/// [`unaffordable`] says what there is to say.
 ///
 /// # Errors
 /// If the impacts cannot be run, or say nothing.
@@ -127,7 +124,7 @@ pub fn diagnose_bed(
     measured: &Observed,
     place: &Place<'_>,
     plan: Plan,
-    (free, seed): (&[String], u64),
+    seed: u64,
 ) -> Result<BedDiagnosis, BedError> {
     let mut observed = measured.clone();
     observed.fit = plan.fit.clone();
@@ -135,11 +132,11 @@ pub fn diagnose_bed(
     observed.holdout = Vec::new();
     let layouts = measured.layouts();
     let work = Work { stand, place, plan, layouts, observed, seed, impacts: 0 };
-    work.diagnose(free, measured)
+    work.diagnose(measured)
 }
 
 impl Work<'_> {
-    fn diagnose(mut self, free: &[String], measured: &Observed) -> Result<BedDiagnosis, BedError> {
+    fn diagnose(mut self, measured: &Observed) -> Result<BedDiagnosis, BedError> {
         let draws = self.plan.draws(self.stand);
         let jobs = self.plan.baseline_jobs(self.stand, &draws.baseline)?;
         let records = self.run(&jobs)?;
@@ -153,16 +150,11 @@ impl Work<'_> {
         let baseline = Baseline::of(self.stand, &self.layouts, &by_condition)?;
 
         let screening = self.plan.screening(self.stand);
-        if let Some(id) = free.iter().find(|id| screening.switches.iter().all(|one| one.id != **id))
-        {
-            let known = screening.switches.iter().map(|one| one.id).collect();
-            return Err(BedError::UnknownFree { id: id.clone(), known });
-        }
         let records = self.run(&screening.jobs(self.stand)?)?;
         let paired = correlation.unwrap_or(0.0).clamp(0.0, 0.9);
         let scatter = (paired, &baseline.spread[..]);
         let screened = screening.signatures(self.stand, &self.layouts, &records, scatter);
-        let mut forward = BedForward::new(baseline, screened, free);
+        let mut forward = BedForward::new(baseline, screened, &self.plan.wish.free);
 
         let mut diagnosis = self.judge(&forward)?;
         if let Some(leaders) = leaders(&diagnosis, &forward) {
@@ -177,7 +169,7 @@ impl Work<'_> {
         Ok(BedDiagnosis { diagnosis, forward, observed, confirmation, correlation, plan, impacts })
     }
 
-    fn run(&mut self, jobs: &[super::job::Job]) -> Result<Vec<Option<Record>>, BedError> {
+    fn run(&mut self, jobs: &[Job]) -> Result<Vec<Option<Record>>, BedError> {
         self.impacts += jobs.len();
         Ok(self.place.run(jobs)?)
     }
@@ -295,6 +287,21 @@ impl Work<'_> {
     }
 }
 
+/// What there is to say where the budget of `plan` does not pay for it.
+#[must_use]
+pub fn unaffordable(plan: &Plan) -> Diagnosis {
+    let minutes = |seconds: f64| (seconds / 60.0).ceil();
+    let why = format!(
+        "the smallest plan takes about {} min with {} impacts at a time, and the budget is {} min: \
+         --budget \"{} min\" would do, or fewer candidates",
+        minutes(plan.seconds()),
+        plan.workers,
+        minutes(plan.wish.budget.unwrap_or(0.0)),
+        minutes(1.1 * plan.seconds()),
+    );
+    Diagnosis::cannot_tell(Vec::new(), why)
+}
+
 /// The switches to be searched, with the guess of each: those that the first diagnosis names or cannot
 /// tell from what it names. None where it names nothing.
 fn leaders(diagnosis: &Diagnosis, forward: &BedForward) -> Option<Vec<(usize, f64)>> {
@@ -339,6 +346,39 @@ impl BedDiagnosis {
         object["ledger"] = self.confirmation.as_ref().map_or(Value::Null, Confirmation::ledger);
         object["cost"] = json!({ "impacts": self.impacts, "plan": self.plan.to_json(stand) });
         Ok(object)
+    }
+
+    /// The model with the switches of each effect that is worth adding, as a name and a model file; what the
+    /// apparatus does is no part of a bed.
+    ///
+    /// # Errors
+    /// If a changed model is none.
+    pub fn proposals(
+        &self,
+        stand: &Stand<'_>,
+    ) -> Result<Vec<(String, String)>, configs::ConfigError> {
+        let named = &self.diagnosis;
+        let points: Vec<Point> = match named.verdict {
+            Verdict::Supported | Verdict::Pair => {
+                named.proposed.iter().map(|fitted| fitted.fit.point.clone()).collect()
+            }
+            Verdict::NotSeparable => named
+                .ranking
+                .iter()
+                .filter(|effect| named.not_separable.contains(&effect.id))
+                .filter_map(|effect| effect.point.clone())
+                .collect(),
+            _ => Vec::new(),
+        };
+        let mut proposals = Vec::new();
+        for point in points {
+            let ids = self.forward.of_the_bed(&point.effects);
+            if !ids.is_empty() {
+                let text = stand.proposal(&change_at(stand, &self.forward, &point))?;
+                proposals.push((format!("model+{}.toml", ids.join("+")), text));
+            }
+        }
+        Ok(proposals)
     }
 
     /// The two terms of the force law that comes nearest to the runs of the model, and to what was

@@ -24,7 +24,7 @@ const RATE: f64 = 500.0;
 const CAMERA: f64 = 1e-4;
 
 /// Speeds (m/s) that are fitted to, and those that are held out.
-const SPEEDS: ([f64; 3], [f64; 2]) = ([0.5, 1.0, 2.0], [0.7, 1.5]);
+const SPEEDS: ([f64; 3], [f64; 2]) = ([0.5, 1.0, 1.5], [0.75, 1.25]);
 
 /// Frames behind the stop that a camera still takes.
 const STILL: usize = 5;
