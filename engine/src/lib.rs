@@ -18,6 +18,7 @@ pub mod crater;
 pub mod error;
 pub mod footprint;
 pub mod grain_bed;
+pub mod grain_force;
 pub mod grains;
 pub mod launch;
 pub mod ledger;

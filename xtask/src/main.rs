@@ -25,6 +25,8 @@ Usage: cargo xtask <task>
   bench              impacts per second on resistive media, in release
   bench diagnosis [ARG]...
                      how often the diagnosis is right, in release; the arguments go to the program
+  bench beds [ARG]...
+                     the same on small beds of grains
   three-shapes [ARG]...
                      cylinder, hemisphere and cone on beds of grains, in release; the same
   validate [ARG]...  the validation rows, in release; the arguments go to the program as they are
@@ -37,6 +39,7 @@ Exit status: 0 done, 1 something was found, 2 the command line was not understoo
 #[derive(Debug, PartialEq, Eq)]
 enum Task {
     Bench,
+    BenchBeds(Vec<OsString>),
     BenchDiagnosis(Vec<OsString>),
     Help,
     Lint,
@@ -79,10 +82,12 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
     };
     let mut next = parser.next()?;
     if let (Task::Bench, Some(Arg::Value(what))) = (&task, &next) {
-        if what != "diagnosis" {
-            return Err(format!("no benchmark is called `{}`", what.display()).into());
-        }
-        task = Task::BenchDiagnosis(parser.raw_args()?.collect());
+        let of = match what.to_str() {
+            Some("beds") => Task::BenchBeds,
+            Some("diagnosis") => Task::BenchDiagnosis,
+            _ => return Err(format!("no benchmark is called `{}`", what.display()).into()),
+        };
+        task = of(parser.raw_args()?.collect());
         next = None;
     }
     match next {
@@ -108,6 +113,7 @@ fn run(task: Task) -> Result<ExitCode> {
             tidy::run(&sh)
         }
         Task::Bench => program(&sh, "bench", &[]),
+        Task::BenchBeds(args) => program(&sh, "beds", &args),
         Task::BenchDiagnosis(args) => program(&sh, "diagnosis", &args),
         Task::ThreeShapes(args) => program(&sh, "three_shapes", &args),
         Task::Validate(args) => program(&sh, "validate", &args),
@@ -164,6 +170,8 @@ mod tests {
             task,
             Ok(Task::BenchDiagnosis(["--quick", "--help"].map(OsString::from).into()))
         );
+        let quick = vec![OsString::from("--quick")];
+        assert_eq!(parsed(&["bench", "beds", "--quick"]), Ok(Task::BenchBeds(quick)));
         assert_eq!(
             parsed(&["bench", "diagnoses"]),
             Err("no benchmark is called `diagnoses`".into())
