@@ -7,8 +7,8 @@ use std::path::PathBuf;
 use configs::engine::units::{self, Dimension};
 use serde_json::{Value, json};
 use validation::beds::{
-    BedDiagnosis, BedError, BedForward, CampaignError, Place, Plan, Stand, Wish, bed_forward,
-    compare_jobs, diagnose_bed, grain_steps_per_second, unaffordable,
+    BedDiagnosis, BedError, BedForward, CampaignError, Impacts, Place, Plan, Stand, Wish,
+    bed_forward, compare_jobs, diagnose_bed, unaffordable,
 };
 use validation::bench::Bench;
 use validation::compare::Comparison;
@@ -82,8 +82,7 @@ impl<'a> Workshop<'a> {
             let jobs = compare_jobs(&stand, &measured.observed).map_err(|e| self.failed(e))?;
             let place = self.place();
             let left = place.outstanding(&jobs).map_err(|e| self.failed(e.into()))?;
-            let rate = grain_steps_per_second(&self.cache, stand.grains())
-                .map_err(|e| self.failed(e.into()))?;
+            let rate = place.rate(stand.grains()).map_err(|e| self.failed(e.into()))?;
             plans.push(json!({
                 "model": model.name,
                 "impacts": jobs.len(),

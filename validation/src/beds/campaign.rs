@@ -10,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use configs::run::RunError;
-use configs::{BuildError, ConfigError, Model};
+use configs::{BuildError, ConfigError, GrainModel, Model};
 use engine::checkpoint::CheckpointError;
 use engine::error::{StepError, ThreadsError};
 use engine::parallel::with_threads;
@@ -116,20 +116,42 @@ pub struct Outstanding {
     pub work: f64,
 }
 
-impl Place<'_> {
+/// Where the records of jobs come from.
+pub trait Impacts {
     /// How many impacts run at a time.
-    #[must_use]
-    pub fn n_workers(&self) -> usize {
+    fn n_workers(&self) -> usize;
+
+    /// Grain-steps per second of one of them, on beds like that of `model`.
+    ///
+    /// # Errors
+    /// If the bed of the model cannot be built.
+    fn rate(&self, model: GrainModel<'_>) -> Result<f64, CampaignError>;
+
+    /// The records of `jobs`, in their order, and the same however many workers there are. An impact
+    /// whose steps cannot be trusted has none.
+    ///
+    /// # Errors
+    /// The first of any job in their order; [`CampaignError::Interrupted`] if it was stopped.
+    fn run(&self, jobs: &[Job]) -> Result<Vec<Option<Record>>, CampaignError>;
+
+    /// What of `jobs` is still to be run.
+    ///
+    /// # Errors
+    /// If a model is no bed of grains.
+    fn outstanding(&self, jobs: &[Job]) -> Result<Outstanding, CampaignError>;
+}
+
+impl Impacts for Place<'_> {
+    fn n_workers(&self) -> usize {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         self.workers.map_or(cores, usize::from)
     }
 
-    /// Runs `jobs` that are not kept yet; the records are in their order, and the same however many
-    /// workers there are. An impact whose steps cannot be trusted has none, and the watch is told why.
-    ///
-    /// # Errors
-    /// The first of any job in their order; [`CampaignError::Interrupted`] if the watch wants to stop.
-    pub fn run(&self, jobs: &[Job]) -> Result<Vec<Option<Record>>, CampaignError> {
+    fn rate(&self, model: GrainModel<'_>) -> Result<f64, CampaignError> {
+        rate::grain_steps_per_second(self.cache, model)
+    }
+
+    fn run(&self, jobs: &[Job]) -> Result<Vec<Option<Record>>, CampaignError> {
         for folder in ["beds", "impacts"] {
             let path = self.cache.join(folder);
             fs::create_dir_all(&path).map_err(|source| CampaignError::Io {
@@ -174,11 +196,7 @@ impl Place<'_> {
         Ok((0..jobs.len()).zip(kept).map(|(at, kept)| kept.or_else(|| found(at))).collect())
     }
 
-    /// What of `jobs` is not kept yet.
-    ///
-    /// # Errors
-    /// If a model is no bed of grains.
-    pub fn outstanding(&self, jobs: &[Job]) -> Result<Outstanding, CampaignError> {
+    fn outstanding(&self, jobs: &[Job]) -> Result<Outstanding, CampaignError> {
         let keys = jobs.iter().map(Job::key).collect::<Result<Vec<_>, _>>()?;
         let missing = first_of_each(&keys, |at| Job::kept(self.cache, &keys[at]).is_none());
         let beds = self.missing_beds(jobs, &missing)?;
@@ -186,7 +204,9 @@ impl Place<'_> {
         let settling: f64 = beds.iter().map(|&at| rate::SETTLING * jobs[at].work()).sum();
         Ok(Outstanding { impacts: missing.len(), beds: beds.len(), work: impacts + settling })
     }
+}
 
+impl Place<'_> {
     /// One of the `missing` jobs per bed that is not there yet.
     fn missing_beds(&self, jobs: &[Job], missing: &[usize]) -> Result<Vec<usize>, CampaignError> {
         let keys = missing.iter().map(|&at| jobs[at].bed_key()).collect::<Result<Vec<_>, _>>()?;

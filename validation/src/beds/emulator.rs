@@ -16,8 +16,16 @@ use crate::rounding::rounded;
 const OF_THE_APPARATUS: [&str; 5] =
     ["rail-friction", "air-drag", "tilt", "camera-scale", "depth-zero"];
 
-/// Amplitudes behind the largest one that was run are extrapolated, so far.
-const BEYOND: f64 = 1.5;
+/// So many times the amplitude that was screened, what was found there is extrapolated: far enough for a
+/// search to begin with.
+const SCREENED: f64 = 4.0;
+
+/// The same for the largest amplitude of a line search.
+const SEARCHED: f64 = 1.5;
+
+/// A constant force on the intruder, and what grains do that looks like one below the surface: they differ
+/// before contact.
+const CONSTANT: [&str; 3] = ["rail-friction", "cohesion-dmt", "capillary-bridge"];
 
 /// A derivative by an amplitude is taken over this share of the one that is screened.
 const STEP: f64 = 1e-2;
@@ -49,8 +57,8 @@ pub(super) struct Screened {
     pub(super) switch: &'static Switch,
     /// One per condition of the set; none for those that were not run.
     pub(super) responses: Vec<Option<Response>>,
-    /// Largest amplitude of either sign that was run.
-    pub(super) tried: (f64, f64),
+    /// Least and greatest amplitude that the responses are good for.
+    pub(super) range: (f64, f64),
     /// Why it cannot be tested.
     pub(super) not_testable: Option<String>,
 }
@@ -72,6 +80,8 @@ pub struct BedForward {
     sources: Vec<Source>,
     parameters: Vec<Parameter>,
     candidates: Vec<Candidate>,
+    /// Whether readings from before contact are among what is fitted to.
+    flight: bool,
 }
 
 impl BedForward {
@@ -87,6 +97,8 @@ impl BedForward {
             let apparatus = of_law.filter(|(_, one)| OF_THE_APPARATUS.contains(&one.id.as_str()));
             sources.extend(apparatus.map(|(at, _)| Source::Apparatus(at)));
         }
+        let layouts = baseline.observed.conditions.iter().map(|one| &one.layout);
+        let flight = layouts.flat_map(|layout| &layout.times).any(|time| *time < 0.0);
         let mut forward = Self {
             baseline,
             screened,
@@ -94,6 +106,7 @@ impl BedForward {
             sources,
             parameters: Vec::new(),
             candidates: Vec::new(),
+            flight,
         };
         forward.describe();
         forward
@@ -103,7 +116,7 @@ impl BedForward {
     fn describe(&mut self) {
         let parameter = |&at: &usize| {
             let one = &self.screened[at];
-            let (min, max) = one.range();
+            let (min, max) = one.range;
             let name = one.switch.id.to_owned();
             Parameter { name, unit: String::new(), start: 0.0, min, max }
         };
@@ -115,7 +128,17 @@ impl BedForward {
             }
         };
         let parameters = self.free.iter().map(parameter).collect();
-        let candidates = self.sources.iter().map(candidate).collect();
+        let mut candidates: Vec<Candidate> = self.sources.iter().map(candidate).collect();
+        if !self.flight {
+            let alike: Vec<String> = candidates
+                .iter()
+                .filter(|one| CONSTANT.contains(&one.id.as_str()) && one.not_testable.is_none())
+                .map(|one| one.id.clone())
+                .collect();
+            for one in candidates.iter_mut().filter(|one| alike.contains(&one.id)) {
+                one.unresolved = alike.iter().filter(|id| **id != one.id).cloned().collect();
+            }
+        }
         (self.parameters, self.candidates) = (parameters, candidates);
     }
 
@@ -140,15 +163,17 @@ impl BedForward {
         &self.baseline
     }
 
-    /// Puts what a line search found of switch `at` in place of what screening had found.
+    /// Puts what a line search over amplitudes of `tried` found of switch `at` in place of what screening had
+    /// found.
     pub(super) fn refine(
         &mut self,
         at: usize,
         responses: Vec<Option<Response>>,
         tried: (f64, f64),
     ) {
+        let (min, max) = self.screened[at].switch.range;
         self.screened[at].responses = responses;
-        self.screened[at].tried = tried;
+        self.screened[at].range = (min.max(SEARCHED * tried.0), max.min(SEARCHED * tried.1));
         self.describe();
     }
 
@@ -230,14 +255,19 @@ impl BedForward {
 }
 
 impl Screened {
-    /// Least and greatest amplitude that the responses are good for.
-    fn range(&self) -> (f64, f64) {
-        let (min, max) = self.switch.range;
-        ((BEYOND * self.tried.0).max(min), (BEYOND * self.tried.1).min(max))
+    /// `switch` as it was screened.
+    pub(super) fn new(
+        switch: &'static Switch,
+        responses: Vec<Option<Response>>,
+        not_testable: Option<String>,
+    ) -> Self {
+        let (min, max) = switch.range;
+        let reach = SCREENED * switch.screen;
+        Self { switch, responses, range: (min.max(-reach), max.min(reach)), not_testable }
     }
 
     fn candidate(&self) -> Candidate {
-        let (min, max) = self.range();
+        let (min, max) = self.range;
         Candidate {
             id: self.switch.id.to_owned(),
             unit: "1".to_owned(),

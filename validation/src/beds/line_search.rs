@@ -57,6 +57,15 @@ impl<'a> LineSearch<'a> {
         Self { switch, amplitudes, conditions, draws }
     }
 
+    /// At the amplitude that is screened, alone.
+    pub(super) fn once(
+        switch: &'static Switch,
+        conditions: &'a [usize],
+        draws: &'a [Draw],
+    ) -> Self {
+        Self { switch, amplitudes: vec![switch.screen], conditions, draws }
+    }
+
     /// Largest amplitude of either sign, or zero.
     pub(super) fn tried(&self) -> (f64, f64) {
         let least = self.amplitudes.iter().fold(0.0_f64, |least, q| least.min(*q));

@@ -21,12 +21,13 @@ mod variation;
 mod workflow;
 
 pub use baseline::BaselineError;
-pub use campaign::{CampaignError, Outstanding, Place, Progress, Stage, Unattended, Watch};
+pub use campaign::{
+    CampaignError, Impacts, Outstanding, Place, Progress, Stage, Unattended, Watch,
+};
 pub use confirmation::{Channel, Confirmation};
 pub use emulator::BedForward;
 pub use job::Job;
 pub use plan::{Plan, PlannedStage, SIZES, Size, Wish};
-pub use rate::grain_steps_per_second;
 pub use record::Record;
 pub use stand::{Draw, Stand, StandError};
 pub use switches::{SWITCHES, Switch};

@@ -2,18 +2,21 @@
 
 use serde_json::{Value, json};
 
-use super::campaign::{Outstanding, Place};
+use super::campaign::{Impacts, Outstanding};
 use super::job::Job;
 use super::screening::Screening;
 use super::stand::{Draw, Stand};
 use super::switches::{SWITCHES, Switch};
 use super::variation::Variation;
 use super::workflow::BedError;
-use super::{grain_steps_per_second, line_search, rate};
+use super::{line_search, rate};
 use crate::observed::Observed;
 
 /// How many effects a line search and a confirmation take up.
 pub(super) const LEADERS: usize = 2;
+
+/// How often leaders are searched at most: those that lead once the first are better known, too.
+pub(super) const SEARCHES: usize = 2;
 
 /// How much is run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,10 +133,12 @@ pub struct PlannedStage {
     pub seconds: f64,
 }
 
-/// Draws of the stages: each has beds of its own, but for the screening, which shares none.
+/// Draws of the stages.
 pub(super) struct Draws {
-    pub(super) baseline: Vec<Draw>,
-    pub(super) screening: usize,
+    /// Of the model as it stands, of the screening and of line searches: what is held against each other
+    /// lies on the same beds.
+    pub(super) fit: Vec<Draw>,
+    /// Of the confirmation: on fresh beds.
     pub(super) confirm: Vec<Draw>,
 }
 
@@ -146,7 +151,7 @@ impl Plan {
     pub fn new(
         stand: &Stand<'_>,
         observed: &Observed,
-        place: &Place<'_>,
+        place: &dyn Impacts,
         wish: &Wish,
     ) -> Result<Self, BedError> {
         let listed = switches(stand, &[]);
@@ -156,7 +161,7 @@ impl Plan {
                 return Err(BedError::UnknownCandidate { id: id.clone(), known });
             }
         }
-        let rate = grain_steps_per_second(place.cache, stand.grains())?;
+        let rate = place.rate(stand.grains())?;
         let sized = |at| Self::sized(stand, observed, place, (at, rate, wish));
         let Some(budget) = wish.budget else { return sized(STANDARD) };
         let mut chosen = sized(0)?;
@@ -173,7 +178,7 @@ impl Plan {
     fn sized(
         stand: &Stand<'_>,
         observed: &Observed,
-        place: &Place<'_>,
+        place: &dyn Impacts,
         (at, rate, wish): (usize, f64, &Wish),
     ) -> Result<Self, BedError> {
         let size = SIZES[at];
@@ -201,11 +206,11 @@ impl Plan {
     fn stages_of(
         &self,
         stand: &Stand<'_>,
-        place: &Place<'_>,
+        place: &dyn Impacts,
     ) -> Result<Vec<PlannedStage>, BedError> {
         let draws = self.draws(stand);
-        let baseline = self.baseline_jobs(stand, &draws.baseline)?;
-        let again = self.rerun_jobs(stand, &draws.baseline)?;
+        let baseline = self.baseline_jobs(stand, &draws.fit)?;
+        let again = self.rerun_jobs(stand, &draws.fit)?;
         let screening = self.screening(stand);
         let screened = screening.jobs(stand)?;
         let pace = self.rate * self.workers as f64;
@@ -221,14 +226,14 @@ impl Plan {
             PlannedStage { name, impacts, to_run: impacts, beds, seconds: work / pace }
         };
         let Size { line_draws, confirm_draws, .. } = self.size;
-        let lines = LEADERS * line_search::AMPLITUDES * line_draws * self.fit.len();
+        let lines = SEARCHES * LEADERS * line_search::AMPLITUDES * line_draws * self.fit.len();
         let confirm = 2 * self.confirm.len() * confirm_draws;
-        let beds = if confirm > 0 { confirm_draws.div_ceil(stand.n_places()) } else { 0 };
+        let beds = if confirm > 0 { stand.n_beds(confirm_draws) } else { 0 };
         Ok(vec![
             stage("scatter of beds", &baseline)?,
             stage("correlation of pairs", &again)?,
             stage("screening", &screened)?,
-            later("line search", lines, 0),
+            later("line search, at most", lines, 0),
             later("confirmation", confirm, beds),
         ])
     }
@@ -278,14 +283,8 @@ impl Plan {
 
     pub(super) fn draws(&self, stand: &Stand<'_>) -> Draws {
         let Size { draws, confirm_draws, .. } = self.size;
-        let screening = draws + stand.n_places();
-        // Behind everything that a screening of the most effects can take.
-        let behind = screening + 64 * self.size.repeats;
-        Draws {
-            baseline: stand.draws(0, draws),
-            screening,
-            confirm: stand.draws(behind, confirm_draws),
-        }
+        let behind = stand.n_beds(draws);
+        Draws { fit: stand.draws(0, draws), confirm: stand.draws(behind, confirm_draws) }
     }
 
     /// The model as it stands: condition after condition, draw after draw.
@@ -329,16 +328,22 @@ impl Plan {
         let only =
             if candidates.is_empty() { Vec::new() } else { [&free[..], candidates].concat() };
         let switches = switches(stand, &only);
-        let first = self.draws(stand).screening;
-        Screening::new(switches, self.fit.clone(), self.size.repeats, |n| stand.draws(first, n))
+        let draws = self.draws(stand).fit;
+        Screening::new(switches, self.fit.clone(), self.size.repeats, &draws)
     }
 }
 
-/// The switches of the model of `stand`: those that are named in `only`, all of them if there are none.
+/// The switches of the model of `stand`: those that are named in `only`, all of them if there are none. One
+/// with which the step of the model would be too long is none.
 fn switches(stand: &Stand<'_>, only: &[String]) -> Vec<&'static Switch> {
     let wanted = |one: &&Switch| only.is_empty() || only.iter().any(|id| id == one.id);
     let of_model = |one: &&Switch| one.lacks(stand.grains()).is_none();
-    SWITCHES.iter().filter(of_model).filter(wanted).collect()
+    let first = stand.draws(0, 1);
+    let is_sound = |one: &&Switch| {
+        let change = one.change(stand.grains(), one.screen);
+        first.iter().all(|&draw| stand.job(0, draw, &change).is_ok())
+    };
+    SWITCHES.iter().filter(of_model).filter(wanted).filter(is_sound).collect()
 }
 
 /// `count` of `all`, evenly spaced, first and last among them; the middle where one is wanted.

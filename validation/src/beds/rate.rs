@@ -59,7 +59,10 @@ impl Rate {
 ///
 /// # Errors
 /// If the bed of the model cannot be built.
-pub fn grain_steps_per_second(cache: &Path, model: GrainModel<'_>) -> Result<f64, CampaignError> {
+pub(super) fn grain_steps_per_second(
+    cache: &Path,
+    model: GrainModel<'_>,
+) -> Result<f64, CampaignError> {
     let kept = fs::read_to_string(cache.join(FILE)).ok();
     let kept = kept.and_then(|text| text.trim().parse::<f64>().ok());
     if let Some(rate) = kept.filter(|rate| rate.is_finite() && *rate > 0.0) {

@@ -27,20 +27,19 @@ pub(super) struct Screening {
 }
 
 impl Screening {
-    /// Of `switches` under `conditions`, the design `repeats` times, on the draws that `draws` gives so
-    /// many of.
+    /// Of `switches` under `conditions`, the design `repeats` times, on `draws` in turn.
     pub(super) fn new(
         switches: Vec<&'static Switch>,
         conditions: Vec<usize>,
         repeats: usize,
-        draws: impl Fn(usize) -> Vec<Draw>,
+        draws: &[Draw],
     ) -> Self {
         let rows = folded(switches.len());
         let all: Vec<Vec<bool>> = (0..repeats).flat_map(|_| rows.clone()).collect();
         let runs_per_draw = 2 * PAIRS_PER_DRAW;
-        let draws = draws(all.len().div_ceil(runs_per_draw));
         let settings = all.into_iter().enumerate();
-        let settings = settings.map(|(at, row)| (row, draws[at / runs_per_draw])).collect();
+        let draw = |at: usize| draws[(at / runs_per_draw) % draws.len()];
+        let settings = settings.map(|(at, row)| (row, draw(at))).collect();
         Self { switches, conditions, settings }
     }
 
@@ -87,28 +86,16 @@ impl Screening {
         let switches = self.switches.iter().enumerate();
         let screened = switches.map(|(column, &switch)| {
             let mut responses = vec![None; layouts.len()];
-            let (mut signal, mut freedom) = (0.0, 0.0);
             for (&condition, effects) in self.conditions.iter().zip(&effects) {
                 let Some(MainEffects { sizes, covariance }) = effects else { continue };
                 let slope = sizes.row(column).transpose() / switch.screen;
                 let own = (1.0 - paired) * covariance[(column, column)];
                 let own = own / (switch.screen * switch.screen);
-                if let Some(factor) = Cholesky::new(own * &spread[condition]) {
-                    signal += slope.dot(&factor.solve(&slope));
-                    freedom += slope.len() as f64;
-                }
                 let curvature = slope.map(|_| 0.0);
                 let variance = [[own, 0.0], [0.0, 0.0]];
                 responses[condition] = Some(Response { slope, curvature, variance });
             }
-            let clear = (signal - freedom) / (2.0 * freedom).sqrt().max(1.0);
-            let negative = if switch.range.0 < 0.0 { -switch.screen } else { 0.0 };
-            Screened {
-                switch,
-                responses,
-                tried: (negative, switch.screen),
-                not_testable: (clear < SEEN).then(|| not_seen(clear, self.n_runs())),
-            }
+            screened(switch, responses, (spread, self.n_runs()))
         });
         screened.collect()
     }
@@ -122,6 +109,7 @@ impl Screening {
         records: &[Option<Record>],
     ) -> Option<MainEffects> {
         let mut draws: Vec<Draw> = self.settings.iter().map(|(_, draw)| *draw).collect();
+        draws.sort_by_key(|draw| (draw.seed, draw.place));
         draws.dedup();
         let columns = self.switches.len() + draws.len();
         let (mut rows, mut found) = (Vec::new(), Vec::new());
@@ -140,6 +128,25 @@ impl Screening {
         let covariance = Cholesky::new(&x * x.transpose())?.inverse();
         Some(MainEffects { sizes: &covariance * (&x * y.transpose()), covariance })
     }
+}
+
+/// `switch` with its `responses`, found by so many `runs` that scatter by `spread`; it cannot be tested where
+/// all conditions together do not show it.
+pub(super) fn screened(
+    switch: &'static Switch,
+    responses: Vec<Option<Response>>,
+    (spread, runs): (&[DMatrix<f64>], usize),
+) -> Screened {
+    let (mut signal, mut freedom) = (0.0, 0.0_f64);
+    for (response, spread) in responses.iter().zip(spread) {
+        let Some(Response { slope, variance, .. }) = response else { continue };
+        if let Some(factor) = Cholesky::new(variance[0][0] * spread) {
+            signal += slope.dot(&factor.solve(slope));
+            freedom += slope.len() as f64;
+        }
+    }
+    let clear = (signal - freedom) / (2.0 * freedom).sqrt().max(1.0);
+    Screened::new(switch, responses, (clear < SEEN).then(|| not_seen(clear, runs)))
 }
 
 /// One row per switch, then one per draw.

@@ -18,6 +18,9 @@ use crate::measurement::{Condition, Geometry, MeasurementSet};
 /// Most impacts on one bed, side by side.
 const MOST_PLACES: usize = 4;
 
+/// Fewest beds of several draws.
+const LEAST_BEDS: usize = 3;
+
 /// Least distance of two of them, in diameters of the intruder: beyond it they move other grains.
 const APART: f64 = 2.0;
 
@@ -132,17 +135,23 @@ impl<'a> Stand<'a> {
         self.n_places
     }
 
-    /// `n` draws, behind the first `skipped`: several places of a bed before the next bed. Draws that are
-    /// skipped share no bed with those that are given.
+    /// `n` draws on the beds from number `first` on: each bed once, then each a second time at another
+    /// place, and so on. Places of one bed have in common what beds differ by as a whole, so that three
+    /// beds are taken at least.
     #[must_use]
-    pub fn draws(&self, skipped: usize, n: usize) -> Vec<Draw> {
-        let first = skipped.div_ceil(self.n_places);
-        (0..n)
-            .map(|at| {
-                let (bed, place) = (first + at / self.n_places, at % self.n_places);
-                Draw { seed: self.model.run.seed + bed as u64, place }
-            })
-            .collect()
+    pub fn draws(&self, first: usize, n: usize) -> Vec<Draw> {
+        let beds = self.n_beds(n);
+        let draw = |at: usize| Draw {
+            seed: self.model.run.seed + (first + at % beds) as u64,
+            place: at / beds,
+        };
+        (0..n).map(draw).collect()
+    }
+
+    /// How many beds `n` draws are on.
+    #[must_use]
+    pub fn n_beds(&self, n: usize) -> usize {
+        n.div_ceil(self.n_places).max(n.min(LEAST_BEDS))
     }
 
     /// The impact of condition `condition` of the set at `draw`, with `variation`.

@@ -188,8 +188,8 @@ const PACKING: Switch = Switch {
 const POLYDISPERSITY: Switch = Switch {
     id: "polydispersity",
     amplitude: "standard deviation of the logarithm of diameters",
-    screen: 0.2,
-    range: (0.0, 0.5),
+    screen: 0.15,
+    range: (0.0, 0.3),
     separable_from: "from packing: a bed that is weighed",
     lacks: |model| match &model.medium.bed.source {
         BedSource::Csv(_) => Some("the bed is given"),

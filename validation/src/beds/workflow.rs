@@ -5,18 +5,21 @@ use serde_json::{Value, json};
 use thiserror::Error;
 
 use super::baseline::{Baseline, BaselineError};
-use super::campaign::{CampaignError, Place};
+use super::campaign::{CampaignError, Impacts};
 use super::confirmation::Confirmation;
-use super::emulator::BedForward;
+use super::emulator::{BedForward, Response, Screened};
 use super::job::Job;
 use super::line_search::{Against, LineSearch};
-use super::plan::{LEADERS, Plan};
+use super::plan::{LEADERS, Plan, SEARCHES};
 use super::record::Record;
+use super::screening::screened;
 use super::stand::{Draw, Stand, StandError};
+use super::switches::Switch;
 use super::variation::Variation;
 use crate::bench::{Bench, BenchError};
 use crate::compare::parameters;
 use crate::diagnose::diagnose;
+use crate::forward::Forward;
 use crate::observable::Layout;
 use crate::observed::Observed;
 use crate::rounding::rounded;
@@ -25,6 +28,10 @@ use crate::verdict::{Diagnosis, Strength, Verdict};
 
 /// Runs on one draw that correlate more than this are held against each other.
 const PAIRED: f64 = 0.5;
+
+/// Where they correlate more than this, effects are screened one at a time: what each does alone is worth
+/// more than what half of the runs of a design would save.
+const ALONE: f64 = 0.8;
 
 /// Draws of a comparison.
 pub const COMPARED: usize = 6;
@@ -79,7 +86,7 @@ pub struct BedDiagnosis {
 pub fn bed_forward(
     stand: &Stand<'_>,
     observed: &Observed,
-    place: &Place<'_>,
+    place: &dyn Impacts,
 ) -> Result<BedForward, BedError> {
     let records = place.run(&compare_jobs(stand, observed)?)?;
     let mut by_condition = vec![Vec::new(); observed.conditions.len()];
@@ -105,7 +112,7 @@ pub fn compare_jobs(stand: &Stand<'_>, observed: &Observed) -> Result<Vec<Job>, 
 /// A diagnosis under way.
 struct Work<'a> {
     stand: &'a Stand<'a>,
-    place: &'a Place<'a>,
+    place: &'a dyn Impacts,
     plan: Plan,
     layouts: Vec<Layout>,
     /// The set, with the conditions of the plan alone to fit to.
@@ -122,7 +129,7 @@ struct Work<'a> {
 pub fn diagnose_bed(
     stand: &Stand<'_>,
     measured: &Observed,
-    place: &Place<'_>,
+    place: &dyn Impacts,
     plan: Plan,
     seed: u64,
 ) -> Result<BedDiagnosis, BedError> {
@@ -138,11 +145,11 @@ pub fn diagnose_bed(
 impl Work<'_> {
     fn diagnose(mut self, measured: &Observed) -> Result<BedDiagnosis, BedError> {
         let draws = self.plan.draws(self.stand);
-        let jobs = self.plan.baseline_jobs(self.stand, &draws.baseline)?;
+        let jobs = self.plan.baseline_jobs(self.stand, &draws.fit)?;
         let records = self.run(&jobs)?;
         let runs: Vec<Vec<Option<Record>>> =
-            records.chunks(draws.baseline.len()).map(<[_]>::to_vec).collect();
-        let correlation = self.correlation(&draws.baseline, &runs)?;
+            records.chunks(draws.fit.len()).map(<[_]>::to_vec).collect();
+        let correlation = self.correlation(&draws.fit, &runs)?;
         let mut by_condition = vec![Vec::new(); self.layouts.len()];
         for (&condition, runs) in self.plan.fit.iter().zip(&runs) {
             by_condition[condition] = runs.iter().flatten().cloned().collect();
@@ -150,16 +157,28 @@ impl Work<'_> {
         let baseline = Baseline::of(self.stand, &self.layouts, &by_condition)?;
 
         let screening = self.plan.screening(self.stand);
-        let records = self.run(&screening.jobs(self.stand)?)?;
         let paired = correlation.unwrap_or(0.0).clamp(0.0, 0.9);
-        let scatter = (paired, &baseline.spread[..]);
-        let screened = screening.signatures(self.stand, &self.layouts, &records, scatter);
+        let screened = if paired > ALONE {
+            let known = (&draws.fit[..], &runs[..], paired);
+            self.one_at_a_time(&screening.switches, &baseline, known)?
+        } else {
+            let records = self.run(&screening.jobs(self.stand)?)?;
+            let scatter = (paired, &baseline.spread[..]);
+            screening.signatures(self.stand, &self.layouts, &records, scatter)
+        };
         let mut forward = BedForward::new(baseline, screened, &self.plan.wish.free);
 
         let mut diagnosis = self.judge(&forward)?;
-        if let Some(leaders) = leaders(&diagnosis, &forward) {
+        let mut searched: Vec<usize> = Vec::new();
+        for _ in 0..SEARCHES {
+            let mut leaders = leaders(&diagnosis, &forward);
+            leaders.retain(|(at, _)| !searched.contains(at));
+            if leaders.is_empty() {
+                break;
+            }
             for (at, guess) in leaders {
-                self.refine(&mut forward, (at, guess), (&draws.baseline, &runs), paired)?;
+                searched.push(at);
+                self.refine(&mut forward, (at, guess), (&draws.fit, &runs), paired)?;
             }
             diagnosis = self.judge(&forward)?;
         }
@@ -218,22 +237,56 @@ impl Work<'_> {
         let draws = &draws[..self.plan.size.line_draws.min(draws.len())];
         let fit = self.plan.fit.clone();
         let search = LineSearch::around(forward.screened()[at].switch, guess, &fit, draws);
-        let records = self.run(&search.jobs(self.stand)?)?;
-        let baseline = forward.baseline();
+        let Some(responses) = self.search(&search, forward.baseline(), (runs, correlation))? else {
+            return Ok(());
+        };
+        let tried = search.tried();
+        forward.refine(at, responses, tried);
+        Ok(())
+    }
+
+    /// What every switch does alone, at the amplitude that is screened.
+    fn one_at_a_time(
+        &mut self,
+        switches: &[&'static Switch],
+        baseline: &Baseline,
+        (draws, runs, correlation): (&[Draw], &[Vec<Option<Record>>], f64),
+    ) -> Result<Vec<Screened>, BedError> {
+        let draws = &draws[..self.plan.size.line_draws.min(draws.len())];
+        let fit = self.plan.fit.clone();
+        let mut all = Vec::with_capacity(switches.len());
+        let runs_of_all = switches.len() * draws.len() * fit.len();
+        for &switch in switches {
+            let search = LineSearch::once(switch, &fit, draws);
+            let found = self.search(&search, baseline, (runs, correlation))?;
+            let responses = found.unwrap_or_else(|| vec![None; self.layouts.len()]);
+            all.push(screened(switch, responses, (&baseline.spread, runs_of_all)));
+        }
+        Ok(all)
+    }
+
+    /// The responses that `search` finds; none where the step of the model is too long for an amplitude:
+    /// then what screening found has to do.
+    fn search(
+        &mut self,
+        search: &LineSearch<'_>,
+        baseline: &Baseline,
+        (runs, correlation): (&[Vec<Option<Record>>], f64),
+    ) -> Result<Option<Vec<Option<Response>>>, BedError> {
+        let Ok(jobs) = search.jobs(self.stand) else { return Ok(None) };
+        let records = self.run(&jobs)?;
+        let n = search.draws.len();
         let against = Against {
             layouts: &self.layouts,
             baseline: runs
                 .iter()
-                .map(|runs| runs[..draws.len()].iter().map(Option::as_ref).collect())
+                .map(|runs| runs[..n].iter().map(Option::as_ref).collect())
                 .collect(),
             means: baseline.observed.conditions.iter().map(|one| &one.mean).collect(),
             correlation,
             paired: correlation > PAIRED,
         };
-        let responses = search.responses(self.stand, &records, &against);
-        let tried = search.tried();
-        forward.refine(at, responses, tried);
-        Ok(())
+        Ok(Some(search.responses(self.stand, &records, &against)))
     }
 
     fn confirm(
@@ -256,7 +309,7 @@ impl Work<'_> {
         for variation in [Variation::default(), change] {
             let all = conditions.iter().flat_map(|&at| draws.iter().map(move |&draw| (at, draw)));
             let jobs = all.map(|(at, draw)| self.stand.job(at, draw, &variation));
-            let jobs = jobs.collect::<Result<Vec<_>, _>>()?;
+            let Ok(jobs) = jobs.collect::<Result<Vec<_>, _>>() else { return Ok(None) };
             records.push(self.run(&jobs)?);
         }
         let runs = (conditions.as_slice(), [&records[0][..], &records[1][..]]);
@@ -303,13 +356,13 @@ pub fn unaffordable(plan: &Plan) -> Diagnosis {
 }
 
 /// The switches to be searched, with the guess of each: those that the first diagnosis names or cannot
-/// tell from what it names. None where it names nothing.
-fn leaders(diagnosis: &Diagnosis, forward: &BedForward) -> Option<Vec<(usize, f64)>> {
+/// tell from what it names; none where it names nothing.
+fn leaders(diagnosis: &Diagnosis, forward: &BedForward) -> Vec<(usize, f64)> {
     if matches!(diagnosis.verdict, Verdict::NothingDetected | Verdict::CannotTell) {
-        return None;
+        return Vec::new();
     }
-    let candidates = crate::forward::Forward::candidates(forward);
-    let found: Vec<(usize, f64)> = diagnosis
+    let candidates = Forward::candidates(forward);
+    diagnosis
         .ranking
         .iter()
         .filter_map(|effect| {
@@ -317,8 +370,7 @@ fn leaders(diagnosis: &Diagnosis, forward: &BedForward) -> Option<Vec<(usize, f6
             Some((forward.switch(index)?, effect.q?))
         })
         .take(LEADERS)
-        .collect();
-    (!found.is_empty()).then_some(found)
+        .collect()
 }
 
 /// The model with the switches of `point` at their amplitudes.
@@ -401,6 +453,6 @@ impl BedDiagnosis {
             seeds.dedup();
             seeds
         };
-        json!({ "baseline": of(&draws.baseline), "confirmation": of(&draws.confirm) })
+        json!({ "baseline": of(&draws.fit), "confirmation": of(&draws.confirm) })
     }
 }

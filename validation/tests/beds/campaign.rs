@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use validation::beds::{
-    CampaignError, Job, Place, Progress, Record, Stand, Unattended, Variation, Watch,
+    CampaignError, Impacts, Job, Place, Progress, Record, Stand, Unattended, Variation, Watch,
 };
 use validation::measurement::Role;
 
@@ -58,9 +58,9 @@ fn a_campaign_that_was_stopped_goes_on_where_it_was_and_ends_with_the_same_bits(
     let [whole, stopped] = [(); 2].map(|()| tempfile::tempdir().unwrap());
     let place = |cache, watch, workers| Place { cache, workers: NonZero::new(workers), watch };
     let alone = place(whole.path(), &Unattended as &dyn Watch, 1);
-    // Three places fit beside each other, so that four draws and a variation share two beds.
+    // Four draws are on three beds, the last on the first one again, and the variation too.
     let before = alone.outstanding(&jobs).unwrap();
-    assert_eq!((before.impacts, before.beds), (5, 2));
+    assert_eq!((before.impacts, before.beds), (5, 3));
     let expected = alone.run(&jobs).unwrap();
     assert_eq!(alone.outstanding(&jobs).unwrap().impacts, 0);
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::world::{campaign, measure, model};
 use crate::beds::{
-    BedError, Place, Plan, SWITCHES, Stand, Variation, Wish, diagnose_bed, unaffordable,
+    BedError, Impacts, Plan, SWITCHES, Stand, Variation, Wish, diagnose_bed, unaffordable,
 };
 use crate::observed::Observed;
 use crate::verdict::{Diagnosis, Verdict};
@@ -124,7 +124,7 @@ impl Case {
     ///
     /// # Errors
     /// If the impacts cannot be run.
-    pub fn run(&self, place: &Place<'_>, wish: &Wish) -> Result<Outcome, BedError> {
+    pub fn run(&self, place: &dyn Impacts, wish: &Wish) -> Result<Outcome, BedError> {
         let start = std::time::Instant::now();
         let model = model(1 + 1000 * self.seed).map_err(crate::beds::BaselineError::from)?;
         let empty = campaign(&model);

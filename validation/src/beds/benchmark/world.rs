@@ -5,7 +5,7 @@ use engine::bed::random;
 use rand::Rng;
 
 use crate::beds::record::Record;
-use crate::beds::{BedError, Draw, Place, Stand, Variation};
+use crate::beds::{BedError, Draw, Impacts, Stand, Variation};
 use crate::measurement::{
     Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
     Role, Run, StatedError, StopDefinition,
@@ -104,12 +104,13 @@ pub fn measure(
     stand: &Stand<'_>,
     hidden: &Variation,
     (repeats, seed): (usize, u64),
-    place: &Place<'_>,
+    place: &dyn Impacts,
 ) -> Result<MeasurementSet, BedError> {
-    let draws: Vec<Draw> = stand.draws(0, repeats);
-    let shift = SEEDS * (1 + seed);
+    let first = SEEDS * (1 + seed);
+    // Every repeat has a bed of its own.
+    let spot = |at: usize| at % stand.n_places();
     let draws: Vec<Draw> =
-        draws.iter().map(|draw| Draw { seed: draw.seed + shift, ..*draw }).collect();
+        (0..repeats).map(|at| Draw { seed: first + at as u64, place: spot(at) }).collect();
     let conditions = 0..stand.set.conditions.len();
     let all = conditions.flat_map(|at| draws.iter().map(move |&draw| (at, draw)));
     let all: Vec<(usize, Draw)> = all.collect();
