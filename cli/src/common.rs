@@ -1,6 +1,6 @@
 //! The flags that commands about a model share.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use configs::engine::parallel::with_threads;
@@ -49,7 +49,7 @@ impl Common {
     ///
     /// # Errors
     /// Bad input, with everything that is wrong with it.
-    pub(crate) fn load(&self, model: &std::path::Path) -> Result<Loaded, CommandError> {
+    pub(crate) fn load(&self, model: &Path) -> Result<Loaded, CommandError> {
         let options = LoadOptions {
             sets: self.sets.clone(),
             seed: self.seed,
@@ -84,11 +84,7 @@ impl Common {
 
     /// The folder of prepared beds: `--cache`, else `$PLUNGE_CACHE`, else `runs/.cache`.
     pub(crate) fn cache_folder(&self) -> PathBuf {
-        let from_environment = || std::env::var_os("PLUNGE_CACHE").filter(|dir| !dir.is_empty());
-        self.cache
-            .clone()
-            .or_else(|| from_environment().map(PathBuf::from))
-            .unwrap_or_else(|| PathBuf::from("runs/.cache"))
+        cache_folder(self.cache.as_deref())
     }
 
     /// Runs `work` on the threads that `--threads` asks for, else on one per core.
@@ -102,4 +98,13 @@ impl Common {
         let threads = self.threads.map_or(0, usize::from);
         with_threads(threads, work).map_err(|error| CommandError::Failed(error.into()))
     }
+}
+
+/// The folder `asked` for, else `$PLUNGE_CACHE`, else `runs/.cache`.
+pub(crate) fn cache_folder(asked: Option<&Path>) -> PathBuf {
+    let from_environment = || std::env::var_os("PLUNGE_CACHE").filter(|dir| !dir.is_empty());
+    asked
+        .map(Path::to_owned)
+        .or_else(|| from_environment().map(PathBuf::from))
+        .unwrap_or_else(|| PathBuf::from("runs/.cache"))
 }

@@ -4,14 +4,16 @@ use std::path::PathBuf;
 
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
-use serde_json::Value;
+use serde_json::{Value, json};
 use validation::compare::{Comparison, ModelComparison, Revision, compare};
+use validation::forward::Forward;
 use validation::measurement::MeasurementSet;
 use validation::observable::Observable;
 use validation::picture;
 use validation::residual::Residual;
 use validation::where_it_fails::WhereItFails;
 
+use crate::beds::{self, Beds, Workshop};
 use crate::compare_runs::{self, Found};
 use crate::output::{self, CommandError, CommandResult};
 use crate::report;
@@ -32,6 +34,8 @@ pub(crate) struct Args {
     models: Vec<PathBuf>,
     #[command(flatten)]
     flags: Flags,
+    #[command(flatten)]
+    beds: Beds,
 }
 
 pub(crate) fn run(args: &Args) -> CommandResult {
@@ -61,20 +65,40 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     }
     let measured = flags.measured(&args.first)?;
     let models = flags.models(&args.models, &measured)?;
-    let forwards = models
-        .iter()
-        .map(|model| model.forward(&measured, flags))
-        .collect::<Result<Vec<_>, _>>()?;
+    let mut workshop = Workshop::new(&args.beds, flags)?;
+    if args.beds.plan {
+        return workshop.plan_of_comparison(&models, &measured);
+    }
+    let mut forwards: Vec<Box<dyn Forward>> = Vec::with_capacity(models.len());
+    let mut floors = Vec::with_capacity(models.len());
+    for model in &models {
+        match model.loaded.model.grains() {
+            Some(_) => {
+                let bed = workshop.forward(model, &measured)?;
+                floors.push(Some((bed.scatter(&measured.set), bed.noise_floor())));
+                forwards.push(Box::new(bed));
+            }
+            None => {
+                floors.push(None);
+                forwards.push(Box::new(model.forward(&measured, flags)?));
+            }
+        }
+    }
     let revisions: Vec<Revision<'_>> = models
         .iter()
         .zip(&forwards)
-        .map(|(model, forward)| Revision { name: &model.name, forward })
+        .map(|(model, forward)| Revision { name: &model.name, forward: &**forward })
         .collect();
     let results = flags.results(&measured, "compare", &models)?;
     let comparison = compare(&measured.set, &measured.observed, &revisions, flags.seed)
         .map_err(|failure| failed(failure.error, &failure.model))?;
     flags.notes(&comparison.notes);
-    let object = serde_json::to_value(&comparison).map_err(anyhow::Error::new)?;
+    let mut object = serde_json::to_value(&comparison).map_err(anyhow::Error::new)?;
+    for (at, (scatter, floor)) in
+        floors.iter().enumerate().filter_map(|(at, f)| Some((at, f.as_ref()?)))
+    {
+        object["models"][at]["bed"] = json!({ "scatter": scatter, "noise_floor": floor });
+    }
     let figure = picture::comparison(&measured.set, &comparison)
         .map_err(|error| CommandError::Failed(error.into()))?;
     let mut files = vec![("comparison.json".to_owned(), format!("{object:#}\n"))];
@@ -88,7 +112,8 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         true => output::json_to_stdout(&object),
         false => {
             let n = [&measured.observed.fit, &measured.observed.holdout].map(Vec::len);
-            let text = as_text(&measured.set, &comparison, n);
+            let mut text = as_text(&measured.set, &comparison, n);
+            text.push_str(&beds::floors(&comparison, &object));
             let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
             let shown = results.shown();
             output::to_stdout(&format!("{text}\nwritten to {shown}: {}\n", names.join(", ")))

@@ -8,9 +8,10 @@ use std::time::Duration;
 use anyhow::Context as _;
 use configs::printable;
 use configs::run::{Control, Progress};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::flag;
+use validation::beds::{self as campaign, Watch};
 
 use crate::output::{self, CommandError};
 
@@ -68,15 +69,24 @@ impl Terminal {
         self.bar.finish_and_clear();
     }
 
+    fn say(&self, message: &str) {
+        if !self.quiet {
+            let text = format!("warning: {}\n", printable(message));
+            self.bar.suspend(|| output::to_stderr(&text));
+        }
+    }
+
+    fn is_asked_to_stop(&self) -> bool {
+        self.signal.load(Ordering::Relaxed) != 0
+    }
+
     fn show(&mut self, what: BarOf, template: &str) {
         if self.bar_of == Some(what) {
             return;
         }
         self.bar_of = Some(what);
         self.bar.reset();
-        let style = ProgressStyle::with_template(template)
-            .unwrap_or_else(|_| unreachable!("the templates are constants that indicatif accepts"));
-        self.bar.set_style(style.progress_chars("━╸ "));
+        self.bar.set_style(style(template));
         self.bar.enable_steady_tick(Duration::from_millis(200));
     }
 }
@@ -87,6 +97,42 @@ fn ignored_signals() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+}
+
+/// Impacts side by side.
+impl Watch for Terminal {
+    fn progress(&self, progress: &campaign::Progress) {
+        let what = match progress.what {
+            campaign::Stage::Beds => "beds",
+            campaign::Stage::Impacts => "impacts",
+        };
+        if self.bar.length() != Some(progress.of as u64) {
+            self.bar.set_length(progress.of as u64);
+            self.bar.set_style(style("{msg}{bar:24} {pos}/{len}, {prefix}"));
+            self.bar.enable_steady_tick(Duration::from_millis(200));
+        }
+        self.bar.set_message(format!("{what} "));
+        let left = progress.left.map_or(String::new(), |left| {
+            format!("about {} left", HumanDuration(Duration::from_secs_f64(left)))
+        });
+        self.bar.set_prefix(left);
+        self.bar.set_position(progress.done as u64);
+    }
+
+    fn warn(&self, message: &str) {
+        self.say(message);
+    }
+
+    fn wants_to_stop(&self) -> bool {
+        self.is_asked_to_stop()
+    }
+}
+
+/// A style of the bar.
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template)
+        .unwrap_or_else(|_| unreachable!("the templates are constants that indicatif accepts"))
+        .progress_chars("━╸ ")
 }
 
 impl Control for Terminal {
@@ -116,13 +162,10 @@ impl Control for Terminal {
     }
 
     fn warn(&mut self, message: &str) {
-        if !self.quiet {
-            let text = format!("warning: {}\n", printable(message));
-            self.bar.suspend(|| output::to_stderr(&text));
-        }
+        self.say(message);
     }
 
     fn wants_to_stop(&self) -> bool {
-        self.signal.load(Ordering::Relaxed) != 0
+        self.is_asked_to_stop()
     }
 }

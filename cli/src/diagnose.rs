@@ -12,6 +12,7 @@ use validation::verdict::{Diagnosis, RankedEffect, Verdict};
 use validation::where_it_fails::WhereItFails;
 
 use crate::add::from_diagnosis;
+use crate::beds::{self, Beds};
 use crate::compare::{lines, noise_words, probability, table};
 use crate::next;
 use crate::output::{self, CommandError, CommandResult};
@@ -28,6 +29,8 @@ pub(crate) struct Args {
     model: Option<PathBuf>,
     #[command(flatten)]
     flags: Flags,
+    #[command(flatten)]
+    beds: Beds,
 }
 
 pub(crate) fn run(args: &Args) -> CommandResult {
@@ -35,6 +38,12 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let measured = flags.measured(&args.set)?;
     let models = flags.models(args.model.as_slice(), &measured)?;
     let model = &models[0];
+    if model.loaded.model.grains().is_some() {
+        return beds::diagnose(&args.beds, flags, &measured, &models);
+    }
+    if args.beds.plan {
+        return output::to_stdout("a resistive-force model takes no impacts on beds: seconds\n");
+    }
     let forward = model.forward(&measured, flags)?;
     let results = flags.results(&measured, "diagnose", &models)?;
     let bench = Bench { set: &measured.set, observed: &measured.observed, forward: &forward };
@@ -88,7 +97,7 @@ fn propose(
         .collect()
 }
 
-fn as_text(
+pub(crate) fn as_text(
     model: &str,
     (diagnosis, object): (&Diagnosis, &Value),
     [n_fit, n_holdout]: [usize; 2],

@@ -3,6 +3,7 @@
 
 mod add;
 mod bed;
+mod beds;
 mod check;
 mod check_set;
 mod common;

@@ -45,9 +45,9 @@ pub(crate) struct Flags {
     /// Replace results of other inputs.
     #[arg(long)]
     force: bool,
-    /// Accepted for symmetry with other commands: no result depends on it.
+    /// Impacts on beds of grains at a time, 1 to 256; no result depends on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
-    threads: Option<u16>,
+    pub(crate) threads: Option<u16>,
     /// Let models read data files below this folder too.
     #[arg(long = "allow-path", value_name = "DIR")]
     allow_paths: Vec<PathBuf>,
@@ -170,6 +170,17 @@ impl Flags {
         command: &str,
         models: &[Candidate],
     ) -> Result<Results, CommandError> {
+        self.results_of(measured, command, models, "")
+    }
+
+    /// The same, for results that follow from `more` as well.
+    pub(crate) fn results_of(
+        &self,
+        measured: &Measured,
+        command: &str,
+        models: &[Candidate],
+        more: &str,
+    ) -> Result<Results, CommandError> {
         let default = || PathBuf::from("runs").join(format!("{}-{command}", measured.set.id));
         let folder = self.out.clone().unwrap_or_else(default);
         let mut hash = blake3::Hasher::new();
@@ -189,6 +200,7 @@ impl Flags {
         } = &measured.set;
         let set = (id, kind, instrument, bed, stated, stop, last, feasible, conditions);
         hash.update(format!("{command} {} {set:?}", self.seed).as_bytes());
+        hash.update(more.as_bytes());
         hash.update(format!("{:?}", measured.observed.conditions).as_bytes());
         for model in models {
             hash.update(model.name.as_bytes());

@@ -256,13 +256,36 @@ fn what_cannot_be_compared_is_answered_with_what_could_be() {
         String::from_utf8_lossy(&output.stderr).into_owned()
     };
     assert!(message(&["compare", "nowhere"]).contains("nowhere"));
-    let grains = message(&["compare", text(&set), "--quiet", "--model", "vertical-2d"]);
-    assert!(grains.contains("bed of grains"), "{grains}");
+    let spatial = shipped("katsuragi-durian");
+    let grains = message(&["compare", text(&spatial), "--quiet", "--model", "vertical-2d"]);
+    assert!(grains.contains("a bed in 2d, and the set is one in 3d"), "{grains}");
+    let args = ["diagnose", text(&set), "--model", "vertical-2d", "--plan", "--quiet"];
+    let typo = message(&[&args[..], &["--candidate", "roling"]].concat());
+    assert!(typo.contains("rolling-resistance"), "{typo}");
     let typo = message(&["add", "two-term-vector", "jansen", "q=1", "-o", "new.toml"]);
     assert!(typo.contains("did you mean `janssen`?"), "{typo}");
     assert!(!here.join("new.toml").exists());
     let nothing = message(&["add", "two-term-vector", "-o", "new.toml"]);
     assert!(nothing.contains("--from"), "{nothing}");
+}
+
+#[test]
+fn a_plan_of_impacts_on_beds_is_shaped_by_its_budget_and_runs_nothing() {
+    let here = tempfile::tempdir().unwrap();
+    let here = here.path();
+    let set = shipped("s1-tables-vertical");
+    let plan = |budget: &[&str]| {
+        let args =
+            ["diagnose", text(&set), "--model", "vertical-2d", "--plan", "--json", "--quiet"];
+        json(here, &[&args[..], budget].concat())["cost"]["plan"].clone()
+    };
+    let standard = plan(&[]);
+    assert_eq!(standard["size"], "standard");
+    let (few, many) = (plan(&["--budget", "1 s"]), plan(&["--budget", "9000 h"]));
+    assert_eq!((&few["size"], &many["size"]), (&"smallest".into(), &"thorough".into()));
+    let impacts = |plan: &Value| plan["impacts"].as_u64().unwrap();
+    assert!(impacts(&few) < impacts(&standard) && impacts(&standard) < impacts(&many));
+    assert!(!here.join("runs").exists(), "nothing is run, and nothing written");
 }
 
 #[test]

@@ -146,18 +146,20 @@ impl Bench<'_> {
     ) -> Result<Vec<Weight>, BenchError> {
         let weight = |&condition: &usize| {
             let sensitivity = self.sensitivity(point, condition)?;
-            self.weight(condition, &sensitivity, noise)
+            self.weight(point, condition, &sensitivity, noise)
         };
         conditions.iter().map(weight).collect()
     }
 
     fn weight(
         &self,
+        point: &Point,
         condition: usize,
         sensitivity: &Sensitivity,
         noise: &Noise,
     ) -> Result<Weight, BenchError> {
-        Weight::new(&self.observed.conditions[condition], sensitivity, noise)
+        let own = self.forward.own_covariance(condition, &point.effects);
+        Weight::new(&self.observed.conditions[condition], sensitivity, noise, own)
             .ok_or(BenchError::Singular { condition })
     }
 
@@ -167,7 +169,7 @@ impl Bench<'_> {
             fit.iter().map(|&c| self.sensitivity(point, c)).collect::<Result<Vec<_>, _>>()?;
         let noise = noise.estimate(self.observed, &sensitivities, &self.set.instrument);
         let weights = fit.iter().zip(&sensitivities);
-        let weights = weights.map(|(&c, sensitivity)| self.weight(c, sensitivity, &noise));
+        let weights = weights.map(|(&c, sensitivity)| self.weight(point, c, sensitivity, &noise));
         Ok((weights.collect::<Result<_, _>>()?, noise))
     }
 

@@ -233,26 +233,7 @@ fn correlation(fitted: &Fitted) -> Option<f64> {
 }
 
 fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {
-    Diagnosis {
-        verdict: Verdict::CannotTell,
-        strength: Strength::Suggested,
-        effects: Vec::new(),
-        not_separable: Vec::new(),
-        leaders: Vec::new(),
-        ranking: ranked(bench, None),
-        p1: None,
-        p_lof: None,
-        p_lof_with: None,
-        noise: serde_json::Value::Null,
-        holdout: None,
-        unexplained: Unexplained { hint: why, ..Unexplained::default() },
-        next: Vec::new(),
-        parameters: Map::new(),
-        amplitudes: Vec::new(),
-        amplitude_correlation: None,
-        baseline: None,
-        proposed: None,
-    }
+    Diagnosis::cannot_tell(ranked(bench, None), why)
 }
 
 /// Value and unit of every parameter at `point`.

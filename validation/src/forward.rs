@@ -1,7 +1,9 @@
 //! What the statistics ask of a model: predictions of observables, nothing else.
 //!
-//! A resistive-force model answers by integrating an impact; a grain bed will answer from cached runs.
+//! A resistive-force model answers by integrating an impact; a grain bed answers from cached runs, whose
+//! number is finite, and says how far off it may be for that.
 
+use nalgebra::DMatrix;
 use thiserror::Error;
 
 /// A model that predicts the observables of every condition of a measurement set.
@@ -27,6 +29,14 @@ pub trait Forward: Sync {
     /// # Errors
     /// If the model cannot be integrated with these values.
     fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError>;
+
+    /// Covariance of what [`Forward::predict`] says with the amplitudes `effects`, as (index in
+    /// [`Forward::candidates`], q): of a model that is known from few runs of its own. `None` for one
+    /// that is exact.
+    fn own_covariance(&self, condition: usize, effects: &[(usize, f64)]) -> Option<DMatrix<f64>> {
+        let _ = (condition, effects);
+        None
+    }
 }
 
 /// Where a prediction is asked for.

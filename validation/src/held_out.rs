@@ -8,7 +8,7 @@ use crate::errors::{Errors, Sums};
 use crate::fit::Data;
 use crate::measurement::Kind;
 use crate::noise::log_determinant;
-use crate::observed::Observed;
+use crate::observed::{Observed, ObservedCondition};
 use crate::rounding::six_digits;
 
 /// Errors on held-out conditions without and with what is proposed.
@@ -204,26 +204,29 @@ pub(crate) fn noise_floor(observed: &Observed, conditions: &[usize]) -> Errors {
     let mut sums = Sums::default();
     for &condition in conditions {
         let observed = &observed.conditions[condition];
-        let runs = observed.runs.len();
-        let error = if runs > 1 {
-            let squares = (0..runs).map(|run| observed.deviation(run).map(|d| d * d));
-            let total = squares.fold(observed.mean.clone() * 0.0, |sum, square| sum + square);
-            (total / (runs * (runs - 1)) as f64).map(f64::sqrt)
-        } else {
-            let stated = observed.stated.iter().zip(observed.mean.iter());
-            let stated = stated.map(|(error, value)| error.unwrap_or(0.0) * value);
-            let mut error = observed.reading.clone();
-            let kinds = observed.layout.kinds();
-            for ((error, stated), kind) in error.iter_mut().zip(stated).zip(kinds) {
-                // A stated error of a scalar is the whole of it.
-                let whole = kind.is_scalar() && stated != 0.0;
-                *error = if whole { stated.abs() } else { libm::hypot(*error, stated) };
-            }
-            error
-        };
-        sums.add(&observed.layout.kinds(), &observed.mean, &error);
+        sums.add(&observed.layout.kinds(), &observed.mean, &standard_errors(observed));
     }
     sums.errors()
+}
+
+/// Standard error of each number of the mean of the runs of a condition, likewise.
+pub(crate) fn standard_errors(observed: &ObservedCondition) -> DVector<f64> {
+    let runs = observed.runs.len();
+    if runs > 1 {
+        let squares = (0..runs).map(|run| observed.deviation(run).map(|d| d * d));
+        let total = squares.fold(observed.mean.clone() * 0.0, |sum, square| sum + square);
+        return (total / (runs * (runs - 1)) as f64).map(f64::sqrt);
+    }
+    let stated = observed.stated.iter().zip(observed.mean.iter());
+    let stated = stated.map(|(error, value)| error.unwrap_or(0.0) * value);
+    let mut error = observed.reading.clone();
+    let kinds = observed.layout.kinds();
+    for ((error, stated), kind) in error.iter_mut().zip(stated).zip(kinds) {
+        // A stated error of a scalar is the whole of it.
+        let whole = kind.is_scalar() && stated != 0.0;
+        *error = if whole { stated.abs() } else { libm::hypot(*error, stated) };
+    }
+    error
 }
 
 #[cfg(test)]

@@ -76,12 +76,14 @@ pub fn lack_of_fit(
 /// or with speed.
 fn imitated(bench: &Bench<'_>, fitted: &Fitted, reach: f64) -> DMatrix<f64> {
     let bends = bends(bench, fitted, reach);
-    let columns = fitted.fit.jacobian.column_iter();
-    match &bends {
-        Ok(bends) => DMatrix::from_columns(&columns.chain(bends.column_iter()).collect::<Vec<_>>()),
-        // An effect that no body comes to rest under when it is bent is of its formula or not at all.
-        Err(_) => fitted.fit.jacobian.clone(),
+    let mut all = fitted.fit.jacobian.clone();
+    // An effect that no body comes to rest under when it is bent is of its formula or not at all.
+    if let Ok(bends) = bends {
+        let own = all.ncols();
+        all = all.resize_horizontally(own + bends.ncols(), 0.0);
+        all.columns_mut(own, bends.ncols()).copy_from(&bends);
     }
+    all
 }
 
 fn bends(bench: &Bench<'_>, fitted: &Fitted, reach: f64) -> Result<DMatrix<f64>, PredictError> {

@@ -17,6 +17,7 @@
 //!
 //! [`runs`] holds a run against a run.
 
+pub mod beds;
 pub mod bench;
 pub mod benchmark;
 pub mod case;

@@ -1,6 +1,6 @@
 //! Errors of means of runs, drawn again from the deviations of the runs.
 
-use nalgebra::DMatrix;
+use nalgebra::{Cholesky, DMatrix};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
@@ -29,7 +29,7 @@ struct Source {
     /// Its whitened deviations along the directions that are looked at; of too few runs, the units of
     /// its numbers.
     columns: Along,
-    /// Of how many runs the deviations are.
+    /// Of how many runs the deviations are; columns behind theirs are the error of the prediction itself.
     runs: Option<usize>,
     random: Pcg64,
 }
@@ -52,7 +52,14 @@ impl Redraw {
                 || DMatrix::identity(n, n),
                 |runs| {
                     let deviations = (0..runs).map(|run| weight.whiten(&observed.deviation(run)));
-                    DMatrix::from_columns(&deviations.collect::<Vec<_>>())
+                    let mut columns: Vec<_> = deviations.collect();
+                    let effects = &fitted.fit.point.effects;
+                    let own = bench.forward.own_covariance(condition, effects);
+                    if let Some(factor) = own.and_then(Cholesky::new) {
+                        let own = weight.whiten_columns(&factor.l());
+                        columns.extend(own.column_iter().map(|column| column.into_owned()));
+                    }
+                    DMatrix::from_columns(&columns)
                 },
             );
             let columns = within.of(&columns);
@@ -74,7 +81,11 @@ impl Redraw {
             let random = &mut source.random;
             let n = source.columns.own.ncols();
             let factors = match source.runs {
-                Some(runs) => factors(runs, random),
+                Some(runs) => {
+                    let mut factors = factors(runs, random);
+                    factors.extend((runs..n).map(|_| normal(random)));
+                    factors
+                }
                 None => (0..n).map(|_| scale * normal(random)).collect(),
             };
             let factors = DMatrix::from_column_slice(n, 1, &factors);

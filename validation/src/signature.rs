@@ -88,7 +88,8 @@ pub(crate) fn collinearity(signatures: &[Signature]) -> DMatrix<f64> {
 }
 
 /// Variance of the residual along `unit` as the repeats themselves show it, whatever the noise model
-/// says; a condition without repeats counts as the noise model has it.
+/// says, and with the error of the prediction itself; a condition without repeats counts as the noise
+/// model has it.
 pub(crate) fn variance_along(bench: &Bench<'_>, fitted: &Fitted, unit: &DVector<f64>) -> f64 {
     let mut start = 0;
     let mut variance = 0.0;
@@ -99,7 +100,12 @@ pub(crate) fn variance_along(bench: &Bench<'_>, fitted: &Fitted, unit: &DVector<
         let runs = observed.runs.len() as f64;
         variance += if observed.runs.len() > 1 {
             let along = |run| part.dot(&weight.whiten(&observed.deviation(run))).powi(2);
-            (0..observed.runs.len()).map(along).sum::<f64>() / (runs * (runs - 1.0))
+            let own = bench.forward.own_covariance(condition, &fitted.fit.point.effects);
+            let own = own.map_or(0.0, |own| {
+                let half = weight.whiten_columns(&own).transpose();
+                part.dot(&weight.whiten_columns(&half).tr_mul(&part))
+            });
+            own + (0..observed.runs.len()).map(along).sum::<f64>() / (runs * (runs - 1.0))
         } else {
             part.norm_squared()
         };

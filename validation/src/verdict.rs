@@ -145,6 +145,30 @@ pub struct Unexplained {
 }
 
 impl Diagnosis {
+    /// Where nothing can be told, and why.
+    pub(crate) fn cannot_tell(ranking: Vec<RankedEffect>, why: String) -> Self {
+        Self {
+            verdict: Verdict::CannotTell,
+            strength: Strength::Suggested,
+            effects: Vec::new(),
+            not_separable: Vec::new(),
+            leaders: Vec::new(),
+            ranking,
+            p1: None,
+            p_lof: None,
+            p_lof_with: None,
+            noise: Value::Null,
+            holdout: None,
+            unexplained: Unexplained { hint: why, ..Unexplained::default() },
+            next: Vec::new(),
+            parameters: Map::new(),
+            amplitudes: Vec::new(),
+            amplitude_correlation: None,
+            baseline: None,
+            proposed: None,
+        }
+    }
+
     /// As one JSON object.
     ///
     /// # Errors

@@ -17,15 +17,18 @@ pub struct Weight {
 }
 
 impl Weight {
-    /// For the mean over the runs of `condition` under `noise`; `None` if the covariance is singular.
+    /// For the mean over the runs of `condition` under `noise`, held against a prediction whose covariance
+    /// is `own`; `None` if the covariance of both is singular.
     #[must_use]
     pub fn new(
         condition: &ObservedCondition,
         sensitivity: &Sensitivity,
         noise: &Noise,
+        own: Option<DMatrix<f64>>,
     ) -> Option<Self> {
         let runs = condition.runs.len().max(1) as f64;
-        let covariance = noise.covariance(condition, sensitivity) / runs;
+        let mut covariance = noise.covariance(condition, sensitivity) / runs;
+        covariance += own.unwrap_or_else(|| DMatrix::zeros(covariance.nrows(), covariance.ncols()));
         let factor = Cholesky::new(covariance)?;
         let shift = sensitivity.shift_of_mean(&noise.spread);
         Some(Self { shift, factor })

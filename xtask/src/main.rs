@@ -26,6 +26,8 @@ Usage: cargo xtask <task>
   bench resistive    impacts per second on resistive media, in release
   bench diagnosis [ARG]...
                      how often the diagnosis is right, in release; the arguments go to the program
+  bench beds [ARG]...
+                     the same on small beds of grains
   three-shapes [ARG]...
                      cylinder, hemisphere and cone on beds of grains, in release; the same
   validate [ARG]...  the validation rows, in release; the arguments go to the program as they are
@@ -38,6 +40,7 @@ Exit status: 0 done, 1 something was found, 2 the command line was not understoo
 #[derive(Debug, PartialEq, Eq)]
 enum Task {
     Bench(Vec<OsString>),
+    BenchBeds(Vec<OsString>),
     BenchDiagnosis(Vec<OsString>),
     BenchResistive,
     Help,
@@ -90,6 +93,10 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
 fn benchmark(mut args: Vec<OsString>) -> Result<Task, lexopt::Error> {
     let name = args.first().map(|name| name.to_string_lossy().into_owned());
     match name.as_deref() {
+        Some("beds") => {
+            args.remove(0);
+            Ok(Task::BenchBeds(args))
+        }
         Some("diagnosis") => {
             args.remove(0);
             Ok(Task::BenchDiagnosis(args))
@@ -119,6 +126,7 @@ fn run(task: Task) -> Result<ExitCode> {
             tidy::run(&sh)
         }
         Task::Bench(args) => program(&sh, "speed", &args),
+        Task::BenchBeds(args) => program(&sh, "beds", &args),
         Task::BenchDiagnosis(args) => program(&sh, "diagnosis", &args),
         Task::BenchResistive => program(&sh, "bench", &[]),
         Task::ThreeShapes(args) => program(&sh, "three_shapes", &args),
@@ -177,6 +185,8 @@ mod tests {
             task,
             Ok(Task::BenchDiagnosis(["--quick", "--help"].map(OsString::from).into()))
         );
+        let quick = vec![OsString::from("--quick")];
+        assert_eq!(parsed(&["bench", "beds", "--quick"]), Ok(Task::BenchBeds(quick)));
         assert_eq!(
             parsed(&["bench", "diagnoses"]),
             Err("no benchmark is called `diagnoses`".into())

@@ -18,6 +18,8 @@ fn bytes_per_grain(space: Space) -> u64 {
 const BYTES_FIXED: u64 = 9_000_000;
 /// Speed of the engine on two cores (1/s).
 const GRAIN_STEPS_PER_S: f64 = 2e7;
+/// Speed of the engine on one thread beside another (1/s), where nothing was measured.
+pub const RATE_PER_THREAD: f64 = 0.5 * GRAIN_STEPS_PER_S;
 
 /// What one impact of a model will cost.
 #[derive(Clone, Copy, Debug, PartialEq)]

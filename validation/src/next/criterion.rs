@@ -20,7 +20,8 @@ pub(super) fn least(
     let leader = rivals.first()?.before(forward)?;
     let observed = foreseen.observed();
     let sensitivity = Sensitivity::at(&leader.point, forward, 0, observed.reach).ok()?;
-    let weight = Weight::new(observed, &sensitivity, noise)?;
+    let own = forward.own_covariance(0, &leader.point.effects);
+    let weight = Weight::new(observed, &sensitivity, noise, own)?;
     let predicted: Vec<(DVector<f64>, DMatrix<f64>)> = rivals
         .iter()
         .map(|rival| {

@@ -25,7 +25,7 @@ const PROBE: f64 = 1e-2;
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ForwardError {
     /// A grain bed.
-    #[error("`{model}` is a bed of grains; only resistive-force models are refitted as yet")]
+    #[error("`{model}` is a bed of grains, and no force law")]
     Grains {
         /// Name of the model.
         model: String,

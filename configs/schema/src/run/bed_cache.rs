@@ -43,6 +43,12 @@ pub fn bed_key(model: GrainModel<'_>) -> [u8; 32] {
     result_key(model.bed_key_text())
 }
 
+/// Where the bed of `key` lies in the cache below `folder`.
+#[must_use]
+pub fn bed_file(folder: &Path, key: &[u8; 32]) -> PathBuf {
+    folder.join("beds").join(format!("{}.bed", blake3::Hash::from_bytes(*key).to_hex()))
+}
+
 /// The bed of `model`: read from its table, or from the cache below `folder`, or prepared now and put
 /// there. Nothing if `control` wants to stop.
 ///
@@ -58,8 +64,7 @@ pub fn prepare(
         return Ok(Some(PreparedBed { resting, cache: "file", path: None }));
     }
     let key = bed_key(model);
-    let beds = folder.join("beds");
-    let path = beds.join(format!("{}.bed", blake3::Hash::from_bytes(key).to_hex()));
+    let (beds, path) = (folder.join("beds"), bed_file(folder, &key));
     match checkpoint::load::<RestingBed>(&path, &key) {
         Ok(resting) if !resting.is_sound(model.n_grains()) => {
             control.warn(&format!("{} is not this bed; it is prepared again", path.display()));

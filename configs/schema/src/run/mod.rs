@@ -24,7 +24,7 @@ use crate::build::BuildError;
 use crate::load::ConfigError;
 use crate::model::{Condition, GrainModel, Medium, Model, ResistiveModel};
 
-pub use bed_cache::{PreparedBed, bed_key, prepare};
+pub use bed_cache::{PreparedBed, bed_file, bed_key, prepare};
 pub use folder::Existing;
 pub use summary::{
     ActivitySummary, BedSummary, CostSummary, EnergySummary, FinalEnergy, ForceSummary, Group,
@@ -37,7 +37,8 @@ use folder::{Found, OutputFolder};
 const RESULTS: u32 = 1;
 
 /// The key of everything that follows from `inputs`, by this version of the engine.
-fn result_key(inputs: &str) -> [u8; 32] {
+#[must_use]
+pub fn result_key(inputs: &str) -> [u8; 32] {
     let text = format!("{} {FORMAT} {RESULTS}\n{inputs}", env!("CARGO_PKG_VERSION"));
     *blake3::hash(text.as_bytes()).as_bytes()
 }

@@ -1,0 +1,282 @@
+//! Beds of grains on the workbench: many impacts, a plan before them, and what they cost.
+
+use std::fmt::Write as _;
+use std::num::NonZero;
+use std::path::PathBuf;
+
+use configs::engine::units::{self, Dimension};
+use serde_json::{Value, json};
+use validation::beds::{
+    BedDiagnosis, BedError, BedForward, CampaignError, Impacts, Place, Plan, Stand, Wish,
+    bed_forward, compare_jobs, diagnose_bed, unaffordable,
+};
+use validation::bench::Bench;
+use validation::compare::Comparison;
+use validation::where_it_fails::WhereItFails;
+
+use crate::common::cache_folder;
+use crate::compare::{lines, table};
+use crate::control::Terminal;
+use crate::diagnose::as_text;
+use crate::output::{self, CommandError, CommandResult};
+use crate::report;
+use crate::workbench::{Candidate, Flags, Measured, failed};
+
+/// The flags of commands that run many impacts on beds of grains.
+#[derive(clap::Args, Clone, Debug)]
+pub(crate) struct Beds {
+    /// The folder of prepared beds and finished impacts, which are never run again.
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+    /// Time to spend on impacts, such as "20 min"; it shapes the plan.
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    budget: Option<f64>,
+    /// Print which impacts would be run, and how long they would take; run nothing.
+    #[arg(long)]
+    pub(crate) plan: bool,
+    /// Go on with impacts that were stopped; what is kept is taken up in any case.
+    #[arg(long)]
+    resume: bool,
+    /// Let this candidate compensate as a parameter of the model: its change is fitted, not ranked.
+    #[arg(long = "free", value_name = "CANDIDATE")]
+    free: Vec<String>,
+    /// Screen these candidates alone.
+    #[arg(long = "candidate", value_name = "CANDIDATE")]
+    candidates: Vec<String>,
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    let seconds = units::parse(text, Dimension::TIME).map_err(|error| error.to_string())?;
+    match seconds > 0.0 {
+        true => Ok(seconds),
+        false => Err("a budget is above zero".to_owned()),
+    }
+}
+
+/// Where impacts are run, and whoever watches.
+pub(crate) struct Workshop<'a> {
+    flags: &'a Flags,
+    cache: PathBuf,
+    terminal: Terminal,
+}
+
+impl<'a> Workshop<'a> {
+    pub(crate) fn new(beds: &Beds, flags: &'a Flags) -> Result<Self, CommandError> {
+        let cache = cache_folder(beds.cache.as_deref());
+        Ok(Self { flags, cache, terminal: Terminal::new(flags.quiet)? })
+    }
+
+    fn place(&self) -> Place<'_> {
+        let workers = self.flags.threads.and_then(|n| NonZero::new(usize::from(n)));
+        Place { cache: &self.cache, workers, watch: &self.terminal }
+    }
+
+    /// What a comparison would run.
+    pub(crate) fn plan_of_comparison(
+        &self,
+        models: &[Candidate],
+        measured: &Measured,
+    ) -> CommandResult {
+        let mut plans = Vec::new();
+        for model in models.iter().filter(|model| model.loaded.model.grains().is_some()) {
+            let stand = stand(model, measured)?;
+            let jobs = compare_jobs(&stand, &measured.observed).map_err(|e| self.failed(e))?;
+            let place = self.place();
+            let left = place.outstanding(&jobs).map_err(|e| self.failed(e.into()))?;
+            let rate = place.rate(stand.grains()).map_err(|e| self.failed(e.into()))?;
+            plans.push(json!({
+                "model": model.name,
+                "impacts": jobs.len(),
+                "to_run": left.impacts,
+                "beds": left.beds,
+                "estimated_s": (left.work / (rate * place.n_workers() as f64)).round(),
+            }));
+        }
+        output::json_to_stdout(&json!({ "set": measured.set.id, "cost": { "plan": plans } }))
+    }
+
+    /// `model` before the set, all its impacts run.
+    pub(crate) fn forward(
+        &mut self,
+        model: &Candidate,
+        measured: &Measured,
+    ) -> Result<BedForward, CommandError> {
+        let stand = stand(model, measured)?;
+        let forward = bed_forward(&stand, &measured.observed, &self.place());
+        self.terminal.clear();
+        forward.map_err(|error| self.failed(error))
+    }
+
+    fn failed(&self, error: BedError) -> CommandError {
+        match error {
+            BedError::Campaign(CampaignError::Interrupted) => {
+                self.terminal.interrupted("what has ended is kept; the same command goes on")
+            }
+            BedError::Stand(_) | BedError::UnknownCandidate { .. } => {
+                CommandError::bad_input(error)
+            }
+            BedError::Campaign(CampaignError::Run(error)) => error.into(),
+            BedError::Bench(error) => failed(error, "the bed"),
+            other => CommandError::Failed(other.into()),
+        }
+    }
+}
+
+fn stand<'a>(model: &'a Candidate, measured: &'a Measured) -> Result<Stand<'a>, CommandError> {
+    Stand::new(&model.loaded.model, &measured.set)
+        .map_err(|error| CommandError::bad_input(format!("{}: {error}", model.name)))
+}
+
+/// `plunge diagnose` of a bed of grains.
+pub(crate) fn diagnose(
+    beds: &Beds,
+    flags: &Flags,
+    measured: &Measured,
+    models: &[Candidate],
+) -> CommandResult {
+    let model = &models[0];
+    let workshop = Workshop::new(beds, flags)?;
+    let stand = stand(model, measured)?;
+    let wish =
+        Wish { budget: beds.budget, free: beds.free.clone(), candidates: beds.candidates.clone() };
+    let place = workshop.place();
+    let plan = Plan::new(&stand, &measured.observed, &place, &wish)
+        .map_err(|error| workshop.failed(error))?;
+    let shown = plan_as_text(&plan);
+    if beds.plan {
+        let object = json!({ "set": measured.set.id, "cost": { "plan": plan.to_json(&stand) } });
+        return if flags.json {
+            output::json_to_stdout(&object)
+        } else {
+            output::to_stdout(&shown)
+        };
+    }
+    if !flags.quiet {
+        output::to_stderr(&format!("{shown}\n"));
+    }
+    let results = flags.results_of(measured, "diagnose", models, &format!("{wish:?}"))?;
+    if !plan.fits() {
+        let diagnosis = unaffordable(&plan);
+        let mut object = diagnosis.to_json().map_err(anyhow::Error::new)?;
+        object["cost"] = json!({ "impacts": 0, "plan": plan.to_json(&stand) });
+        let text = format!("{object:#}\n");
+        let mut files = vec![("diagnosis.json".to_owned(), text.clone())];
+        files.extend(report::of_results(&files, flags.quiet));
+        results.write(&files)?;
+        return match flags.json {
+            true => output::to_stdout(&text),
+            false => output::to_stdout(&as_text(&model.name, (&diagnosis, &object), [0, 0])),
+        };
+    }
+    let found = diagnose_bed(&stand, &measured.observed, &place, plan, flags.seed);
+    workshop.terminal.clear();
+    let found = found.map_err(|error| workshop.failed(error))?;
+    flags.notes(&measured.set.notes);
+    flags.notes(&measured.observed.notes);
+    let object = found.to_json(&stand).map_err(anyhow::Error::new)?;
+    let json = format!("{object:#}\n");
+    let mut files = vec![("diagnosis.json".to_owned(), json.clone())];
+    files.extend(found.proposals(&stand)?);
+    let BedDiagnosis { diagnosis, forward, observed, .. } = &found;
+    let bench = Bench { set: &measured.set, observed, forward };
+    let where_it_fails = WhereItFails::of_diagnosis(&bench, &model.name, diagnosis, flags.seed)
+        .map_err(|error| failed(error, &model.name))?;
+    files.extend(where_it_fails.files().map_err(anyhow::Error::new)?);
+    files.extend(report::of_results(&files, flags.quiet));
+    results.write(&files)?;
+    if flags.json {
+        return output::to_stdout(&json);
+    }
+    let mut text = as_text(
+        &model.name,
+        (diagnosis, &object),
+        [found.plan.fit.len(), found.plan.confirm.len()],
+    );
+    text.push_str(&evidence(&found, &object));
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    text.push_str(&format!("\nwritten to {}: {}\n", results.shown(), names.join(", ")));
+    output::to_stdout(&text)
+}
+
+/// A time as one would say it.
+fn about(seconds: f64) -> String {
+    match seconds {
+        s if s < 90.0 => format!("{s:.0} s"),
+        s if s < 5400.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+fn plan_as_text(plan: &Plan) -> String {
+    let mut text = format!(
+        "Plan ({}): {} impacts, about {} with {} at a time\n",
+        plan.size.name,
+        plan.impacts(),
+        about(plan.seconds()),
+        plan.workers
+    );
+    let mut rows = table(&["", "impacts", "to run", "beds to settle", "about"]);
+    for stage in &plan.stages {
+        rows.add_row([
+            stage.name.to_owned(),
+            stage.impacts.to_string(),
+            stage.to_run.to_string(),
+            stage.beds.to_string(),
+            about(stage.seconds),
+        ]);
+    }
+    text.push_str(&lines(&rows));
+    text
+}
+
+/// What impacts and their ledgers say for what is named.
+fn evidence(found: &BedDiagnosis, object: &Value) -> String {
+    let mut text = String::new();
+    if let Some(correlation) = found.correlation {
+        let _ = writeln!(text, "\nTwo runs on one draw of a bed correlate by {correlation:.2}.");
+    }
+    let Some(confirmation) = &found.confirmation else { return text };
+    let _ = writeln!(
+        text,
+        "\nWhere the energy goes, over all that is dissipated, under the conditions that confirm"
+    );
+    let mut rows = table(&["channel", "before (%)", "after (%)"]);
+    for channel in &confirmation.channels {
+        let share = |(mean, se): (f64, f64)| format!("{:.1} ± {:.1}", 1e2 * mean, 1e2 * se);
+        rows.add_row([channel.name.clone(), share(channel.before), share(channel.after)]);
+    }
+    text.push_str(&lines(&rows));
+    if let Some(impacts) = object["cost"]["impacts"].as_u64() {
+        let _ = writeln!(text, "\n{impacts} impacts in all, those that were kept counted.");
+    }
+    text
+}
+
+/// Floors of the errors of models of grains, below the errors of a comparison.
+pub(crate) fn floors(comparison: &Comparison, object: &Value) -> String {
+    const KINDS: [(&str, &str, f64); 6] = [
+        ("z_m", "z (mm)", 1e3),
+        ("x_m", "x (mm)", 1e3),
+        ("stop_time_s", "stop time (ms)", 1e3),
+        ("final_z_m", "depth (mm)", 1e3),
+        ("final_x_m", "range (mm)", 1e3),
+        ("rms_relative", "relative (%)", 1e2),
+    ];
+    let mut rows = table(&["model", "number", "standard error of the means of its beds"]);
+    for (at, model) in comparison.models.iter().enumerate() {
+        let floor = &object["models"][at]["bed"]["noise_floor"];
+        for (key, name, scale) in KINDS {
+            if let Some(error) = floor[key].as_f64() {
+                rows.add_row([
+                    model.model.clone(),
+                    name.to_owned(),
+                    format!("{:.3}", scale * error),
+                ]);
+            }
+        }
+    }
+    match rows.row_iter().next() {
+        Some(_) => format!("\nnoise floor from bed to bed\n{}", lines(&rows)),
+        None => String::new(),
+    }
+}

@@ -1,0 +1,178 @@
+//! The runs of a model of grains as they stand: their means, their scatter from bed to bed, and the force
+//! law that comes nearest to them.
+//!
+//! The force law (two terms, see `configs/two-term-vector.toml`) stands in where only small changes are
+//! asked for: how observables answer to a force around a depth, to another impact speed, to the friction of
+//! a rail. So the scatter of beds is learned by the same likelihood as that of measurements
+//! ([`crate::noise`]), from a handful of runs.
+
+use configs::{LoadOptions, Model, ModelSource, find_shipped};
+use nalgebra::{DMatrix, DVector};
+use thiserror::Error;
+
+use super::record::Record;
+use super::stand::Stand;
+use crate::bench::{Bench, BenchError, Fitted};
+use crate::forward::{Forward, PredictError, Request, Scatter};
+use crate::measurement::{Instrument, MeasurementSet};
+use crate::noise::Noise;
+use crate::observable::Layout;
+use crate::observed::{Observed, ObservedCondition, reach, reading};
+use crate::resistive::{ForwardError, ResistiveForward};
+use crate::sensitivity::Point;
+
+/// The force law that stands in.
+const STAND_IN: &str = "two-term-vector";
+
+/// Why there is no baseline.
+#[derive(Debug, Error)]
+pub enum BaselineError {
+    /// The force law that stands in does not read the set.
+    #[error(transparent)]
+    Forward(#[from] ForwardError),
+    /// It cannot be fitted to the runs.
+    #[error("the runs of the model are not like an impact: {0}")]
+    Bench(#[from] BenchError),
+    /// It does not load; a mistake of ours.
+    #[error(transparent)]
+    Config(#[from] configs::ConfigError),
+    /// Too few runs ended.
+    #[error("condition {condition}: {found} impacts came to an end, and two are needed at least")]
+    TooFew {
+        /// Id of the condition.
+        condition: String,
+        /// How many there are.
+        found: usize,
+    },
+}
+
+/// A force law near to a bed.
+pub(super) struct StandIn {
+    pub(super) forward: ResistiveForward,
+    point: Point,
+}
+
+/// The runs of a model as it stands.
+pub(super) struct Baseline {
+    /// What a set of its runs would hold; conditions that were not run have an empty layout.
+    pub(super) observed: Observed,
+    pub(super) stand_in: StandIn,
+    /// The force law, fitted to the runs.
+    pub(super) fitted: Fitted,
+    /// Per condition: covariance of the numbers of one run. Empty for those that were not run.
+    pub(super) spread: Vec<DMatrix<f64>>,
+}
+
+impl Baseline {
+    /// Of `runs`, one list per condition of the set, empty for those that were not run.
+    pub(super) fn of(
+        stand: &Stand<'_>,
+        layouts: &[Layout],
+        runs: &[Vec<Record>],
+    ) -> Result<Self, BaselineError> {
+        let instrument = Instrument {
+            rate: None,
+            position_sigma: None,
+            speed_sigma_rel: None,
+            level_sigma: None,
+        };
+        let set = MeasurementSet { instrument, ..stand.set.clone() };
+        let mut conditions = Vec::with_capacity(layouts.len());
+        for (at, (layout, runs)) in layouts.iter().zip(runs).enumerate() {
+            if runs.len() == 1 {
+                let condition = set.conditions[at].id.clone();
+                return Err(BaselineError::TooFew { condition, found: runs.len() });
+            }
+            conditions.push(observed(&set, at, layout, runs));
+        }
+        let fit = (0..conditions.len()).filter(|&at| !conditions[at].runs.is_empty()).collect();
+        let observed = Observed { conditions, fit, holdout: Vec::new(), notes: Vec::new() };
+        let shipped = find_shipped(STAND_IN)
+            .map_or_else(|| ModelSource::Path(STAND_IN.into()), ModelSource::Shipped);
+        let law = Model::load(shipped, &LoadOptions::default())?.model;
+        let forward = ResistiveForward::new(&law, &set, layouts)?;
+        let bench = Bench { set: &set, observed: &observed, forward: &forward };
+        let fitted = bench.fit_from(&Point::start(&forward), &Noise::guess(&instrument))?;
+        let mut spread = vec![DMatrix::zeros(0, 0); observed.conditions.len()];
+        for &at in &observed.fit {
+            let sensitivity = bench.sensitivity(&fitted.fit.point, at)?;
+            spread[at] = fitted.noise.covariance(&observed.conditions[at], &sensitivity);
+        }
+        let point = fitted.fit.point.clone();
+        Ok(Self { observed, stand_in: StandIn { forward, point }, fitted, spread })
+    }
+}
+
+/// The observables of `runs` under condition `at`; of none, where there are no runs.
+fn observed(
+    set: &MeasurementSet,
+    at: usize,
+    layout: &Layout,
+    runs: &[Record],
+) -> ObservedCondition {
+    let condition = &set.conditions[at];
+    let layout = if runs.is_empty() { Layout::default() } else { layout.clone() };
+    let vectors: Vec<DVector<f64>> =
+        runs.iter().map(|run| run.observables(&layout, condition, set)).collect();
+    let sum = vectors.iter().fold(DVector::zeros(layout.len()), |sum, one| sum + one);
+    let mean = sum / vectors.len().max(1) as f64;
+    let kinds = layout.kinds();
+    ObservedCondition {
+        reading: reading(set, &layout, condition, &vec![None; layout.times.len()]),
+        stated: vec![None; kinds.len()],
+        reach: reach(&kinds, &mean, condition),
+        order: vec![None; vectors.len()],
+        runs: vectors,
+        mean,
+        layout,
+    }
+}
+
+impl StandIn {
+    /// What `effects` of the force law (indices of its candidates) and what scatters change of the
+    /// observables. The change by what scatters is odd in it: means over beds hold its second order
+    /// already, since they are means over beds.
+    pub(super) fn response(
+        &self,
+        condition: usize,
+        effects: &[(usize, f64)],
+        scatter: &Scatter,
+    ) -> Result<DVector<f64>, PredictError> {
+        let still = Scatter { coefficients: vec![0.0; self.n_scattering()], ..Scatter::default() };
+        let predict = |effects: &[(usize, f64)], scatter: &Scatter| {
+            let at = Request { parameters: &self.point.parameters, effects, scatter };
+            self.forward.predict(condition, &at).map(DVector::from_vec)
+        };
+        let base = predict(&[], &still)?;
+        let mut response = DVector::zeros(base.len());
+        if effects.iter().any(|(_, q)| *q != 0.0) {
+            response += predict(effects, &still)? - &base;
+        }
+        if !is_still(scatter) {
+            response += 0.5 * (predict(&[], scatter)? - predict(&[], &opposite(scatter))?);
+        }
+        Ok(response)
+    }
+
+    pub(super) fn n_scattering(&self) -> usize {
+        self.forward.n_scattering_coefficients()
+    }
+}
+
+fn is_still(scatter: &Scatter) -> bool {
+    let Scatter { coefficients, speed, level, along, sideways, .. } = scatter;
+    let lists = coefficients.iter().chain(along).chain(sideways);
+    lists.chain([speed, level]).all(|value| *value == 0.0)
+}
+
+fn opposite(scatter: &Scatter) -> Scatter {
+    let less = |values: &[f64]| values.iter().map(|value| -value).collect();
+    Scatter {
+        coefficients: less(&scatter.coefficients),
+        speed: -scatter.speed,
+        level: -scatter.level,
+        along: less(&scatter.along),
+        sideways: less(&scatter.sideways),
+        ..scatter.clone()
+    }
+}

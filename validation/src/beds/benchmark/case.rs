@@ -1,0 +1,182 @@
+//! What is hidden in a bed, and what a diagnosis made of it.
+
+use serde::{Deserialize, Serialize};
+
+use super::world::{campaign, measure, model};
+use crate::beds::{
+    BedError, Impacts, Plan, SWITCHES, Stand, Variation, Wish, diagnose_bed, unaffordable,
+};
+use crate::observed::Observed;
+use crate::verdict::{Diagnosis, Verdict};
+
+/// Runs of every condition.
+const REPEATS: usize = 5;
+
+/// Factor on the mass of every grain: an effect that no switch has.
+const HEAVIER: f64 = 1.4;
+
+/// What is hidden.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Hidden {
+    /// Nothing.
+    Nothing,
+    /// A switch at an amplitude.
+    Switch(&'static str, f64),
+    /// Heavier grains, which no candidate is.
+    Unlisted,
+}
+
+/// One bed to be diagnosed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Case {
+    /// What is hidden in it.
+    pub hidden: Hidden,
+    /// Which draw of beds, camera and resampling.
+    pub seed: u64,
+}
+
+/// What came of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// What was hidden.
+    pub hidden: String,
+    /// Which draw.
+    pub seed: u64,
+    /// The verdict, as in a report.
+    pub verdict: String,
+    /// What is named, or not told from what would be.
+    pub named: Vec<String>,
+    /// Whether the answer is right: the effect alone or in a set of at most three; nothing where nothing
+    /// is; no listed effect where an unlisted one is.
+    pub right: bool,
+    /// Whether a single wrong effect is named.
+    pub wrong: bool,
+    /// Predicted probability that the truth, were it as strong as fitted, is ranked first.
+    pub predicted: Option<f64>,
+    /// Whether it was.
+    pub first: bool,
+    /// Error on held-out conditions: before, after, and the floor of the means (m).
+    pub held_out: Option<[f64; 3]>,
+    /// Impacts of the diagnosis.
+    pub impacts: usize,
+    /// Time (s), which depends on what is kept and on the machine.
+    pub seconds: f64,
+}
+
+/// The shortest list that has one of everything.
+#[must_use]
+pub fn quick() -> Vec<Case> {
+    let hidden = [Hidden::Switch("rolling-resistance", 0.2), Hidden::Nothing, Hidden::Unlisted];
+    hidden.map(|hidden| Case { hidden, seed: 0 }).to_vec()
+}
+
+/// Every switch that moves a disc, at two strengths, nothing, and what is not listed; `draws` of each.
+#[must_use]
+pub fn all(draws: u64) -> Vec<Case> {
+    let switches = [
+        ("rolling-resistance", 0.1),
+        ("rolling-resistance", 0.3),
+        ("cohesion-dmt", 5.0),
+        ("cohesion-dmt", 15.0),
+        ("grain-friction", 1.0),
+        ("grain-friction", 2.5),
+        ("packing", 0.7),
+        ("packing", 1.0),
+    ];
+    let listed = switches.map(|(id, q)| Hidden::Switch(id, q));
+    let hidden: Vec<Hidden> =
+        listed.into_iter().chain([Hidden::Nothing; 3]).chain([Hidden::Unlisted; 2]).collect();
+    let each = hidden.iter().enumerate();
+    // Repeated entries of the list are other draws too.
+    let seeds = |at: usize| (0..draws).map(move |draw| 100 * at as u64 + draw);
+    each.flat_map(|(at, &hidden)| seeds(at).map(move |seed| Case { hidden, seed })).collect()
+}
+
+impl Hidden {
+    /// What it is called.
+    #[must_use]
+    pub fn name(self) -> String {
+        match self {
+            Self::Nothing => "nothing".to_owned(),
+            Self::Switch(id, q) => format!("{id} {q}"),
+            Self::Unlisted => format!("grains of {HEAVIER} times the mass"),
+        }
+    }
+
+    fn variation(self, stand: &Stand<'_>) -> Variation {
+        match self {
+            Self::Nothing => Variation::default(),
+            Self::Switch(id, q) => {
+                let switch = SWITCHES.iter().find(|switch| switch.id == id);
+                switch.map_or_else(Variation::default, |one| one.change(stand.grains(), q))
+            }
+            Self::Unlisted => {
+                let masses = [0.049, 0.073].map(|mass| mass * HEAVIER).into_iter().enumerate();
+                let sets = masses.map(|(at, mass)| format!("bed.grains.{at}.mass=\"{mass:?} g\""));
+                Variation { before: sets.collect(), ..Variation::default() }
+            }
+        }
+    }
+}
+
+impl Case {
+    /// Measures and diagnoses it, with impacts as `wish` says.
+    ///
+    /// # Errors
+    /// If the impacts cannot be run.
+    pub fn run(&self, place: &dyn Impacts, wish: &Wish) -> Result<Outcome, BedError> {
+        let start = std::time::Instant::now();
+        let model = model(1 + 1000 * self.seed).map_err(crate::beds::BaselineError::from)?;
+        let empty = campaign(&model);
+        let world = Stand::new(&model, &empty)?;
+        let set = measure(&world, &self.hidden.variation(&world), (REPEATS, self.seed), place)?;
+        let observed = Observed::of(&set);
+        let stand = Stand::new(&model, &set)?;
+        let plan = Plan::new(&stand, &observed, place, wish)?;
+        let (diagnosis, impacts) = match plan.fits() {
+            false => (unaffordable(&plan), 0),
+            true => {
+                let found = diagnose_bed(&stand, &observed, place, plan, self.seed + 1)?;
+                (found.diagnosis, found.impacts)
+            }
+        };
+        Ok(self.judged(&diagnosis, impacts, start.elapsed().as_secs_f64()))
+    }
+
+    fn judged(&self, diagnosis: &Diagnosis, impacts: usize, seconds: f64) -> Outcome {
+        let named: Vec<String> = match diagnosis.verdict {
+            Verdict::NotSeparable => diagnosis.not_separable.clone(),
+            _ => diagnosis.effects.clone(),
+        };
+        let truth = match self.hidden {
+            Hidden::Switch(id, _) => Some(id),
+            Hidden::Nothing | Hidden::Unlisted => None,
+        };
+        let single = matches!(diagnosis.verdict, Verdict::Supported);
+        let in_set = truth.is_some_and(|truth| named.iter().any(|id| id == truth));
+        let right = match self.hidden {
+            Hidden::Switch(..) => in_set && named.len() <= 3,
+            Hidden::Nothing => named.is_empty(),
+            Hidden::Unlisted => !single,
+        };
+        let leader = diagnosis.ranking.first();
+        let own = diagnosis.ranking.iter().find(|effect| Some(effect.id.as_str()) == truth);
+        let held_out = diagnosis.holdout.as_ref().filter(|_| !diagnosis.amplitudes.is_empty());
+        Outcome {
+            hidden: self.hidden.name(),
+            seed: self.seed,
+            verdict: serde_json::to_value(diagnosis.verdict)
+                .ok()
+                .and_then(|value| Some(value.as_str()?.to_owned()))
+                .unwrap_or_default(),
+            right,
+            wrong: single && !in_set,
+            predicted: own.and_then(|effect| effect.predicted_top1),
+            first: truth.is_some() && leader.map(|effect| effect.id.as_str()) == truth,
+            held_out: held_out.map(|errors| [errors.before, errors.after, errors.noise_floor]),
+            named,
+            impacts,
+            seconds,
+        }
+    }
+}

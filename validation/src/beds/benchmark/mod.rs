@@ -1,0 +1,10 @@
+//! How often the diagnosis of a bed of grains is right: small beds in which something is hidden, measured
+//! on seeds of their own and diagnosed like anything else.
+
+mod case;
+mod table;
+mod world;
+
+pub use case::{Case, Hidden, Outcome, all, quick};
+pub use table::table;
+pub use world::{campaign, measure, model};

@@ -1,0 +1,101 @@
+//! The outcomes as a table for the docs.
+
+use std::fmt::Write as _;
+
+use super::case::Outcome;
+
+/// Every case and the rates, as Markdown.
+#[must_use]
+pub fn table(outcomes: &[Outcome]) -> String {
+    let mut text = String::from(
+        "| hidden | draw | verdict | named | right | held out before → after (floor), mm | impacts | min |\n\
+         | --- | ---: | --- | --- | --- | --- | ---: | ---: |\n",
+    );
+    for one in outcomes {
+        let held_out = one.held_out.map_or_else(String::new, |[before, after, floor]| {
+            format!("{:.2} → {:.2} ({:.2})", 1e3 * before, 1e3 * after, 1e3 * floor)
+        });
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} | {held_out} | {} | {:.1} |",
+            one.hidden,
+            one.seed,
+            one.verdict,
+            one.named.join(", "),
+            if one.right { "yes" } else { "no" },
+            one.impacts,
+            one.seconds / 60.0
+        );
+    }
+    let _ = writeln!(text, "\n{}", rates(outcomes));
+    text
+}
+
+/// How often what was wanted came out.
+fn rates(outcomes: &[Outcome]) -> String {
+    let of = |wanted: &dyn Fn(&&Outcome) -> bool| -> Vec<&Outcome> {
+        outcomes.iter().filter(wanted).collect()
+    };
+    let nothing = |one: &&Outcome| one.hidden == "nothing";
+    let unlisted = |one: &&Outcome| one.hidden.starts_with("grains of");
+    let share = |of: &[&Outcome], holds: &dyn Fn(&Outcome) -> bool| {
+        format!("{} of {}", of.iter().filter(|one| holds(one)).count(), of.len())
+    };
+    let listed = of(&|one| !nothing(one) && !unlisted(one));
+    let above = |one: &Outcome| {
+        one.verdict == "supported"
+            && one.held_out.is_some_and(|[_, after, floor]| after > 1.3 * floor)
+    };
+    let predicted: Vec<f64> = listed.iter().filter_map(|one| one.predicted).collect();
+    let mean = predicted.iter().sum::<f64>() / predicted.len().max(1) as f64;
+    let lines = [
+        format!("right, alone or among at most three: {}", share(&listed, &|one| one.right)),
+        format!("ranked first: {} (predicted {mean:.2})", share(&listed, &|one| one.first)),
+        format!("a single wrong effect named: {}", share(&of(&|_| true), &|one| one.wrong)),
+        format!("nothing named where nothing is: {}", share(&of(&nothing), &|one| one.right)),
+        format!(
+            "the unlisted not blamed on a listed one: {}",
+            share(&of(&unlisted), &|one| one.right)
+        ),
+        format!(
+            "supported, and after it more than 1.3 times the floor: {}",
+            share(&of(&|one| one.verdict == "supported"), &above)
+        ),
+    ];
+    lines.map(|line| format!("- {line}")).join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_count_listed_unlisted_and_empty_beds_apart() {
+        let outcome = |hidden: &str, right, wrong| Outcome {
+            hidden: hidden.to_owned(),
+            seed: 0,
+            verdict: "supported".to_owned(),
+            named: vec!["packing".to_owned()],
+            right,
+            wrong,
+            predicted: Some(0.5),
+            first: right,
+            held_out: Some([2e-3, 1e-3, 5e-4]),
+            impacts: 10,
+            seconds: 60.0,
+        };
+        let outcomes = [
+            outcome("packing 1", true, false),
+            outcome("nothing", false, true),
+            outcome("grains of 2", true, false),
+        ];
+        let text = table(&outcomes);
+        assert!(text.contains(
+            "| packing 1 | 0 | supported | packing | yes | 2.00 → 1.00 (0.50) | 10 | 1.0 |"
+        ));
+        assert!(text.contains("at most three: 1 of 1"));
+        assert!(text.contains("wrong effect named: 1 of 3"));
+        assert!(text.contains("where nothing is: 0 of 1"));
+        assert!(text.contains("1.3 times the floor: 3 of 3"));
+    }
+}

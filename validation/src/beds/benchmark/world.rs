@@ -1,0 +1,160 @@
+//! Small beds in which something is hidden, and the measurements that are made on them.
+
+use configs::{ConfigError, LoadOptions, Model, ModelSource};
+use engine::bed::random;
+use rand::Rng;
+
+use crate::beds::record::Record;
+use crate::beds::{BedError, Draw, Impacts, Stand, Variation};
+use crate::measurement::{
+    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
+    Role, Run, StatedError, StopDefinition,
+};
+
+/// The analyst's model of the bed.
+const MODEL: &str = include_str!("model.toml");
+
+/// Seeds of the beds that are measured: none of a diagnosis.
+const SEEDS: u64 = 1_000_000;
+
+/// Frames of the camera per second (1/s).
+const RATE: f64 = 500.0;
+
+/// Root mean square of one reading of a position (m).
+const CAMERA: f64 = 1e-4;
+
+/// Speeds (m/s) that are fitted to, and those that are held out.
+const SPEEDS: ([f64; 3], [f64; 2]) = ([0.5, 1.0, 1.5], [0.75, 1.25]);
+
+/// Frames behind the stop that a camera still takes.
+const STILL: usize = 5;
+
+/// The analyst's model, with its beds of the seeds from `seed` on.
+///
+/// # Errors
+/// Never: the model is ours.
+pub fn model(seed: u64) -> Result<Model, ConfigError> {
+    let source = ModelSource::Text {
+        name: "the bed of the benchmark".to_owned(),
+        text: MODEL.to_owned(),
+        folder: ".".into(),
+    };
+    let options = LoadOptions { seed: Some(seed), ..LoadOptions::default() };
+    Ok(Model::load(source, &options)?.model)
+}
+
+/// The campaign before anything is measured.
+#[must_use]
+pub fn campaign(model: &Model) -> MeasurementSet {
+    let (fit, held_out) = SPEEDS;
+    let fit = fit.map(|speed| condition(model, speed, Role::Fit));
+    let held_out = held_out.map(|speed| condition(model, speed, Role::Holdout));
+    MeasurementSet {
+        id: "beds-benchmark".to_owned(),
+        source: Some("impacts on small beds in which something is hidden".to_owned()),
+        kind: Kind::Trajectory,
+        instrument: Instrument {
+            rate: Some(RATE),
+            position_sigma: Some(CAMERA),
+            speed_sigma_rel: None,
+            level_sigma: None,
+        },
+        bed: Bed {
+            geometry: Geometry::Planar,
+            bulk_density: Some(2.4),
+            gravity: 9.81,
+            grain_diameter: Some(4.8e-3),
+        },
+        baseline: None,
+        stated: StatedError::default(),
+        stop: StopDefinition::SpeedFivePercent,
+        last: FinalDefinition::Deepest,
+        feasible: Feasible::default(),
+        conditions: fit.into_iter().chain(held_out).collect(),
+        runs: Vec::new(),
+        notes: Vec::new(),
+    }
+}
+
+fn condition(model: &Model, speed: f64, role: Role) -> Condition {
+    Condition {
+        id: format!("v{speed}"),
+        role,
+        speed,
+        angle_deg: 90.0,
+        shape: model.intruder.shape.name.to_owned(),
+        diameter: model.intruder.params.get("diameter"),
+        mass: model.intruder.mass,
+        spin: 0.0,
+        packing: None,
+        bed_depth: None,
+        length: None,
+        height: None,
+        apex_deg: None,
+        link_angle_deg: None,
+    }
+}
+
+/// `repeats` runs under every condition of the set of `stand`, whose model is changed by `hidden`; the
+/// beds and the noise of the camera follow from `seed`.
+///
+/// # Errors
+/// If the impacts cannot be run.
+pub fn measure(
+    stand: &Stand<'_>,
+    hidden: &Variation,
+    (repeats, seed): (usize, u64),
+    place: &dyn Impacts,
+) -> Result<MeasurementSet, BedError> {
+    let first = SEEDS * (1 + seed);
+    // Every repeat has a bed of its own.
+    let spot = |at: usize| at % stand.n_places();
+    let draws: Vec<Draw> =
+        (0..repeats).map(|at| Draw { seed: first + at as u64, place: spot(at) }).collect();
+    let conditions = 0..stand.set.conditions.len();
+    let all = conditions.flat_map(|at| draws.iter().map(move |&draw| (at, draw)));
+    let all: Vec<(usize, Draw)> = all.collect();
+    let jobs = all.iter().map(|&(at, draw)| stand.job(at, draw, hidden));
+    let jobs = jobs.collect::<Result<Vec<_>, _>>()?;
+    let records = place.run(&jobs)?;
+    let mut set = stand.set.clone();
+    for (number, ((at, _), record)) in all.iter().zip(&records).enumerate() {
+        if let Some(record) = record {
+            set.runs.push(run(record, (*at, number), seed));
+        }
+    }
+    Ok(set)
+}
+
+/// A run as a camera sees it.
+fn run(record: &Record, (condition, number): (usize, usize), seed: u64) -> Run {
+    let mut random = random(seed, &format!("camera {number}"));
+    let end = record.stopping_time.unwrap_or(record.end);
+    let frames = (end * RATE).ceil() as usize + STILL;
+    let times: Vec<f64> = (0..frames).map(|k| k as f64 / RATE).collect();
+    let path = record.path(&times);
+    let deepest = record.deepest + CAMERA * normal(&mut random);
+    let seen = times.iter().zip(&path).map(|(&t, &(z, x))| Frame {
+        t,
+        z: z + CAMERA * normal(&mut random),
+        x: x + CAMERA * normal(&mut random),
+        sigma: None,
+    });
+    Run {
+        name: format!("r{number:03}"),
+        condition,
+        repeat: None,
+        order: Some(number as i64),
+        stop_time: None,
+        final_z: Some(deepest),
+        final_x: None,
+        frames: seen.collect(),
+    }
+}
+
+/// A normal number, as in [`crate::random`], from random numbers of the world's own.
+fn normal(random: &mut impl Rng) -> f64 {
+    use rand::RngExt;
+    let radius = (-2.0 * libm::log(1.0 - random.random::<f64>())).sqrt();
+    radius * libm::cos(std::f64::consts::TAU * random.random::<f64>())
+}

@@ -1,0 +1,300 @@
+//! Many impacts side by side: each on one thread, as many at a time as there are workers, each kept as
+//! it ends. What is kept is not run again, so a campaign that was killed has lost the impacts in flight.
+
+use std::fs;
+use std::io;
+use std::num::NonZero;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+use configs::run::RunError;
+use configs::{BuildError, ConfigError, GrainModel, Model};
+use engine::checkpoint::CheckpointError;
+use engine::error::{StepError, ThreadsError};
+use engine::parallel::with_threads;
+use thiserror::Error;
+
+use super::job::{Heed, Job};
+use super::rate::{self, Rate};
+use super::record::Record;
+
+/// Why a campaign ends early.
+#[derive(Debug, Error)]
+#[expect(missing_docs, reason = "each says itself what it is")]
+pub enum CampaignError {
+    #[error("cannot {action} {}: {source}", path.display())]
+    Io { action: &'static str, path: PathBuf, source: io::Error },
+    #[error("`{model}` is no bed of grains")]
+    NoGrains { model: String },
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    #[error(transparent)]
+    Run(#[from] RunError),
+    #[error(transparent)]
+    Step(#[from] StepError),
+    #[error(transparent)]
+    Threads(#[from] ThreadsError),
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    #[error("stopped before the end")]
+    Interrupted,
+}
+
+impl CampaignError {
+    pub(super) fn no_grains(model: &Model) -> Self {
+        Self::NoGrains { model: model.run.name.clone() }
+    }
+}
+
+/// How far a campaign has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// What is being done.
+    pub what: Stage,
+    /// Done, those that were kept counted.
+    pub done: usize,
+    /// Of how many.
+    pub of: usize,
+    /// Time that is left at the pace so far (s); `None` before there is a pace.
+    pub left: Option<f64>,
+}
+
+/// What a campaign is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Beds settle.
+    Beds,
+    /// Impacts run.
+    Impacts,
+}
+
+/// Whoever watches a campaign, from several threads at once.
+pub trait Watch: Sync {
+    /// Called as often as something ends.
+    fn progress(&self, progress: &Progress);
+    /// Something that the user should know.
+    fn warn(&self, message: &str);
+    /// Whether to end; what is in flight is lost.
+    fn wants_to_stop(&self) -> bool;
+}
+
+/// Nobody watches.
+#[derive(Clone, Copy, Debug)]
+pub struct Unattended;
+
+impl Watch for Unattended {
+    fn progress(&self, _: &Progress) {}
+    fn warn(&self, _: &str) {}
+    fn wants_to_stop(&self) -> bool {
+        false
+    }
+}
+
+/// Where impacts are run and kept.
+#[derive(Clone, Copy)]
+pub struct Place<'a> {
+    /// The folder of beds and impacts.
+    pub cache: &'a Path,
+    /// Impacts at a time; none for one per core.
+    pub workers: Option<NonZero<usize>>,
+    /// Whoever watches.
+    pub watch: &'a dyn Watch,
+}
+
+/// What a campaign would have to run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outstanding {
+    /// Impacts that are not kept yet.
+    pub impacts: usize,
+    /// Beds that are not.
+    pub beds: usize,
+    /// Work of both (grain-steps).
+    pub work: f64,
+}
+
+/// Where the records of jobs come from.
+pub trait Impacts {
+    /// How many impacts run at a time.
+    fn n_workers(&self) -> usize;
+
+    /// Grain-steps per second of one of them, on beds like that of `model`.
+    ///
+    /// # Errors
+    /// If the bed of the model cannot be built.
+    fn rate(&self, model: GrainModel<'_>) -> Result<f64, CampaignError>;
+
+    /// The records of `jobs`, in their order, and the same however many workers there are. An impact
+    /// whose steps cannot be trusted has none.
+    ///
+    /// # Errors
+    /// The first of any job in their order; [`CampaignError::Interrupted`] if it was stopped.
+    fn run(&self, jobs: &[Job]) -> Result<Vec<Option<Record>>, CampaignError>;
+
+    /// What of `jobs` is still to be run.
+    ///
+    /// # Errors
+    /// If a model is no bed of grains.
+    fn outstanding(&self, jobs: &[Job]) -> Result<Outstanding, CampaignError>;
+}
+
+impl Impacts for Place<'_> {
+    fn n_workers(&self) -> usize {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        self.workers.map_or(cores, usize::from)
+    }
+
+    fn rate(&self, model: GrainModel<'_>) -> Result<f64, CampaignError> {
+        rate::grain_steps_per_second(self.cache, model)
+    }
+
+    fn run(&self, jobs: &[Job]) -> Result<Vec<Option<Record>>, CampaignError> {
+        for folder in ["beds", "impacts"] {
+            let path = self.cache.join(folder);
+            fs::create_dir_all(&path).map_err(|source| CampaignError::Io {
+                action: "make",
+                path,
+                source,
+            })?;
+        }
+        let keys = jobs.iter().map(Job::key).collect::<Result<Vec<_>, _>>()?;
+        let kept: Vec<Option<Record>> = keys.iter().map(|key| Job::kept(self.cache, key)).collect();
+        let missing = first_of_each(&keys, |at| kept[at].is_none());
+        let beds = self.missing_beds(jobs, &missing)?;
+        let work = |&at: &usize| rate::SETTLING * jobs[at].work();
+        self.each(Stage::Beds, &beds, &work, |at, heed| {
+            jobs[at].prepare_bed(self.cache, heed)?.then_some(()).ok_or(CampaignError::Interrupted)
+        })?;
+        let done = jobs.len() - missing.len();
+        let pace = Mutex::new(Rate::default());
+        let work = |&at: &usize| jobs[at].work();
+        let ran = self.each_of(Stage::Impacts, &missing, (&work, done), |at, heed| {
+            match jobs[at].run(self.cache, heed) {
+                Ok(Some(record)) => {
+                    pace.lock().unwrap_or_else(PoisonError::into_inner).learn(&record);
+                    Job::keep(self.cache, &keys[at], &record).map(|()| Some(record))
+                }
+                Ok(None) => Err(CampaignError::Interrupted),
+                Err(CampaignError::Step(why)) => {
+                    let name = &jobs[at].model.run.name;
+                    self.watch.warn(&format!("an impact of {name} is left out: {why}"));
+                    Ok(None)
+                }
+                Err(other) => Err(other),
+            }
+        });
+        // What was learned of this machine stays, also where the campaign does not end.
+        pace.into_inner().unwrap_or_else(PoisonError::into_inner).store(self.cache);
+        let ran = ran?;
+        let found = |at: usize| {
+            let same = |&other: &usize| keys[other] == keys[at];
+            missing.iter().position(same).and_then(|place| ran[place].clone())
+        };
+        Ok((0..jobs.len()).zip(kept).map(|(at, kept)| kept.or_else(|| found(at))).collect())
+    }
+
+    fn outstanding(&self, jobs: &[Job]) -> Result<Outstanding, CampaignError> {
+        let keys = jobs.iter().map(Job::key).collect::<Result<Vec<_>, _>>()?;
+        let missing = first_of_each(&keys, |at| Job::kept(self.cache, &keys[at]).is_none());
+        let beds = self.missing_beds(jobs, &missing)?;
+        let impacts: f64 = missing.iter().map(|&at| jobs[at].work()).sum();
+        let settling: f64 = beds.iter().map(|&at| rate::SETTLING * jobs[at].work()).sum();
+        Ok(Outstanding { impacts: missing.len(), beds: beds.len(), work: impacts + settling })
+    }
+}
+
+impl Place<'_> {
+    /// One of the `missing` jobs per bed that is not there yet.
+    fn missing_beds(&self, jobs: &[Job], missing: &[usize]) -> Result<Vec<usize>, CampaignError> {
+        let keys = missing.iter().map(|&at| jobs[at].bed_key()).collect::<Result<Vec<_>, _>>()?;
+        let is_missing = |place: usize| {
+            let name = configs::run::bed_file(self.cache, &keys[place]);
+            !name.is_file()
+                && jobs[missing[place]].bed.grains().is_some_and(|g| g.read_bed().is_none())
+        };
+        Ok(first_of_each(&keys, is_missing).into_iter().map(|place| missing[place]).collect())
+    }
+
+    fn each<R: Send>(
+        &self,
+        what: Stage,
+        tasks: &[usize],
+        work: &(dyn Fn(&usize) -> f64 + Sync),
+        task: impl Fn(usize, &mut Heed<'_>) -> Result<R, CampaignError> + Sync,
+    ) -> Result<Vec<R>, CampaignError> {
+        self.each_of(what, tasks, (work, 0), task)
+    }
+
+    /// Does `tasks` side by side, `done` of the stage having been done before; the longest in work
+    /// are not sorted first, so that results come in the order in which they are asked for.
+    fn each_of<R: Send>(
+        &self,
+        what: Stage,
+        tasks: &[usize],
+        (work, before): (&(dyn Fn(&usize) -> f64 + Sync), usize),
+        task: impl Fn(usize, &mut Heed<'_>) -> Result<R, CampaignError> + Sync,
+    ) -> Result<Vec<R>, CampaignError> {
+        let (next, start) = (AtomicUsize::new(0), Instant::now());
+        let all: f64 = tasks.iter().map(work).sum();
+        let done = Mutex::new((0_usize, 0.0));
+        let slots: Vec<Mutex<Option<Result<R, CampaignError>>>> =
+            tasks.iter().map(|_| Mutex::new(None)).collect();
+        let failed = AtomicUsize::new(0);
+        let stop = || self.watch.wants_to_stop() || failed.load(Ordering::Relaxed) > 0;
+        let report = |done: usize, share: f64| {
+            let left = (share > 0.0).then(|| start.elapsed().as_secs_f64() * (1.0 - share) / share);
+            self.watch.progress(&Progress {
+                what,
+                done: before + done,
+                of: before + tasks.len(),
+                left,
+            });
+        };
+        report(0, 0.0);
+        std::thread::scope(|scope| {
+            for _ in 0..self.n_workers().min(tasks.len()) {
+                scope.spawn(|| {
+                    loop {
+                        let place = next.fetch_add(1, Ordering::Relaxed);
+                        let Some(&at) = tasks.get(place) else { break };
+                        let warn = |message: &str| self.watch.warn(message);
+                        let mut heed = Heed { stop: &stop, warn: &warn };
+                        let result = match stop() {
+                            true => Err(CampaignError::Interrupted),
+                            false => with_threads(1, || task(at, &mut heed))
+                                .map_err(CampaignError::from)
+                                .flatten(),
+                        };
+                        if result.is_err() {
+                            failed.fetch_add(1, Ordering::Relaxed);
+                        }
+                        *slots[place].lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
+                        let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
+                        *done = (done.0 + 1, done.1 + work(&at));
+                        report(done.0, done.1 / all);
+                    }
+                });
+            }
+        });
+        let mut results = Vec::with_capacity(tasks.len());
+        let mut interrupted = false;
+        for slot in slots {
+            match slot.into_inner().unwrap_or_else(PoisonError::into_inner) {
+                Some(Ok(result)) => results.push(result),
+                // One that failed stops the others, and they are not to blame.
+                Some(Err(CampaignError::Interrupted)) | None => interrupted = true,
+                Some(Err(error)) => return Err(error),
+            }
+        }
+        if interrupted { Err(CampaignError::Interrupted) } else { Ok(results) }
+    }
+}
+
+/// The first place of every key for which `wanted` holds.
+fn first_of_each(keys: &[[u8; 32]], wanted: impl Fn(usize) -> bool) -> Vec<usize> {
+    let mut seen = std::collections::BTreeSet::new();
+    (0..keys.len()).filter(|&at| seen.insert(keys[at]) && wanted(at)).collect()
+}

@@ -1,0 +1,165 @@
+//! Impacts on fresh beds under conditions that nothing was fitted to: the only number that is quoted as
+//! "the error falls", and the ledgers of both models.
+
+use nalgebra::DVector;
+use serde_json::{Value, json};
+
+use super::emulator::BedForward;
+use super::record::Record;
+use super::stand::Stand;
+use super::workflow::BedError;
+use crate::bench::BenchError;
+use crate::errors::{Errors, Sums};
+use crate::held_out::{HeldOut, LeftOut, Unit, standard_errors};
+use crate::measurement::Kind;
+use crate::observed::Observed;
+use crate::rounding::rounded;
+use crate::sensitivity::Point;
+
+/// What impacts on fresh beds say.
+#[derive(Clone, Debug)]
+pub struct Confirmation {
+    /// Errors of the model as it is and with what is proposed; the floor is of the means of both, of
+    /// measurements and of impacts.
+    pub held_out: HeldOut,
+    /// Every channel that dissipates.
+    pub channels: Vec<Channel>,
+}
+
+/// Where the energy of impacts goes, as a share of all that is dissipated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// As in the ledger.
+    pub name: String,
+    /// Mean and standard error over the impacts of the model as it is; nothing where it has no such
+    /// channel.
+    pub before: (f64, f64),
+    /// With what is proposed.
+    pub after: (f64, f64),
+}
+
+impl Confirmation {
+    /// Of `runs` under `conditions`: those of the model as it is, and those with the switches of `point`
+    /// on, condition after condition; what the apparatus does is added to these.
+    pub(super) fn of(
+        stand: &Stand<'_>,
+        measured: &Observed,
+        (forward, point): (&BedForward, &Point),
+        (conditions, runs): (&[usize], [&[Option<Record>]; 2]),
+    ) -> Result<Self, BedError> {
+        let mut sums = [Sums::default(), Sums::default(), Sums::default()];
+        let mut gain = 0.0;
+        for (at, &condition) in conditions.iter().enumerate() {
+            let observed = &measured.conditions[condition];
+            let of_set = &stand.set.conditions[condition];
+            let means: Vec<Option<Mean>> = runs
+                .iter()
+                .map(|runs| {
+                    let n = runs.len() / conditions.len();
+                    let numbers = runs[at * n..(at + 1) * n].iter().flatten();
+                    let numbers =
+                        numbers.map(|run| run.observables(&observed.layout, of_set, stand.set));
+                    Mean::of(&numbers.collect::<Vec<_>>())
+                })
+                .collect();
+            let [Some(plain), Some(with)] = &means[..] else { continue };
+            let apparatus =
+                forward.apparatus(condition, &point.effects).map_err(BenchError::from)?;
+            let errors = [&observed.mean - &plain.mean, &observed.mean - &with.mean - apparatus];
+            let own = standard_errors(observed);
+            let floor = own.zip_map(&with.error, libm::hypot);
+            gain += 0.5 * (mean_square(&errors[0], &floor) - mean_square(&errors[1], &floor));
+            let kinds = observed.layout.kinds();
+            for (sums, error) in sums.iter_mut().zip(errors.iter().chain([&floor])) {
+                sums.add(&kinds, &observed.mean, error);
+            }
+        }
+        let unit = match stand.set.kind {
+            Kind::Trajectory => Unit::Position,
+            Kind::Scalar => Unit::Relative,
+        };
+        let pick = |errors: &Errors| match unit {
+            Unit::Position => errors.position,
+            Unit::Relative => errors.relative,
+        };
+        let [before, after, noise_floor] =
+            sums.map(|sums| pick(&sums.errors()).unwrap_or(f64::NAN));
+        let held_out = HeldOut {
+            before,
+            after,
+            noise_floor,
+            unit,
+            conditions: LeftOut::Holdout,
+            // Numbers of one condition hang together: each condition counts as one.
+            log_density_gain: gain,
+        };
+        Ok(Self { held_out, channels: channels(runs) })
+    }
+
+    /// The channels as JSON.
+    pub(super) fn ledger(&self) -> Value {
+        let entry = |(mean, se): (f64, f64)| json!({ "share": rounded(mean), "se": rounded(se) });
+        let channels = self.channels.iter().map(|one| {
+            let (before, after) = (entry(one.before), entry(one.after));
+            (one.name.clone(), json!({ "before": before, "after": after }))
+        });
+        Value::Object(channels.collect())
+    }
+}
+
+/// Mean of runs, and its standard error.
+struct Mean {
+    mean: DVector<f64>,
+    error: DVector<f64>,
+}
+
+impl Mean {
+    /// Of two runs at least.
+    fn of(runs: &[DVector<f64>]) -> Option<Self> {
+        let n = runs.len();
+        let first = runs.first().filter(|_| n > 1)?;
+        let zero = first.map(|_| 0.0);
+        let mean = runs.iter().fold(zero.clone(), |sum, run| sum + run) / n as f64;
+        let square = |run: &DVector<f64>| (run - &mean).map(|d| d * d);
+        let squares = runs.iter().fold(zero, |sum, run| sum + square(run));
+        Some(Self { error: (squares / (n * (n - 1)) as f64).map(f64::sqrt), mean })
+    }
+}
+
+/// Mean square of `error` in units of `floor`; numbers without an error are left out.
+fn mean_square(error: &DVector<f64>, floor: &DVector<f64>) -> f64 {
+    let known: Vec<f64> = error
+        .iter()
+        .zip(floor.iter())
+        .filter(|(_, floor)| **floor > 0.0)
+        .map(|(error, floor)| (error / floor).powi(2))
+        .collect();
+    known.iter().sum::<f64>() / known.len().max(1) as f64
+}
+
+fn channels(runs: [&[Option<Record>]; 2]) -> Vec<Channel> {
+    let mut names: Vec<String> = Vec::new();
+    for (name, _) in runs.iter().flat_map(|runs| runs.iter().flatten()).flat_map(Record::dissipated)
+    {
+        if !names.iter().any(|known| known == name) {
+            names.push(name.to_owned());
+        }
+    }
+    let share = |runs: &[Option<Record>], name: &str| {
+        let shares: Vec<DVector<f64>> = runs
+            .iter()
+            .flatten()
+            .map(|run| {
+                let all: f64 = run.dissipated().map(|(_, value)| value).sum();
+                let own = run.dissipated().find(|(key, _)| *key == name).map_or(0.0, |(_, v)| v);
+                DVector::from_element(1, if all > 0.0 { own / all } else { 0.0 })
+            })
+            .collect();
+        Mean::of(&shares).map_or((f64::NAN, f64::NAN), |mean| (mean.mean[0], mean.error[0]))
+    };
+    let channel = |name: String| {
+        let (before, after) = (share(runs[0], &name), share(runs[1], &name));
+        Channel { name, before, after }
+    };
+    names.into_iter().map(channel).collect()
+}

@@ -1,0 +1,323 @@
+//! A bed of grains as the statistics see it: means of runs, and how they answer to each candidate.
+
+use nalgebra::{DMatrix, DVector};
+
+use serde_json::{Value, json};
+
+use super::baseline::Baseline;
+use super::switches::Switch;
+use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
+use crate::held_out::noise_floor;
+use crate::measurement::MeasurementSet;
+use crate::rounding::rounded;
+
+/// Candidates of force laws that act on an intruder in a bed of grains as well, or on how it is seen; the
+/// others are what grains do.
+const OF_THE_APPARATUS: [&str; 5] =
+    ["rail-friction", "air-drag", "tilt", "camera-scale", "depth-zero"];
+
+/// So many times the amplitude that was screened, what was found there is extrapolated: far enough for a
+/// search to begin with.
+const SCREENED: f64 = 4.0;
+
+/// The same for the largest amplitude of a line search.
+const SEARCHED: f64 = 1.5;
+
+/// A constant force on the intruder, and what grains do that looks like one below the surface: they differ
+/// before contact.
+const CONSTANT: [&str; 3] = ["rail-friction", "cohesion-dmt", "capillary-bridge"];
+
+/// A derivative by an amplitude is taken over this share of the one that is screened.
+const STEP: f64 = 1e-2;
+
+/// How the observables of one condition answer to the amplitude q of a switch: slope q + curvature q².
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Response {
+    pub(super) slope: DVector<f64>,
+    pub(super) curvature: DVector<f64>,
+    /// Covariance of the two, in that of one run.
+    pub(super) variance: [[f64; 2]; 2],
+}
+
+impl Response {
+    /// At the amplitude `q`.
+    pub(super) fn at(&self, q: f64) -> DVector<f64> {
+        q * &self.slope + (q * q) * &self.curvature
+    }
+
+    /// Variance at the amplitude `q`, in that of one run.
+    fn variance_at(&self, q: f64) -> f64 {
+        let [[a, b], [_, c]] = self.variance;
+        q * q * (a + 2.0 * b * q + c * q * q)
+    }
+}
+
+/// A switch, and what was found of it.
+pub(super) struct Screened {
+    pub(super) switch: &'static Switch,
+    /// One per condition of the set; none for those that were not run.
+    pub(super) responses: Vec<Option<Response>>,
+    /// Least and greatest amplitude that the responses are good for.
+    pub(super) range: (f64, f64),
+    /// Why it cannot be tested.
+    pub(super) not_testable: Option<String>,
+}
+
+/// What an index of the statistics means.
+#[derive(Clone, Copy)]
+enum Source {
+    Switch(usize),
+    /// Index of a candidate of the force law that stands in.
+    Apparatus(usize),
+}
+
+/// Means of runs, with the candidates that were screened.
+pub struct BedForward {
+    baseline: Baseline,
+    screened: Vec<Screened>,
+    /// Those of `screened` that are free parameters.
+    free: Vec<usize>,
+    sources: Vec<Source>,
+    parameters: Vec<Parameter>,
+    candidates: Vec<Candidate>,
+    /// Whether readings from before contact are among what is fitted to.
+    flight: bool,
+}
+
+impl BedForward {
+    /// Of `baseline`; switches of `screened` whose id is in `free` are parameters of the model, the
+    /// others candidates beside what the apparatus may do.
+    pub(super) fn new(baseline: Baseline, screened: Vec<Screened>, free: &[String]) -> Self {
+        let is_free = |one: &Screened| free.iter().any(|id| id == one.switch.id);
+        let (parameters, others): (Vec<usize>, Vec<usize>) =
+            (0..screened.len()).partition(|&at| is_free(&screened[at]));
+        let mut sources: Vec<Source> = others.into_iter().map(Source::Switch).collect();
+        if !screened.is_empty() {
+            let of_law = baseline.stand_in.forward.candidates().iter().enumerate();
+            let apparatus = of_law.filter(|(_, one)| OF_THE_APPARATUS.contains(&one.id.as_str()));
+            sources.extend(apparatus.map(|(at, _)| Source::Apparatus(at)));
+        }
+        let layouts = baseline.observed.conditions.iter().map(|one| &one.layout);
+        let flight = layouts.flat_map(|layout| &layout.times).any(|time| *time < 0.0);
+        let mut forward = Self {
+            baseline,
+            screened,
+            free: parameters,
+            sources,
+            parameters: Vec::new(),
+            candidates: Vec::new(),
+            flight,
+        };
+        forward.describe();
+        forward
+    }
+
+    /// Says anew what the statistics are told of parameters and candidates.
+    fn describe(&mut self) {
+        let parameter = |&at: &usize| {
+            let one = &self.screened[at];
+            let (min, max) = one.range;
+            let name = one.switch.id.to_owned();
+            Parameter { name, unit: String::new(), start: 0.0, min, max }
+        };
+        let candidate = |source: &Source| match *source {
+            Source::Switch(at) => self.screened[at].candidate(),
+            Source::Apparatus(at) => {
+                let of_law = self.baseline.stand_in.forward.candidates()[at].clone();
+                Candidate { unresolved: Vec::new(), ..of_law }
+            }
+        };
+        let parameters = self.free.iter().map(parameter).collect();
+        let mut candidates: Vec<Candidate> = self.sources.iter().map(candidate).collect();
+        if !self.flight {
+            let alike: Vec<String> = candidates
+                .iter()
+                .filter(|one| CONSTANT.contains(&one.id.as_str()) && one.not_testable.is_none())
+                .map(|one| one.id.clone())
+                .collect();
+            for one in candidates.iter_mut().filter(|one| alike.contains(&one.id)) {
+                one.unresolved = alike.iter().filter(|id| **id != one.id).cloned().collect();
+            }
+        }
+        (self.parameters, self.candidates) = (parameters, candidates);
+    }
+
+    /// The switch behind candidate `candidate`; none for what the apparatus does.
+    pub(super) fn switch(&self, candidate: usize) -> Option<usize> {
+        match self.sources[candidate] {
+            Source::Switch(at) => Some(at),
+            Source::Apparatus(_) => None,
+        }
+    }
+
+    /// The switches that stand for the parameters, in their order.
+    pub(super) fn free(&self) -> &[usize] {
+        &self.free
+    }
+
+    pub(super) fn screened(&self) -> &[Screened] {
+        &self.screened
+    }
+
+    pub(super) fn baseline(&self) -> &Baseline {
+        &self.baseline
+    }
+
+    /// Puts what a line search over amplitudes of `tried` found of switch `at` in place of what screening had
+    /// found.
+    pub(super) fn refine(
+        &mut self,
+        at: usize,
+        responses: Vec<Option<Response>>,
+        tried: (f64, f64),
+    ) {
+        let (min, max) = self.screened[at].switch.range;
+        self.screened[at].responses = responses;
+        self.screened[at].range = (min.max(SEARCHED * tried.0), max.min(SEARCHED * tried.1));
+        self.describe();
+    }
+
+    /// Scatter of the runs of the model from bed to bed: relative standard deviations of coefficients and
+    /// of the force along the path, and of every scalar, condition by condition.
+    #[must_use]
+    pub fn scatter(&self, set: &MeasurementSet) -> Value {
+        let noise = &self.baseline.fitted.noise;
+        let conditions = self.baseline.observed.fit.iter().map(|&at| {
+            let observed = &self.baseline.observed.conditions[at];
+            let kinds = observed.layout.kinds().into_iter().enumerate();
+            let relative = kinds.filter(|(_, kind)| kind.is_scalar()).map(|(row, kind)| {
+                let runs = observed.runs.len();
+                let squares = (0..runs).map(|run| observed.deviation(run)[row].powi(2));
+                let sd = (squares.sum::<f64>() / (runs - 1) as f64).sqrt();
+                (kind.key().to_owned(), rounded(sd / observed.mean[row].abs()))
+            });
+            let relative: serde_json::Map<String, Value> = relative.collect();
+            let (id, runs) = (&set.conditions[at].id, observed.runs.len());
+            json!({ "condition": id, "runs": runs, "relative_sd": relative })
+        });
+        json!({
+            "coefficient_sd": rounded(noise.spread.coefficient),
+            "path_force_sd": rounded(noise.spread.path),
+            "conditions": conditions.collect::<Vec<_>>(),
+        })
+    }
+
+    /// Standard errors of the means of the runs of the model, by kind of number: no error below it says
+    /// anything of the model.
+    #[must_use]
+    pub fn noise_floor(&self) -> Value {
+        let observed = &self.baseline.observed;
+        noise_floor(observed, &observed.fit).to_json()
+    }
+
+    /// The names of those of `effects` that are switches of the simulation.
+    #[must_use]
+    pub fn of_the_bed(&self, effects: &[(usize, f64)]) -> Vec<&'static str> {
+        let switches = effects.iter().filter_map(|&(index, _)| self.switch(index));
+        switches.map(|at| self.screened[at].switch.id).collect()
+    }
+
+    /// What the effects of the apparatus among `effects` change of the observables.
+    pub(super) fn apparatus(
+        &self,
+        condition: usize,
+        effects: &[(usize, f64)],
+    ) -> Result<DVector<f64>, PredictError> {
+        self.respond(condition, effects, &Scatter::default())
+    }
+
+    fn respond(
+        &self,
+        condition: usize,
+        effects: &[(usize, f64)],
+        scatter: &Scatter,
+    ) -> Result<DVector<f64>, PredictError> {
+        let of_law: Vec<(usize, f64)> = effects
+            .iter()
+            .filter_map(|&(index, q)| match self.sources[index] {
+                Source::Apparatus(at) => Some((at, q)),
+                Source::Switch(_) => None,
+            })
+            .collect();
+        self.baseline.stand_in.response(condition, &of_law, scatter)
+    }
+
+    /// The switches at work, as (index in `screened`, q).
+    fn at_work<'a>(
+        &'a self,
+        parameters: &'a [f64],
+        effects: &'a [(usize, f64)],
+    ) -> impl Iterator<Item = (usize, f64)> + 'a {
+        let of_model = self.free.iter().copied().zip(parameters.iter().copied());
+        let added = effects.iter().filter_map(|&(index, q)| Some((self.switch(index)?, q)));
+        of_model.chain(added)
+    }
+}
+
+impl Screened {
+    /// `switch` as it was screened.
+    pub(super) fn new(
+        switch: &'static Switch,
+        responses: Vec<Option<Response>>,
+        not_testable: Option<String>,
+    ) -> Self {
+        let (min, max) = switch.range;
+        let reach = SCREENED * switch.screen;
+        Self { switch, responses, range: (min.max(-reach), max.min(reach)), not_testable }
+    }
+
+    fn candidate(&self) -> Candidate {
+        let (min, max) = self.range;
+        Candidate {
+            id: self.switch.id.to_owned(),
+            unit: "1".to_owned(),
+            min,
+            max,
+            step: STEP * self.switch.screen,
+            not_testable: self.not_testable.clone(),
+            separable_from: self.switch.separable_from.to_owned(),
+            unresolved: Vec::new(),
+        }
+    }
+}
+
+impl Forward for BedForward {
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    fn candidates(&self) -> &[Candidate] {
+        &self.candidates
+    }
+
+    fn n_scattering_coefficients(&self) -> usize {
+        self.baseline.stand_in.n_scattering()
+    }
+
+    fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError> {
+        let missing = || PredictError { condition, why: "no impact was run under it".to_owned() };
+        let observed = &self.baseline.observed.conditions[condition];
+        if observed.runs.is_empty() {
+            return Err(missing());
+        }
+        let mut predicted = &observed.mean + self.respond(condition, at.effects, at.scatter)?;
+        for (switch, q) in self.at_work(at.parameters, at.effects).filter(|(_, q)| *q != 0.0) {
+            let response = self.screened[switch].responses[condition].as_ref();
+            predicted += response.ok_or_else(missing)?.at(q);
+        }
+        Ok(predicted.as_slice().to_vec())
+    }
+
+    fn own_covariance(&self, condition: usize, effects: &[(usize, f64)]) -> Option<DMatrix<f64>> {
+        let runs = self.baseline.observed.conditions[condition].runs.len();
+        if runs == 0 {
+            return None;
+        }
+        let of_effects = self.at_work(&[], effects).filter_map(|(switch, q)| {
+            let response = self.screened[switch].responses[condition].as_ref()?;
+            Some(response.variance_at(q))
+        });
+        let variance = 1.0 / runs as f64 + of_effects.sum::<f64>();
+        Some(variance * &self.baseline.spread[condition])
+    }
+}

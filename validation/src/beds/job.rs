@@ -1,0 +1,132 @@
+//! One impact to be run, or found in the cache.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use configs::run::{Control, Progress, bed_key, prepare, result_key};
+use configs::{Condition, Model, StartX};
+use engine::checkpoint;
+
+use super::CampaignError;
+use super::record::{Record, Recorder};
+
+/// Steps between two looks at whether to stop.
+const LOOK_EVERY: u64 = 200;
+
+/// Counts the changes of what is kept of an impact.
+const KEPT: u32 = 1;
+
+/// One impact: a model of grains, with the speed, the angle and the place of its `[impact]`.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// The model.
+    pub model: Arc<Model>,
+    /// The model whose bed it falls on: the same, or one that differs in what acts during the impact
+    /// alone, so that both fall on the same grains.
+    pub bed: Arc<Model>,
+    /// How long it is expected to take, as simulated time (s).
+    pub expected: f64,
+}
+
+/// What a worker of a campaign heeds.
+pub(super) struct Heed<'a> {
+    pub(super) stop: &'a (dyn Fn() -> bool + Sync),
+    pub(super) warn: &'a (dyn Fn(&str) + Sync),
+}
+
+impl Control for Heed<'_> {
+    fn progress(&mut self, _: &Progress) {}
+
+    fn warn(&mut self, message: &str) {
+        (self.warn)(message);
+    }
+
+    fn wants_to_stop(&self) -> bool {
+        (self.stop)()
+    }
+}
+
+impl Job {
+    /// The key of its bed.
+    ///
+    /// # Errors
+    /// If the model is no bed of grains.
+    pub(super) fn bed_key(&self) -> Result<[u8; 32], CampaignError> {
+        let grains = self.bed.grains().ok_or_else(|| CampaignError::no_grains(&self.bed))?;
+        Ok(bed_key(grains))
+    }
+
+    /// The key of its record: whatever the impact and its bed depend on, and the engine.
+    pub(super) fn key(&self) -> Result<[u8; 32], CampaignError> {
+        let bed = hexadecimal(&self.bed_key()?);
+        Ok(result_key(&format!("impact {KEPT}\n{}\n{bed}", self.model.hash())))
+    }
+
+    /// Work that it takes (grain-steps), if it lasts as long as expected.
+    #[must_use]
+    pub fn work(&self) -> f64 {
+        let grains = self.model.grains();
+        let step = grains.and_then(|grains| Some((grains.n_grains(), grains.time_step().ok()?)));
+        step.map_or(0.0, |(n, dt)| n as f64 * self.expected / dt)
+    }
+
+    /// Where its record is kept below `cache`.
+    pub(super) fn path(cache: &Path, key: &[u8; 32]) -> PathBuf {
+        cache.join("impacts").join(format!("{}.impact", hexadecimal(key)))
+    }
+
+    /// Prepares its bed in `cache`. `false` if it was stopped.
+    pub(super) fn prepare_bed(
+        &self,
+        cache: &Path,
+        heed: &mut Heed<'_>,
+    ) -> Result<bool, CampaignError> {
+        let grains = self.bed.grains().ok_or_else(|| CampaignError::no_grains(&self.bed))?;
+        Ok(prepare(grains, cache, heed)?.is_some())
+    }
+
+    /// Runs it, on a bed that is found or made in `cache`. Nothing if it was stopped.
+    pub(super) fn run(
+        &self,
+        cache: &Path,
+        heed: &mut Heed<'_>,
+    ) -> Result<Option<Record>, CampaignError> {
+        let grains = self.model.grains().ok_or_else(|| CampaignError::no_grains(&self.model))?;
+        let of_bed = self.bed.grains().ok_or_else(|| CampaignError::no_grains(&self.bed))?;
+        let Some(bed) = prepare(of_bed, cache, heed)? else { return Ok(None) };
+        let start = Instant::now();
+        let x = grains.medium.start.x.unwrap_or(0.5 * grains.medium.container.width);
+        let configs::Impact { speed, angle_rad, .. } = self.model.impact;
+        let condition = Condition { speed, angle_rad, position_index: 0, x: StartX::At(x) };
+        let mut simulation = grains.simulation(&bed.resting, &condition)?;
+        let mut recorder = Recorder::new(&simulation);
+        recorder.observe(&simulation);
+        while !simulation.is_over() {
+            simulation.advance()?;
+            recorder.observe(&simulation);
+            if simulation.clock().step.is_multiple_of(LOOK_EVERY) && heed.wants_to_stop() {
+                return Ok(None);
+            }
+        }
+        Ok(Some(recorder.record(&simulation, start.elapsed().as_secs_f64())))
+    }
+
+    /// Its record, if `cache` has it.
+    pub(super) fn kept(cache: &Path, key: &[u8; 32]) -> Option<Record> {
+        // A damaged file is one that is not there: the impact is run again.
+        checkpoint::load::<Record>(&Self::path(cache, key), key).ok()
+    }
+
+    /// Keeps `record` in `cache`, whole or not at all.
+    pub(super) fn keep(cache: &Path, key: &[u8; 32], record: &Record) -> Result<(), CampaignError> {
+        let path = Self::path(cache, key);
+        // What is there is damaged, and not worth keeping as the one before.
+        let _ = std::fs::remove_file(&path);
+        Ok(checkpoint::save(&path, key, record)?)
+    }
+}
+
+fn hexadecimal(key: &[u8; 32]) -> String {
+    key.iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,377 @@
+//! What a diagnosis of a bed of grains runs, said before anything is run.
+
+use serde_json::{Value, json};
+
+use super::campaign::{Impacts, Outstanding};
+use super::job::Job;
+use super::screening::Screening;
+use super::stand::{Draw, Stand};
+use super::switches::{SWITCHES, Switch};
+use super::variation::Variation;
+use super::workflow::BedError;
+use super::{line_search, rate};
+use crate::observed::Observed;
+
+/// How many effects a line search and a confirmation take up.
+pub(super) const LEADERS: usize = 2;
+
+/// How often leaders are searched at most: those that lead once the first are better known, too.
+pub(super) const SEARCHES: usize = 2;
+
+/// How much is run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Size {
+    /// What it is called.
+    pub name: &'static str,
+    /// Conditions that are fitted to.
+    pub conditions: usize,
+    /// Draws of the model as it stands, per condition.
+    pub draws: usize,
+    /// How often the design of a screening is run.
+    pub repeats: usize,
+    /// Draws of a line search.
+    pub line_draws: usize,
+    /// Conditions that confirm.
+    pub confirm_conditions: usize,
+    /// Draws of either model that confirm.
+    pub confirm_draws: usize,
+}
+
+/// From the smallest that says anything to one for a night.
+pub const SIZES: [Size; 4] = [
+    Size {
+        name: "smallest",
+        conditions: 2,
+        draws: 4,
+        repeats: 1,
+        line_draws: 3,
+        confirm_conditions: 1,
+        confirm_draws: 4,
+    },
+    Size {
+        name: "quick",
+        conditions: 3,
+        draws: 6,
+        repeats: 1,
+        line_draws: 3,
+        confirm_conditions: 2,
+        confirm_draws: 6,
+    },
+    Size {
+        name: "standard",
+        conditions: 4,
+        draws: 8,
+        repeats: 2,
+        line_draws: 4,
+        confirm_conditions: 3,
+        confirm_draws: 8,
+    },
+    Size {
+        name: "thorough",
+        conditions: 6,
+        draws: 16,
+        repeats: 4,
+        line_draws: 8,
+        confirm_conditions: 4,
+        confirm_draws: 16,
+    },
+];
+
+/// The size where no budget is given.
+const STANDARD: usize = 2;
+
+/// Sizes below this one suggest; from it on, they support.
+const SUPPORTS: usize = 1;
+
+/// What is asked of a diagnosis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wish {
+    /// Time that may be spent (s); the standard plan without.
+    pub budget: Option<f64>,
+    /// Switches that are parameters of the model: they compensate what they can before any effect is
+    /// ranked.
+    pub free: Vec<String>,
+    /// Switches that are candidates, the free ones aside; all of them if there are none.
+    pub candidates: Vec<String>,
+}
+
+/// What is run, stage by stage.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// How much.
+    pub size: Size,
+    /// Whether it is enough to support a verdict rather than to suggest it.
+    pub supports: bool,
+    /// Indices of the conditions that are fitted to.
+    pub fit: Vec<usize>,
+    /// Indices of those that confirm.
+    pub confirm: Vec<usize>,
+    /// Whether those are held out by the set; else they are those that are not fitted to.
+    pub held_out: bool,
+    /// Name, impacts and seconds of every stage, those that are kept not counted in seconds.
+    pub stages: Vec<PlannedStage>,
+    /// Grain-steps per second of one worker.
+    pub rate: f64,
+    /// Impacts at a time.
+    pub workers: usize,
+    /// What was asked for.
+    pub wish: Wish,
+}
+
+/// A stage of a plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlannedStage {
+    /// What it answers.
+    pub name: &'static str,
+    /// Impacts.
+    pub impacts: usize,
+    /// Of those, not kept yet, as far as they are known.
+    pub to_run: usize,
+    /// Beds to be prepared.
+    pub beds: usize,
+    /// Estimated time (s).
+    pub seconds: f64,
+}
+
+/// Draws of the stages.
+pub(super) struct Draws {
+    /// Of the model as it stands, of the screening and of line searches: what is held against each other
+    /// lies on the same beds.
+    pub(super) fit: Vec<Draw>,
+    /// Of the confirmation: on fresh beds.
+    pub(super) confirm: Vec<Draw>,
+}
+
+impl Plan {
+    /// The largest plan for `stand` that is done in the budget of `wish`, or the standard one; the smallest, if
+    /// none is, which [`Plan::fits`] then denies.
+    ///
+    /// # Errors
+    /// If a condition is no model, or a name no candidate.
+    pub fn new(
+        stand: &Stand<'_>,
+        observed: &Observed,
+        place: &dyn Impacts,
+        wish: &Wish,
+    ) -> Result<Self, BedError> {
+        let listed = switches(stand, &[]);
+        for id in wish.free.iter().chain(&wish.candidates) {
+            if listed.iter().all(|one| one.id != *id) {
+                let known = listed.iter().map(|one| one.id).collect();
+                return Err(BedError::UnknownCandidate { id: id.clone(), known });
+            }
+        }
+        let rate = place.rate(stand.grains())?;
+        let sized = |at| Self::sized(stand, observed, place, (at, rate, wish));
+        let Some(budget) = wish.budget else { return sized(STANDARD) };
+        let mut chosen = sized(0)?;
+        for at in 1..SIZES.len() {
+            let larger = sized(at)?;
+            if larger.seconds() > budget {
+                break;
+            }
+            chosen = larger;
+        }
+        Ok(chosen)
+    }
+
+    fn sized(
+        stand: &Stand<'_>,
+        observed: &Observed,
+        place: &dyn Impacts,
+        (at, rate, wish): (usize, f64, &Wish),
+    ) -> Result<Self, BedError> {
+        let size = SIZES[at];
+        let fit = spread_over(&observed.fit, size.conditions);
+        let held_out = !observed.holdout.is_empty();
+        let others: Vec<usize> = match held_out {
+            true => observed.holdout.clone(),
+            false => observed.fit.iter().copied().filter(|one| !fit.contains(one)).collect(),
+        };
+        let mut plan = Self {
+            size,
+            supports: at >= SUPPORTS,
+            confirm: spread_over(&others, size.confirm_conditions),
+            fit,
+            held_out,
+            stages: Vec::new(),
+            rate,
+            workers: place.n_workers(),
+            wish: wish.clone(),
+        };
+        plan.stages = plan.stages_of(stand, place)?;
+        Ok(plan)
+    }
+
+    fn stages_of(
+        &self,
+        stand: &Stand<'_>,
+        place: &dyn Impacts,
+    ) -> Result<Vec<PlannedStage>, BedError> {
+        let draws = self.draws(stand);
+        let baseline = self.baseline_jobs(stand, &draws.fit)?;
+        let again = self.rerun_jobs(stand, &draws.fit)?;
+        let screening = self.screening(stand);
+        let screened = screening.jobs(stand)?;
+        let pace = self.rate * self.workers as f64;
+        let stage = |name, jobs: &[Job]| -> Result<PlannedStage, BedError> {
+            let Outstanding { impacts, beds, work } = place.outstanding(jobs)?;
+            let seconds = work / pace;
+            Ok(PlannedStage { name, impacts: jobs.len(), to_run: impacts, beds, seconds })
+        };
+        // What comes later is known in number; a job of the baseline stands for each.
+        let mean = baseline.iter().map(Job::work).sum::<f64>() / baseline.len().max(1) as f64;
+        let later = |name, impacts: usize, beds: usize| {
+            let work = mean * (impacts as f64 + rate::SETTLING * beds as f64);
+            PlannedStage { name, impacts, to_run: impacts, beds, seconds: work / pace }
+        };
+        let Size { line_draws, confirm_draws, .. } = self.size;
+        let lines = SEARCHES * LEADERS * line_search::AMPLITUDES * line_draws * self.fit.len();
+        let confirm = 2 * self.confirm.len() * confirm_draws;
+        let beds = if confirm > 0 { stand.n_beds(confirm_draws) } else { 0 };
+        Ok(vec![
+            stage("scatter of beds", &baseline)?,
+            stage("correlation of pairs", &again)?,
+            stage("screening", &screened)?,
+            later("line search, at most", lines, 0),
+            later("confirmation", confirm, beds),
+        ])
+    }
+
+    /// Estimated time (s).
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.stages.iter().map(|stage| stage.seconds).sum()
+    }
+
+    /// Impacts in all.
+    #[must_use]
+    pub fn impacts(&self) -> usize {
+        self.stages.iter().map(|stage| stage.impacts).sum()
+    }
+
+    /// Whether it is done within the budget, as far as is known.
+    #[must_use]
+    pub fn fits(&self) -> bool {
+        self.wish.budget.is_none_or(|budget| self.seconds() <= budget)
+    }
+
+    /// As JSON; times are estimates of this machine.
+    #[must_use]
+    pub fn to_json(&self, stand: &Stand<'_>) -> Value {
+        let id = |at: &usize| stand.set.conditions[*at].id.clone();
+        let stages = self.stages.iter().map(|stage| {
+            json!({
+                "stage": stage.name,
+                "impacts": stage.impacts,
+                "to_run": stage.to_run,
+                "beds": stage.beds,
+                "estimated_s": stage.seconds.round(),
+            })
+        });
+        json!({
+            "size": self.size.name,
+            "fit": self.fit.iter().map(id).collect::<Vec<_>>(),
+            "confirm": self.confirm.iter().map(id).collect::<Vec<_>>(),
+            "impacts": self.impacts(),
+            "estimated_s": self.seconds().round(),
+            "workers": self.workers,
+            "grain_steps_per_s": self.rate.round(),
+            "stages": stages.collect::<Vec<_>>(),
+        })
+    }
+
+    pub(super) fn draws(&self, stand: &Stand<'_>) -> Draws {
+        let Size { draws, confirm_draws, .. } = self.size;
+        let behind = stand.n_beds(draws);
+        Draws { fit: stand.draws(0, draws), confirm: stand.draws(behind, confirm_draws) }
+    }
+
+    /// The model as it stands: condition after condition, draw after draw.
+    pub(super) fn baseline_jobs(
+        &self,
+        stand: &Stand<'_>,
+        draws: &[Draw],
+    ) -> Result<Vec<Job>, BedError> {
+        let plain = Variation::default();
+        let all = self.fit.iter().flat_map(|&at| draws.iter().map(move |&draw| (at, draw)));
+        Ok(all.map(|(at, draw)| stand.job(at, draw, &plain)).collect::<Result<_, _>>()?)
+    }
+
+    /// The middle one of the conditions that are fitted to, as a place in [`Plan::fit`].
+    pub(super) fn middle(&self) -> usize {
+        self.fit.len() / 2
+    }
+
+    /// The same with a parameter changed by a little, under the middle condition: what two runs on one
+    /// draw have in common. None where the model has no number that does.
+    pub(super) fn rerun_jobs(
+        &self,
+        stand: &Stand<'_>,
+        draws: &[Draw],
+    ) -> Result<Vec<Job>, BedError> {
+        const LITTLE: f64 = 0.02;
+        let known = ["restitution", "grain-friction"];
+        let switch = SWITCHES
+            .iter()
+            .find(|one| known.contains(&one.id) && one.lacks(stand.grains()).is_none());
+        let (Some(switch), Some(&middle)) = (switch, self.fit.get(self.middle())) else {
+            return Ok(Vec::new());
+        };
+        let change = switch.change(stand.grains(), LITTLE);
+        let jobs = draws.iter().map(|&draw| stand.job(middle, draw, &change));
+        Ok(jobs.collect::<Result<_, _>>()?)
+    }
+
+    pub(super) fn screening(&self, stand: &Stand<'_>) -> Screening {
+        let Wish { free, candidates, .. } = &self.wish;
+        let only =
+            if candidates.is_empty() { Vec::new() } else { [&free[..], candidates].concat() };
+        let switches = switches(stand, &only);
+        let draws = self.draws(stand).fit;
+        Screening::new(switches, self.fit.clone(), self.size.repeats, &draws)
+    }
+}
+
+/// The switches of the model of `stand`: those that are named in `only`, all of them if there are none. One
+/// with which the step of the model would be too long is none.
+fn switches(stand: &Stand<'_>, only: &[String]) -> Vec<&'static Switch> {
+    let wanted = |one: &&Switch| only.is_empty() || only.iter().any(|id| id == one.id);
+    let of_model = |one: &&Switch| one.lacks(stand.grains()).is_none();
+    let first = stand.draws(0, 1);
+    let is_sound = |one: &&Switch| {
+        let change = one.change(stand.grains(), one.screen);
+        first.iter().all(|&draw| stand.job(0, draw, &change).is_ok())
+    };
+    SWITCHES.iter().filter(of_model).filter(wanted).filter(is_sound).collect()
+}
+
+/// `count` of `all`, evenly spaced, first and last among them; the middle where one is wanted.
+fn spread_over(all: &[usize], count: usize) -> Vec<usize> {
+    let n = all.len();
+    if n <= count {
+        return all.to_vec();
+    }
+    match count {
+        1 => vec![all[n / 2]],
+        _ => (0..count).map(|k| all[(k * (n - 1) + (count - 1) / 2) / (count - 1)]).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_choice_of_conditions_has_both_ends_and_nothing_twice() {
+        let all: Vec<usize> = (10..19).collect();
+        assert_eq!(spread_over(&all, 3), [10, 14, 18]);
+        assert_eq!(spread_over(&all, 1), [14]);
+        for count in 2..=9 {
+            let mut chosen = spread_over(&all, count);
+            assert_eq!((chosen[0], chosen[count - 1]), (10, 18));
+            chosen.dedup();
+            assert_eq!(chosen.len(), count);
+        }
+    }
+}

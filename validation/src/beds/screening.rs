@@ -1,0 +1,167 @@
+//! One signature per switch, from runs in which half of the switches are on.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use super::design::folded;
+use super::emulator::{Response, Screened};
+use super::job::Job;
+use super::record::Record;
+use super::stand::{Draw, Stand, StandError};
+use super::switches::Switch;
+use super::variation::Variation;
+use crate::observable::Layout;
+
+/// Runs and their mirrors on one draw of a bed: so many pairs that the draw cancels from every main effect
+/// without a bed of its own for each.
+const PAIRS_PER_DRAW: usize = 3;
+
+/// A signature below this many times the scatter of its runs is not seen.
+const SEEN: f64 = 2.0;
+
+/// Which runs a screening is made of.
+pub(super) struct Screening {
+    pub(super) switches: Vec<&'static Switch>,
+    pub(super) conditions: Vec<usize>,
+    /// Which switches are on, and the draw, of every setting.
+    settings: Vec<(Vec<bool>, Draw)>,
+}
+
+impl Screening {
+    /// Of `switches` under `conditions`, the design `repeats` times, on `draws` in turn.
+    pub(super) fn new(
+        switches: Vec<&'static Switch>,
+        conditions: Vec<usize>,
+        repeats: usize,
+        draws: &[Draw],
+    ) -> Self {
+        let rows = folded(switches.len());
+        let all: Vec<Vec<bool>> = (0..repeats).flat_map(|_| rows.clone()).collect();
+        let runs_per_draw = 2 * PAIRS_PER_DRAW;
+        let settings = all.into_iter().enumerate();
+        let draw = |at: usize| draws[(at / runs_per_draw) % draws.len()];
+        let settings = settings.map(|(at, row)| (row, draw(at))).collect();
+        Self { switches, conditions, settings }
+    }
+
+    /// How many impacts that is.
+    pub(super) fn n_runs(&self) -> usize {
+        self.settings.len() * self.conditions.len()
+    }
+
+    /// The impacts, condition after condition.
+    pub(super) fn jobs(&self, stand: &Stand<'_>) -> Result<Vec<Job>, StandError> {
+        let model = stand.grains();
+        let mut jobs = Vec::with_capacity(self.n_runs());
+        for &condition in &self.conditions {
+            for (row, draw) in &self.settings {
+                let on = self.switches.iter().zip(row).filter(|(_, on)| **on);
+                let variation = on.fold(Variation::default(), |all, (switch, _)| {
+                    all.and(switch.change(model, switch.screen))
+                });
+                jobs.push(stand.job(condition, *draw, &variation)?);
+            }
+        }
+        Ok(jobs)
+    }
+
+    /// What the `records` of the impacts say of every switch; `paired` is the correlation of runs on one
+    /// draw, `spread` the covariance of a run per condition.
+    pub(super) fn signatures(
+        &self,
+        stand: &Stand<'_>,
+        layouts: &[Layout],
+        records: &[Option<Record>],
+        (paired, spread): (f64, &[DMatrix<f64>]),
+    ) -> Vec<Screened> {
+        let n = self.settings.len();
+        let effects: Vec<Option<MainEffects>> = self
+            .conditions
+            .iter()
+            .enumerate()
+            .map(|(at, &condition)| {
+                let records = &records[at * n..(at + 1) * n];
+                self.main_effects(stand, (condition, &layouts[condition]), records)
+            })
+            .collect();
+        let switches = self.switches.iter().enumerate();
+        let screened = switches.map(|(column, &switch)| {
+            let mut responses = vec![None; layouts.len()];
+            for (&condition, effects) in self.conditions.iter().zip(&effects) {
+                let Some(MainEffects { sizes, covariance }) = effects else { continue };
+                let slope = sizes.row(column).transpose() / switch.screen;
+                let own = (1.0 - paired) * covariance[(column, column)];
+                let own = own / (switch.screen * switch.screen);
+                let curvature = slope.map(|_| 0.0);
+                let variance = [[own, 0.0], [0.0, 0.0]];
+                responses[condition] = Some(Response { slope, curvature, variance });
+            }
+            screened(switch, responses, (spread, self.n_runs()))
+        });
+        screened.collect()
+    }
+
+    /// Main effects of the switches at their amplitudes: least squares with a level of its own for every
+    /// draw. None where too few runs ended.
+    fn main_effects(
+        &self,
+        stand: &Stand<'_>,
+        (condition, layout): (usize, &Layout),
+        records: &[Option<Record>],
+    ) -> Option<MainEffects> {
+        let mut draws: Vec<Draw> = self.settings.iter().map(|(_, draw)| *draw).collect();
+        draws.sort_by_key(|draw| (draw.seed, draw.place));
+        draws.dedup();
+        let columns = self.switches.len() + draws.len();
+        let (mut rows, mut found) = (Vec::new(), Vec::new());
+        for ((on, draw), record) in self.settings.iter().zip(records) {
+            let Some(record) = record else { continue };
+            let level = |other: &Draw| if other == draw { 1.0 } else { 0.0 };
+            let on = on.iter().map(|&on| if on { 1.0 } else { 0.0 });
+            rows.push(DVector::from_iterator(columns, on.chain(draws.iter().map(level))));
+            let condition = &stand.set.conditions[condition];
+            found.push(record.observables(layout, condition, stand.set));
+        }
+        if rows.len() <= columns {
+            return None;
+        }
+        let (x, y) = (DMatrix::from_columns(&rows), DMatrix::from_columns(&found));
+        let covariance = Cholesky::new(&x * x.transpose())?.inverse();
+        Some(MainEffects { sizes: &covariance * (&x * y.transpose()), covariance })
+    }
+}
+
+/// `switch` with its `responses`, found by so many `runs` that scatter by `spread`; it cannot be tested where
+/// all conditions together do not show it.
+pub(super) fn screened(
+    switch: &'static Switch,
+    responses: Vec<Option<Response>>,
+    (spread, runs): (&[DMatrix<f64>], usize),
+) -> Screened {
+    let (mut signal, mut freedom) = (0.0, 0.0_f64);
+    for (response, spread) in responses.iter().zip(spread) {
+        let Some(Response { slope, variance, .. }) = response else { continue };
+        if let Some(factor) = Cholesky::new(variance[0][0] * spread) {
+            signal += slope.dot(&factor.solve(slope));
+            freedom += slope.len() as f64;
+        }
+    }
+    let clear = (signal - freedom) / (2.0 * freedom).sqrt().max(1.0);
+    Screened::new(switch, responses, (clear < SEEN).then(|| not_seen(clear, runs)))
+}
+
+/// One row per switch, then one per draw.
+struct MainEffects {
+    sizes: DMatrix<f64>,
+    /// In units of the covariance of a run around the level of its draw.
+    covariance: DMatrix<f64>,
+}
+
+/// Why a switch whose signature is `clear` times its scatter cannot be tested.
+fn not_seen(clear: f64, runs: usize) -> String {
+    let factor = (SEEN / clear.max(0.25)).powi(2);
+    format!(
+        "what it changes is lost in the scatter of beds; about {:.0} impacts of screening would show it \
+         (these were {runs})",
+        factor * runs as f64
+    )
+}

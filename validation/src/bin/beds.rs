@@ -1,0 +1,123 @@
+//! `cargo xtask bench beds`: how often the diagnosis of a bed of grains is right.
+
+#![allow(clippy::print_stdout, reason = "stdout is where a command's result belongs")]
+
+use std::error::Error;
+use std::fs;
+use std::num::NonZero;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use lexopt::prelude::{Long, Short, ValueExt};
+use validation::beds::benchmark::{Case, Outcome, all, quick, table};
+use validation::beds::{Place, Unattended, Wish};
+
+const HELP: &str = "\
+How often the diagnosis of a bed of grains names what is hidden in it.
+
+Usage: cargo xtask bench beds [--quick] [--draws N] [--minutes N] [--threads N] [--cache DIR] [--out FILE]
+
+  --quick      one listed effect, nothing, and one that is not listed
+  --draws N    draws of every case (2)
+  --minutes N  impacts of one diagnosis at most, as estimated (5)
+  --threads N  impacts at a time (one per core)
+  --cache DIR  where beds and impacts are kept (runs/.cache); those that are there are not run again
+  --out FILE   outcomes so far, one JSON object per line (runs/beds-benchmark.jsonl); those that are
+               there are not diagnosed again
+
+Exit status: 0 done, 1 failed, 2 the command line was not understood.
+";
+
+struct Wanted {
+    cases: Vec<Case>,
+    wish: Wish,
+    threads: Option<NonZero<usize>>,
+    cache: PathBuf,
+    out: PathBuf,
+}
+
+fn main() -> ExitCode {
+    let wanted = match parse() {
+        Ok(Some(wanted)) => wanted,
+        Ok(None) => {
+            print!("{HELP}");
+            return ExitCode::SUCCESS;
+        }
+        Err(error) => {
+            eprintln!("error: {error}\n\n{HELP}");
+            return ExitCode::from(2);
+        }
+    };
+    match bench(&wanted) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn parse() -> Result<Option<Wanted>, lexopt::Error> {
+    let mut parser = lexopt::Parser::from_env();
+    let (mut draws, mut minutes, mut few) = (2, 5.0, false);
+    let mut wanted = Wanted {
+        cases: Vec::new(),
+        wish: Wish::default(),
+        threads: None,
+        cache: "runs/.cache".into(),
+        out: "runs/beds-benchmark.jsonl".into(),
+    };
+    while let Some(argument) = parser.next()? {
+        match argument {
+            Long("quick") => few = true,
+            Long("draws") => draws = parser.value()?.parse()?,
+            Long("minutes") => minutes = parser.value()?.parse()?,
+            Long("threads") => wanted.threads = Some(parser.value()?.parse()?),
+            Long("cache") => wanted.cache = parser.value()?.into(),
+            Long("out") => wanted.out = parser.value()?.into(),
+            Short('h') | Long("help") => return Ok(None),
+            other => return Err(other.unexpected()),
+        }
+    }
+    wanted.cases = if few { quick() } else { all(draws) };
+    wanted.wish.budget = Some(60.0 * minutes);
+    Ok(Some(wanted))
+}
+
+fn bench(wanted: &Wanted) -> Result<(), Box<dyn Error>> {
+    let place = Place { cache: &wanted.cache, workers: wanted.threads, watch: &Unattended };
+    let text = fs::read_to_string(&wanted.out).unwrap_or_default();
+    let mut known: Vec<Outcome> =
+        text.lines().map(serde_json::from_str).collect::<Result<_, _>>()?;
+    let mut outcomes = Vec::with_capacity(wanted.cases.len());
+    for case in &wanted.cases {
+        let same = |one: &&Outcome| one.hidden == case.hidden.name() && one.seed == case.seed;
+        let outcome = match known.iter().find(same) {
+            Some(outcome) => outcome.clone(),
+            None => {
+                let outcome = case.run(&place, &wanted.wish)?;
+                known.push(outcome.clone());
+                keep(&wanted.out, &known)?;
+                outcome
+            }
+        };
+        eprintln!(
+            "{} ({}): {} {:?}, {:.0} s",
+            outcome.hidden, outcome.seed, outcome.verdict, outcome.named, outcome.seconds
+        );
+        outcomes.push(outcome);
+    }
+    print!("{}", table(&outcomes));
+    Ok(())
+}
+
+/// Writes the outcomes so far, whole or not at all.
+fn keep(path: &std::path::Path, outcomes: &[Outcome]) -> Result<(), Box<dyn Error>> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    let lines = outcomes.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
+    let partial = path.with_extension("partial");
+    fs::write(&partial, lines.join("\n") + "\n")?;
+    Ok(fs::rename(&partial, path)?)
+}

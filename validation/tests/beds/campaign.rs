@@ -1,0 +1,87 @@
+//! Running many impacts: the same records however they are run, and nothing twice.
+
+use std::num::NonZero;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+use validation::beds::{
+    CampaignError, Impacts, Job, Place, Progress, Record, Stand, Unattended, Variation, Watch,
+};
+use validation::measurement::Role;
+
+use crate::world::{condition, empty_set, model};
+
+/// Counts what ends, and wants to stop after so many.
+struct Patience {
+    ended: AtomicUsize,
+    most: usize,
+}
+
+impl Watch for Patience {
+    fn progress(&self, progress: &Progress) {
+        assert!(progress.done <= progress.of);
+        self.ended.store(progress.done, Ordering::Relaxed);
+    }
+    fn warn(&self, message: &str) {
+        panic!("{message}");
+    }
+    fn wants_to_stop(&self) -> bool {
+        self.ended.load(Ordering::Relaxed) >= self.most
+    }
+}
+
+fn jobs() -> Vec<Job> {
+    let (model, set) = (model(&[]), empty_set(vec![condition(0.5, Role::Fit)]));
+    let stand = Stand::new(&model, &set).unwrap();
+    let draws = stand.draws(0, 4);
+    let plain = draws.iter().map(|&draw| stand.job(0, draw, &Variation::default()).unwrap());
+    let rough = Variation {
+        effects: vec![(
+            "rolling-resistance".to_owned(),
+            vec![("rolling_friction".to_owned(), "0.1".to_owned())],
+        )],
+        ..Variation::default()
+    };
+    let rough = stand.job(0, draws[0], &rough).unwrap();
+    plain.chain([rough]).collect()
+}
+
+/// What does not depend on how long it took.
+fn bits(records: &[Option<Record>]) -> Vec<Record> {
+    let same = |record: &Option<Record>| Record { wall: 0.0, ..record.clone().unwrap() };
+    records.iter().map(same).collect()
+}
+
+#[test]
+fn a_campaign_that_was_stopped_goes_on_where_it_was_and_ends_with_the_same_bits() {
+    let jobs = jobs();
+    let [whole, stopped] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    let place = |cache, watch, workers| Place { cache, workers: NonZero::new(workers), watch };
+    let alone = place(whole.path(), &Unattended as &dyn Watch, 1);
+    // Four draws are on three beds, the last on the first one again, and the variation too.
+    let before = alone.outstanding(&jobs).unwrap();
+    assert_eq!((before.impacts, before.beds), (5, 3));
+    let expected = alone.run(&jobs).unwrap();
+    assert_eq!(alone.outstanding(&jobs).unwrap().impacts, 0);
+
+    let patience = Patience { ended: AtomicUsize::new(0), most: 3 };
+    let result = place(stopped.path(), &patience as &dyn Watch, 2).run(&jobs);
+    assert!(matches!(result, Err(CampaignError::Interrupted)));
+    let pair = place(stopped.path(), &Unattended as &dyn Watch, 2);
+    let left = pair.outstanding(&jobs).unwrap();
+    assert!((1..5).contains(&left.impacts), "{left:?}");
+    let found = pair.run(&jobs).unwrap();
+    assert_eq!(bits(&found), bits(&expected));
+
+    let deepest = |at: usize| expected[at].as_ref().unwrap().deepest;
+    assert!(deepest(4) < deepest(0), "rolling resistance makes it shallower");
+    assert!(
+        (1..4).all(|at| deepest(at).to_bits() != deepest(0).to_bits()),
+        "every place is another draw"
+    );
+
+    // What is kept costs nothing but reading: a hundredth of a second each, at most.
+    let start = Instant::now();
+    assert_eq!(bits(&pair.run(&jobs).unwrap()), bits(&expected));
+    assert!(start.elapsed().as_secs_f64() < 1.0);
+}

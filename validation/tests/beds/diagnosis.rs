@@ -1,0 +1,38 @@
+//! The diagnosis of a bed, with impacts that take no time.
+
+use validation::beds::Wish;
+use validation::beds::benchmark::{Case, Hidden, Outcome};
+
+use crate::imitation::Imitation;
+
+/// On beds that scatter by 5 %, and runs on one bed by `runs`.
+fn outcome(hidden: Hidden, runs: f64) -> Outcome {
+    let impacts = Imitation { beds: 0.05, runs };
+    Case { hidden, seed: 0 }.run(&impacts, &Wish::default()).unwrap()
+}
+
+#[test]
+fn where_nothing_is_hidden_nothing_is_named() {
+    let one = outcome(Hidden::Nothing, 0.02);
+    assert_eq!((one.verdict.as_str(), one.named.len()), ("nothing-detected", 0), "{one:?}");
+}
+
+#[test]
+fn what_is_hidden_is_named_and_the_error_falls_on_fresh_beds() {
+    // Runs on one bed that have much in common are screened alone, others by a design.
+    for runs in [0.01, 0.05] {
+        let one = outcome(Hidden::Switch("rolling-resistance", 0.2), runs);
+        assert!(one.first && one.right && !one.wrong, "{one:?}");
+        let [before, after, floor] = one.held_out.unwrap();
+        assert!(before > 2.0 * after && after < 2.0 * floor, "{one:?}");
+    }
+}
+
+#[test]
+fn a_budget_that_pays_for_nothing_is_said_to_be_too_small() {
+    let impacts = Imitation { beds: 0.05, runs: 0.02 };
+    let wish = Wish { budget: Some(1e-3), ..Wish::default() };
+    let case = Case { hidden: Hidden::Nothing, seed: 0 };
+    let one = case.run(&impacts, &wish).unwrap();
+    assert_eq!((one.verdict.as_str(), one.impacts), ("cannot-tell", 0));
+}

@@ -1,0 +1,145 @@
+//! Impacts without grains: a force law whose numbers follow from the switches of a model and scatter from
+//! bed to bed, so that thousands of impacts take a second.
+
+use configs::engine::bed::random;
+use configs::{BedSource, GrainModel};
+use rand::RngExt;
+use validation::beds::{CampaignError, Impacts, Job, Outstanding, Record};
+
+/// Step of its integration (s).
+const STEP: f64 = 5e-5;
+
+/// Steps between samples.
+const EVERY: usize = 10;
+
+/// What stands in for grains.
+pub(crate) struct Imitation {
+    /// Scatter of the numbers of the law from bed to bed, relative.
+    pub(crate) beds: f64,
+    /// Of runs on one bed.
+    pub(crate) runs: f64,
+}
+
+/// Inertial drag (kg/m), friction per depth (N/m), constant resistance (N).
+struct Law {
+    drag: f64,
+    friction: f64,
+    constant: f64,
+}
+
+impl Imitation {
+    fn law(&self, job: &Job) -> Law {
+        let of_impact = job.model.grains().expect("a bed");
+        let effect = |name: &str, key: &str| -> f64 {
+            let effects = of_impact.medium.effects.iter();
+            effects.filter(|one| one.entry.name == name).map(|one| one.params.get(key)).sum()
+        };
+        let number =
+            |key: &str, value: f64| of_impact.medium.contact_law.params.get(key) / value - 1.0;
+        let rolling = effect("rolling-resistance", "rolling_friction");
+        let cohesion = effect("cohesion-dmt", "work_of_adhesion");
+        let wet = effect("capillary-bridge", "surface_tension");
+        let (rough, damped) = (number("friction", 0.3), number("normal_damping_rate", 1.5e3));
+        let dense = 1.0 - preparation_friction(job.bed.grains().expect("a bed")) / 0.3;
+        let mass = heavier(of_impact);
+        let x = of_impact.medium.start.x.unwrap_or(0.0);
+        let [a, b, c, d] = [
+            self.normal(job.bed.run.seed, &format!("drag {x}")) * self.beds,
+            self.normal(job.bed.run.seed, &format!("friction {x}")) * self.beds,
+            self.normal(job.bed.run.seed, &format!("drag {}", job.model.hash())) * self.runs,
+            self.normal(job.bed.run.seed, &format!("friction {}", job.model.hash())) * self.runs,
+        ];
+        let scatter = |by: f64| libm::exp(by);
+        Law {
+            drag: 0.12
+                * (1.0 + rolling + 0.25 * rough + 0.3 * damped + 0.4 * dense)
+                * mass
+                * scatter(a + c),
+            friction: 4.0
+                * (1.0 + 4.0 * rolling + 0.3 * rough + 0.1 * dense)
+                * mass
+                * scatter(b + d),
+            constant: 1.0 * cohesion + 0.8 * wet,
+        }
+    }
+
+    fn normal(&self, seed: u64, purpose: &str) -> f64 {
+        let mut random = random(seed, purpose);
+        let radius = (-2.0 * libm::log(1.0 - random.random::<f64>())).sqrt();
+        radius * libm::cos(std::f64::consts::TAU * random.random::<f64>())
+    }
+
+    fn record(&self, job: &Job) -> Record {
+        let law = self.law(job);
+        let (mass, gravity) = (job.model.intruder.mass, 9.81);
+        let (mut z, mut v) = (0.0_f64, job.model.impact.speed);
+        let (mut depth, mut steps, mut slow) = (vec![0.0], 0, None);
+        let resisting =
+            |z: f64, v: f64| (law.drag * v * v + law.friction * z + law.constant) / mass;
+        while v > 0.0 && steps < 20_000 {
+            let half = v + 0.5 * STEP * (gravity - resisting(z, v));
+            z += STEP * half;
+            v += STEP * (gravity - resisting(z, half));
+            steps += 1;
+            if steps % EVERY == 0 {
+                depth.push(z);
+            }
+            if slow.is_none() && v < 0.05 * job.model.impact.speed {
+                slow = Some(steps as f64 * STEP);
+            }
+        }
+        let end = steps as f64 * STEP;
+        Record {
+            interval: EVERY as f64 * STEP,
+            range: vec![0.0; depth.len()],
+            depth,
+            stopping_time: Some(end),
+            slow_time: slow,
+            deepest: z,
+            reached: 0.0,
+            end,
+            impact_energy: 1.0,
+            closure: 0.0,
+            ledger: vec![("dissipated_sliding_J".to_owned(), 1.0)],
+            grains: 900,
+            steps: steps as u64,
+            wall: 0.0,
+        }
+    }
+}
+
+impl Impacts for Imitation {
+    fn n_workers(&self) -> usize {
+        1
+    }
+
+    fn rate(&self, _: GrainModel<'_>) -> Result<f64, CampaignError> {
+        Ok(1e7)
+    }
+
+    fn run(&self, jobs: &[Job]) -> Result<Vec<Option<Record>>, CampaignError> {
+        Ok(jobs.iter().map(|job| Some(self.record(job))).collect())
+    }
+
+    fn outstanding(&self, jobs: &[Job]) -> Result<Outstanding, CampaignError> {
+        let work = jobs.iter().map(Job::work).sum();
+        Ok(Outstanding { impacts: jobs.len(), beds: 0, work })
+    }
+}
+
+fn preparation_friction(bed: GrainModel<'_>) -> f64 {
+    match &bed.medium.bed.source {
+        BedSource::Settle(settle) => settle.preparation_friction.unwrap_or(0.0),
+        BedSource::Csv(_) => 0.0,
+    }
+}
+
+/// Mass of the first kind of grains over what the benchmark has.
+fn heavier(bed: GrainModel<'_>) -> f64 {
+    match &bed.medium.bed.source {
+        BedSource::Settle(settle) => {
+            settle.grains[0].total_mass(bed.medium.space) / (640.0 * 4.9e-5)
+        }
+        BedSource::Csv(_) => 1.0,
+    }
+}

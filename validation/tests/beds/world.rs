@@ -1,0 +1,107 @@
+//! A bed of a few hundred discs, and sets that are measured on it.
+
+use configs::{LoadOptions, Model, ModelSource};
+use validation::measurement::{
+    Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role,
+    StatedError, StopDefinition,
+};
+
+/// 360 discs of two sizes, twelve wide and fourteen deep, and a disc of four of them.
+const MODEL: &str = r#"
+[run]
+name = "small"
+duration = "0.12 s"
+time_step = "20 us"
+seed = 1
+[medium]
+kind = "grains"
+dimension = 2
+gravity = "9.81 m/s^2"
+[container]
+shape = "box"
+width = "12 cm"
+sides = "periodic"
+bottom = "wall"
+[bed]
+source = "settle"
+preparation_friction = 0.3
+[[bed.grains]]
+count = 260
+diameter = "4.5 mm"
+mass = "0.049 g"
+[[bed.grains]]
+count = 100
+diameter = "5.5 mm"
+mass = "0.073 g"
+[contact_law]
+name = "linear-spring-dashpot"
+normal_stiffness = "800 N/m"
+normal_damping_rate = "3e3 1/s"
+tangential_damping_rate = "1e3 1/s"
+friction = 0.3
+[intruder]
+shape = "disc"
+diameter = "2 cm"
+mass = "3 g"
+[impact]
+speed = "1 m/s"
+angle = "90 deg"
+x_range = ["1 mm", "12 cm"]
+"#;
+
+/// The model, changed by `sets`.
+pub(crate) fn model(sets: &[&str]) -> Model {
+    let source = ModelSource::Text { name: "small".into(), text: MODEL.into(), folder: ".".into() };
+    let sets = sets.iter().map(|set| (*set).to_owned()).collect();
+    let options = LoadOptions { sets, ..LoadOptions::default() };
+    Model::load(source, &options).expect("the model is sound").model
+}
+
+/// A vertical impact of the disc of the model.
+pub(crate) fn condition(speed: f64, role: Role) -> Condition {
+    Condition {
+        id: format!("{speed} m/s"),
+        role,
+        speed,
+        angle_deg: 90.0,
+        shape: "disc".into(),
+        diameter: 0.02,
+        mass: 3e-3,
+        spin: 0.0,
+        packing: None,
+        bed_depth: None,
+        length: None,
+        height: None,
+        apex_deg: None,
+        link_angle_deg: None,
+    }
+}
+
+/// A set under these conditions that nobody has measured yet.
+pub(crate) fn empty_set(conditions: Vec<Condition>) -> MeasurementSet {
+    MeasurementSet {
+        id: "small".into(),
+        source: None,
+        kind: Kind::Scalar,
+        instrument: Instrument {
+            rate: Some(1000.0),
+            position_sigma: Some(1e-4),
+            speed_sigma_rel: None,
+            level_sigma: None,
+        },
+        bed: Bed {
+            geometry: Geometry::Planar,
+            bulk_density: Some(2.4),
+            gravity: 9.81,
+            grain_diameter: Some(0.0048),
+        },
+        baseline: None,
+        stated: StatedError::default(),
+        stop: StopDefinition::SpeedFivePercent,
+        last: FinalDefinition::Deepest,
+        feasible: Feasible::default(),
+        conditions,
+        runs: Vec::new(),
+        notes: Vec::new(),
+    }
+}
