@@ -225,13 +225,20 @@ mod tests {
     fn a_point_and_a_column_say_their_texts_where_they_are_drawn() {
         let picture = svg((200, 100), |area| {
             let mut chart = ChartBuilder::on(area).build_cartesian_2d(0.0..2.0, 0.0..1.0)?;
+            chart.draw_series([Circle::new((1.0, 0.5), 3, BLACK.filled())])?;
             chart.draw_series([Hover::at((1.0, 0.5), "a < b & c")])?;
             chart.draw_series([Hover::over([(0.0, 0.0), (1.0, 1.0)], "left half")])?;
             Ok(())
         })
         .expect("a picture");
-        // The middle of 200 × 100 pixels, rounded as plotters rounds.
-        assert!(picture.contains("<circle cx=\"99\" cy=\"49\" r=\"7\"><title>a &lt; b &amp; c"));
+        // Of the circle that is drawn, and of the one that listens.
+        let centre_with = |radius: &str| {
+            let circles = picture.split("<circle ").skip(1);
+            let centre = circles.filter_map(|one| one.split_once(radius)).map(|(centre, _)| centre);
+            centre.last().expect("a circle of that radius").to_owned()
+        };
+        assert_eq!(centre_with("r=\"3\""), centre_with("r=\"7\""));
+        assert!(picture.contains("r=\"7\"><title>a &lt; b &amp; c</title></circle>"), "{picture}");
         assert!(picture.contains("<title>left half</title></rect>"), "{picture}");
         assert!(picture.ends_with("</g>\n</svg>\n"), "over all else");
     }
