@@ -51,11 +51,11 @@ fn spheres_settle_to_the_packing_and_the_contacts_of_a_bed_with_friction() {
     .expect("two threads");
 }
 
-/// A loose bed of rough discs that is tapped to `target`.
-fn tapped(target: f64) -> Settling {
+/// A loose bed of rough discs, by `seed`, that is tapped to `target`.
+fn tapped(target: f64, seed: u64) -> Settling {
     let container = Container::walled_box(0.05, 0.0);
     let kinds = [GrainKind { count: 120, ..KINDS[0] }, GrainKind { count: 30, ..KINDS[1] }];
-    let grains = fill(&kinds, (Space::Planar, &container), 2);
+    let grains = fill(&kinds, (Space::Planar, &container), seed);
     let rough = Linear { friction: 0.9, ..SOFT };
     let gravity = Vec3::new(0.0, 0.0, -9.81);
     Settling::new(&grains, (Space::Planar, container), gravity, vec![rough.stage()], 2.5e-5)
@@ -72,23 +72,29 @@ fn settle(settling: &mut Settling) {
 #[test]
 fn taps_make_a_loose_bed_denser_and_a_restart_between_them_changes_no_bit() {
     let fraction = |settling: &Settling| BedReport::of(settling.bed()).packing_fraction;
-    let mut loose = tapped(0.1);
-    settle(&mut loose);
-    // Denser than the target, it is left alone.
-    assert_eq!(loose.taps(), 0);
+    let mut gains = Vec::new();
+    // A bed that does not give way to its first tap is left at that, so one bed proves little.
+    for seed in 1..=4 {
+        let mut loose = tapped(0.1, seed);
+        settle(&mut loose);
+        // Denser than the target, it is left alone.
+        assert_eq!(loose.taps(), 0);
+        let mut dense = tapped(0.9, seed);
+        settle(&mut dense);
+        assert!(dense.taps() >= 1);
+        gains.push(fraction(&dense) - fraction(&loose));
+    }
+    let mean = gains.iter().sum::<f64>() / gains.len() as f64;
+    assert!(mean > 0.003, "{gains:?}");
 
-    let mut dense = tapped(0.9);
-    let mut saved = None;
+    let (mut dense, mut saved) = (tapped(0.9, 2), None);
     while !dense.is_at_rest() {
         dense.advance().expect("a sound step");
         if dense.taps() == 1 && saved.is_none() {
             saved = Some(dense.save());
         }
     }
-    assert!(dense.taps() >= 1);
-    assert!(fraction(&dense) > fraction(&loose) + 0.003, "{}", fraction(&dense));
-
-    let mut resumed = tapped(0.9);
+    let mut resumed = tapped(0.9, 2);
     assert!(resumed.restore(saved.expect("it was tapped")));
     settle(&mut resumed);
     assert_eq!(resumed.bed().resting(), dense.bed().resting());
