@@ -1,5 +1,5 @@
 //! From positions and velocities to the [`Contact`] of a grain with a surface; two grains meet in
-//! [`crate::dimension`].
+//! `dimension`.
 //!
 //! Both sides share one contact point, so that arms add up to the distance of the centres and
 //! angular momentum is conserved; it lies in the middle of the overlap. What was done during the

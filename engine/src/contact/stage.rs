@@ -145,8 +145,8 @@ fn write<R: Lanes, H: Record<R>>(
         }
     }
     for (at, number) in numbers.iter().enumerate().take(H::LEN).skip(whole) {
-        for lane in 0..R::COUNT {
-            histories.values[records[lane] as usize + histories.offset + at] = number.lane(lane);
+        for (lane, &record) in records.iter().enumerate().take(R::COUNT) {
+            histories.values[record as usize + histories.offset + at] = number.lane(lane);
         }
     }
 }
