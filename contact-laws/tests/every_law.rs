@@ -2,9 +2,9 @@
 
 use contact_laws::{ActsOn, LAWS, LawEntry};
 use engine::contact::stage::{Batch, Histories};
-use engine::contact::{Contact, ContactStage, Encounter, Partner, Response, Slot};
+use engine::contact::{Contact, ContactStage, Encounter, Partner, Response, Slot, Sweep};
 use engine::grains::Space;
-use engine::lanes::MOST_LANES;
+use engine::lanes::{Four, Lanes, MOST_LANES, Vector, vector_of};
 use engine::math::{Quat, Vec3};
 use engine::params::{Default as Given, ParamTable};
 
@@ -215,6 +215,111 @@ fn every_registered_law_gives_equal_and_opposite_force_when_i_and_j_swap() {
             assert_eq!(a.couple, -b.couple, "{}", entry.name);
         }
         assert_eq!(energy, other_energy, "{}", entry.name);
+    }
+}
+
+/// Four contacts side by side.
+fn side_by_side<const N: usize>(contacts: [Contact<f64, N>; 4]) -> Contact<Four, N> {
+    let number = |of: fn(&Contact<f64, N>) -> f64| Four::from_lanes(|lane| of(&contacts[lane]));
+    let vector = |of: fn(&Contact<f64, N>) -> Vector<f64, N>| {
+        vector_of(|at| Four::from_lanes(|lane| of(&contacts[lane])[at]))
+    };
+    Contact {
+        normal: vector(|contact| contact.normal),
+        overlap: number(|contact| contact.overlap),
+        overlap_rate: number(|contact| contact.overlap_rate),
+        overlap_step: number(|contact| contact.overlap_step),
+        slip_velocity: vector(|contact| contact.slip_velocity),
+        slip_step: vector(|contact| contact.slip_step),
+        relative_spin: vector(|contact| contact.relative_spin),
+        relative_turn: vector(|contact| contact.relative_turn),
+        inverse_radius_eff: number(|contact| contact.inverse_radius_eff),
+        inverse_mass_eff: number(|contact| contact.inverse_mass_eff),
+        rolling_mobility: number(|contact| contact.rolling_mobility),
+    }
+}
+
+/// The episode as a plane sees it.
+fn flat(contact: &Contact) -> Contact<f64, 1> {
+    let first = |vector: Vec3| Vector::from([vector.x]);
+    Contact {
+        normal: first(Vec3::zeros()),
+        overlap: contact.overlap,
+        overlap_rate: contact.overlap_rate,
+        overlap_step: contact.overlap_step,
+        slip_velocity: first(contact.slip_velocity),
+        slip_step: first(contact.slip_step),
+        relative_spin: first(contact.relative_spin),
+        relative_turn: first(contact.relative_turn),
+        inverse_radius_eff: contact.inverse_radius_eff,
+        inverse_mass_eff: contact.inverse_mass_eff,
+        rolling_mobility: contact.rolling_mobility,
+    }
+}
+
+/// Plays the episode in four lanes, each a contact ahead of the one before, and lane by lane.
+fn assert_lanes_agree<const N: usize>(
+    law: &(dyn ContactStage + 'static),
+    episode: &[Contact<f64, N>],
+) where
+    dyn ContactStage: Sweep<f64, N> + Sweep<Four, N>,
+{
+    let space = if N == 1 { Space::Planar } else { Space::Spatial };
+    let len = law.history_len(space);
+    let (mut together, mut alone) = (vec![0.0; 4 * len], vec![0.0; 4 * len]);
+    let mut energy = [vec![0.0; law.channels().len()], vec![0.0; law.channels().len()]];
+    let starts = [0, 1, 2, 3].map(|lane| lane * len as u32);
+    let base = |overlap: f64| match law.slot() {
+        Slot::Base => [0.0; 2],
+        _ => [3200.0 * overlap.max(0.0), 3200.0],
+    };
+    for step in 0..episode.len() {
+        let contacts = [0, 1, 2, 3].map(|lane| episode[(step + lane) % episode.len()]);
+        let mut four = Response::<Four, N>::default();
+        four.normal_force = Four::from_lanes(|lane| base(contacts[lane].overlap)[0]);
+        four.normal_stiffness = Four::from_lanes(|lane| base(contacts[lane].overlap)[1]);
+        let batch = Batch {
+            partner: Partner::Grain,
+            contacts: &[side_by_side(contacts)],
+            records: &[starts],
+            responses: std::slice::from_mut(&mut four),
+        };
+        let histories = Histories { values: &mut together, offset: 0 };
+        Sweep::<Four, N>::sweep(law, batch, DT, histories, &mut energy[0]);
+        for (lane, contact) in contacts.iter().enumerate() {
+            let mut one = Response::<f64, N>::default();
+            [one.normal_force, one.normal_stiffness] = base(contact.overlap);
+            let batch = Batch {
+                partner: Partner::Grain,
+                contacts: std::slice::from_ref(contact),
+                records: &[[starts[lane]; MOST_LANES]],
+                responses: std::slice::from_mut(&mut one),
+            };
+            let histories = Histories { values: &mut alone, offset: 0 };
+            Sweep::<f64, N>::sweep(law, batch, DT, histories, &mut energy[1]);
+            let what = format!("{} in lane {lane} of step {step}", law.name());
+            let same = |four: Four, one: f64| four.lane(lane).total_cmp(&(one + 0.0)).is_eq();
+            let zero = Four::from_lanes(|_| 0.0);
+            assert!(same(four.normal_force + zero, one.normal_force), "{what}");
+            assert!(same(four.adhesive_force + zero, one.adhesive_force), "{what}");
+            for at in 0..N {
+                assert!(same(four.tangential_force[at] + zero, one.tangential_force[at]), "{what}");
+                assert!(same(four.couple[at] + zero, one.couple[at]), "{what}");
+            }
+        }
+        assert_eq!(together, alone, "{} remembers something else", law.name());
+    }
+    let [together, alone] = energy;
+    assert_close(together.into_iter().zip(alone), law.name());
+}
+
+#[test]
+fn every_registered_law_says_the_same_of_four_contacts_at_once_and_of_each_alone() {
+    for entry in LAWS {
+        let law = (entry.build)(&table(entry));
+        let flat: Vec<Contact<f64, 1>> = episode().iter().map(flat).collect();
+        assert_lanes_agree(&*law, &episode());
+        assert_lanes_agree(&*law, &flat);
     }
 }
 
