@@ -1,4 +1,4 @@
-//! The vector types of the engine, and the only file that names nalgebra.
+//! The vector types of the engine; only this file and `lanes.rs` name nalgebra.
 //!
 //! The world frame is right-handed with z up. A planar (2D) run lives in the x–z plane: its
 //! vectors have y = 0 and its spins point along y, so the vertical is z in every dimension.

@@ -21,12 +21,13 @@ const ALLOWED: [(&str, &[&str]); 9] = [
 ];
 
 /// Crates of others that are kept behind one of ours (two where a second reads what the first writes).
-const ONLY: [(&str, &[&str]); 31] = [
+const ONLY: [(&str, &[&str]); 34] = [
     ("annotate-snippets", &["configs"]),
     ("anyhow", &["plunge", "xtask"]),
     ("askama", &["reports"]),
     ("argmin", &["validation"]),
     ("argmin-math", &["validation"]),
+    ("arrayvec", &["engine"]),
     ("arrow", &["exchange"]),
     ("clap", &["plunge"]),
     ("clap_complete", &["plunge"]),
@@ -49,7 +50,9 @@ const ONLY: [(&str, &[&str]); 31] = [
     ("rayon", &["engine", "validation"]),
     ("roots", &["engine"]),
     ("rustix", &["validation"]),
+    ("safe_arch", &["engine"]),
     ("signal-hook", &["plunge"]),
+    ("simba", &["engine"]),
     ("statrs", &["validation"]),
     ("toml", &["configs"]),
     ("toml_edit", &["configs"]),
