@@ -275,9 +275,10 @@ fn assert_lanes_agree<const N: usize>(
     };
     for step in 0..episode.len() {
         let contacts = [0, 1, 2, 3].map(|lane| episode[(step + lane) % episode.len()]);
-        let mut four = Response::<Four, N>::default();
-        four.normal_force = Four::from_lanes(|lane| base(contacts[lane].overlap)[0]);
-        four.normal_stiffness = Four::from_lanes(|lane| base(contacts[lane].overlap)[1]);
+        let pressed = |at: usize| Four::from_lanes(|lane| base(contacts[lane].overlap)[at]);
+        let [normal_force, normal_stiffness] = [pressed(0), pressed(1)];
+        let mut four =
+            Response::<Four, N> { normal_force, normal_stiffness, ..Response::default() };
         let batch = Batch {
             partner: Partner::Grain,
             contacts: &[side_by_side(contacts)],
@@ -287,8 +288,9 @@ fn assert_lanes_agree<const N: usize>(
         let histories = Histories { values: &mut together, offset: 0 };
         Sweep::<Four, N>::sweep(law, batch, DT, histories, &mut energy[0]);
         for (lane, contact) in contacts.iter().enumerate() {
-            let mut one = Response::<f64, N>::default();
-            [one.normal_force, one.normal_stiffness] = base(contact.overlap);
+            let [normal_force, normal_stiffness] = base(contact.overlap);
+            let mut one =
+                Response::<f64, N> { normal_force, normal_stiffness, ..Response::default() };
             let batch = Batch {
                 partner: Partner::Grain,
                 contacts: std::slice::from_ref(contact),
