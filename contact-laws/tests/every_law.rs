@@ -99,7 +99,7 @@ fn play(law: &dyn ContactStage, episode: &[Contact]) -> (Vec<Response>, Vec<f64>
                 records: &[[0; MOST_LANES]],
                 responses: std::slice::from_mut(&mut response),
             };
-            law.sweep(batch, DT, Histories { values: &mut history, offset: 0 }, &mut energy);
+            law.sweep(batch, DT, Histories { values: &mut history, offset: 0 }, Some(&mut energy));
             response
         })
         .collect();
@@ -286,7 +286,7 @@ fn assert_lanes_agree<const N: usize>(
             responses: std::slice::from_mut(&mut four),
         };
         let histories = Histories { values: &mut together, offset: 0 };
-        Sweep::<Four, N>::sweep(law, batch, DT, histories, &mut energy[0]);
+        Sweep::<Four, N>::sweep(law, batch, DT, histories, Some(&mut energy[0]));
         for (lane, contact) in contacts.iter().enumerate() {
             let [normal_force, normal_stiffness] = base(contact.overlap);
             let mut one =
@@ -298,7 +298,7 @@ fn assert_lanes_agree<const N: usize>(
                 responses: std::slice::from_mut(&mut one),
             };
             let histories = Histories { values: &mut alone, offset: 0 };
-            Sweep::<f64, N>::sweep(law, batch, DT, histories, &mut energy[1]);
+            Sweep::<f64, N>::sweep(law, batch, DT, histories, Some(&mut energy[1]));
             let what = format!("{} in lane {lane} of step {step}", law.name());
             let same = |four: Four, one: f64| four.lane(lane).total_cmp(&(one + 0.0)).is_eq();
             let zero = Four::from_lanes(|_| 0.0);

@@ -7,7 +7,7 @@ use crate::body::{Mechanism, Part};
 use crate::boundary::{Absorber, Container};
 use crate::contact::{ContactStage, Partner};
 use crate::contacts::{ContactSums, Contacts, Memory, SavedBlock};
-use crate::dimension::{Dimension, Load, Motion, Planar, Spatial};
+use crate::dimension::{Dimension, Load, Motion, Planar, Spatial, Stride};
 use crate::error::StepError;
 use crate::footprint::Footprint;
 use crate::grains::{Grain, Grains, Space};
@@ -36,17 +36,17 @@ pub struct GrainBed {
     recessive: RecessiveWork,
     contacts: Contacts,
     sums: ContactSums,
-    energy: Vec<GrainEnergy>,
+    sums_of_grains: Vec<SumsOfGrains>,
     grid: CellGrid,
     pair_list: Freshness,
     intruder_list: Freshness,
-    /// Greatest speed of a grain in the last drift (m/s).
+    /// Greatest speed of a grain in the drift that has begun (m/s).
     fastest: f64,
 }
 
-/// Energies of the grains of a block (J).
+/// What the grains of a block add up to: energies (J), and how they move.
 #[derive(Clone, Copy, Debug, Default)]
-struct GrainEnergy {
+struct SumsOfGrains {
     translation: f64,
     rotation: f64,
     potential: f64,
@@ -54,6 +54,8 @@ struct GrainEnergy {
     absorbed: f64,
     /// How many of them move, see [`GrainBed::moving_share`].
     moving: u32,
+    /// Square of the greatest speed in the drift that follows (m²/s²).
+    fastest_2: f64,
 }
 
 /// A grain moves when its energy would lift it by this share of its diameter.
@@ -66,6 +68,7 @@ pub(crate) struct SavedBed {
     blocks: Vec<SavedBlock>,
     pair_list: Freshness,
     intruder_list: Freshness,
+    fastest: f64,
     recessive: RecessiveWork,
 }
 
@@ -138,7 +141,7 @@ impl GrainBed {
                 walls.len() + n_intruder_parts,
             ),
             sums: ContactSums::default(),
-            energy: vec![GrainEnergy::default(); grains.len().div_ceil(BLOCK)],
+            sums_of_grains: vec![SumsOfGrains::default(); grains.len().div_ceil(BLOCK)],
             grid: CellGrid::default(),
             pair_list: Freshness::stale(PAIR_MARGIN * mean_diameter),
             intruder_list: Freshness::stale(INTRUDER_MARGIN * mean_diameter),
@@ -209,14 +212,9 @@ impl GrainBed {
         })
     }
 
-    /// Half a kick and the drift of the grains; `dt` (s).
-    pub(crate) fn kick_drift(&mut self, dt: f64) {
-        self.fastest = self.grains.kick_drift(dt);
-    }
-
-    /// Brings back inside what has left through a periodic side.
-    pub(crate) fn wrap(&mut self) {
-        self.grains.wrap();
+    /// Has laws book no energies from now on.
+    pub(crate) fn book_nothing(&mut self) {
+        self.contacts.book_nothing();
     }
 
     /// Lists neighbours again where the lists may have become stale.
@@ -265,26 +263,27 @@ impl GrainBed {
         intruder.load(&self.sums.wrenches[self.walls.len()..], self.gravity);
     }
 
-    /// Completes the force on each grain with the parts from other blocks and gravity, and gives it
-    /// the second half of its kick.
-    pub(crate) fn gather_and_kick(&mut self, dt: f64) {
+    /// Completes the force on each grain with the parts from other blocks and gravity, gives it half a kick
+    /// for the step that ends, books its energy, and sends it half a kick and a drift into the next.
+    pub(crate) fn kick_drift(&mut self, stride: &Stride) {
         match self.grains.space {
-            Space::Planar => self.gather_and_kick_in::<Planar, 1>(dt),
-            Space::Spatial => self.gather_and_kick_in::<Spatial, 3>(dt),
+            Space::Planar => self.kick_drift_in::<Planar, 1>(stride),
+            Space::Spatial => self.kick_drift_in::<Spatial, 3>(stride),
         }
+        self.grains.set_ahead(stride.drift);
+        let fastest_2 = self.sums_of_grains.iter().map(|sums| sums.fastest_2).fold(0.0, f64::max);
+        self.fastest = fastest_2.sqrt();
     }
 
-    fn gather_and_kick_in<D: Dimension<N>, const N: usize>(&mut self, dt: f64) {
-        let half = 0.5 * dt;
-        let gravity = self.gravity;
+    fn kick_drift_in<D: Dimension<N>, const N: usize>(&mut self, stride: &Stride) {
+        let (gravity, period) = (self.gravity, self.grains.period);
         let (contacts, absorber) = (&self.contacts, &self.absorber);
         let liftable = 2.0 * MOVING_LIFT * gravity.norm();
-        self.grains.par_blocks::<D, N>().zip(&mut self.energy).for_each(|(block, energy)| {
-            contacts.deliver::<D, N>(block.block, block.loads);
-            *energy = GrainEnergy::default();
-            let moved = block.places.iter().zip(block.motions.chunks_exact_mut(D::MOTION));
-            let loads = block.loads.chunks_exact_mut(D::LOAD);
-            for (k, ((place, motion), load)) in moved.zip(loads).enumerate() {
+        self.grains.par_blocks::<D, N>().zip(&mut self.sums_of_grains).for_each(|(block, sums)| {
+            *sums = SumsOfGrains::default();
+            let mut loads = contacts.loads(block.block);
+            let moved = block.places.iter_mut().zip(block.motions.chunks_exact_mut(D::MOTION));
+            for (k, (place, motion)) in moved.enumerate() {
                 let Motion { position, velocity, velocity_now, radius, .. } =
                     D::unpack(place, motion);
                 let (mass, inertia) = (block.mass[k], block.inertia[k]);
@@ -293,18 +292,22 @@ impl GrainBed {
                     let drag = mass * absorber.rate(position);
                     force -= velocity_now * drag;
                     // Second order: what acts half-way, over the way of the step.
-                    let half_way = absorber.rate(position - velocity * half);
-                    energy.absorbed += mass * half_way * velocity.norm_squared() * dt;
+                    let half_way = absorber.rate(position - velocity * stride.before);
+                    let way_2 = velocity.norm_squared() * (2.0 * stride.before);
+                    sums.absorbed += mass * half_way * way_2;
                 }
-                D::add_load(&Load { force, torque: Vec3::zeros() }, load);
-                let [speed_2, spin_2] = D::kick(motion, load, half, block.inverse_inertia[k]);
-                let translation = 0.5 * mass * speed_2;
-                let rotation = 0.5 * inertia * spin_2;
-                energy.translation += translation;
-                energy.rotation += rotation;
+                let mut load = loads.of::<D, N>(k);
+                D::add_load(&Load { force, torque: Vec3::zeros() }, &mut load);
+                let squares = D::kick_drift(place, motion, &load, stride, block.inverse_inertia[k]);
+                D::wrap(place, &period);
+                let translation = 0.5 * mass * squares.speed;
+                let rotation = 0.5 * inertia * squares.spin;
+                sums.translation += translation;
+                sums.rotation += rotation;
                 let lift = liftable * radius * mass;
-                energy.moving += u32::from(translation + rotation > lift);
-                energy.potential -= mass * gravity.dot(&position);
+                sums.moving += u32::from(translation + rotation > lift);
+                sums.potential -= mass * gravity.dot(&position);
+                sums.fastest_2 = sums.fastest_2.max(squares.drift_speed);
             }
         });
     }
@@ -354,13 +357,15 @@ impl GrainBed {
             bodies[1] += rotation;
             bodies[2] -= body.mass * self.gravity.dot(&body.position);
         }
-        let grains = self.energy.iter().fold(GrainEnergy::default(), |sum, block| GrainEnergy {
-            translation: sum.translation + block.translation,
-            rotation: sum.rotation + block.rotation,
-            potential: sum.potential + block.potential,
-            absorbed: sum.absorbed + block.absorbed,
-            moving: sum.moving + block.moving,
-        });
+        let grains =
+            self.sums_of_grains.iter().fold(SumsOfGrains::default(), |sum, block| SumsOfGrains {
+                translation: sum.translation + block.translation,
+                rotation: sum.rotation + block.rotation,
+                potential: sum.potential + block.potential,
+                absorbed: sum.absorbed + block.absorbed,
+                moving: sum.moving + block.moving,
+                fastest_2: sum.fastest_2.max(block.fastest_2),
+            });
         entries.clear();
         entries.extend([bodies[0], bodies[1], grains.translation, grains.rotation]);
         entries.extend([bodies[2], grains.potential]);
@@ -398,14 +403,14 @@ impl GrainBed {
     #[must_use]
     pub fn moving_share(&self) -> f64 {
         // Without weight nothing has to be lifted: then every grain with any energy moves.
-        let moving: u32 = self.energy.iter().map(|block| block.moving).sum();
+        let moving: u32 = self.sums_of_grains.iter().map(|block| block.moving).sum();
         f64::from(moving) / self.grains.len() as f64
     }
 
     /// Kinetic energy of all grains (J).
     #[must_use]
     pub fn kinetic_energy(&self) -> f64 {
-        self.energy.iter().map(|block| block.translation + block.rotation).sum()
+        self.sums_of_grains.iter().map(|block| block.translation + block.rotation).sum()
     }
 
     /// Mean energy (J) of what of a grain's motion comes to rest by itself: in a plane all of it, in space
@@ -415,7 +420,7 @@ impl GrainBed {
     pub fn mean_restless_energy(&self) -> f64 {
         let restless = match self.grains.space {
             Space::Planar => self.kinetic_energy(),
-            Space::Spatial => self.energy.iter().map(|block| block.translation).sum(),
+            Space::Spatial => self.sums_of_grains.iter().map(|block| block.translation).sum(),
         };
         restless / self.grains.len() as f64
     }
@@ -428,7 +433,8 @@ impl GrainBed {
 
     /// Whether the step can be trusted.
     pub(crate) fn check(&self, step: u64, dt: f64) -> Result<(), StepError> {
-        let total: f64 = self.energy.iter().map(|block| block.translation + block.potential).sum();
+        let total: f64 =
+            self.sums_of_grains.iter().map(|block| block.translation + block.potential).sum();
         if !total.is_finite() {
             return Err(StepError::NotFinite { step, what: "the energy of the grains", dt });
         }
@@ -453,6 +459,7 @@ impl GrainBed {
             blocks: self.contacts.save(),
             pair_list: self.pair_list,
             intruder_list: self.intruder_list,
+            fastest: self.fastest,
             recessive: self.recessive.clone(),
         }
     }
@@ -473,6 +480,7 @@ impl GrainBed {
         self.recessive = saved.recessive;
         self.pair_list = saved.pair_list;
         self.intruder_list = saved.intruder_list;
+        self.fastest = saved.fastest;
         true
     }
 }

@@ -85,8 +85,8 @@ pub struct Grains {
     places: Vec<Quad>,
     /// How each grain moves, see [`Dimension`].
     motions: Vec<Quad>,
-    /// Force and torque on each grain, gravity included, at the end of the last step.
-    loads: Vec<Quad>,
+    /// How far into the next step `places` and `motions` already are (s).
+    ahead: f64,
     /// How the space that they live in repeats; it belongs to the container and is not stored.
     #[serde(skip)]
     pub(crate) period: Period,
@@ -100,8 +100,6 @@ pub(crate) struct BlockOfGrains<'a> {
     pub(crate) places: &'a mut [Quad],
     /// Of its grains.
     pub(crate) motions: &'a mut [Quad],
-    /// Of its grains.
-    pub(crate) loads: &'a mut [Quad],
     /// Of its grains (kg).
     pub(crate) mass: &'a [f64],
     /// Of its grains (kg m²).
@@ -115,7 +113,6 @@ impl Grains {
     #[must_use]
     pub fn new(space: Space, list: &[Grain]) -> Self {
         let inertia = |grain: &Grain| space.grain_inertia(grain.mass, grain.radius);
-        let [motion, load] = quads(space);
         let mut grains = Self {
             space,
             id: list.iter().map(|grain| grain.id).collect(),
@@ -124,8 +121,8 @@ impl Grains {
             inertia: list.iter().map(inertia).collect(),
             inverse_inertia: list.iter().map(|grain| 1.0 / inertia(grain)).collect(),
             places: vec![Quad::ZERO; list.len()],
-            motions: vec![Quad::ZERO; list.len() * motion],
-            loads: vec![Quad::ZERO; list.len() * load],
+            motions: vec![Quad::ZERO; list.len() * quads(space)],
+            ahead: 0.0,
             period: Period::NONE,
         };
         for (i, grain) in list.iter().enumerate() {
@@ -149,10 +146,13 @@ impl Grains {
     }
 
     /// The centre of grain `i` (m).
-    #[inline]
     #[must_use]
     pub fn position(&self, i: usize) -> Vec3 {
-        self.motion(i).position
+        let Motion { position, velocity, .. } = self.motion(i);
+        match self.ahead > 0.0 {
+            true => self.period.inside(position - velocity * self.ahead),
+            false => position,
+        }
     }
 
     /// The centres of all grains (m).
@@ -163,24 +163,37 @@ impl Grains {
     /// The velocity of grain `i` (m/s).
     #[must_use]
     pub fn velocity(&self, i: usize) -> Vec3 {
-        self.motion(i).velocity
+        let Motion { velocity, velocity_now, .. } = self.motion(i);
+        velocity - (velocity_now - velocity)
     }
 
     /// The spin of grain `i` (rad/s).
     #[must_use]
     pub fn spin(&self, i: usize) -> Vec3 {
-        self.motion(i).spin
+        let Motion { spin, spin_now, .. } = self.motion(i);
+        spin - (spin_now - spin)
     }
 
-    /// The force on grain `i` at the end of the last step, gravity included (N).
+    /// The force on grain `i` at the end of the last step, gravity included (N); zero before the first.
     #[must_use]
     pub fn force(&self, i: usize) -> Vec3 {
-        let [_, len] = quads(self.space);
-        let load = &self.loads[i * len..][..len];
-        match self.space {
-            Space::Planar => Planar::force(load),
-            Space::Spatial => Spatial::force(load),
+        if self.ahead > 0.0 {
+            let Motion { velocity, velocity_now, .. } = self.motion(i);
+            (velocity_now - velocity) * (2.0 * self.mass[i] / self.ahead)
+        } else {
+            Vec3::zeros()
         }
+    }
+
+    /// How far into the next step the grains already are (s).
+    pub(crate) fn set_ahead(&mut self, ahead: f64) {
+        self.ahead = ahead;
+    }
+
+    /// The centre of grain `i` at the end of the drift (m).
+    #[inline]
+    pub(crate) fn drifted(&self, i: usize) -> Vec3 {
+        self.motion(i).position
     }
 
     /// The state of grain `i`.
@@ -194,7 +207,7 @@ impl Grains {
 
     /// Gives grain `i` another state.
     pub(crate) fn set_motion(&mut self, i: usize, state: &Motion) {
-        let [len, _] = quads(self.space);
+        let len = quads(self.space);
         let (place, motion) = (&mut self.places[i], &mut self.motions[i * len..][..len]);
         match self.space {
             Space::Planar => Planar::pack(state, place, motion),
@@ -220,10 +233,10 @@ impl Grains {
         &self.motions[i * D::MOTION..][..D::MOTION]
     }
 
-    /// From grain `j` to the nearest image of grain `i` (m).
+    /// From grain `j` to the nearest image of grain `i`, at the end of the drift (m).
     #[inline]
     pub(crate) fn apart(&self, i: usize, j: usize) -> Vec3 {
-        self.period.shortest(self.position(i) - self.position(j))
+        self.period.shortest(self.drifted(i) - self.drifted(j))
     }
 
     /// How many there are.
@@ -241,24 +254,25 @@ impl Grains {
     /// Whether all arrays hold `n` finite entries, for grains that were read from a file.
     pub(crate) fn is_consistent(&self, n: usize) -> bool {
         let scalars = [&self.radius, &self.mass, &self.inertia, &self.inverse_inertia];
-        let [motion, load] = quads(self.space);
         let finite = |quads: &[Quad]| quads.iter().all(|quad| quad.0.iter().all(|x| x.is_finite()));
         self.id.len() == n
             && scalars.iter().all(|list| list.len() == n && list.iter().all(|x| x.is_finite()))
             && self.places.len() == n
-            && self.motions.len() == n * motion
-            && self.loads.len() == n * load
+            && self.motions.len() == n * quads(self.space)
             && finite(&self.places)
             && finite(&self.motions)
-            && finite(&self.loads)
+            && self.ahead.is_finite()
     }
 
     /// The grains one by one.
     pub fn iter(&self) -> impl Iterator<Item = Grain> + '_ {
-        (0..self.len()).map(|i| {
-            let Motion { position, velocity, spin, .. } = self.motion(i);
-            let (radius, mass, id) = (self.radius[i], self.mass[i], self.id[i]);
-            Grain { position, velocity, spin, radius, mass, id }
+        (0..self.len()).map(|i| Grain {
+            position: self.position(i),
+            velocity: self.velocity(i),
+            spin: self.spin(i),
+            radius: self.radius[i],
+            mass: self.mass[i],
+            id: self.id[i],
         })
     }
 
@@ -267,6 +281,7 @@ impl Grains {
         for i in 0..self.len() {
             let motion = self.motion(i);
             let thrown = Motion {
+                position: motion.position + velocity * self.ahead,
                 velocity: motion.velocity + velocity,
                 velocity_now: motion.velocity_now + velocity,
                 ..motion
@@ -296,48 +311,22 @@ impl Grains {
         (
             self.places.par_chunks_mut(BLOCK),
             self.motions.par_chunks_mut(BLOCK * D::MOTION),
-            self.loads.par_chunks_mut(BLOCK * D::LOAD),
             self.mass.par_chunks(BLOCK),
             self.inertia.par_chunks(BLOCK),
             self.inverse_inertia.par_chunks(BLOCK),
         )
             .into_par_iter()
             .enumerate()
-            .map(|(block, (places, motions, loads, mass, inertia, inverse_inertia))| {
-                BlockOfGrains { block, places, motions, loads, mass, inertia, inverse_inertia }
+            .map(|(block, (places, motions, mass, inertia, inverse_inertia))| {
+                BlockOfGrains { block, places, motions, mass, inertia, inverse_inertia }
             })
-    }
-
-    /// Half a kick, then the drift; `dt` (s). Returns the greatest speed (m/s) of a grain.
-    pub(crate) fn kick_drift(&mut self, dt: f64) -> f64 {
-        match self.space {
-            Space::Planar => self.kick_drift_in::<Planar, 1>(dt),
-            Space::Spatial => self.kick_drift_in::<Spatial, 3>(dt),
-        }
-    }
-
-    fn kick_drift_in<D: Dimension<N>, const N: usize>(&mut self, dt: f64) -> f64 {
-        let fastest_2 = self
-            .par_blocks::<D, N>()
-            .map(|block| {
-                let moved = block.places.iter_mut().zip(block.motions.chunks_exact_mut(D::MOTION));
-                let loads = block.loads.chunks_exact(D::LOAD).zip(block.inverse_inertia);
-                moved
-                    .zip(loads)
-                    .map(|((place, motion), (load, &inverse_inertia))| {
-                        D::kick_drift(place, motion, load, 0.5 * dt, inverse_inertia)
-                    })
-                    .fold(0.0, f64::max)
-            })
-            .max_by(f64::total_cmp);
-        fastest_2.unwrap_or(0.0).sqrt()
     }
 }
 
-/// How many quads say how a grain moves, and hold its load.
-fn quads(space: Space) -> [usize; 2] {
+/// How many quads say how a grain moves.
+fn quads(space: Space) -> usize {
     match space {
-        Space::Planar => [Planar::MOTION, Planar::LOAD],
-        Space::Spatial => [Spatial::MOTION, Spatial::LOAD],
+        Space::Planar => Planar::MOTION,
+        Space::Spatial => Spatial::MOTION,
     }
 }

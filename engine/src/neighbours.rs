@@ -97,9 +97,10 @@ impl CellGrid {
     /// Sorts the grains into cells of at least `reach` (m), the largest distance of centres that
     /// counts as near.
     pub(crate) fn fill(&mut self, grains: &Grains, reach: f64) {
-        let mut low = grains.position(0);
+        let positions = || (0..grains.len()).map(|i| grains.drifted(i));
+        let mut low = grains.drifted(0);
         let mut high = low;
-        for position in grains.positions() {
+        for position in positions() {
             low = low.inf(&position);
             high = high.sup(&position);
         }
@@ -125,7 +126,7 @@ impl CellGrid {
         let n = self.axes.map(|axis| axis.n);
         let mut cell_of = std::mem::take(&mut self.cell_of);
         cell_of.clear();
-        cell_of.extend(grains.positions().map(|position| {
+        cell_of.extend(positions().map(|position| {
             let [x, y, z] = self.cell(position);
             ((z * n[1] + y) * n[0] + x) as u32
         }));
@@ -169,7 +170,7 @@ impl CellGrid {
         keys: &mut Vec<[u32; 2]>,
     ) {
         let from = keys.len();
-        let position = grains.position(i);
+        let position = grains.drifted(i);
         let radius = grains.radius[i] + margin;
         let [n_x, n_y, _] = self.axes.map(|axis| axis.n);
         let cell = self.cell(position);

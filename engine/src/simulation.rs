@@ -72,6 +72,14 @@ impl Simulation {
         Self { world, settings, courses, activity, surface, impact_energy, energy_scale }
     }
 
+    /// The same impact with the ledger left as it is at the start: to measure what it costs.
+    #[must_use]
+    pub fn without_ledger(mut self) -> Self {
+        self.world.bed.book_nothing();
+        self.world.books.shut();
+        self
+    }
+
     /// Moves on by one step.
     ///
     /// # Errors

@@ -2,22 +2,26 @@
 //!
 //! Velocity Verlet, with everything that dissipates made second order:
 //!
-//! 1. **Kick and drift.** Half a kick under the old forces gives the half-step velocities
-//!    `v_h = v + ½ dt a`; positions move with them. `v* = v_h + ½ dt a` is the velocity
-//!    extrapolated to the new positions.
-//!    **Wrap.** A grain that has left through a periodic side comes in on the other.
-//! 2. **Neighbours.** The list of near pairs is made again once something may have left it; contact
+//! 1. **Neighbours.** The list of near pairs is made again once something may have left it; contact
 //!    histories move along.
-//! 3. **Contacts.** What overlaps is found. Damping uses rates from `v*`: with `v_h` the rebound
+//! 2. **Contacts.** What overlaps is found. Damping uses rates from `v*`: with `v_h` the rebound
 //!    of a dashpot is first order only. Springs and the ledger use the displacement made in the
 //!    step, from `v_h`, in the contact plane of the half step, turned into the new one (Vyas et al.,
 //!    Comput. Phys. Commun. 310, 109524 (2025), on what goes wrong otherwise).
 //!    Each law books its dissipation as mean force times displacement.
-//! 4. **Gather and kick.** Forces are summed in a fixed order, gravity and the drag of absorbing
-//!    layers (with `v*`) are added, and the second half kick brings velocities to the time of the positions.
-//! 5. **Ledger.** The energy of every channel is closed against the start.
+//! 3. **Kick, book, kick, drift.** Forces are summed in a fixed order; gravity and the drag of absorbing
+//!    layers (with `v*`) are added. Half a kick brings velocities to the time of the positions, where
+//!    energies are taken. Half a kick more gives the velocities `v_h = v + ½ dt a` of the next step, and
+//!    positions move with them; `v* = v_h + ½ dt a` is the velocity extrapolated to the new positions. A grain
+//!    that has left through a periodic side comes in on the other.
+//! 4. **Ledger.** The energy of every channel is closed against the start.
+//!
+//! So the grains lie in memory as the next step will find them, one pass over them a step;
+//! [`crate::grains::Grains`] tells where they are and how they move between two steps. The intruder, a few
+//! bodies, is kicked and drifts at the start of a step and kicked at its end.
 
 use crate::body::Mechanism;
+use crate::dimension::Stride;
 use crate::error::StepError;
 use crate::grain_bed::GrainBed;
 use crate::ledger::Ledger;
@@ -34,23 +38,22 @@ pub(crate) fn step(
     dt: f64,
 ) -> Result<(), StepError> {
     intruder.kick_drift(dt);
-    bed.kick_drift(dt);
-    bed.wrap();
     bed.refresh_neighbours(intruder, dt);
     bed.evaluate_contacts(intruder, dt);
     bed.load_intruder(intruder);
-    bed.gather_and_kick(dt);
+    bed.kick_drift(&Stride { before: 0.5 * dt, after: 0.5 * dt, drift: dt });
     intruder.kick(dt);
     books.close(bed, intruder);
     bed.check(step, dt)
 }
 
-/// Finds the forces of the initial state, and opens the ledger on it.
-pub(crate) fn prime(bed: &mut GrainBed, intruder: &mut dyn Mechanism, books: &mut Books) {
+/// Finds the forces of the initial state, opens the ledger on it and sends the grains into the first step,
+/// of `dt` (s).
+pub(crate) fn prime(bed: &mut GrainBed, intruder: &mut dyn Mechanism, books: &mut Books, dt: f64) {
     bed.refresh_neighbours(intruder, 0.0);
     bed.evaluate_contacts(intruder, 0.0);
     bed.load_intruder(intruder);
-    bed.gather_and_kick(0.0);
+    bed.kick_drift(&Stride { before: 0.0, after: 0.5 * dt, drift: dt });
     books.open(bed, intruder);
 }
 
@@ -58,11 +61,17 @@ pub(crate) fn prime(bed: &mut GrainBed, intruder: &mut dyn Mechanism, books: &mu
 pub(crate) struct Books {
     pub(crate) ledger: Ledger,
     entries: Vec<f64>,
+    is_shut: bool,
 }
 
 impl Books {
     pub(crate) fn new(ledger: Ledger) -> Self {
-        Self { ledger, entries: Vec::new() }
+        Self { ledger, entries: Vec::new(), is_shut: false }
+    }
+
+    /// Leaves the ledger as it is from now on.
+    pub(crate) fn shut(&mut self) {
+        self.is_shut = true;
     }
 
     fn open(&mut self, bed: &GrainBed, intruder: &dyn Mechanism) {
@@ -71,6 +80,9 @@ impl Books {
     }
 
     fn close(&mut self, bed: &GrainBed, intruder: &dyn Mechanism) {
+        if self.is_shut {
+            return;
+        }
         bed.entries(intruder, &mut self.entries);
         self.ledger.close(&self.entries);
     }

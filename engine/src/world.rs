@@ -23,7 +23,7 @@ impl World {
     #[must_use]
     pub fn new(mut bed: GrainBed, mut intruder: Box<dyn Mechanism>, dt: f64) -> Self {
         let mut books = Books::new(Ledger::new(bed.terms(&*intruder)));
-        prime(&mut bed, &mut *intruder, &mut books);
+        prime(&mut bed, &mut *intruder, &mut books, dt);
         Self { bed, intruder, books, clock: Clock::new(dt) }
     }
 

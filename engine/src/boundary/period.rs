@@ -73,19 +73,22 @@ impl Period {
     /// The image of `point` inside of the container, from 0 to the length of the period.
     #[inline]
     pub(crate) fn inside(&self, point: Vec3) -> Vec3 {
-        let along = |at: f64, half: f64| {
-            if at < 0.0 {
-                at + 2.0 * half
-            } else if at >= 2.0 * half {
-                at - 2.0 * half
-            } else {
-                at
-            }
-        };
-        // Along an axis that does not repeat a point may lie behind the wall.
-        let x = if self.half[0].is_finite() { along(point.x, self.half[0]) } else { point.x };
-        let y = if self.half[1].is_finite() { along(point.y, self.half[1]) } else { point.y };
-        Vec3::new(x, y, point.z)
+        Vec3::new(self.coordinate_inside(0, point.x), self.coordinate_inside(1, point.y), point.z)
+    }
+
+    /// The same for one coordinate, along x (0) or y (1). Where an axis does not repeat a point may lie
+    /// behind the wall.
+    #[inline(always)]
+    pub(crate) fn coordinate_inside(&self, axis: usize, at: f64) -> f64 {
+        let half = self.half[axis];
+        let length = 2.0 * half;
+        if at < 0.0 && half.is_finite() {
+            at + length
+        } else if at >= length {
+            at - length
+        } else {
+            at
+        }
     }
 }
 

@@ -59,7 +59,7 @@ pub fn restitution(
                 records: &[[0; MOST_LANES]],
                 responses: std::slice::from_mut(&mut response),
             };
-            stage.sweep(batch, dt, Histories { values: history, offset: 0 }, energy);
+            stage.sweep(batch, dt, Histories { values: history, offset: 0 }, Some(energy));
         }
         force = response.normal_force;
         rate = half - 0.5 * dt * force / encounter.mass_eff;

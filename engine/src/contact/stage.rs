@@ -28,7 +28,14 @@ pub struct Histories<'a> {
 /// A contact law as the engine runs it, for so many lanes and components.
 pub trait Sweep<R: Lanes, const N: usize> {
     /// Evaluates a batch of contacts; `dt` (s), `energy` (J) has one entry per channel and is added to.
-    fn sweep(&self, batch: Batch<'_, R, N>, dt: f64, histories: Histories<'_>, energy: &mut [f64]);
+    /// Without it nothing is booked: forces are the same.
+    fn sweep(
+        &self,
+        batch: Batch<'_, R, N>,
+        dt: f64,
+        histories: Histories<'_>,
+        energy: Option<&mut [f64]>,
+    );
 }
 
 /// A contact law as the engine runs it.
@@ -67,14 +74,15 @@ impl<L: ContactLaw> Stage<L> {
     }
 }
 
-impl<L: ContactLaw, R: Lanes, const N: usize> Sweep<R, N> for Stage<L> {
-    fn sweep(
+impl<L: ContactLaw> Stage<L> {
+    /// Evaluates a batch, and returns what is booked: inlined, so that what nobody takes is not computed.
+    #[inline(always)]
+    fn act<R: Lanes, const N: usize>(
         &self,
         batch: Batch<'_, R, N>,
         dt: f64,
         mut histories: Histories<'_>,
-        energy: &mut [f64],
-    ) {
+    ) -> L::Energy<R> {
         let pair = self.pairs[batch.partner.index()];
         let mut booked = L::Energy::<R>::zero();
         let evaluated = batch.contacts.iter().zip(batch.responses).zip(batch.records);
@@ -83,8 +91,24 @@ impl<L: ContactLaw, R: Lanes, const N: usize> Sweep<R, N> for Stage<L> {
             L::act(&pair, contact, dt, &mut history, response, &mut booked);
             write(&history, &mut histories, records);
         }
+        booked
+    }
+}
+
+impl<L: ContactLaw, R: Lanes, const N: usize> Sweep<R, N> for Stage<L> {
+    fn sweep(
+        &self,
+        batch: Batch<'_, R, N>,
+        dt: f64,
+        histories: Histories<'_>,
+        energy: Option<&mut [f64]>,
+    ) {
+        let Some(energy) = energy else {
+            self.act(batch, dt, histories);
+            return;
+        };
         let mut channels = energy.iter_mut();
-        booked.write(&mut |part: R| {
+        self.act(batch, dt, histories).write(&mut |part: R| {
             if let Some(total) = channels.next() {
                 *total += part.sum_of_lanes();
             }

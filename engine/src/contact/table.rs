@@ -5,7 +5,7 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 /// Marks a candidate that remembers nothing, because it does not touch.
-const APART: u32 = u32::MAX;
+pub(crate) const APART: u32 = u32::MAX;
 
 /// Candidate contacts sorted by key, with the history of those that touch.
 ///
@@ -48,6 +48,11 @@ impl ContactTable {
     #[must_use]
     pub fn keys(&self) -> &[[u32; 2]] {
         &self.keys
+    }
+
+    /// Per candidate: where its record begins, or [`APART`].
+    pub(crate) fn records(&self) -> &[u32] {
+        &self.records
     }
 
     /// Whether the contact of `row` was touching when last evaluated.

@@ -1,11 +1,13 @@
 //! The contacts of one block of grains: what the threads work on.
 
+use std::ops::Range;
+
 use arrayvec::ArrayVec;
 
 use crate::body::Part;
 use crate::contact::geometry::{loads_on_grain_and_part, with_surface};
 use crate::contact::stage::{Batch, Histories, Sweep};
-use crate::contact::table::ContactTable;
+use crate::contact::table::{APART, ContactTable};
 use crate::contact::{Contact, ContactStage, Partner, Response};
 use crate::dimension::{Dimension, Frame, Motion, Quad};
 use crate::footprint::Footprint;
@@ -57,7 +59,8 @@ pub(crate) struct Deepest {
 /// What one block adds to the sums of the bed.
 #[derive(Default)]
 pub(super) struct Tally {
-    /// Per stage and channel: energies (J) of contacts between grains and with the intruder.
+    /// Per stage and channel: energies (J) of contacts between grains and with the intruder; empty if
+    /// nothing is booked.
     pub(super) energy: Vec<f64>,
     /// The same for contacts with walls.
     pub(super) wall_energy: Vec<f64>,
@@ -103,7 +106,7 @@ where
         self.records.push(records);
     }
 
-    /// Lets every law act.
+    /// Lets every law act; without an entry in `energy` none books.
     fn evaluate(
         &mut self,
         partner: Partner,
@@ -112,9 +115,11 @@ where
         table: &mut ContactTable,
         energy: &mut [f64],
     ) {
-        let (mut energy, mut offset) = (energy, 0);
+        let mut energy = (!energy.is_empty()).then_some(energy);
+        let mut offset = 0;
         for (k, stage) in stages.iter().enumerate() {
-            let (own, rest) = energy.split_at_mut(stage.channels().len());
+            let split = energy.map(|energy| energy.split_at_mut(stage.channels().len()));
+            let (own, rest) = split.unzip();
             energy = rest;
             let batch = Batch {
                 partner,
@@ -185,18 +190,37 @@ impl Block {
 
     /// Which candidates overlap, or did a step ago.
     fn find_near<D: Dimension<N>, const N: usize>(&mut self, grains: &Grains) {
-        let near = &mut self.bench.near_rows;
-        let keys = self.pairs.keys();
-        // Without a branch: about half of the candidates touch, and which ones cannot be foreseen.
-        near.resize(keys.len(), 0);
-        let mut n_near = 0;
-        for (row, &[i, j]) in keys.iter().enumerate() {
-            let [i, j] = [i, j].map(|grain| grains.place(grain as usize));
-            near[n_near] = row as u32;
-            let touches = D::touch(i, j, &grains.period) | self.pairs.is_touching(row);
-            n_near += usize::from(touches);
+        let mut near = std::mem::take(&mut self.bench.near_rows);
+        let n_rows = self.pairs.keys().len();
+        let in_lanes = n_rows - n_rows % Four::COUNT;
+        near.resize(n_rows, 0);
+        let found = self.find_near_in::<D, Four, N>(grains, 0..in_lanes, (&mut near, 0));
+        let found = self.find_near_in::<D, f64, N>(grains, in_lanes..n_rows, (&mut near, found));
+        near.truncate(found);
+        self.bench.near_rows = near;
+    }
+
+    /// Writes those of `rows` behind the first of `near`, and returns how many it then has.
+    #[inline(always)]
+    fn find_near_in<D: Dimension<N>, R: Lanes, const N: usize>(
+        &self,
+        grains: &Grains,
+        rows: Range<usize>,
+        (near, mut found): (&mut [u32], usize),
+    ) -> usize {
+        let keys = self.pairs.keys()[rows.clone()].chunks_exact(R::COUNT);
+        let records = self.pairs.records()[rows.clone()].chunks_exact(R::COUNT);
+        for (row, (keys, records)) in rows.step_by(R::COUNT).zip(keys.zip(records)) {
+            let keys = [0, 1, 2, 3].map(|lane: usize| keys[lane.min(R::COUNT - 1)]);
+            let [i, j] = [0, 1].map(|side| keys.map(|key| grains.place(key[side] as usize)));
+            let touch = D::touch::<R>(&i, &j, &grains.period).bitmask();
+            // Without a branch: about half of the candidates touch, and which ones cannot be foreseen.
+            for (lane, &record) in records.iter().enumerate() {
+                near[found] = (row + lane) as u32;
+                found += usize::from((touch >> lane & 1 == 1) | (record != APART));
+            }
         }
-        near.truncate(n_near);
+        found
     }
 
     fn sweep_rows<D: Dimension<N>, R: Lanes, const N: usize>(

@@ -2,8 +2,8 @@
 //!
 //! A block owns the contacts of its grains: with grains behind them in memory, with walls and with
 //! the intruder. A contact is evaluated once. Its force is added to the loads that the block holds for
-//! its own grains and for its halo, grains of other blocks that touch them; those are delivered in a
-//! second pass. Nothing is locked, and every sum has one order.
+//! its own grains and for its halo, grains of other blocks that touch them; those are added up when the
+//! grains are kicked. Nothing is locked, and every sum has one order.
 
 mod block;
 
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::body::Part;
 use crate::contact::table::ContactTable;
 use crate::contact::{ContactStage, Partner, Sweep};
-use crate::dimension::{Dimension, Planar, Quad, Spatial};
+use crate::dimension::{Dimension, MOST_QUADS, Planar, Quad, Spatial};
 use crate::footprint::Footprint;
 use crate::grains::{Grains, Space};
 use crate::lanes::Four;
@@ -82,6 +82,14 @@ impl Contacts {
         &self.stages
     }
 
+    /// Has laws book no energies from now on.
+    pub(crate) fn book_nothing(&mut self) {
+        for block in &mut self.blocks {
+            block.tally.energy.clear();
+            block.tally.wall_energy.clear();
+        }
+    }
+
     /// The widest gap (m) of a contact that a law still holds together, of bodies of radius `radius_eff`
     /// (m) or less.
     pub(crate) fn reach(&self, partner: Partner, radius_eff: f64) -> f64 {
@@ -112,7 +120,7 @@ impl Contacts {
             let placement = &part.placement;
             let image = |x: Vec3| grains.period.image_near(x, placement.position);
             bench.points.clear();
-            let positions = here.clone().map(|i| grains.position(i));
+            let positions = here.clone().map(|i| grains.drifted(i));
             bench.points.extend(positions.map(|x| placement.to_body(image(x))));
             part.surface.closest_many(&bench.points, &mut bench.nearest);
             let mut keys = std::mem::take(&mut bench.keys);
@@ -158,10 +166,12 @@ impl Contacts {
                 self.blocks[to].inbox.push(delivery);
             }
         }
+        // Stable: the loads of one grain stay in the order of the blocks that they come from.
+        self.blocks.par_iter_mut().for_each(|block| block.inbox.sort_by_key(|sent| sent.grain));
     }
 
-    /// Finds what touches, lets the laws act, and sums forces within each block;
-    /// [`Contacts::deliver`] puts them together.
+    /// Finds what touches, lets the laws act, and sums forces within each block; [`Contacts::loads`] puts
+    /// them together.
     pub(crate) fn evaluate(&mut self, grains: &Grains, walls: &[Part], intruder: &[Part], dt: f64) {
         match grains.space {
             Space::Planar => self.evaluate_in::<Planar, 1>(grains, [walls, intruder], dt),
@@ -191,20 +201,9 @@ impl Contacts {
     }
 
     /// The loads that contacts make on the grains of `block`.
-    pub(crate) fn deliver<D: Dimension<N>, const N: usize>(
-        &self,
-        block: usize,
-        loads: &mut [Quad],
-    ) {
-        loads.copy_from_slice(&self.blocks[block].loads[..loads.len()]);
-        for delivery in &self.blocks[block].inbox {
-            let from = delivery.from as usize * D::LOAD;
-            let sent = &self.blocks[delivery.block as usize].loads[from..from + D::LOAD];
-            let to = delivery.grain as usize * D::LOAD;
-            for (load, sent) in loads[to..to + D::LOAD].iter_mut().zip(sent) {
-                load.add(sent);
-            }
-        }
+    pub(crate) fn loads(&self, block: usize) -> Loads<'_> {
+        let Block { loads, inbox, .. } = &self.blocks[block];
+        Loads { blocks: &self.blocks, own: loads, inbox: inbox.iter() }
     }
 
     /// Adds up the blocks, in order.
@@ -365,6 +364,31 @@ impl Contacts {
                 }
             }
         }
+    }
+}
+
+/// What contacts do to the grains of one block, grain by grain.
+pub(crate) struct Loads<'a> {
+    blocks: &'a [Block],
+    own: &'a [Quad],
+    /// What is still to be handed out.
+    inbox: std::slice::Iter<'a, Delivery>,
+}
+
+impl Loads<'_> {
+    /// The load of grain `k` of the block; to be asked for one after the other.
+    #[inline(always)]
+    pub(crate) fn of<D: Dimension<N>, const N: usize>(&mut self, k: usize) -> [Quad; MOST_QUADS] {
+        let mut load = [Quad::ZERO; MOST_QUADS];
+        load[..D::LOAD].copy_from_slice(&self.own[k * D::LOAD..][..D::LOAD]);
+        while let Some(sent) = self.inbox.as_slice().first().filter(|sent| sent.grain == k as u32) {
+            let from = &self.blocks[sent.block as usize].loads[sent.from as usize * D::LOAD..];
+            for (load, part) in load.iter_mut().zip(&from[..D::LOAD]) {
+                load.add(part);
+            }
+            self.inbox.next();
+        }
+        load
     }
 }
 

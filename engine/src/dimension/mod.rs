@@ -33,9 +33,9 @@ impl Quad {
     }
 }
 
-/// The state of one grain. Between steps `velocity` and `spin` belong to the same instant as `position`;
-/// inside a step they are those of the half step, and `velocity_now`, `spin_now` are extrapolated to its
-/// end.
+/// The state of one grain in the step that has begun: its place at the end of the drift, the velocities
+/// with which it gets there, and as `velocity_now`, `spin_now` the velocities extrapolated to that end. A grain
+/// that has not been stepped yet has one velocity and one spin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion {
     /// Centre (m).
@@ -76,6 +76,9 @@ pub(crate) struct Frame<R: Lanes> {
     pub(crate) curvature: R,
 }
 
+/// Quads of the longest load.
+pub(crate) const MOST_QUADS: usize = 2;
+
 /// Where a grain is and how large, apart from how it moves: the search for what touches reads only this.
 /// One in each lane.
 pub(crate) type Places<'a> = [&'a Quad; MOST_LANES];
@@ -87,7 +90,7 @@ pub(crate) type Motions<'a> = [&'a [Quad]; MOST_LANES];
 pub(crate) trait Dimension<const N: usize>: Send + Sync + 'static {
     /// Quads that say how a grain moves.
     const MOTION: usize;
-    /// Quads of a grain's load.
+    /// Quads of a grain's load, at most [`MOST_QUADS`].
     const LOAD: usize;
 
     /// Writes the state of a grain.
@@ -96,8 +99,8 @@ pub(crate) trait Dimension<const N: usize>: Send + Sync + 'static {
     /// Reads the state of a grain.
     fn unpack(place: &Quad, motion: &[Quad]) -> Motion;
 
-    /// Whether grains at two places overlap.
-    fn touch(i: &Quad, j: &Quad, period: &Period) -> bool;
+    /// Whether the grains at the places `i` and `j` overlap.
+    fn touch<R: Lanes>(i: &Places<'_>, j: &Places<'_>, period: &Period) -> R::SimdBool;
 
     /// The contacts of the grains `i` with `j`; `dt` (s) is the step.
     fn between<R: Lanes>(
@@ -124,21 +127,47 @@ pub(crate) trait Dimension<const N: usize>: Send + Sync + 'static {
     /// Adds a load to that of a grain.
     fn add_load(load: &Load, to: &mut [Quad]);
 
-    /// The force (N) of a load.
-    fn force(load: &[Quad]) -> Vec3;
-
-    /// Half a kick by `load`, then the drift, then the velocities extrapolated to its end. `half` is half
-    /// the step (s), `inverse_inertia` 1/I (1/(kg m²)). Returns the square of the speed (m²/s²).
+    /// Ends a step and begins the next: half a kick under `load`, the same again, and the drift, after
+    /// which the velocities are extrapolated to its end. `inverse_inertia` is 1/I (1/(kg m²)).
     fn kick_drift(
         place: &mut Quad,
         motion: &mut [Quad],
         load: &[Quad],
-        half: f64,
+        stride: &Stride,
         inverse_inertia: f64,
-    ) -> f64;
+    ) -> Squares;
 
-    /// Half a kick. Returns the squares of speed (m²/s²) and spin (rad²/s²).
-    fn kick(motion: &mut [Quad], load: &[Quad], half: f64, inverse_inertia: f64) -> [f64; 2];
+    /// Brings a grain back inside that has left through a periodic side.
+    fn wrap(place: &mut Quad, period: &Period);
+}
+
+/// Times (s) for which forces and velocities act between one evaluation of contacts and the next.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stride {
+    /// The half of a step that ends; zero if none does.
+    pub(crate) before: f64,
+    /// The half of the step that begins.
+    pub(crate) after: f64,
+    /// The step that begins.
+    pub(crate) drift: f64,
+}
+
+/// Squares of the speed (m²/s²) and of the spin (rad²/s²) of a grain.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Squares {
+    /// Between the steps.
+    pub(crate) speed: f64,
+    /// Between the steps.
+    pub(crate) spin: f64,
+    /// In the drift.
+    pub(crate) drift_speed: f64,
+}
+
+/// `quad` with the last number of `other`.
+#[inline(always)]
+fn with_last_of(quad: [f64; 4], other: &Quad) -> Quad {
+    let [x, y, z, _] = quad;
+    Quad([x, y, z, other.0[3]])
 }
 
 /// The four numbers of a place, in lanes.

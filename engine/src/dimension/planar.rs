@@ -2,12 +2,15 @@
 //!
 //! Slips go along t = y × n, so that the tangential spring is one number that needs no turning.
 
+use simba::simd::SimdValue;
+
 use super::{
-    Dimension, Frame, Load, Motion, Motions, Places, Quad, gather, gather_place, inverse_nearby,
+    Dimension, Frame, Load, Motion, Motions, Places, Quad, Squares, Stride, gather, gather_place,
+    inverse_nearby, with_last_of,
 };
 use crate::boundary::Period;
 use crate::contact::{Contact, Response};
-use crate::lanes::{Lanes, MOST_LANES, Vector};
+use crate::lanes::{Four, Lanes, MOST_LANES, Vector};
 use crate::math::Vec3;
 
 /// A place is (x, z, r, 1/r), a motion (v_x, v_z, ω, 1/m), (v_x, v_z, ω at the end of the step, mobility),
@@ -57,11 +60,12 @@ impl Dimension<1> for Planar {
     }
 
     #[inline(always)]
-    fn touch(i: &Quad, j: &Quad, period: &Period) -> bool {
-        let x = period.nearest(0, i.0[0] - j.0[0]);
-        let z = i.0[1] - j.0[1];
-        let reach = i.0[2] + j.0[2];
-        x * x + z * z < reach * reach
+    fn touch<R: Lanes>(i: &Places<'_>, j: &Places<'_>, period: &Period) -> R::SimdBool {
+        let [[x_i, z_i, r_i, _], [x_j, z_j, r_j, _]] = [i, j].map(gather_place::<R>);
+        let x = period.nearest(0, x_i - x_j);
+        let z = z_i - z_j;
+        let reach = r_i + r_j;
+        (x * x + z * z).simd_lt(reach * reach)
     }
 
     #[inline(always)]
@@ -186,41 +190,31 @@ impl Dimension<1> for Planar {
         to[0].add(&Quad([x, z, turn, 0.0]));
     }
 
-    fn force(load: &[Quad]) -> Vec3 {
-        let [x, z, ..] = load[0].0;
-        in_plane(x, z)
-    }
-
     #[inline(always)]
     fn kick_drift(
         place: &mut Quad,
         motion: &mut [Quad],
         load: &[Quad],
-        half: f64,
+        stride: &Stride,
         inverse_inertia: f64,
-    ) -> f64 {
-        let [f_x, f_z, torque, _] = load[0].0;
-        let [_, _, _, inverse_mass] = motion[0].0;
-        let (dv, dw) = (half * inverse_mass, half * inverse_inertia);
-        let change = [f_x * dv, f_z * dv, torque * dw];
-        for (at, change) in change.into_iter().enumerate() {
-            motion[0].0[at] += change;
-            motion[1].0[at] = motion[0].0[at] + change;
-        }
+    ) -> Squares {
+        let inverse_mass = motion[0].0[3];
+        let mobility = Four::from_arr([inverse_mass, inverse_mass, inverse_inertia, 0.0]);
+        let acceleration = Four::from_arr(load[0].0) * mobility;
+        let between = Four::from_arr(motion[0].0) + acceleration * Four::splat(stride.before);
+        let kick = acceleration * Four::splat(stride.after);
+        let during = between + kick;
+        motion[0] = Quad(during.into_arr());
+        motion[1] = with_last_of((during + kick).into_arr(), &motion[1]);
+        let way = Four::from_arr([stride.drift, stride.drift, 0.0, 0.0]) * during;
+        *place = Quad((Four::from_arr(place.0) + way).into_arr());
+        let [x_2, z_2, spin, _] = (between * between).into_arr();
         let [v_x, v_z, ..] = motion[0].0;
-        place.0[0] += v_x * (2.0 * half);
-        place.0[1] += v_z * (2.0 * half);
-        v_x * v_x + v_z * v_z
+        Squares { speed: x_2 + z_2, spin, drift_speed: v_x * v_x + v_z * v_z }
     }
 
     #[inline(always)]
-    fn kick(motion: &mut [Quad], load: &[Quad], half: f64, inverse_inertia: f64) -> [f64; 2] {
-        let [f_x, f_z, torque, _] = load[0].0;
-        let [v_x, v_z, spin, inverse_mass] = &mut motion[0].0;
-        let (dv, dw) = (half * *inverse_mass, half * inverse_inertia);
-        *v_x += f_x * dv;
-        *v_z += f_z * dv;
-        *spin += torque * dw;
-        [*v_x * *v_x + *v_z * *v_z, *spin * *spin]
+    fn wrap(place: &mut Quad, period: &Period) {
+        place.0[0] = period.coordinate_inside(0, place.0[0]);
     }
 }

@@ -1,11 +1,14 @@
 //! Spheres in space.
 
+use simba::simd::SimdValue;
+
 use super::{
-    Dimension, Frame, Load, Motion, Motions, Places, Quad, gather, gather_place, inverse_nearby,
+    Dimension, Frame, Load, Motion, Motions, Places, Quad, Squares, Stride, gather, gather_place,
+    inverse_nearby, with_last_of,
 };
 use crate::boundary::Period;
 use crate::contact::{Contact, Response};
-use crate::lanes::{Lanes, MOST_LANES, Vector};
+use crate::lanes::{Four, Lanes, MOST_LANES, Vector};
 use crate::math::Vec3;
 
 /// A place is (x, r), a motion (v, 1/m), (ω, mobility), (v at the end of the step, 1/r), (ω at the end of
@@ -62,12 +65,13 @@ impl Dimension<3> for Spatial {
     }
 
     #[inline(always)]
-    fn touch(i: &Quad, j: &Quad, period: &Period) -> bool {
-        let x = period.nearest(0, i.0[0] - j.0[0]);
-        let y = period.nearest(1, i.0[1] - j.0[1]);
-        let z = i.0[2] - j.0[2];
-        let reach = i.0[3] + j.0[3];
-        x * x + y * y + z * z < reach * reach
+    fn touch<R: Lanes>(i: &Places<'_>, j: &Places<'_>, period: &Period) -> R::SimdBool {
+        let [[x_i, y_i, z_i, r_i], [x_j, y_j, z_j, r_j]] = [i, j].map(gather_place::<R>);
+        let x = period.nearest(0, x_i - x_j);
+        let y = period.nearest(1, y_i - y_j);
+        let z = z_i - z_j;
+        let reach = r_i + r_j;
+        (x * x + y * y + z * z).simd_lt(reach * reach)
     }
 
     #[inline(always)]
@@ -172,46 +176,43 @@ impl Dimension<3> for Spatial {
         to[1].add(&quad(load.torque, 0.0));
     }
 
-    fn force(load: &[Quad]) -> Vec3 {
-        split(&load[0]).0
-    }
-
     #[inline(always)]
     fn kick_drift(
         place: &mut Quad,
         motion: &mut [Quad],
         load: &[Quad],
-        half: f64,
+        stride: &Stride,
         inverse_inertia: f64,
-    ) -> f64 {
-        let [_, _, _, inverse_mass] = motion[0].0;
-        let (dv, dw) = (half * inverse_mass, half * inverse_inertia);
-        let mut speed_2 = 0.0;
-        for at in 0..3 {
-            let kick = load[0].0[at] * dv;
-            let velocity = motion[0].0[at] + kick;
-            motion[0].0[at] = velocity;
-            motion[2].0[at] = velocity + kick;
-            place.0[at] += velocity * (2.0 * half);
-            speed_2 += velocity * velocity;
-            let kick = load[1].0[at] * dw;
-            motion[1].0[at] += kick;
-            motion[3].0[at] = motion[1].0[at] + kick;
+    ) -> Squares {
+        let [before, after] = [stride.before, stride.after].map(Four::splat);
+        let accelerations = [
+            Four::from_arr(load[0].0) * Four::splat(motion[0].0[3]),
+            Four::from_arr(load[1].0) * Four::splat(inverse_inertia),
+        ];
+        let mut squares = [[0.0; 4]; 2];
+        for (kind, acceleration) in accelerations.into_iter().enumerate() {
+            let between = Four::from_arr(motion[kind].0) + acceleration * before;
+            let kick = acceleration * after;
+            let during = between + kick;
+            motion[kind] = Quad(during.into_arr());
+            motion[kind + 2] = with_last_of((during + kick).into_arr(), &motion[kind + 2]);
+            squares[kind] = (between * between).into_arr();
         }
-        speed_2
+        let drift = Four::from_arr([stride.drift, stride.drift, stride.drift, 0.0]);
+        let during = Four::from_arr(motion[0].0);
+        *place = Quad((Four::from_arr(place.0) + drift * during).into_arr());
+        let sum = |[x_2, y_2, z_2, _]: [f64; 4]| x_2 + y_2 + z_2;
+        Squares {
+            speed: sum(squares[0]),
+            spin: sum(squares[1]),
+            drift_speed: sum((during * during).into_arr()),
+        }
     }
 
     #[inline(always)]
-    fn kick(motion: &mut [Quad], load: &[Quad], half: f64, inverse_inertia: f64) -> [f64; 2] {
-        let [_, _, _, inverse_mass] = motion[0].0;
-        let (dv, dw) = (half * inverse_mass, half * inverse_inertia);
-        let mut squares = [0.0; 2];
-        for at in 0..3 {
-            motion[0].0[at] += load[0].0[at] * dv;
-            motion[1].0[at] += load[1].0[at] * dw;
-            squares[0] += motion[0].0[at] * motion[0].0[at];
-            squares[1] += motion[1].0[at] * motion[1].0[at];
+    fn wrap(place: &mut Quad, period: &Period) {
+        for axis in 0..2 {
+            place.0[axis] = period.coordinate_inside(axis, place.0[axis]);
         }
-        squares
     }
 }

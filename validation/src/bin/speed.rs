@@ -3,7 +3,6 @@
 #![allow(clippy::print_stdout, reason = "stdout is where a command's result belongs")]
 
 use std::error::Error;
-use std::ffi::OsString;
 use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -15,7 +14,7 @@ use validation::speed::lammps::Lammps;
 use validation::speed::plan::{self, Plan};
 use validation::speed::problem::{PROBLEMS, Problem};
 use validation::speed::report;
-use validation::speed::trial::{Order, Span};
+use validation::speed::trial::{Extent, Order, Span};
 
 const HELP: &str = "\
 Grain-steps per second of beds under an impact: of the time loop alone, in processes of their own, in turns.
@@ -123,13 +122,17 @@ fn count(text: &str) -> Result<usize, String> {
     found.ok_or(format!("`{text}` is no number of 1 to 100"))
 }
 
-/// What a process of the benchmark is told: model, steps of warm-up, steps, threads, folder of the log.
+/// What a process of the benchmark is told: model, steps of warm-up, steps, threads, and how much of a run.
 fn order(args: &mut Parser) -> Result<Order, lexopt::Error> {
     let model = PathBuf::from(args.value()?);
     let mut number = || args.value()?.parse::<u64>();
     let (warm_up, steps, threads) = (number()?, number()?, number()?);
-    let log_into = args.raw_args()?.next().map(|folder: OsString| PathBuf::from(folder));
-    Ok(Order { model, span: Span { warm_up, steps }, threads: threads as usize, log_into })
+    let extent = match args.value()?.string()?.as_str() {
+        "forces" => Extent::Forces,
+        "run" => Extent::Run(PathBuf::from(args.value()?)),
+        _ => Extent::Steps,
+    };
+    Ok(Order { model, span: Span { warm_up, steps }, threads: threads as usize, extent })
 }
 
 fn trial(order: &Order) -> Result<ExitCode, Box<dyn Error>> {

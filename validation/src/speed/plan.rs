@@ -10,7 +10,7 @@ use super::SpeedError;
 use super::lammps::{Lammps, export};
 use super::problem::{BedTime, Problem};
 use super::spread::Spread;
-use super::trial::{Order, Span, Trial};
+use super::trial::{Extent, Order, Span, Trial};
 
 /// How much is done.
 #[derive(Clone, Debug)]
@@ -90,6 +90,8 @@ pub struct Results {
     /// CPU time of a step with the default log over that without one, less one (–); of the problem in a
     /// plane.
     pub logging: Option<Spread>,
+    /// The same of a step with the energy ledger over one without.
+    pub ledger: Option<Spread>,
     /// Impacts in parallel, of the problem in a plane.
     pub batch: Option<Batch>,
 }
@@ -113,19 +115,23 @@ pub fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Results, SpeedError> {
     }
     let mut measured: Vec<Measured> =
         plan.problems.iter().map(|problem| nothing_of(problem, plan.shorter)).collect();
-    let mut logging = Vec::new();
+    let (mut logging, mut ledger) = (Vec::new(), Vec::new());
     for repeat in 1..=plan.repeats {
         for (one, model) in measured.iter_mut().zip(&written) {
             say(&format!("{}: {repeat} of {}", one.problem.name, plan.repeats));
             take_turns(plan, one, model)?;
             if is_planar(one.problem) {
-                logging.push(cost_of_logging(plan, one, model)?);
+                let folder = plan.folder.join(one.problem.name).join("logged");
+                let logged = to_extent(one, model, Extent::Run(folder))?;
+                let forces = to_extent(one, model, Extent::Forces)?;
+                logging.push(extra_cost(Some(&logged), one.one.last()));
+                ledger.push(extra_cost(one.one.last(), Some(&forces)));
             }
         }
     }
     let planar = measured.iter().zip(&written).find(|(one, _)| is_planar(one.problem));
     let batch = planar.map(|(one, model)| in_parallel(one, model, say)).transpose()?;
-    Ok(Results { measured, beds, logging: Spread::of(logging), batch })
+    Ok(Results { measured, beds, logging: Spread::of(logging), ledger: Spread::of(ledger), batch })
 }
 
 fn nothing_of(problem: &'static Problem, shorter: u64) -> Measured {
@@ -147,7 +153,7 @@ fn deck(plan: &Plan, problem: &Problem) -> PathBuf {
 /// One trial of each program.
 fn take_turns(plan: &Plan, measured: &mut Measured, model: &Path) -> Result<(), SpeedError> {
     let span = measured.span;
-    let order = |threads| Order { model: model.to_owned(), span, threads, log_into: None };
+    let order = |threads| Order { model: model.to_owned(), span, threads, extent: Extent::Steps };
     measured.one.push(order(1).in_a_process()?);
     if let Some(lammps) = &plan.lammps {
         measured.lammps_one.push(lammps.trial(&deck(plan, measured.problem), span, 1)?);
@@ -159,20 +165,22 @@ fn take_turns(plan: &Plan, measured: &mut Measured, model: &Path) -> Result<(), 
     Ok(())
 }
 
-/// CPU time per step of a run with the default log over that of the last trial without one, less one.
-fn cost_of_logging(plan: &Plan, of: &Measured, model: &Path) -> Result<f64, SpeedError> {
-    let log_into = Some(plan.folder.join(of.problem.name).join("logged"));
-    let order = Order { model: model.to_owned(), span: of.span, threads: 1, log_into };
-    let logged = order.in_a_process()?;
-    let bare = of.one.last().map_or(f64::NAN, Trial::per_cpu_second);
-    Ok(bare / logged.per_cpu_second() - 1.0)
+/// A trial of plunge on one thread, to another extent than steps alone.
+fn to_extent(of: &Measured, model: &Path, extent: Extent) -> Result<Trial, SpeedError> {
+    Order { model: model.to_owned(), span: of.span, threads: 1, extent }.in_a_process()
+}
+
+/// CPU time per step of `more` over that of `less`, less one.
+fn extra_cost(more: Option<&Trial>, less: Option<&Trial>) -> f64 {
+    let [more, less] = [more, less].map(|trial| trial.map_or(f64::NAN, Trial::per_cpu_second));
+    less / more - 1.0
 }
 
 /// As many impacts as there are cores, at the same time.
 fn in_parallel(of: &Measured, model: &Path, say: &dyn Fn(&str)) -> Result<Batch, SpeedError> {
     let impacts = available_parallelism().map_or(1, usize::from);
     say(&format!("{}: {impacts} impacts at the same time", of.problem.name));
-    let order = Order { model: model.to_owned(), span: of.span, threads: 1, log_into: None };
+    let order = Order { model: model.to_owned(), span: of.span, threads: 1, extent: Extent::Steps };
     let alone = order.in_a_process()?.per_wall_second();
     let together = order.in_processes(impacts)?.iter().map(Trial::per_wall_second).sum();
     Ok(Batch { impacts, together, expected: impacts as f64 * alone })

@@ -90,8 +90,7 @@ pub fn as_json(plan: &Plan, results: &Results) -> Value {
         "growth": growth(results).iter().map(|(grains, factor)| json!({
             "grains": grains, "cpu_per_grain_step_over_smallest": factor,
         })).collect::<Vec<_>>(),
-        // The engine has no way yet to step without its ledger.
-        "ledger_cost": Value::Null,
+        "ledger_cost": results.ledger,
         "logging_cost": results.logging,
         "batch": results.batch.map(|batch| json!({
             "impacts": batch.impacts,
@@ -158,14 +157,15 @@ pub fn as_markdown(plan: &Plan, results: &Results) -> String {
             "- Growth, CPU time per grain and step over the smallest bed of spheres: {steps}."
         );
     }
-    if let Some(Spread { median, least, most }) = results.logging {
-        let [median, least, most] = [median, least, most].map(share);
-        let _ = writeln!(
-            text,
-            "- The default log: {median} of a step ({least} to {most}), in a plane."
-        );
+    for (what, cost) in [("energy ledger", results.ledger), ("default log", results.logging)] {
+        if let Some(Spread { median, least, most }) = cost {
+            let [median, least, most] = [median, least, most].map(share);
+            let _ = writeln!(
+                text,
+                "- The {what}: {median} of a step without it ({least} to {most}), in a plane."
+            );
+        }
     }
-    text.push_str("- The ledger: not measured, as the engine has no way to step without it.\n");
     if let Some(batch) = results.batch {
         let _ = writeln!(
             text,
@@ -226,7 +226,7 @@ mod tests {
             lammps: None,
         };
         let measured = measured.into();
-        (plan, Results { measured, beds: Vec::new(), logging: None, batch: None })
+        (plan, Results { measured, beds: Vec::new(), logging: None, ledger: None, batch: None })
     }
 
     #[test]

@@ -66,6 +66,17 @@ impl Trial {
     }
 }
 
+/// How much of a run is done.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// Steps alone, without the energy ledger.
+    Forces,
+    /// Steps alone.
+    Steps,
+    /// All that `plunge run` does, with its log and its summary in this folder.
+    Run(PathBuf),
+}
+
 /// What is done in a trial.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Order {
@@ -75,8 +86,8 @@ pub struct Order {
     pub span: Span,
     /// On how many threads.
     pub threads: usize,
-    /// Runs as `plunge run` does, with its log and its summary in this folder; without it, steps alone.
-    pub log_into: Option<PathBuf>,
+    /// How much of a run.
+    pub extent: Extent,
 }
 
 impl Order {
@@ -115,7 +126,11 @@ impl Order {
         for number in [self.span.warm_up, self.span.steps, self.threads as u64] {
             command.arg(number.to_string());
         }
-        command.args(&self.log_into);
+        match &self.extent {
+            Extent::Forces => command.arg("forces"),
+            Extent::Steps => command.arg("steps"),
+            Extent::Run(folder) => command.arg("run").arg(folder),
+        };
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         Ok((program, command))
     }
@@ -125,9 +140,9 @@ impl Order {
     /// # Errors
     /// If the problem cannot be read or run.
     pub fn here(&self) -> Result<Trial, SpeedError> {
-        match &self.log_into {
-            Some(folder) => with_threads(self.threads, || logged(self, folder))?,
-            None => with_threads(self.threads, || bare(self))?,
+        match &self.extent {
+            Extent::Run(folder) => with_threads(self.threads, || logged(self, folder))?,
+            Extent::Forces | Extent::Steps => with_threads(self.threads, || bare(self))?,
         }
     }
 }
@@ -162,6 +177,9 @@ fn bare(order: &Order) -> Result<Trial, SpeedError> {
     let resting = grains.read_bed().ok_or_else(missing)?;
     let mut simulation = grains.simulation(&resting, &model.conditions()[0])?;
     drop(resting);
+    if order.extent == Extent::Forces {
+        simulation = simulation.without_ledger();
+    }
     for _ in 0..order.span.warm_up {
         simulation.advance()?;
     }
