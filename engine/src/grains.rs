@@ -275,6 +275,21 @@ impl Grains {
         }
     }
 
+    /// Leaves every grain the share `left` (–) of its velocity and of its spin.
+    pub(crate) fn slow_down(&mut self, left: f64) {
+        for i in 0..self.len() {
+            let motion = self.motion(i);
+            let slowed = Motion {
+                velocity: motion.velocity * left,
+                velocity_now: motion.velocity_now * left,
+                spin: motion.spin * left,
+                spin_now: motion.spin_now * left,
+                ..motion
+            };
+            self.set_motion(i, &slowed);
+        }
+    }
+
     /// Brings back inside, on the other side, what has left through a periodic one.
     pub(crate) fn wrap(&mut self) {
         if self.period.is_none() {

@@ -118,7 +118,7 @@ impl GrainModel<'_> {
         if self.n_grains() > u64::from(u32::MAX) {
             return Err(BuildError::TooManyGrains { count: self.n_grains() });
         }
-        let dt = stability::preparation_time_step(*self)
+        let steps = stability::preparation_steps(*self)
             .ok_or(BuildError::NoTimeStep { law: self.medium.contact_law.entry.name })?;
         let mut rng = random(self.model.run.seed, "sizes");
         let kinds: Vec<GrainKind> =
@@ -128,7 +128,9 @@ impl GrainModel<'_> {
         let space = self.medium.space;
         let grains = fill(&kinds, (space, &container), self.model.run.seed);
         let stages = self.preparation_stages(settle);
-        let settling = Settling::new(&grains, (space, container), self.gravity(), stages, dt);
+        let settling =
+            Settling::new(&grains, (space, container), self.gravity(), stages, steps.settling)
+                .falling_by(steps.falling);
         Ok(Some(match self.medium.bed.target_packing_fraction {
             Some(target) => settling.tapped_to(target),
             None => settling,
