@@ -9,7 +9,7 @@ const REST_ENERGY: f64 = 1e-6;
 /// Mean unbalanced force over mean contact force in a bed at rest, at most (–).
 const REST_UNBALANCE: f64 = 1e-3;
 
-/// Share of the grains whose motion does not keep a bed from rest, the liveliest: rattlers that bounce
+/// Share of the grains that do not keep a bed from rest, those of the greatest energy or force: rattlers that bounce
 /// in their cages, grains that still roll on the surface.
 const RATTLERS: f64 = 0.01;
 
@@ -44,15 +44,16 @@ impl Scales {
         bed.mean_restless_energy() / (self.weight * self.diameter)
     }
 
-    /// How far `bed` is from rest (–): the mean kinetic energy of all grains but the liveliest hundredth
-    /// over 10⁻⁶ m g d, or the mean unbalanced force over a thousandth of the mean contact force,
-    /// whichever is more. Below 1 it is at rest.
+    /// How far `bed` is from rest (–): the mean kinetic energy of a grain over 10⁻⁶ m g d, or the mean
+    /// unbalanced force over a thousandth of the mean contact force, whichever is more, each without the
+    /// greatest hundredth. Below 1 it is at rest.
     pub(super) fn restlessness(&self, bed: &GrainBed) -> f64 {
-        let energy = calm_energy(&bed.grains) / (self.weight * self.diameter);
+        let energy = mean_of_calm(energies(&bed.grains)) / (self.weight * self.diameter);
         (energy / REST_ENERGY).max(self.unbalance(bed) / REST_UNBALANCE)
     }
 
-    /// Mean force that is left on a grain, gravity included, over the mean force of a contact (–).
+    /// Mean force that is left on a grain, gravity included, but for the greatest hundredth, over the mean force
+    /// of a contact (–).
     ///
     /// The mean contact force of a bed at rest follows from its weight, by the stress theorem
     /// p V = Σ f l / D over all contacts (Christoffersen, Mehrabadi & Nemat-Nasser, J. Appl. Mech. 48,
@@ -65,7 +66,7 @@ impl Scales {
             Space::Planar => 2.0,
             Space::Spatial => 3.0,
         };
-        let left = (0..grains.len()).map(|i| grains.force(i).norm()).sum::<f64>() / n;
+        let left = mean_of_calm((0..grains.len()).map(|i| grains.force(i).norm()).collect());
         let height = grains.positions().map(|centre| centre.z).sum::<f64>() / n;
         // A bed that has hardly a contact is in flight, and far from balance whatever it is divided by.
         let coordination = bed.coordination().max(1.0);
@@ -74,9 +75,8 @@ impl Scales {
     }
 }
 
-/// Kinetic energy (J) of all grains but the liveliest hundredth, in space without spin, over the number
-/// of all.
-fn calm_energy(grains: &Grains) -> f64 {
+/// Kinetic energy (J) of each grain, in space without spin.
+fn energies(grains: &Grains) -> Vec<f64> {
     let energy = |i: usize| {
         let translation = grains.mass[i] * grains.velocity(i).norm_squared();
         let rotation = match grains.space {
@@ -85,12 +85,16 @@ fn calm_energy(grains: &Grains) -> f64 {
         };
         0.5 * (translation + rotation)
     };
-    let mut energies: Vec<f64> = (0..grains.len()).map(energy).collect();
-    let calm = energies.len() - (RATTLERS * energies.len() as f64) as usize;
-    if calm < energies.len() {
-        energies.select_nth_unstable_by(calm, f64::total_cmp);
+    (0..grains.len()).map(energy).collect()
+}
+
+/// Sum of all `values` but the greatest hundredth, over the number of all.
+fn mean_of_calm(mut values: Vec<f64>) -> f64 {
+    let calm = values.len() - (RATTLERS * values.len() as f64) as usize;
+    if calm < values.len() {
+        values.select_nth_unstable_by(calm, f64::total_cmp);
     }
-    energies[..calm].iter().sum::<f64>() / grains.len() as f64
+    values[..calm].iter().sum::<f64>() / values.len() as f64
 }
 
 #[cfg(test)]
@@ -114,14 +118,14 @@ mod tests {
 
     #[test]
     fn two_grains_in_flight_among_two_hundred_leave_a_bed_calm_and_a_third_does_not() {
-        assert_eq!(calm_energy(&discs(200, &[3.0, 2.0])).to_bits(), 0.0_f64.to_bits());
+        assert_eq!(mean_of_calm(energies(&discs(200, &[3.0, 2.0]))).to_bits(), 0.0_f64.to_bits());
         // The third has ½ · 1 g · (1 m/s)², which is all that counts.
-        let third = calm_energy(&discs(200, &[3.0, 1.0, 2.0]));
+        let third = mean_of_calm(energies(&discs(200, &[3.0, 1.0, 2.0])));
         assert!((third * 200.0 / 0.5e-3 - 1.0).abs() < 1e-14, "{third}");
     }
 
     #[test]
     fn in_a_bed_of_less_than_a_hundred_grains_every_one_counts() {
-        assert!(calm_energy(&discs(99, &[1.0])) > 0.0);
+        assert!(mean_of_calm(energies(&discs(99, &[1.0]))) > 0.0);
     }
 }

@@ -178,9 +178,9 @@ impl Settling {
         self.stage == Stage::Resting
     }
 
-    /// How far the bed is from rest (–): the mean kinetic energy of all grains but the liveliest hundredth
-    /// over 10⁻⁶ m g d, or the mean unbalanced force over a thousandth of the mean contact force,
-    /// whichever is more. It has to stay below 1.
+    /// How far the bed is from rest (–): the mean kinetic energy of a grain over 10⁻⁶ m g d, or the mean
+    /// unbalanced force over a thousandth of the mean contact force, whichever is more, each without
+    /// the greatest hundredth. It has to stay below 1.
     #[must_use]
     pub fn restlessness(&self) -> f64 {
         self.scales.restlessness(self.bed())
