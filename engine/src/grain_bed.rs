@@ -10,6 +10,7 @@ use crate::contacts::{ContactSums, Contacts, Memory, SavedBlock};
 use crate::dimension::{Dimension, Load, Motion, Planar, Spatial};
 use crate::error::StepError;
 use crate::footprint::Footprint;
+use crate::grain_force::{self, GrainForce, GrainForces, TakenByForces};
 use crate::grains::{Grain, Grains, Space};
 use crate::ledger::{ChannelKind, Term, TermKind};
 use crate::math::Vec3;
@@ -32,6 +33,7 @@ pub struct GrainBed {
     pub gravity: Vec3,
     container: Container,
     absorber: Option<Absorber>,
+    forces: GrainForces,
     walls: Vec<Part>,
     recessive: RecessiveWork,
     contacts: Contacts,
@@ -52,6 +54,8 @@ struct GrainEnergy {
     potential: f64,
     /// What absorbing layers took in the last step.
     absorbed: f64,
+    /// What forces on single grains took in the last step.
+    taken: TakenByForces,
     /// How many of them move, see [`GrainBed::moving_share`].
     moving: u32,
 }
@@ -131,6 +135,7 @@ impl GrainBed {
             gravity,
             absorber: container.absorber(resting.space),
             container,
+            forces: GrainForces::new(),
             recessive: RecessiveWork::new(n_intruder_parts),
             contacts: Contacts::new(
                 stages,
@@ -149,6 +154,15 @@ impl GrainBed {
         bed.list_pairs_and_walls();
         bed.contacts.remember(&resting.memories, &resting.stages);
         bed
+    }
+
+    /// The same bed with `forces` on its single grains.
+    ///
+    /// # Panics
+    /// If there are more than [`MOST_FORCES`](grain_force::MOST_FORCES).
+    #[must_use]
+    pub fn with_forces(self, forces: impl IntoIterator<Item = Box<dyn GrainForce>>) -> Self {
+        Self { forces: forces.into_iter().collect(), ..self }
     }
 
     /// The container.
@@ -277,11 +291,12 @@ impl GrainBed {
     fn gather_and_kick_in<D: Dimension<N>, const N: usize>(&mut self, dt: f64) {
         let half = 0.5 * dt;
         let gravity = self.gravity;
-        let (contacts, absorber) = (&self.contacts, &self.absorber);
+        let (contacts, absorber, forces) = (&self.contacts, &self.absorber, &self.forces);
         let liftable = 2.0 * MOVING_LIFT * gravity.norm();
-        self.grains.par_blocks::<D, N>().zip(&mut self.energy).for_each(|(block, energy)| {
+        self.grains.par_blocks::<D, N>().zip(&mut self.energy).for_each(|(mut block, energy)| {
             contacts.deliver::<D, N>(block.block, block.loads);
-            *energy = GrainEnergy::default();
+            let taken = grain_force::act::<D, N>(forces, &mut block, (gravity.norm(), dt));
+            *energy = GrainEnergy { taken, ..GrainEnergy::default() };
             let moved = block.places.iter().zip(block.motions.chunks_exact_mut(D::MOTION));
             let loads = block.loads.chunks_exact_mut(D::LOAD);
             for (k, ((place, motion), load)) in moved.zip(loads).enumerate() {
@@ -339,6 +354,7 @@ impl GrainBed {
         if self.absorber.is_some() {
             terms.push(channel("absorbing-boundary", ChannelKind::Dissipated));
         }
+        terms.extend(grain_force::terms(&self.forces));
         if self.has_recessive(intruder) {
             terms.push(channel("recessive-wall", ChannelKind::Input));
         }
@@ -359,6 +375,7 @@ impl GrainBed {
             rotation: sum.rotation + block.rotation,
             potential: sum.potential + block.potential,
             absorbed: sum.absorbed + block.absorbed,
+            taken: std::array::from_fn(|k| sum.taken[k] + block.taken[k]),
             moving: sum.moving + block.moving,
         });
         entries.clear();
@@ -382,6 +399,7 @@ impl GrainBed {
         if self.absorber.is_some() {
             entries.push(grains.absorbed);
         }
+        entries.extend(&grains.taken[..self.forces.len()]);
         if self.has_recessive(intruder) {
             entries.push(self.recessive.work());
         }

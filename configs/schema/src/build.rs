@@ -4,6 +4,7 @@ use engine::bed::{GrainKind, Settling, SizeDistribution, fill, random};
 use engine::boundary::{Bottom, Container, Sides};
 use engine::contact::ContactStage;
 use engine::grain_bed::{GrainBed, RestingBed};
+use engine::grain_force::GrainForce;
 use engine::grains::Grain;
 use engine::math::Vec3;
 use engine::simulation::{Settings, Simulation};
@@ -12,7 +13,8 @@ use thiserror::Error;
 
 use crate::absorbing;
 use crate::model::{
-    self, BedSource, BottomKind, Condition, GrainModel, LawChoice, Settle, SidesKind, StartX,
+    self, BedSource, BottomKind, Condition, GrainForceChoice, GrainModel, LawChoice, Settle,
+    SidesKind, StartX,
 };
 use crate::stability;
 
@@ -183,10 +185,12 @@ impl GrainModel<'_> {
         Some(RestingBed::without_history(self.medium.space, &grains))
     }
 
-    /// `resting` in the container under the laws of the run, ready for the intruder.
+    /// `resting` in the container under the laws and the forces on grains of the run, ready for the intruder.
     #[must_use]
     pub fn bed(&self, resting: &RestingBed) -> GrainBed {
+        let forces = self.medium.grain_forces.iter();
         GrainBed::new(resting, self.container(), self.gravity(), self.stages(), self.n_bodies())
+            .with_forces(forces.map(|force| (force.entry.build)(&force.params)))
     }
 
     /// The impact `condition` on the bed `resting`.
@@ -220,6 +224,12 @@ impl GrainModel<'_> {
                 from + (to - from) * random(self.model.run.seed, &purpose).random::<f64>()
             }
         }
+    }
+}
+
+impl GrainForceChoice {
+    pub(crate) fn build(&self) -> Box<dyn GrainForce> {
+        (self.entry.build)(&self.params)
     }
 }
 
