@@ -22,6 +22,10 @@ pub trait GrainForce: Send + Sync {
 
     /// What acts on a grain that moves as `grain` says.
     fn on(&self, grain: &MovingGrain) -> ForceOnGrain;
+
+    /// The shortest time (s) in which it can brake a grain, under gravity of the given magnitude (m/s²);
+    /// infinite where it does not act. A step has to be well below it.
+    fn relaxation_time(&self, gravity: f64) -> f64;
 }
 
 /// One grain, as far as a force on it may depend on it.

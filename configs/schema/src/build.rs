@@ -190,7 +190,7 @@ impl GrainModel<'_> {
     pub fn bed(&self, resting: &RestingBed) -> GrainBed {
         let forces = self.medium.grain_forces.iter();
         GrainBed::new(resting, self.container(), self.gravity(), self.stages(), self.n_bodies())
-            .with_forces(forces.map(|force| (force.entry.build)(&force.params)))
+            .with_forces(forces.map(GrainForceChoice::build))
     }
 
     /// The impact `condition` on the bed `resting`.

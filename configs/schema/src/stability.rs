@@ -208,14 +208,15 @@ impl Scene {
 ///
 /// Collisions are as fast as the fastest impact, or as a fall through the height of the bed. The drag of a
 /// layer that absorbs is damping too; in a corner that of three layers adds up, which a step that is a
-/// quarter of one layer's time still bears.
+/// quarter of one layer's time still bears. So are forces that brake single grains.
 #[must_use]
 pub fn times(model: GrainModel<'_>) -> Times {
     let mut times = Scene::of_run(model).times();
-    if let Some(rate) = absorbing::largest_rate(model) {
-        let relaxation = 1.0 / rate;
-        times.damping = Some(times.damping.map_or(relaxation, |other| other.min(relaxation)));
-    }
+    let layers = absorbing::largest_rate(model).map(|rate| 1.0 / rate);
+    let gravity = model.medium.gravity;
+    let forces = model.medium.grain_forces.iter().map(|choice| choice.build());
+    let forces = forces.map(|force| force.relaxation_time(gravity)).filter(|time| time.is_finite());
+    times.damping = layers.into_iter().chain(forces).chain(times.damping).reduce(f64::min);
     times
 }
 

@@ -31,6 +31,10 @@ impl GrainForce for PoreAir {
         let force = grain.velocity * (-grain.mass * self.drag_rate);
         ForceOnGrain { force, torque: Vec3::zeros() }
     }
+
+    fn relaxation_time(&self, _: f64) -> f64 {
+        1.0 / self.drag_rate
+    }
 }
 
 const PARAMS: &[ParamSpec] = &[ParamSpec {

@@ -37,6 +37,11 @@ impl GrainForce for SideWall {
             torque: turn * (-2.0 / 3.0 * limit * grain.radius / smooth(turn.norm())),
         }
     }
+
+    /// Of a creeping disc; the spin, with I = ½ m r², is braked by ⅔ · 2 of the same rate.
+    fn relaxation_time(&self, gravity: f64) -> f64 {
+        0.75 * CREEP / (self.plate_friction * gravity)
+    }
 }
 
 const PARAMS: &[ParamSpec] = &[ParamSpec {
