@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use configs::contact_laws::{
-    ActsOn, LAWS, LawEntry, RESISTANCE_LAWS, ResistanceEntry, Role, Twin, twins,
+    ActsOn, GRAIN_FORCES, GrainForceEntry, LAWS, LawEntry, RESISTANCE_LAWS, ResistanceEntry, Role,
+    Twin, twins,
 };
 use configs::engine::ledger::{Channel, ChannelKind};
 use configs::engine::params::{Default, ParamSpec, Range};
@@ -73,6 +74,26 @@ impl From<&LawEntry> for Described {
     }
 }
 
+impl From<&GrainForceEntry> for Described {
+    fn from(force: &GrainForceEntry) -> Self {
+        Self {
+            name: force.name,
+            medium: "grains",
+            acts_on: if force.planar { "discs" } else { "grains" },
+            table: "[[effect]]",
+            summary: force.summary,
+            formula: force.formula,
+            signature: force.signature,
+            source: force.source,
+            params: force.params,
+            channels: vec![Channel { name: force.name, kind: ChannelKind::Dissipated }],
+            variables: &[],
+            shows_with: Vec::new(),
+            twins: Vec::new(),
+        }
+    }
+}
+
 impl From<&ResistanceEntry> for Described {
     fn from(law: &ResistanceEntry) -> Self {
         let (acts_on, table, visible) = match law.role {
@@ -100,7 +121,8 @@ impl From<&ResistanceEntry> for Described {
 /// Everything there is, by medium.
 fn library() -> Vec<Described> {
     let grains = LAWS.iter().map(|law| Described::from(*law));
-    grains.chain(RESISTANCE_LAWS.iter().map(|law| Described::from(*law))).collect()
+    let forces = GRAIN_FORCES.iter().map(|force| Described::from(*force));
+    grains.chain(forces).chain(RESISTANCE_LAWS.iter().map(|law| Described::from(*law))).collect()
 }
 
 pub(crate) fn run(args: &Args) -> CommandResult {

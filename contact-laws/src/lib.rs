@@ -5,6 +5,7 @@ mod capillary_bridge;
 mod cohesion_dmt;
 mod cohesion_jkr;
 pub mod formula;
+mod grain_force;
 mod hertz;
 mod hertz_mindlin;
 mod hertz_mindlin_viscous;
@@ -16,6 +17,7 @@ mod rolling_resistance;
 mod twisting_resistance;
 mod velocity_restitution;
 
+pub use grain_force::{GRAIN_FORCES, GrainForceEntry, find_grain_force};
 pub use hertz::damping_ratio;
 pub use registry::{ActsOn, FromParams, LawEntry};
 pub use resistance::{

@@ -10,6 +10,7 @@ use crate::contacts::{ContactSums, Contacts, Memory, SavedBlock};
 use crate::dimension::{Dimension, Load, Motion, Planar, Spatial, Stride};
 use crate::error::StepError;
 use crate::footprint::Footprint;
+use crate::grain_force::{self, ForceOnGrain, GrainForce, GrainForces, MovingGrain, TakenByForces};
 use crate::grains::{Grain, Grains, Space};
 use crate::ledger::{ChannelKind, Term, TermKind};
 use crate::math::Vec3;
@@ -32,6 +33,7 @@ pub struct GrainBed {
     pub gravity: Vec3,
     container: Container,
     absorber: Option<Absorber>,
+    forces: GrainForces,
     walls: Vec<Part>,
     recessive: RecessiveWork,
     contacts: Contacts,
@@ -52,6 +54,8 @@ struct SumsOfGrains {
     potential: f64,
     /// What absorbing layers took in the last step.
     absorbed: f64,
+    /// What forces on single grains took in the last step.
+    taken: TakenByForces,
     /// How many of them move, see [`GrainBed::moving_share`].
     moving: u32,
     /// Square of the greatest speed in the drift that follows (m²/s²).
@@ -134,6 +138,7 @@ impl GrainBed {
             gravity,
             absorber: container.absorber(resting.space),
             container,
+            forces: GrainForces::new(),
             recessive: RecessiveWork::new(n_intruder_parts),
             contacts: Contacts::new(
                 stages,
@@ -152,6 +157,15 @@ impl GrainBed {
         bed.list_pairs_and_walls();
         bed.contacts.remember(&resting.memories, &resting.stages);
         bed
+    }
+
+    /// The same bed with `forces` on its single grains.
+    ///
+    /// # Panics
+    /// If there are more than [`MOST_FORCES`](grain_force::MOST_FORCES).
+    #[must_use]
+    pub fn with_forces(self, forces: impl IntoIterator<Item = Box<dyn GrainForce>>) -> Self {
+        Self { forces: forces.into_iter().collect(), ..self }
     }
 
     /// The container.
@@ -210,6 +224,24 @@ impl GrainBed {
                 ([a, b], overlap)
             })
         })
+    }
+
+    /// Goes on in steps of `dt` (s).
+    pub(crate) fn change_step(&mut self, dt: f64) {
+        self.grains.change_step(dt);
+        self.fastest = self.grains.fastest();
+    }
+
+    /// Adds `velocity` (m/s) to that of every grain.
+    pub(crate) fn throw(&mut self, velocity: Vec3) {
+        self.grains.throw(velocity);
+        self.fastest = self.grains.fastest();
+    }
+
+    /// Leaves every grain the share `left` (–) of its velocity and of its spin.
+    pub(crate) fn slow_down(&mut self, left: f64) {
+        self.grains.slow_down(left);
+        self.fastest = self.grains.fastest();
     }
 
     /// Has laws book no energies from now on.
@@ -277,27 +309,35 @@ impl GrainBed {
 
     fn kick_drift_in<D: Dimension<N>, const N: usize>(&mut self, stride: &Stride) {
         let (gravity, period) = (self.gravity, self.grains.period);
-        let (contacts, absorber) = (&self.contacts, &self.absorber);
+        let (contacts, absorber, forces) = (&self.contacts, &self.absorber, &self.forces);
         let liftable = 2.0 * MOVING_LIFT * gravity.norm();
         self.grains.par_blocks::<D, N>().zip(&mut self.sums_of_grains).for_each(|(block, sums)| {
             *sums = SumsOfGrains::default();
             let mut loads = contacts.loads(block.block);
             let moved = block.places.iter_mut().zip(block.motions.chunks_exact_mut(D::MOTION));
             for (k, (place, motion)) in moved.enumerate() {
-                let Motion { position, velocity, velocity_now, radius, .. } =
-                    D::unpack(place, motion);
+                let grain = D::unpack(place, motion);
+                let Motion { position, velocity, velocity_now, radius, .. } = grain;
                 let (mass, inertia) = (block.mass[k], block.inertia[k]);
-                let mut force = gravity * mass;
+                let weight = gravity * mass;
+                let mut more = Load { force: weight, torque: Vec3::zeros() };
                 if let Some(absorber) = absorber {
                     let drag = mass * absorber.rate(position);
-                    force -= velocity_now * drag;
+                    more.force -= velocity_now * drag;
                     // Second order: what acts half-way, over the way of the step.
                     let half_way = absorber.rate(position - velocity * stride.before);
                     let way_2 = velocity.norm_squared() * (2.0 * stride.before);
                     sums.absorbed += mass * half_way * way_2;
                 }
+                for (force, taken) in forces.iter().zip(&mut sums.taken) {
+                    let moving = MovingGrain::half_way(&grain, mass, weight.norm());
+                    *taken -= force.on(&moving).power(&moving) * (2.0 * stride.before);
+                    let ForceOnGrain { force, torque } = force.on(&moving.now(&grain));
+                    more.force += force;
+                    more.torque += torque;
+                }
                 let mut load = loads.of::<D, N>(k);
-                D::add_load(&Load { force, torque: Vec3::zeros() }, &mut load);
+                D::add_load(&more, &mut load);
                 let squares = D::kick_drift(place, motion, &load, stride, block.inverse_inertia[k]);
                 D::wrap(place, &period);
                 let translation = 0.5 * mass * squares.speed;
@@ -342,6 +382,7 @@ impl GrainBed {
         if self.absorber.is_some() {
             terms.push(channel("absorbing-boundary", ChannelKind::Dissipated));
         }
+        terms.extend(grain_force::terms(&self.forces));
         if self.has_recessive(intruder) {
             terms.push(channel("recessive-wall", ChannelKind::Input));
         }
@@ -363,6 +404,7 @@ impl GrainBed {
                 rotation: sum.rotation + block.rotation,
                 potential: sum.potential + block.potential,
                 absorbed: sum.absorbed + block.absorbed,
+                taken: std::array::from_fn(|k| sum.taken[k] + block.taken[k]),
                 moving: sum.moving + block.moving,
                 fastest_2: sum.fastest_2.max(block.fastest_2),
             });
@@ -387,6 +429,7 @@ impl GrainBed {
         if self.absorber.is_some() {
             entries.push(grains.absorbed);
         }
+        entries.extend(&grains.taken[..self.forces.len()]);
         if self.has_recessive(intruder) {
             entries.push(self.recessive.work());
         }

@@ -279,15 +279,59 @@ impl Grains {
     /// Adds `velocity` (m/s) to that of every grain.
     pub(crate) fn throw(&mut self, velocity: Vec3) {
         for i in 0..self.len() {
+            self.push(i, velocity, Vec3::zeros());
+        }
+        self.wrap();
+    }
+
+    /// Leaves every grain the share `left` (–) of its velocity and of its spin.
+    pub(crate) fn slow_down(&mut self, left: f64) {
+        for i in 0..self.len() {
+            self.push(i, self.velocity(i) * (left - 1.0), self.spin(i) * (left - 1.0));
+        }
+        self.wrap();
+    }
+
+    /// Adds `velocity` (m/s) and `spin` (rad/s) to those of grain `i`, between two steps.
+    fn push(&mut self, i: usize, velocity: Vec3, spin: Vec3) {
+        let motion = self.motion(i);
+        let pushed = Motion {
+            position: motion.position + velocity * self.ahead,
+            velocity: motion.velocity + velocity,
+            velocity_now: motion.velocity_now + velocity,
+            spin: motion.spin + spin,
+            spin_now: motion.spin_now + spin,
+            ..motion
+        };
+        self.set_motion(i, &pushed);
+    }
+
+    /// Begins the next step anew, with one of `dt` (s).
+    pub(crate) fn change_step(&mut self, dt: f64) {
+        for i in 0..self.len() {
             let motion = self.motion(i);
-            let thrown = Motion {
-                position: motion.position + velocity * self.ahead,
-                velocity: motion.velocity + velocity,
-                velocity_now: motion.velocity_now + velocity,
+            let ratio = dt / self.ahead;
+            let kick = (motion.velocity_now - motion.velocity) * ratio;
+            let turn = (motion.spin_now - motion.spin) * ratio;
+            let velocity = self.velocity(i) + kick;
+            let spin = self.spin(i) + turn;
+            let changed = Motion {
+                position: self.position(i) + velocity * dt,
+                velocity,
+                velocity_now: velocity + kick,
+                spin,
+                spin_now: spin + turn,
                 ..motion
             };
-            self.set_motion(i, &thrown);
+            self.set_motion(i, &changed);
         }
+        self.ahead = dt;
+        self.wrap();
+    }
+
+    /// The greatest speed of a grain in the drift that has begun (m/s).
+    pub(crate) fn fastest(&self) -> f64 {
+        (0..self.len()).map(|i| self.motion(i).velocity.norm()).fold(0.0, f64::max)
     }
 
     /// Brings back inside, on the other side, what has left through a periodic one.

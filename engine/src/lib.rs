@@ -19,6 +19,7 @@ mod dimension;
 pub mod error;
 pub mod footprint;
 pub mod grain_bed;
+pub mod grain_force;
 pub mod grains;
 pub mod lanes;
 pub mod launch;

@@ -37,6 +37,14 @@ impl World {
         step(&mut self.bed, &mut *self.intruder, &mut self.books, number, dt)
     }
 
+    /// Goes on in steps of `dt` (s). The time is what it was, to half such a step, and the number of the
+    /// step is the one that belongs to it.
+    pub(crate) fn change_step(&mut self, dt: f64) {
+        let step = (self.clock.time() / dt).round() as u64;
+        self.clock = Clock { step, dt };
+        self.bed.change_step(dt);
+    }
+
     /// The bed.
     #[must_use]
     pub fn bed(&self) -> &GrainBed {

@@ -4,6 +4,7 @@ use engine::bed::{GrainKind, Settling, SizeDistribution, fill, random};
 use engine::boundary::{Bottom, Container, Sides};
 use engine::contact::ContactStage;
 use engine::grain_bed::{GrainBed, RestingBed};
+use engine::grain_force::GrainForce;
 use engine::grains::Grain;
 use engine::math::Vec3;
 use engine::simulation::{Settings, Simulation};
@@ -12,7 +13,8 @@ use thiserror::Error;
 
 use crate::absorbing;
 use crate::model::{
-    self, BedSource, BottomKind, Condition, GrainModel, LawChoice, Settle, SidesKind, StartX,
+    self, BedSource, BottomKind, Condition, GrainForceChoice, GrainModel, LawChoice, Settle,
+    SidesKind, StartX,
 };
 use crate::stability;
 
@@ -118,7 +120,7 @@ impl GrainModel<'_> {
         if self.n_grains() > u64::from(u32::MAX) {
             return Err(BuildError::TooManyGrains { count: self.n_grains() });
         }
-        let dt = stability::preparation_time_step(*self)
+        let steps = stability::preparation_steps(*self)
             .ok_or(BuildError::NoTimeStep { law: self.medium.contact_law.entry.name })?;
         let mut rng = random(self.model.run.seed, "sizes");
         let kinds: Vec<GrainKind> =
@@ -128,7 +130,9 @@ impl GrainModel<'_> {
         let space = self.medium.space;
         let grains = fill(&kinds, (space, &container), self.model.run.seed);
         let stages = self.preparation_stages(settle);
-        let settling = Settling::new(&grains, (space, container), self.gravity(), stages, dt);
+        let settling =
+            Settling::new(&grains, (space, container), self.gravity(), stages, steps.settling)
+                .falling_by(steps.falling);
         Ok(Some(match self.medium.bed.target_packing_fraction {
             Some(target) => settling.tapped_to(target),
             None => settling,
@@ -181,10 +185,12 @@ impl GrainModel<'_> {
         Some(RestingBed::without_history(self.medium.space, &grains))
     }
 
-    /// `resting` in the container under the laws of the run, ready for the intruder.
+    /// `resting` in the container under the laws and the forces on grains of the run, ready for the intruder.
     #[must_use]
     pub fn bed(&self, resting: &RestingBed) -> GrainBed {
+        let forces = self.medium.grain_forces.iter();
         GrainBed::new(resting, self.container(), self.gravity(), self.stages(), self.n_bodies())
+            .with_forces(forces.map(GrainForceChoice::build))
     }
 
     /// The impact `condition` on the bed `resting`.
@@ -218,6 +224,12 @@ impl GrainModel<'_> {
                 from + (to - from) * random(self.model.run.seed, &purpose).random::<f64>()
             }
         }
+    }
+}
+
+impl GrainForceChoice {
+    pub(crate) fn build(&self) -> Box<dyn GrainForce> {
+        (self.entry.build)(&self.params)
     }
 }
 

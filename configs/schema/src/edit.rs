@@ -179,7 +179,8 @@ fn resistance_effect(name: &str) -> Result<&'static [ParamSpec], EditError> {
     }
     let all = contact_laws::RESISTANCE_LAWS.iter();
     let known = all.filter(|entry| is_effect(entry.role)).map(|entry| entry.name).collect();
-    let other = contact_laws::find(name).is_some();
+    let other =
+        contact_laws::find(name).is_some() || contact_laws::find_grain_force(name).is_some();
     Err(unknown(name, ["resistive-force", "grains"], known, other))
 }
 
@@ -189,9 +190,12 @@ fn contact_effect(name: &str) -> Result<&'static [ParamSpec], EditError> {
     {
         return Ok(entry.params);
     }
-    let all = contact_laws::LAWS.iter();
-    let known =
-        all.filter(|law| law.acts_on == ActsOn::ContactEffect).map(|law| law.name).collect();
+    if let Some(entry) = contact_laws::find_grain_force(name) {
+        return Ok(entry.params);
+    }
+    let effects = contact_laws::LAWS.iter().filter(|law| law.acts_on == ActsOn::ContactEffect);
+    let forces = contact_laws::GRAIN_FORCES.iter().map(|force| force.name);
+    let known = effects.map(|law| law.name).chain(forces).collect();
     let other = contact_laws::find_resistance(name).is_some();
     Err(unknown(name, ["grains", "resistive-force"], known, other))
 }

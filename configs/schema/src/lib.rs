@@ -35,10 +35,10 @@ pub use diagnostics::{
 pub use load::{ConfigError, LoadOptions, Loaded, ModelSource};
 pub use model::{
     AngleTable, Bed, BedSource, BottomKind, Coefficient, Condition, ConditionLists, Container,
-    ContainerShape, CsvBed, EffectChoice, EnergySettings, FreeParameter, GrainKind, GrainLog,
-    GrainMedium, GrainModel, Impact, Intruder, Launch, LawChoice, LogSettings, Material, Medium,
-    Model, ParameterError, ResistanceChoice, ResistiveMedium, ResistiveModel, RunSettings, Settle,
-    SidesKind, StartPositions, StartX, Stepping, TimeStep,
+    ContainerShape, CsvBed, EffectChoice, EnergySettings, FreeParameter, GrainForceChoice,
+    GrainKind, GrainLog, GrainMedium, GrainModel, Impact, Intruder, Launch, LawChoice, LogSettings,
+    Material, Medium, Model, ParameterError, ResistanceChoice, ResistiveMedium, ResistiveModel,
+    RunSettings, Settle, SidesKind, StartPositions, StartX, Stepping, TimeStep,
 };
 pub use paths::PathError;
 pub use reader::interval as describe_range;

@@ -22,6 +22,10 @@ pub const FEWEST_STEPS_PER_COLLISION: f64 = 10.0;
 /// Fewer steps per collision than this are accepted with a warning.
 pub const FEW_STEPS_PER_COLLISION: f64 = 20.0;
 
+/// Automatic step of falling grains over that of a run: half as many steps per collision and per
+/// relaxation still bring them down to the same packing.
+const FALLING_STEP: f64 = 2.0;
+
 /// Packing fraction by which the height of a bed is guessed that names no target.
 pub(crate) fn guessed_packing(space: Space) -> f64 {
     match space {
@@ -171,12 +175,12 @@ impl Scene {
         scene
     }
 
-    fn of_preparation(model: GrainModel<'_>) -> Self {
+    fn of_preparation(model: GrainModel<'_>, speed: f64) -> Self {
         let effects: &[LawChoice] = match &model.medium.bed.source {
             BedSource::Settle(settle) => &settle.effects,
             BedSource::Csv(_) => &[],
         };
-        Self::new(model, effects, fall_speed(model))
+        Self::new(model, effects, speed)
     }
 
     fn times(&self) -> Times {
@@ -204,21 +208,22 @@ impl Scene {
 ///
 /// Collisions are as fast as the fastest impact, or as a fall through the height of the bed. The drag of a
 /// layer that absorbs is damping too; in a corner that of three layers adds up, which a step that is a
-/// quarter of one layer's time still bears.
+/// quarter of one layer's time still bears. So are forces that brake single grains.
 #[must_use]
 pub fn times(model: GrainModel<'_>) -> Times {
     let mut times = Scene::of_run(model).times();
-    if let Some(rate) = absorbing::largest_rate(model) {
-        let relaxation = 1.0 / rate;
-        times.damping = Some(times.damping.map_or(relaxation, |other| other.min(relaxation)));
-    }
+    let layers = absorbing::largest_rate(model).map(|rate| 1.0 / rate);
+    let gravity = model.medium.gravity;
+    let forces = model.medium.grain_forces.iter().map(|choice| choice.build());
+    let forces = forces.map(|force| force.relaxation_time(gravity)).filter(|time| time.is_finite());
+    times.damping = layers.into_iter().chain(forces).chain(times.damping).reduce(f64::min);
     times
 }
 
 /// The times while the bed settles: the grains fall through about its height.
 #[must_use]
 pub fn preparation_times(model: GrainModel<'_>) -> Times {
-    Scene::of_preparation(model).times()
+    Scene::of_preparation(model, fall_speed(model)).times()
 }
 
 /// The step of the run, its factor included (s); `None` when it is automatic and the law has no
@@ -232,14 +237,31 @@ pub fn time_step(model: GrainModel<'_>) -> Option<f64> {
     Some(step * model.medium.stepping.time_step_factor)
 }
 
-/// The step while the bed settles (s); `None` as for [`time_step`], and for a bed from a file.
+/// The steps of a preparation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PreparationSteps {
+    /// While the grains fall (s).
+    pub falling: f64,
+    /// From then on (s).
+    pub settling: f64,
+}
+
+/// The steps while the bed is prepared; `None` as for [`time_step`], and for a bed from a file.
+///
+/// A given step holds from the start to the end. An automatic one is, until the grains have fallen,
+/// twice that of a run in which everything is as fast as the fall; then that of a run at the speed
+/// √(g d), which no grain exceeds that drops by half its diameter: contacts under a Hertz law
+/// are the slower the less they are compressed.
 #[must_use]
-pub fn preparation_time_step(model: GrainModel<'_>) -> Option<f64> {
+pub fn preparation_steps(model: GrainModel<'_>) -> Option<PreparationSteps> {
     let BedSource::Settle(settle) = &model.medium.bed.source else {
         return None;
     };
-    match settle.preparation_time_step {
-        TimeStep::Fixed(step) => Some(step),
-        TimeStep::Auto => Some(preparation_times(model).step()?.0),
+    if let TimeStep::Fixed(step) = settle.preparation_time_step {
+        return Some(PreparationSteps { falling: step, settling: step });
     }
+    let falling = FALLING_STEP * preparation_times(model).step()?.0;
+    let slow = (model.medium.gravity * model.largest_grain()).sqrt().max(SLOWEST_APPROACH);
+    let settling = Scene::of_preparation(model, slow.min(fall_speed(model))).times().step()?.0;
+    Some(PreparationSteps { falling: falling.max(settling), settling })
 }

@@ -3,8 +3,10 @@
 
 mod fill;
 mod report;
+mod rest;
 mod settling;
 mod sizes;
+mod tapping;
 
 use rand::SeedableRng;
 use rand_pcg::Pcg64;

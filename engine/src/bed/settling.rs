@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::BedReport;
+use super::rest::Scales;
+use super::tapping::Tapping;
 use crate::body::NoIntruder;
 use crate::boundary::Container;
 use crate::clock::Clock;
@@ -13,44 +15,61 @@ use crate::grains::{Grain, Space};
 use crate::math::Vec3;
 use crate::world::{SavedWorld, World};
 
-/// A bed is at rest when the mean kinetic energy of a grain, in space without spin, stays below this many
-/// m g d …
-const REST_ENERGY: f64 = 1e-6;
+/// The fall is over when the mean kinetic energy of a grain (m g d) stays below this …
+const FALLEN_ENERGY: f64 = 0.02;
 
-/// … for this long (s).
+/// … for so many fall times: longer than all grains are slow at the top of a throw.
+const FALLEN_HOLD: f64 = 0.5;
+
+/// Rate of the drag that calms a fallen bed, in inverse fall times: it ends the breathing of the bed
+/// within a few of them, and hardly slows the grains that still roll into a hollow.
+const DRAG: f64 = 1.0;
+
+/// Steps from one braking by the drag to the next.
+const BRAKE_EVERY: u64 = 10;
+
+/// Steps between two looks at the bed.
+const LOOK_EVERY: u64 = 50;
+
+/// A bed is at rest that has stayed so, without drag, for this long (s).
 const REST_HOLD: f64 = 0.02;
-
-/// A packing fraction this near below its target is reached.
-const NEAR_TARGET: f64 = 0.005;
-
-/// A tap that brings less than this in packing fraction is the last.
-const LEAST_GAIN: f64 = 0.0005;
-
-/// A bed is tapped this often at most.
-const MOST_TAPS: u32 = 50;
 
 /// How high a tap throws a free grain, in mean grain diameters.
 const TAP_HEIGHT: f64 = 0.5;
 
-/// A bed on its way to rest.
+/// A bed on its way to rest: it falls under its contact laws and nothing else; what is left of its
+/// motion then, a drag takes; at last it has to show that it stays at rest without.
+///
+/// The drag slows the velocity and the spin of every grain at one rate. It belongs to the preparation: it
+/// has ended when the bed is at rest, and no impact has it.
 pub struct Settling {
     world: World,
-    quiet_since: Option<f64>,
-    quiet_energy: f64,
+    scales: Scales,
+    stage: Stage,
+    /// Step once the bed has fallen (s).
+    dt: f64,
     /// The packing fraction that tapping is to reach, if it is wanted.
-    target: Option<f64>,
+    target: f64,
     tapping: Tapping,
 }
 
-/// How far the tapping has come.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Tapping {
-    taps: u32,
-    /// Packing fraction at rest before the last tap.
-    before: f64,
-    /// When the last tap was (s).
-    tapped_at: f64,
-    is_over: bool,
+/// What a bed on its way to rest is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+enum Stage {
+    /// It falls, or flies after a tap; with little energy since some time (s).
+    Falling { slow_since: Option<f64> },
+    /// A drag calms it.
+    Calming,
+    /// Without drag it has kept still since some time (s).
+    Proving { since: f64 },
+    /// It is at rest.
+    Resting,
+}
+
+impl Stage {
+    fn has_fallen(self) -> bool {
+        !matches!(self, Self::Falling { .. })
+    }
 }
 
 impl Settling {
@@ -69,22 +88,28 @@ impl Settling {
     ) -> Self {
         let start = RestingBed::without_history(space, grains);
         let bed = GrainBed::new(&start, container, gravity, stages, 0);
-        let n = grains.len() as f64;
-        let mean_mass = grains.iter().map(|grain| grain.mass).sum::<f64>() / n;
-        let mean_diameter = 2.0 * grains.iter().map(|grain| grain.radius).sum::<f64>() / n;
-        let quiet_energy = REST_ENERGY * mean_mass * gravity.norm() * mean_diameter;
+        let scales = Scales::of(&bed);
         let world = World::new(bed, Box::new(NoIntruder), dt);
-        let tapping = Tapping { is_over: true, ..Tapping::default() };
-        Self { world, quiet_since: None, quiet_energy, target: None, tapping }
+        let stage = Stage::Falling { slow_since: None };
+        Self { world, scales, stage, dt, target: 0.0, tapping: Tapping::NONE }
     }
 
-    /// Has the bed tapped, once it is at rest, until its packing fraction is within 0.005 of `target`:
+    /// Takes longer steps of `dt` (s) until the bed has fallen for the first time: collisions that are not
+    /// followed closely dissipate a little more or less, but forces at rest need the finer step.
+    #[must_use]
+    pub fn falling_by(mut self, dt: f64) -> Self {
+        self.world.change_step(dt);
+        self
+    }
+
+    /// Has the bed tapped, once it is calm, until its packing fraction is within 0.005 of `target`:
     /// a tap gives every grain the upward velocity √(g d) of a throw half a mean diameter high, and lets
-    /// the bed settle again. It ends after fifty taps, or when one brings less than 0.0005; a bed that is
-    /// denser is left as it is. The ledger of a settling bed does not count what a tap puts in.
+    /// the bed settle again. It ends after fifty taps, or when four together bring less than 0.001; a
+    /// bed that is denser is left as it is. The ledger of a settling bed does not count what a tap puts
+    /// in, nor what the drag takes.
     #[must_use]
     pub fn tapped_to(self, target: f64) -> Self {
-        Self { target: Some(target), tapping: Tapping::default(), ..self }
+        Self { target, tapping: Tapping::WANTED, ..self }
     }
 
     /// Moves on by one step.
@@ -93,51 +118,72 @@ impl Settling {
     /// If the step cannot be trusted.
     pub fn advance(&mut self) -> Result<(), StepError> {
         self.world.advance()?;
-        if self.restlessness() >= 1.0 {
-            self.quiet_since = None;
-        } else if self.quiet_since.is_none() {
-            self.quiet_since = Some(self.clock().time());
+        let step = self.clock().step;
+        if self.stage == Stage::Calming && step.is_multiple_of(BRAKE_EVERY) {
+            let time = BRAKE_EVERY as f64 * self.clock().dt;
+            let left = libm::exp(-DRAG * time / self.scales.fall_time);
+            self.world.bed.slow_down(left);
         }
-        if self.is_quiet() && !self.tapping.is_over {
-            self.tap_if_wanted();
+        if step.is_multiple_of(LOOK_EVERY) {
+            self.look();
         }
         Ok(())
     }
 
-    /// Ends the tapping where it has done what it can, or taps.
-    fn tap_if_wanted(&mut self) {
-        let fraction = BedReport::of(self.bed()).packing_fraction;
-        let Tapping { taps, before, .. } = self.tapping;
-        let is_near = self.target.is_none_or(|target| target - fraction <= NEAR_TARGET);
-        let is_tired = taps > 0 && fraction - before < LEAST_GAIN;
-        if is_near || is_tired || taps >= MOST_TAPS {
-            self.tapping.is_over = true;
-            return;
+    /// Goes on to the next stage once the bed is far enough.
+    fn look(&mut self) {
+        let time = self.clock().time();
+        match self.stage {
+            Stage::Falling { slow_since } => {
+                let is_slow = self.scales.mean_energy(self.bed()) < FALLEN_ENERGY;
+                let since = slow_since.unwrap_or(time);
+                let hold = FALLEN_HOLD * self.scales.fall_time;
+                if is_slow && time - since >= hold {
+                    self.world.change_step(self.dt);
+                    self.stage = Stage::Calming;
+                } else {
+                    self.stage = Stage::Falling { slow_since: is_slow.then_some(since) };
+                }
+            }
+            Stage::Calming if self.is_still() => self.stage = self.tapped_or_proving(),
+            Stage::Proving { .. } if !self.is_still() => self.stage = Stage::Calming,
+            Stage::Proving { since } if time - since >= REST_HOLD => self.stage = Stage::Resting,
+            Stage::Calming | Stage::Proving { .. } | Stage::Resting => {}
         }
-        let bed = &self.world.bed;
-        let mean_diameter = 2.0 * bed.grains.radius.iter().sum::<f64>() / bed.grains.len() as f64;
-        let weight = bed.gravity.norm();
-        let upward = bed.gravity * -(2.0 * TAP_HEIGHT * mean_diameter / weight).sqrt();
-        self.world.bed.grains.throw(upward);
-        let tapped_at = self.clock().time();
-        self.tapping = Tapping { taps: taps + 1, before: fraction, tapped_at, is_over: false };
-        self.quiet_since = None;
     }
 
-    /// Whether the bed has kept quiet for long enough, and no tap is to follow.
+    fn is_still(&self) -> bool {
+        self.restlessness() < 1.0
+    }
+
+    /// Taps a calm bed that is still too loose; else it is left to itself.
+    fn tapped_or_proving(&mut self) -> Stage {
+        let time = self.clock().time();
+        if !self.tapping.is_over {
+            let fraction = BedReport::of(self.bed()).packing_fraction;
+            self.tapping.decide((fraction, self.target), time);
+        }
+        if self.tapping.is_over {
+            return Stage::Proving { since: time };
+        }
+        let bed = &mut self.world.bed;
+        let speed = (2.0 * TAP_HEIGHT).sqrt() * self.scales.diameter / self.scales.fall_time;
+        bed.throw(bed.gravity.normalize() * -speed);
+        Stage::Falling { slow_since: None }
+    }
+
+    /// Whether the bed has kept still without drag for long enough, and no tap is to follow.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
-        self.is_quiet() && self.tapping.is_over
+        self.stage == Stage::Resting
     }
 
-    fn is_quiet(&self) -> bool {
-        self.quiet_since.is_some_and(|since| self.clock().time() - since >= REST_HOLD)
-    }
-
-    /// Mean kinetic energy of a grain, in space without spin, over the one that counts as rest.
+    /// How far the bed is from rest (–): the mean kinetic energy of a grain over 10⁻⁶ m g d, or the mean
+    /// unbalanced force over a thousandth of the mean contact force, whichever is more, each without
+    /// the greatest hundredth. It has to stay below 1.
     #[must_use]
     pub fn restlessness(&self) -> f64 {
-        self.bed().mean_restless_energy() / self.quiet_energy
+        self.scales.restlessness(self.bed())
     }
 
     /// How long (s) it has been settling since it was filled, or tapped last.
@@ -161,18 +207,17 @@ impl Settling {
     /// Everything that changes while it settles.
     #[must_use]
     pub fn save(&self) -> SavedSettling {
-        SavedSettling {
-            world: self.world.save(),
-            quiet_since: self.quiet_since,
-            tapping: self.tapping,
-        }
+        SavedSettling { world: self.world.save(), stage: self.stage, tapping: self.tapping }
     }
 
     /// Takes back a saved state of the same preparation; `false`, and an unusable one, if it is of
     /// another.
     #[must_use]
     pub fn restore(&mut self, saved: SavedSettling) -> bool {
-        self.quiet_since = saved.quiet_since;
+        if saved.stage.has_fallen() || saved.tapping.taps > 0 {
+            self.world.change_step(self.dt);
+        }
+        self.stage = saved.stage;
         self.tapping = saved.tapping;
         self.world.restore(saved.world)
     }
@@ -188,6 +233,6 @@ impl Settling {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SavedSettling {
     world: SavedWorld,
-    quiet_since: Option<f64>,
+    stage: Stage,
     tapping: Tapping,
 }

@@ -35,6 +35,9 @@ pub(super) fn checked(
     for effect in &medium.effects {
         refused.push(format!("the effect {} as plunge has it", effect.entry.name));
     }
+    for force in &medium.grain_forces {
+        refused.push(format!("the effect {} as plunge has it", force.entry.name));
+    }
     match Contacts::of(&medium.contact_law) {
         Ok(contacts) if refused.is_empty() => return Ok(contacts),
         Ok(_) => {}

@@ -38,6 +38,8 @@ pub static SWITCHES: &[Switch] = &[
     WALL_FRICTION,
     RESTITUTION,
     VELOCITY_RESTITUTION,
+    PORE_AIR,
+    SIDE_WALL,
     PACKING,
     POLYDISPERSITY,
 ];
@@ -168,6 +170,29 @@ const VELOCITY_RESTITUTION: Switch = Switch {
     change: |_, q| effect("velocity-restitution", &[("viscous_time", quantity(q, "us"))]),
 };
 
+const PORE_AIR: Switch = Switch {
+    id: "pore-air",
+    amplitude: "drag_rate (1/s)",
+    screen: 5.0,
+    range: (0.0, 200.0),
+    separable_from: "from restitution: a wide range of speeds; from air-drag: flight before contact",
+    lacks: |model| has(model, "pore-air"),
+    change: |_, q| effect("pore-air", &[("drag_rate", quantity(q, "1/s"))]),
+};
+
+const SIDE_WALL: Switch = Switch {
+    id: "side-wall",
+    amplitude: "plate_friction",
+    screen: 0.1,
+    range: (0.0, 1.0),
+    separable_from: "from grain-friction: slow impacts, or plates of another roughness",
+    lacks: |model| match model.medium.space {
+        Space::Spatial => Some("spheres are not held between two plates"),
+        Space::Planar => has(model, "side-wall").or_else(|| weightless(model)),
+    },
+    change: |_, q| effect("side-wall", &[("plate_friction", number(q))]),
+};
+
 const PACKING: Switch = Switch {
     id: "packing",
     amplitude: "share of bed.preparation_friction that is taken away: a denser bed",
@@ -222,7 +247,9 @@ impl Switch {
 }
 
 fn has(model: GrainModel<'_>, name: &str) -> Option<&'static str> {
-    let has = model.medium.effects.iter().any(|effect| effect.entry.name == name);
+    let mut laws = model.medium.effects.iter().map(|effect| effect.entry.name);
+    let mut forces = model.medium.grain_forces.iter().map(|force| force.entry.name);
+    let has = laws.any(|own| own == name) || forces.any(|own| own == name);
     has.then_some("the model has it")
 }
 

@@ -179,7 +179,9 @@ impl Control for Told {
             && time - self.before >= 0.05
         {
             self.before = time;
-            eprintln!("  bed at {time:.2} s: {restlessness:.1e} times the energy of rest");
+            eprintln!(
+                "  bed at {time:.2} s: {restlessness:.1e} times as restless as a bed at rest"
+            );
         }
     }
 

@@ -47,6 +47,20 @@ fn spheres_settle_to_the_packing_and_the_contacts_of_a_bed_with_friction() {
             let inside = |at: f64| at > 1.4e-3 && at < 0.03 - 1.4e-3;
             inside(x.x) && inside(x.y) && x.z > 1.4e-3
         }));
+        // At rest nothing calms it any more, and for two further falls of a grain it needs nothing.
+        let mean_height = |settling: &Settling| {
+            settling.bed().grains.positions().map(|centre| centre.z).sum::<f64>() / 650.0
+        };
+        let before = mean_height(&settling);
+        let until = settling.clock().time() + 2.0 * (3.2e-3_f64 / 9.81).sqrt();
+        while settling.clock().time() < until {
+            settling.advance().expect("a sound step");
+            // Grains that roll into the last hollows shake others a little.
+            assert!(settling.restlessness() < 10.0, "{}", settling.restlessness());
+        }
+        // A hundredth of the grains may still roll down by a radius each.
+        let sunk = before - mean_height(&settling);
+        assert!(sunk.abs() < 0.01 * 1.6e-3, "{sunk}");
     })
     .expect("two threads");
 }
@@ -58,7 +72,9 @@ fn tapped(target: f64, seed: u64) -> Settling {
     let grains = fill(&kinds, (Space::Planar, &container), seed);
     let rough = Linear { friction: 0.9, ..SOFT };
     let gravity = Vec3::new(0.0, 0.0, -9.81);
+    // Sixteen steps per collision are enough for the fall.
     Settling::new(&grains, (Space::Planar, container), gravity, vec![rough.stage()], 2.5e-5)
+        .falling_by(5e-5)
         .tapped_to(target)
 }
 
@@ -73,29 +89,41 @@ fn settle(settling: &mut Settling) {
 fn taps_make_a_loose_bed_denser_and_a_restart_between_them_changes_no_bit() {
     let fraction = |settling: &Settling| BedReport::of(settling.bed()).packing_fraction;
     let mut gains = Vec::new();
-    // A bed that does not give way to its first tap is left at that, so one bed proves little.
-    for seed in 1..=4 {
+    // A bed may give way to none of its taps, so one proves little.
+    for seed in 1..=3 {
         let mut loose = tapped(0.1, seed);
         settle(&mut loose);
         // Denser than the target, it is left alone.
         assert_eq!(loose.taps(), 0);
         let mut dense = tapped(0.9, seed);
         settle(&mut dense);
-        assert!(dense.taps() >= 1);
+        // One tap that brings nothing is not yet the last.
+        assert!(dense.taps() >= 4);
         gains.push(fraction(&dense) - fraction(&loose));
     }
     let mean = gains.iter().sum::<f64>() / gains.len() as f64;
     assert!(mean > 0.003, "{gains:?}");
 
-    let (mut dense, mut saved) = (tapped(0.9, 2), None);
-    while !dense.is_at_rest() {
+    // While it falls by long steps, and in the air after a tap, by short ones.
+    let (mut dense, mut saved) = (tapped(0.9, 2), Vec::new());
+    while dense.taps() < 2 {
         dense.advance().expect("a sound step");
-        if dense.taps() == 1 && saved.is_none() {
-            saved = Some(dense.save());
+        let is_next = match saved.len() {
+            0 => dense.clock().step == 500,
+            1 => dense.taps() == 1,
+            _ => false,
+        };
+        if is_next {
+            saved.push(dense.save());
         }
     }
-    let mut resumed = tapped(0.9, 2);
-    assert!(resumed.restore(saved.expect("it was tapped")));
-    settle(&mut resumed);
-    assert_eq!(resumed.bed().resting(), dense.bed().resting());
+    assert_eq!(saved.len(), 2);
+    for saved in saved {
+        let mut resumed = tapped(0.9, 2);
+        assert!(resumed.restore(saved));
+        while resumed.taps() < 2 {
+            resumed.advance().expect("a sound step");
+        }
+        assert_eq!(resumed.bed().resting(), dense.bed().resting());
+    }
 }

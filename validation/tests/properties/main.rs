@@ -6,5 +6,6 @@ mod closure;
 mod cloud;
 mod conservation;
 mod determinism;
+mod grain_forces;
 mod neighbours;
 mod symmetry;

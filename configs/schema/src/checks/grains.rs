@@ -276,7 +276,7 @@ impl GrainChecks<'_> {
         let times = stability::times(self.grains);
         self.step_against(run, times.collision, self.common.places.time_step, true);
         if self.common.places.preparation_time_step.is_some() {
-            let step = stability::preparation_time_step(self.grains);
+            let step = stability::preparation_steps(self.grains).map(|steps| steps.settling);
             let (times, span) = (
                 stability::preparation_times(self.grains),
                 self.common.places.preparation_time_step,

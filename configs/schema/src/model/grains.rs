@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_4, FRAC_PI_6};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use contact_laws::LawEntry;
+use contact_laws::{GrainForceEntry, LawEntry};
 use engine::bed::SizeDistribution;
 use engine::boundary::{self, Base, Bottom, Sides};
 use engine::grains::Space;
@@ -27,8 +27,10 @@ pub struct GrainMedium {
     pub bed: Bed,
     /// `[contact_law]`.
     pub contact_law: LawChoice,
-    /// `[[effect]]`, in the order of the file.
+    /// `[[effect]]` on contacts, in the order of the file.
     pub effects: Vec<LawChoice>,
+    /// `[[effect]]` on single grains, in the order of the file.
+    pub grain_forces: Vec<GrainForceChoice>,
     /// Where impacts start, from `[impact]`.
     pub start: StartPositions,
     /// The steps of `[run]`.
@@ -265,6 +267,29 @@ impl PartialEq for LawChoice {
 impl std::fmt::Debug for LawChoice {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_tuple("LawChoice").field(&self.entry.name).field(&self.params).finish()
+    }
+}
+
+/// A force on single grains, of the registry, and its parameters.
+#[derive(Clone)]
+pub struct GrainForceChoice {
+    /// The registry's entry.
+    pub entry: &'static GrainForceEntry,
+    /// All its parameters (SI).
+    pub params: ParamTable,
+    /// Where the file names it.
+    pub span: Span,
+}
+
+impl PartialEq for GrainForceChoice {
+    fn eq(&self, other: &Self) -> bool {
+        self.entry.name == other.entry.name && self.params == other.params
+    }
+}
+
+impl std::fmt::Debug for GrainForceChoice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("GrainForceChoice").field(&self.entry.name).field(&self.params).finish()
     }
 }
 

@@ -6,9 +6,9 @@ mod parameters;
 mod resistive;
 
 pub use grains::{
-    Bed, BedSource, BottomKind, Container, ContainerShape, CsvBed, GrainKind, GrainLog,
-    GrainMedium, GrainModel, LawChoice, Material, Settle, SidesKind, StartPositions, Stepping,
-    TimeStep,
+    Bed, BedSource, BottomKind, Container, ContainerShape, CsvBed, GrainForceChoice, GrainKind,
+    GrainLog, GrainMedium, GrainModel, LawChoice, Material, Settle, SidesKind, StartPositions,
+    Stepping, TimeStep,
 };
 pub(crate) use impact::degrees;
 pub use impact::{Condition, ConditionLists, Impact, Intruder, Launch, StartX};

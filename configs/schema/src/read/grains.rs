@@ -49,7 +49,8 @@ pub(super) fn model(
         folder,
         places,
     );
-    let effects = laws::effects(root.tables("effect", limits::EFFECTS), contact_law.as_ref());
+    let tables = root.tables("effect", limits::EFFECTS);
+    let effects = laws::effects_of_run(tables, space, contact_law.as_ref());
     let intruder = impact::in_grains(root.table("intruder", Some(INTRUDER_EXAMPLE)), space, places);
     let impact_table = root.table("impact", Some(IMPACT_EXAMPLE));
     let impact = impact::impact_on_grains(&impact_table, space, places);
@@ -58,6 +59,7 @@ pub(super) fn model(
     let conditions = impact::conditions_on_grains(root.table("conditions", None), places);
     let (run, stepping) = run?;
     let (log, grain_log) = log?;
+    let (effects, grain_forces) = effects?;
     Some(Model {
         run,
         log,
@@ -68,7 +70,8 @@ pub(super) fn model(
             container: container?,
             bed: bed?,
             contact_law: contact_law?,
-            effects: effects?,
+            effects,
+            grain_forces,
             start: start?,
             stepping,
             log: grain_log,

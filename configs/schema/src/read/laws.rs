@@ -1,11 +1,12 @@
 //! `[contact_law]`, `[[effect]]` and `[[bed.effect]]`, driven by the registry.
 
-use contact_laws::{ActsOn, LawEntry};
+use contact_laws::{ActsOn, GRAIN_FORCES, LawEntry, find_grain_force};
+use engine::grains::Space;
 use engine::params::{Default as ParamDefault, ParamTable};
 
 use super::Places;
 use crate::diagnostics::{Diagnostic, Span, nearest, shorten};
-use crate::model::LawChoice;
+use crate::model::{GrainForceChoice, LawChoice};
 use crate::reader::TableReader;
 
 pub(super) fn contact_law(table: TableReader<'_>, places: &mut Places) -> Option<LawChoice> {
@@ -42,6 +43,51 @@ pub(super) fn effects(
         table.finish();
     }
     (effects.len() == wanted).then_some(effects)
+}
+
+/// The effects of a run: on contacts under the law `base`, and on single grains; `None` if something of
+/// them could not be read.
+pub(super) fn effects_of_run(
+    tables: Vec<TableReader<'_>>,
+    space: Space,
+    base: Option<&LawChoice>,
+) -> Option<(Vec<LawChoice>, Vec<GrainForceChoice>)> {
+    let is_force = |table: &TableReader<'_>| {
+        table.peek_text("name").is_some_and(|name| find_grain_force(name).is_some())
+    };
+    let (forces, contacts) = tables.into_iter().partition(is_force);
+    let (effects, forces) = (effects(contacts, base), grain_forces(forces, space));
+    Some((effects?, forces?))
+}
+
+fn grain_forces(tables: Vec<TableReader<'_>>, space: Space) -> Option<Vec<GrainForceChoice>> {
+    let wanted = tables.len();
+    let mut forces: Vec<GrainForceChoice> = Vec::new();
+    for table in tables {
+        let Some(force) = grain_force(&table, space) else { continue };
+        if let Some(first) = forces.iter().find(|other| other.entry.name == force.entry.name) {
+            table.reader.report(given_twice(force.entry.name, force.span, first.span));
+        }
+        forces.push(force);
+        table.finish();
+    }
+    (forces.len() == wanted).then_some(forces)
+}
+
+fn grain_force(table: &TableReader<'_>, space: Space) -> Option<GrainForceChoice> {
+    let example = GRAIN_FORCES.first().map_or("", |force| force.name);
+    let name = table.text("name", None, example, "the effect")?;
+    let (entry, span) = (find_grain_force(&name.value)?, name.span?);
+    if entry.planar && space == Space::Spatial {
+        table.reader.report(
+            Diagnostic::error(format!("`{}` acts on discs alone", entry.name))
+                .at(span, "spheres are not held between two plates")
+                .help("leave it out, or make the bed one of discs: dimension = 2"),
+        );
+        return None;
+    }
+    let params = table.params_on(entry.params, &ParamTable::new())?;
+    Some(GrainForceChoice { entry, params, span })
 }
 
 /// What to say about an effect that is there already.
@@ -114,8 +160,15 @@ fn lent_to<'b>(
 
 fn explain_law(name: &str, span: Span, slot: ActsOn, known: &[&LawEntry]) -> Diagnostic {
     let shown = shorten(name);
-    let list: Vec<&str> = known.iter().map(|law| law.name).collect();
-    let list = list.join(", ");
+    let forces = GRAIN_FORCES.iter().map(|force| force.name);
+    let forces = forces.filter(|_| slot == ActsOn::ContactEffect);
+    let names: Vec<&str> = known.iter().map(|law| law.name).chain(forces).collect();
+    let list = names.join(", ");
+    if find_grain_force(name).is_some() {
+        return Diagnostic::error(format!("`{shown}` acts on the grains of a run"))
+            .at(span, "this is neither a contact law nor an effect on a bed that settles")
+            .help("write it below [[effect]]");
+    }
     match (contact_laws::find(name), slot) {
         (Some(_), ActsOn::ContactBase) => {
             Diagnostic::error(format!("`{shown}` is an effect, not a contact law"))
@@ -137,7 +190,7 @@ fn explain_law(name: &str, span: Span, slot: ActsOn, known: &[&LawEntry]) -> Dia
                     .at(span, "this medium is a bed of grains")
                     .help(format!("{kind}s: {list}; `plunge effects` describes them"));
             }
-            let label = match nearest(name, known.iter().map(|law| law.name)) {
+            let label = match nearest(name, names.iter().copied()) {
                 Some(near) => format!("did you mean \"{near}\"?"),
                 None => "not known".to_owned(),
             };

@@ -266,8 +266,11 @@ fn explain(name: &str, span: Span, slot: Slot, known: &[&str]) -> Diagnostic {
                 .help(list);
         }
     }
-    if contact_laws::find(name).is_some() {
-        return Diagnostic::error(format!("`{shown}` acts on contacts of grains"))
+    let on_grains = contact_laws::find(name).map(|_| "acts on contacts of grains");
+    let on_grains =
+        on_grains.or(contact_laws::find_grain_force(name).map(|_| "acts on single grains"));
+    if let Some(acts) = on_grains {
+        return Diagnostic::error(format!("`{shown}` {acts}"))
             .at(span, "this medium has no grains")
             .help(list);
     }

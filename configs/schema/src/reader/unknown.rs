@@ -63,10 +63,14 @@ impl Unknown {
             .iter()
             .filter(|law| law.params.iter().any(|spec| spec.key == self.key))
             .map(|law| format!("the law `{}`", law.name));
+        let forces = contact_laws::GRAIN_FORCES
+            .iter()
+            .filter(|force| force.params.iter().any(|spec| spec.key == self.key))
+            .map(|force| format!("the effect `{}`", force.name));
         let shapes = intruders::SHAPES
             .iter()
             .filter(|shape| shape.params.iter().any(|spec| spec.key == self.key))
             .map(|shape| format!("the shape `{}`", shape.name));
-        laws.chain(shapes).collect()
+        laws.chain(forces).chain(shapes).collect()
     }
 }

@@ -128,8 +128,9 @@ fn settle(
     }
     while !settling.is_at_rest() {
         settling.advance().map_err(|source| RunError::Settling { source })?;
-        let (clock, restlessness) = (settling.clock(), settling.restlessness());
+        let clock = settling.clock();
         if settling.time_since_tap() > patience {
+            let restlessness = settling.restlessness();
             return Err(RunError::Restless { time: clock.time(), restlessness });
         }
         if clock.step.is_multiple_of(SAVE_EVERY) {
@@ -139,7 +140,7 @@ fn settle(
             control.progress(&Progress::Settling {
                 step: clock.step,
                 time: clock.time(),
-                restlessness,
+                restlessness: settling.restlessness(),
             });
             if control.wants_to_stop() {
                 checkpoint::save(unfinished, key, &settling.save())?;

@@ -34,7 +34,7 @@ pub use summary::{
 use folder::{Found, OutputFolder};
 
 /// Counts the changes that move a result: states and beds of another number are not taken up.
-const RESULTS: u32 = 1;
+const RESULTS: u32 = 2;
 
 /// The key of everything that follows from `inputs`, by this version of the engine.
 #[must_use]
@@ -62,7 +62,7 @@ pub enum Progress {
         step: u64,
         /// Simulated time (s).
         time: f64,
-        /// Mean kinetic energy of a grain over the one that counts as rest.
+        /// How far from rest the bed is (–): below 1 it is at rest.
         restlessness: f64,
     },
     /// An impact is running.
@@ -186,13 +186,14 @@ pub enum RunError {
     },
     /// The bed does not come to rest.
     #[error(
-        "after {time:.3} s the bed still has {restlessness:.1e} times the kinetic energy of a bed at \
-         rest; give it more damping or friction, or a smaller bed.preparation_time_step"
+        "after {time:.3} s the bed still has {restlessness:.1e} times the kinetic energy, or the \
+         unbalanced force, of a bed at rest; give it more damping or friction, or a smaller \
+         bed.preparation_time_step"
     )]
     Restless {
         /// Simulated time (s).
         time: f64,
-        /// Mean kinetic energy of a grain over the one that counts as rest.
+        /// How far from rest it is (–): below 1 it is at rest.
         restlessness: f64,
     },
     /// The model cannot be built.
