@@ -100,7 +100,7 @@ fn energies(assembly: &dyn Assembly, part: usize, state: &State) -> (f64, f64) {
 /// Two links of aluminium in dry sand; coefficients in the middle of what may be assumed.
 fn model_text([one, two]: [f64; 2], speed: f64) -> String {
     format!(
-        "[run]\nname = \"two-link chain\"\nduration = \"2 s\"\n\
+        "[run]\nname = \"two-link-chain\"\nduration = \"2 s\"\n\
          [medium]\nkind = \"resistive-force\"\nbulk_density = \"1600 kg/m^3\"\ngravity = \"{GRAVITY} m/s^2\"\n\
          [resistance]\nname = \"link\"\ndrag = 3.0\nhorizontal = 5.0\nplunging = 10.0\nplunging_exponent = 1.4\n\
          [intruder]\nshape = \"two-link-chain\"\nlength = \"0.2 m\"\ndiameter = \"12.7 mm\"\nmass = \"136.8 g\"\n\

@@ -120,7 +120,7 @@ pub struct Energies {
 impl Energies {
     /// The same counted from the start, where the intruder has its `impact_energy` (J) and the rest nothing:
     /// heights count from the floor in the ledger.
-    fn from_start(mut self, impact_energy: f64) -> Self {
+    fn counted_from_start(mut self, impact_energy: f64) -> Self {
         let less = |energies: &mut [f64], at_start: f64| {
             let first = energies.first().map_or(0.0, |first| first - at_start);
             energies.iter_mut().for_each(|energy| *energy -= first);
@@ -333,7 +333,7 @@ fn impact(model: &Model, cache: &Path) -> Result<Outcome, StudyError> {
         time_s,
         down_m_per_s,
         path_m,
-        energies: energies.from_start(simulation.impact_energy()),
+        energies: energies.counted_from_start(simulation.impact_energy()),
     })
 }
 
@@ -387,7 +387,7 @@ mod tests {
             moving_j: vec![0.0, 1.0],
             dissipated_j: vec![0.0, 0.5],
         };
-        let counted = energies.from_start(2.0);
+        let counted = energies.counted_from_start(2.0);
         // Small integers and halves: exact.
         assert_eq!((counted.intruder_j, counted.grains_j), (vec![2.0, 0.0], vec![0.0, 1.5]));
     }

@@ -225,3 +225,67 @@ fn points(series: usize, of: &Series) -> Points {
     let places = (0..of.means.len()).map(|at| (of.speeds[at], of.means[at], error(at)));
     Points { series, places: places.collect() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::records::record;
+    use super::super::tables::{Line, PUBLISHED};
+    use super::*;
+    use crate::published::Verdict;
+
+    const DEPTH: Quantity = Quantity {
+        name: "depth",
+        axis: "depth (m)",
+        of: |record| Some(record.deepest),
+        published: |one| {
+            let Line { slope, intercept } = one.depth;
+            let names = &["slope (s)", "intercept (m)"];
+            Some(Curve { form: Form::Line, names, values: vec![slope, intercept] })
+        },
+        goal: Band { half: 6.0, reason: "a test" },
+        stated_scatter: Some(0.06),
+        known: [Known { ratio: [1.0, 1.2], cause: "a test" }; 2],
+    };
+
+    /// Impacts of every angle, two positions each, `factor` times as deep as published and 1 % off.
+    fn cells(factor: f64) -> Vec<Cell> {
+        let cell = |reading, published: &'static Published, speed: f64| {
+            let depth = factor * published.depth.at(speed);
+            let at = |share: f64| record(0.1, vec![0.0, 0.0], vec![0.0, share * depth]);
+            Cell { reading, published, speed, records: vec![at(0.99), at(1.01)] }
+        };
+        READINGS
+            .iter()
+            .flat_map(|reading| PUBLISHED.iter().map(move |published| (reading, published)))
+            .flat_map(|(reading, published)| SPEEDS.map(|speed| cell(reading, published, speed)))
+            .collect()
+    }
+
+    fn verdicts(factor: f64) -> Vec<Verdict> {
+        let findings = DEPTH.judge(&cells(factor), "depth.svg").expect("a picture");
+        findings.checks.iter().map(|check| check.verdict).collect()
+    }
+
+    #[test]
+    fn the_published_depths_pass_and_deeper_ones_deviate_as_listed_or_fail() {
+        // Two readings of seven angles: the deviation, the slope and the intercept.
+        let published = verdicts(1.0);
+        assert_eq!(published.len(), 2 * 7 * 3);
+        assert!(published.iter().all(|verdict| *verdict == Verdict::Pass), "{published:?}");
+        // The deviation is the first check of every three.
+        let first = |verdicts: &[Verdict]| verdicts.iter().copied().step_by(3).collect::<Vec<_>>();
+        assert!(first(&verdicts(1.15)).iter().all(|verdict| *verdict == Verdict::Deviates));
+        assert!(first(&verdicts(1.5)).iter().all(|verdict| *verdict == Verdict::Fail));
+    }
+
+    #[test]
+    fn the_scatter_of_positions_is_that_of_their_mean() {
+        let cells = cells(1.0);
+        let own: Vec<&Cell> = cells.iter().take(SPEEDS.len()).collect();
+        let series = series(&own, |record| Some(record.deepest));
+        let errors = series.errors.expect("two positions");
+        // Two positions 1 % to either side: a standard deviation of √2 %, of their mean 1 %.
+        let is_one_percent = |(error, mean): (&f64, &f64)| (error / mean - 0.01).abs() < 1e-12;
+        assert!(errors.iter().zip(&series.means).all(is_one_percent), "{errors:?}");
+    }
+}

@@ -158,6 +158,7 @@ fn explained(cells: &[&Cell], component: Component, [drag, friction]: [f64; 2]) 
 #[cfg(test)]
 mod tests {
     use super::super::matrix::READINGS;
+    use super::super::records::record;
     use super::super::tables::published;
     use super::*;
 
@@ -178,22 +179,12 @@ mod tests {
                 break;
             }
         }
-        Record {
-            interval: 5e-4,
-            range: vec![0.0; path.len()],
-            depth: path,
-            stopping_time: Some(time),
-            slow_time: None,
+        let stopped = Record {
             deepest: depth,
-            reached: 0.0,
-            end: time,
-            impact_energy: 0.0,
-            closure: 0.0,
-            ledger: Vec::new(),
-            grains: 0,
-            steps: 0,
-            wall: 0.0,
-        }
+            stopping_time: Some(time),
+            ..record(5e-4, vec![0.0; path.len()], path)
+        };
+        Record { end: time, ..stopped }
     }
 
     #[test]

@@ -3,4 +3,6 @@
 pub mod curves;
 pub mod force;
 pub mod matrix;
+#[cfg(test)]
+pub(crate) mod records;
 pub mod tables;

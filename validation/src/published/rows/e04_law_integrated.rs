@@ -110,7 +110,7 @@ fn integrate(law: &Law, cell: &Cell, times: &[f64]) -> Result<(Vec<f64>, f64), P
 fn model_text(law: &Law, cell: &Cell) -> String {
     let Law { horizontal, vertical } = law;
     format!(
-        "[run]\nname = \"law of E3\"\nduration = \"2 s\"\n\
+        "[run]\nname = \"law-of-e3\"\nduration = \"2 s\"\n\
          [medium]\nkind = \"resistive-force\"\ndimension = 2\nbulk_density = \"2.4 kg/m^2\"\n\
          gravity = \"{GRAVITY} m/s^2\"\n\
          [resistance]\nname = \"two-term-components\"\ndrag_x = \"{:?} kg/m\"\n\

@@ -255,6 +255,7 @@ fn rank_correlation(x: &[f64], y: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::published::oblique::records::record;
 
     #[test]
     fn ranks_that_agree_correlate_by_one_and_reversed_ones_by_minus_one() {
@@ -266,24 +267,8 @@ mod tests {
 
     #[test]
     fn a_straight_path_has_no_bend_and_a_right_angle_has_half_its_chord() {
-        let path = |range: Vec<f64>, depth: Vec<f64>| Record {
-            interval: 1.0,
-            stopping_time: Some(range.len() as f64 - 1.0),
-            range,
-            depth,
-            slow_time: None,
-            deepest: 0.0,
-            reached: 0.0,
-            end: 0.0,
-            impact_energy: 0.0,
-            closure: 0.0,
-            ledger: Vec::new(),
-            grains: 0,
-            steps: 0,
-            wall: 0.0,
-        };
-        let straight = path(vec![0.0, 1.0, 2.0], vec![0.0, 2.0, 4.0]);
-        let corner = path(vec![0.0, 1.0, 1.0], vec![0.0, 0.0, 1.0]);
+        let straight = record(1.0, vec![0.0, 1.0, 2.0], vec![0.0, 2.0, 4.0]);
+        let corner = record(1.0, vec![0.0, 1.0, 1.0], vec![0.0, 0.0, 1.0]);
         assert!(bend(&straight) < 1e-15 && (bend(&corner) - 0.5).abs() < 1e-15, "rounding");
     }
 }
