@@ -208,8 +208,8 @@ mod tests {
 
     #[test]
     fn depths_below_the_stop_have_no_reading() {
-        let law = ForceLaw { drag: 0.3, friction: 4.5 };
-        let record = impact(law, 0.2);
+        // From rest twice the weight over the friction, 70 mm, and a little more.
+        let record = impact(ForceLaw { drag: 0.3, friction: 9.0 }, 0.2);
         let n = readings(&record, Component::Vertical).iter().flatten().count();
         let passed = DEPTHS.iter().filter(|depth| **depth + WINDOW < record.deepest).count();
         assert!(n >= passed && n < DEPTHS.len(), "{n} of {passed} at {}", record.deepest);

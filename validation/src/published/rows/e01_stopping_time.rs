@@ -19,7 +19,7 @@ pub(super) static ROW: Row = Row {
 };
 
 /// Of the law as printed, two independent codes had 1.05 to 1.27 at 90°; single impacts of ours lay between
-/// 0.93 and 1.45, their means over the speeds of an angle between 1.1 and 1.22.
+/// 0.93 and 1.45, their means over the speeds of an angle between 1.10 and 1.21.
 const KNOWN: [Known; 2] = [
     Known {
         ratio: [1.0, 1.27],
