@@ -37,7 +37,12 @@ pub static ROWS: &[&Row] = &[
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
+    use crate::beds::{Place, Unattended};
+    use crate::published::{Check, Effort, Laboratory, Verdict};
+    use crate::three_shapes::Places;
 
     #[test]
     fn every_row_has_an_id_of_its_own_a_source_and_says_how_it_is_run() {
@@ -46,6 +51,22 @@ mod tests {
             for text in [row.title, row.source, row.how[0], row.how[1]] {
                 assert!(!text.is_empty(), "{}", row.id);
             }
+        }
+    }
+
+    #[test]
+    fn the_rows_that_need_no_bed_are_judged_and_do_not_fail() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let laboratory = Laboratory {
+            effort: Effort::Quick,
+            place: Place { cache: folder.path(), workers: None, watch: &Unattended },
+            shapes: Places { out: folder.path().into(), cache: folder.path().into() },
+            sets: Path::new(env!("CARGO_MANIFEST_DIR")).join("data"),
+        };
+        for row in [&e09_links::ROW, &e10_contacts_and_others::ROW, &e14_chain_forces::ROW] {
+            let findings = (row.judge)(&laboratory).unwrap_or_else(|error| panic!("{error}"));
+            let failing = findings.checks.iter().filter(|check| check.verdict == Verdict::Fail);
+            assert_eq!(failing.collect::<Vec<_>>(), Vec::<&Check>::new(), "{}", row.id);
         }
     }
 }
