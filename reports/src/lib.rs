@@ -1,4 +1,4 @@
-//! Reports: one HTML page per run, list of runs, comparison, diagnosis or measurement set.
+//! Reports: one HTML page per run, list of runs, comparison, diagnosis, validation or measurement set.
 //!
 //! A page holds its figures, its style and its script, asks nothing of any network, and reads on
 //! screen, in the dark and on paper. It is made of the files of one folder and of nothing else, so that
@@ -12,6 +12,7 @@ mod figure;
 mod list;
 mod numbers;
 mod page;
+mod published;
 pub mod run;
 mod set;
 
@@ -46,8 +47,8 @@ pub enum ReportError {
     },
     /// A folder without results.
     #[error(
-        "{} holds no finished run, comparison or diagnosis: no summary.json, comparison.json or \
-         diagnosis.json",
+        "{} holds no finished run, comparison, diagnosis or validation: no summary.json, comparison.json, \
+         diagnosis.json or validation.json",
         folder.display()
     )]
     Nothing {
@@ -73,10 +74,11 @@ pub enum ReportError {
     Page(#[from] askama::Error),
 }
 
-/// The results of a comparison or diagnosis, by the names of their files.
+/// The results of a comparison, diagnosis or validation, by the names of their files.
 pub type Texts = BTreeMap<String, String>;
 
-/// The page of what `folder` holds: a finished run, a list of them, a comparison or a diagnosis.
+/// The page of what `folder` holds: a finished run, a list of them, a comparison, a diagnosis or a
+/// validation.
 ///
 /// # Errors
 /// If the folder holds none of them, or a file cannot be read or understood.
@@ -109,9 +111,12 @@ pub fn of_folder(folder: &Path) -> Result<String, ReportError> {
     }
 }
 
-/// The page of the results of a comparison or a diagnosis; `None` if `texts` are of neither.
+/// The page of the results of a comparison, a diagnosis or a validation; `None` if `texts` are of none.
 #[must_use]
 pub fn of_texts(texts: &Texts) -> Option<Result<String, ReportError>> {
+    if texts.contains_key(published::RESULT) {
+        return Some(published::page(texts));
+    }
     if texts.contains_key(diagnosis::RESULT) {
         return Some(diagnosis::page(texts));
     }

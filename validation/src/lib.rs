@@ -1,6 +1,7 @@
 //! What plunge is checked against: cases with a known answer, and measurements.
 //!
-//! A [`Case`] is one file in `validation/cases` and one line in [`CASES`]. `cargo xtask validate`
+//! A [`Case`] is one file in `validation/cases` and one line in [`CASES`]; a [`published::Row`] is a
+//! published result that is run again and judged, the cases among them. `cargo xtask validate`
 //! runs them and prints what was measured beside what is right.
 //!
 //! A [`measurement::MeasurementSet`] is a folder in `validation/data`; a [`forward::Forward`] is a
@@ -44,6 +45,7 @@ pub mod observed;
 mod pair;
 pub mod picture;
 mod projection;
+pub mod published;
 mod random;
 mod redraw;
 mod resampling;

@@ -30,7 +30,8 @@ Usage: cargo xtask <task>
                      the same on small beds of grains
   three-shapes [ARG]...
                      cylinder, hemisphere and cone on beds of grains, in release; the same
-  validate [ARG]...  the validation rows, in release; the arguments go to the program as they are
+  validate [ARG]...  the published results, run again in release, and the page of them; the arguments
+                     go to the program as they are
   help               this text
 
 Exit status: 0 done, 1 something was found, 2 the command line was not understood.
@@ -130,8 +131,35 @@ fn run(task: Task) -> Result<ExitCode> {
         Task::BenchDiagnosis(args) => program(&sh, "diagnosis", &args),
         Task::BenchResistive => program(&sh, "bench", &[]),
         Task::ThreeShapes(args) => program(&sh, "three_shapes", &args),
-        Task::Validate(args) => program(&sh, "validate", &args),
+        Task::Validate(args) => validate(&sh, &args),
     }
+}
+
+/// Runs the published results again and makes the page of what came out, also where a row fails.
+fn validate(sh: &Shell, args: &[OsString]) -> Result<ExitCode> {
+    let code = program(sh, "validate", args)?;
+    let shows_only = |arg: &OsString| ["--list", "--help", "-h"].iter().any(|one| arg == one);
+    let folder = written_to(args);
+    if args.iter().any(shows_only) || !folder.join("validation.json").is_file() {
+        return Ok(code);
+    }
+    let page = cmd!(sh, "cargo run --quiet --release --locked -p plunge -- report {folder}");
+    let status = std::process::Command::from(page).status().context("cannot start cargo")?;
+    Ok(if status.success() { code } else { ExitCode::FAILURE })
+}
+
+/// The folder that the published results are written to.
+fn written_to(args: &[OsString]) -> PathBuf {
+    let mut args = args.iter().map(|arg| arg.to_string_lossy());
+    let mut folder = PathBuf::from("target/validation");
+    while let Some(arg) = args.next() {
+        if arg == "--out" {
+            folder = args.next().map_or(folder, |value| PathBuf::from(value.as_ref()));
+        } else if let Some(value) = arg.strip_prefix("--out=") {
+            folder = PathBuf::from(value);
+        }
+    }
+    folder
 }
 
 /// Runs a program of `validation` from where the user stands and hands its exit status on.
@@ -176,6 +204,14 @@ mod tests {
         let task = parsed(&["validate", "--only", "row 3", "--", "--help"]);
         let args = ["--only", "row 3", "--", "--help"].map(OsString::from).to_vec();
         assert_eq!(task, Ok(Task::Validate(args)));
+    }
+
+    #[test]
+    fn the_folder_of_the_published_results_is_the_last_that_is_given() {
+        let of = |args: &[&str]| written_to(&args.iter().map(OsString::from).collect::<Vec<_>>());
+        assert_eq!(of(&["--quick"]), PathBuf::from("target/validation"));
+        assert_eq!(of(&["--out", "a", "--only", "E1"]), PathBuf::from("a"));
+        assert_eq!(of(&["--out", "a", "--out=b"]), PathBuf::from("b"));
     }
 
     #[test]

@@ -13,10 +13,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use configs::run::{Control, Progress, RunError, prepare};
+use configs::run::{Control, Progress, RunError, prepare, result_key};
 use configs::{BuildError, ConfigError, LoadOptions, Loaded, Model, ModelSource, find_shipped};
 use engine::error::{StepError, ThreadsError};
+use engine::ledger::{ChannelKind, TermKind};
 use engine::parallel::with_threads;
+use engine::simulation::Simulation;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -33,11 +35,28 @@ pub const SPEEDS: [f64; 4] = [1.0, 2.0, 3.0, 4.0];
 pub const FRICTIONS: [f64; 2] = [0.0, 0.8];
 
 /// The model whose friction is varied, and its speed (m/s).
-const RUBBED: (&str, f64) = ("hemisphere-3d", 2.0);
+pub const RUBBED: (&str, f64) = ("hemisphere-3d", 2.0);
 
-/// What of the shipped models is smaller here: 3.6 diameters of the intruder across, 4 deep.
-const BED: [&str; 3] =
-    ["bed.grains.0.count=8000", "container.width=\"72 mm\"", "container.depth=\"72 mm\""];
+/// What of the shipped models is smaller here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bed {
+    /// That of the study: 8 000 grains, 3.6 diameters of the intruder across, 4 deep.
+    Study,
+    /// 3 000 grains, 2.6 diameters across and 3 deep, for a quick look.
+    Small,
+}
+
+impl Bed {
+    /// As `--set` has it.
+    fn sets(self) -> [String; 3] {
+        let (count, width) = match self {
+            Self::Study => (8000, 72),
+            Self::Small => (3000, 52),
+        };
+        let side = |key: &str| format!("container.{key}=\"{width} mm\"");
+        [format!("bed.grains.0.count={count}"), side("width"), side("depth")]
+    }
+}
 
 /// Time between two samples of a path (s).
 const SAMPLE: f64 = 1e-4;
@@ -53,13 +72,15 @@ pub struct Case {
     pub seed: u64,
     /// Friction of intruder and grains, where it is not the model's.
     pub friction: Option<f64>,
+    /// What it falls on.
+    pub bed: Bed,
 }
 
 /// What came of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
-    /// blake3 of the resolved model.
-    pub model_hash: String,
+    /// The key of the resolved model and the engine, in hexadecimal.
+    pub key: String,
     /// Largest depth until the stop (m).
     pub depth_m: f64,
     /// When it stopped (s), if it did.
@@ -76,6 +97,54 @@ pub struct Outcome {
     pub time_s: Vec<f64>,
     /// Downward speed (m/s) at these times.
     pub down_m_per_s: Vec<f64>,
+    /// Depth of the lowest point (m) at these times.
+    pub path_m: Vec<f64>,
+    /// Energies at these times.
+    pub energies: Energies,
+}
+
+/// The energy in three parts over time, each counted from its value at the start (J); the intruder's kinetic
+/// one is all there at the start.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Energies {
+    /// Kinetic and potential, of the intruder.
+    pub intruder_j: Vec<f64>,
+    /// Kinetic, potential and elastic, of the grains.
+    pub grains_j: Vec<f64>,
+    /// Kinetic alone, of the grains.
+    pub moving_j: Vec<f64>,
+    /// Dissipated, less what was put in.
+    pub dissipated_j: Vec<f64>,
+}
+
+impl Energies {
+    /// The same counted from the start, where the intruder has its `impact_energy` (J) and the rest nothing:
+    /// heights count from the floor in the ledger.
+    fn counted_from_start(mut self, impact_energy: f64) -> Self {
+        let less = |energies: &mut [f64], at_start: f64| {
+            let first = energies.first().map_or(0.0, |first| first - at_start);
+            energies.iter_mut().for_each(|energy| *energy -= first);
+        };
+        less(&mut self.intruder_j, impact_energy);
+        less(&mut self.grains_j, 0.0);
+        self
+    }
+
+    /// Takes note of what the ledger of `simulation` holds.
+    fn observe(&mut self, simulation: &Simulation) {
+        let ledger = simulation.ledger();
+        let value = |key| ledger.value(key).unwrap_or(0.0);
+        let moving = value("kinetic_grains_translation_J") + value("kinetic_grains_rotation_J");
+        let of = |kind: ChannelKind| ledger.sum(|term| term.kind == TermKind::Channel(kind));
+        self.intruder_j.push(
+            value("kinetic_intruder_translation_J")
+                + value("kinetic_intruder_rotation_J")
+                + value("potential_intruder_J"),
+        );
+        self.grains_j.push(moving + value("potential_grains_J") + of(ChannelKind::Stored));
+        self.moving_j.push(moving);
+        self.dissipated_j.push(of(ChannelKind::Dissipated) - of(ChannelKind::Input));
+    }
 }
 
 /// Why the study ends early.
@@ -84,8 +153,8 @@ pub struct Outcome {
 pub enum StudyError {
     #[error("cannot {action} {}: {source}", path.display())]
     Io { action: &'static str, path: PathBuf, source: io::Error },
-    #[error("{} is not a result of this study: {source}", path.display())]
-    Foreign { path: PathBuf, source: serde_json::Error },
+    #[error("{} cannot be written: {source}", path.display())]
+    Unwritable { path: PathBuf, source: serde_json::Error },
     #[error(transparent)]
     Config(#[from] ConfigError),
     #[error(transparent)]
@@ -104,12 +173,24 @@ pub fn cases(seeds: u64) -> Vec<Case> {
     let seeds = 1..=seeds;
     let shapes = seeds.clone().flat_map(|seed| {
         SHAPES.into_iter().flat_map(move |model| {
-            SPEEDS.into_iter().map(move |speed| Case { model, speed, seed, friction: None })
+            SPEEDS.into_iter().map(move |speed| Case {
+                model,
+                speed,
+                seed,
+                friction: None,
+                bed: Bed::Study,
+            })
         })
     });
     let frictions = seeds.flat_map(|seed| {
         let (model, speed) = RUBBED;
-        FRICTIONS.into_iter().map(move |f| Case { model, speed, seed, friction: Some(f) })
+        FRICTIONS.into_iter().map(move |f| Case {
+            model,
+            speed,
+            seed,
+            friction: Some(f),
+            bed: Bed::Study,
+        })
     });
     shapes.chain(frictions).collect()
 }
@@ -171,31 +252,35 @@ fn kept(case: &Case, places: &Places) -> Result<Outcome, StudyError> {
         let path = path.to_owned();
         move |source| StudyError::Io { action, path, source }
     };
-    if path.exists() {
-        let text = fs::read_to_string(&path).map_err(io("read", &path))?;
-        let outcome: Outcome = serde_json::from_str(&text)
-            .map_err(|source| StudyError::Foreign { path: path.clone(), source })?;
-        if outcome.model_hash == model.hash() {
-            return Ok(outcome);
-        }
+    let key: String = result_key(&model.hash()).iter().map(|byte| format!("{byte:02x}")).collect();
+    if let Some(outcome) = found(&path, &key) {
+        return Ok(outcome);
     }
-    let outcome = with_threads(1, || impact(&model, &places.cache))??;
+    let outcome = Outcome { key, ..with_threads(1, || impact(&model, &places.cache))?? };
     let text = serde_json::to_string(&outcome)
-        .map_err(|source| StudyError::Foreign { path: path.clone(), source })?;
+        .map_err(|source| StudyError::Unwritable { path: path.clone(), source })?;
     let partial = path.with_extension("partial");
     fs::write(&partial, text).map_err(io("write", &partial))?;
     fs::rename(&partial, &path).map_err(io("rename", &partial))?;
     Ok(outcome)
 }
 
+/// The outcome in the file `path`, if it is of `key`. A damaged file, or one of another model or engine, is
+/// one that is not there: the impact is run again.
+fn found(path: &Path, key: &str) -> Option<Outcome> {
+    let text = fs::read_to_string(path).ok()?;
+    serde_json::from_str::<Outcome>(&text).ok().filter(|outcome| outcome.key == key)
+}
+
 impl Case {
     /// Its name in files.
     #[must_use]
     pub fn name(&self) -> String {
-        let Self { model, speed, seed, friction } = self;
+        let Self { model, speed, seed, friction, bed } = self;
         let friction =
             friction.map_or_else(String::new, |friction| format!("-friction-{friction}"));
-        format!("{model}-{speed}-seed-{seed}{friction}")
+        let bed = if *bed == Bed::Small { "-small" } else { "" };
+        format!("{model}-{speed}-seed-{seed}{friction}{bed}")
     }
 
     /// The shipped model with the speed, the seed and the friction of this case.
@@ -206,7 +291,7 @@ impl Case {
         let shipped = find_shipped(self.model).map(ModelSource::Shipped);
         let source = shipped.unwrap_or_else(|| ModelSource::Path(self.model.into()));
         let mut sets = vec![format!("impact.speed=\"{} m/s\"", self.speed)];
-        sets.extend(BED.map(str::to_owned));
+        sets.extend(self.bed.sets());
         sets.extend(self.friction.map(|f| format!("contact_law.intruder_friction={f:?}")));
         let options = LoadOptions { sets, seed: Some(self.seed), ..LoadOptions::default() };
         Model::load(source, &options)
@@ -220,20 +305,25 @@ fn impact(model: &Model, cache: &Path) -> Result<Outcome, StudyError> {
     let resting = prepared.expect("nobody stops an unattended preparation").resting;
     let mut simulation = grains.simulation(&resting, &model.conditions()[0])?;
     let every = (SAMPLE / simulation.clock().dt).round().max(1.0) as u64;
-    let (mut time_s, mut down_m_per_s) = (Vec::new(), Vec::new());
+    let (mut time_s, mut down_m_per_s, mut path_m) = (Vec::new(), Vec::new(), Vec::new());
+    let mut energies = Energies::default();
     loop {
         let clock = simulation.clock();
         if clock.step.is_multiple_of(every) {
             time_s.push(clock.time());
-            down_m_per_s.push(-simulation.intruder().bodies()[0].velocity.z);
+            let body = &simulation.intruder().bodies()[0];
+            down_m_per_s.push(-body.velocity.z);
+            path_m.push(simulation.surface() - body.lowest());
+            energies.observe(&simulation);
         }
-        if simulation.is_over() {
+        let is_calm = simulation.activity().dissipation_time().is_some();
+        if clock.step >= simulation.last_step() || (simulation.is_over() && is_calm) {
             break;
         }
         simulation.advance()?;
     }
     Ok(Outcome {
-        model_hash: model.hash(),
+        key: String::new(),
         depth_m: simulation.courses()[0].stopping().depth(),
         stopping_time_s: simulation.courses()[0].stopping().stopping_time(),
         impact_energy_j: simulation.impact_energy(),
@@ -242,6 +332,8 @@ fn impact(model: &Model, cache: &Path) -> Result<Outcome, StudyError> {
         dissipation_time_s: simulation.activity().dissipation_time(),
         time_s,
         down_m_per_s,
+        path_m,
+        energies: energies.counted_from_start(simulation.impact_energy()),
     })
 }
 
@@ -281,4 +373,48 @@ fn group<'a>(
             && case.friction.map(f64::to_bits) == friction.map(f64::to_bits)
     };
     results.iter().filter(|(case, _)| same(case)).map(|(_, outcome)| outcome).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn energies_count_from_the_start_of_the_impact() {
+        let energies = Energies {
+            intruder_j: vec![5.0, 3.0],
+            grains_j: vec![7.0, 8.5],
+            moving_j: vec![0.0, 1.0],
+            dissipated_j: vec![0.0, 0.5],
+        };
+        let counted = energies.counted_from_start(2.0);
+        // Small integers and halves: exact.
+        assert_eq!((counted.intruder_j, counted.grains_j), (vec![2.0, 0.0], vec![0.0, 1.5]));
+    }
+
+    #[test]
+    fn only_a_whole_outcome_of_the_same_model_and_engine_is_taken_up() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("cone-3d-1-seed-1.json");
+        let outcome = Outcome {
+            key: "ab".to_owned(),
+            depth_m: 0.02,
+            stopping_time_s: None,
+            impact_energy_j: 0.1,
+            closure: 1e-4,
+            moving_share: 0.5,
+            dissipation_time_s: Some(0.05),
+            time_s: vec![0.0],
+            down_m_per_s: vec![1.0],
+            path_m: vec![0.0],
+            energies: Energies::default(),
+        };
+        assert_eq!(found(&path, "ab"), None);
+        let text = serde_json::to_string(&outcome).expect("JSON");
+        fs::write(&path, &text).expect("a file");
+        assert_eq!(found(&path, "ab"), Some(outcome));
+        assert_eq!(found(&path, "cd"), None);
+        fs::write(&path, &text[..text.len() / 2]).expect("half a file");
+        assert_eq!(found(&path, "ab"), None);
+    }
 }

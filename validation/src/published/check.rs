@@ -1,0 +1,256 @@
+//! One comparison of a row: what was published, what came out, the band between them and the verdict.
+
+use std::fmt;
+
+use serde::Serialize;
+
+/// What became of a comparison, or of a row: of several, the last in this order decides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// The source lost its numbers, or asks for what is not there.
+    NotCheckable,
+    /// Within the band, or the trend holds.
+    Pass,
+    /// Outside of the band, by a cause and an amount that were listed beforehand.
+    Deviates,
+    /// Outside of the band.
+    Fail,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotCheckable => "not-checkable",
+            Self::Pass => "pass",
+            Self::Deviates => "deviates",
+            Self::Fail => "fail",
+        })
+    }
+}
+
+/// A number with its standard error, both in the unit that the check names.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Estimate {
+    /// The number.
+    pub value: f64,
+    /// Its standard error or scatter; 0 where none is known.
+    pub error: f64,
+}
+
+impl Estimate {
+    /// A number and its standard error.
+    #[must_use]
+    pub fn new(value: f64, error: f64) -> Self {
+        Self { value, error }
+    }
+
+    /// Both times `factor`.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        Self { value: factor * self.value, error: factor.abs() * self.error }
+    }
+}
+
+impl fmt::Display for Estimate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Two digits of the error, and as many of the value; four digits where there is no error.
+        let size = if self.error > 0.0 { 0.1 * self.error } else { 1e-3 * self.value.abs() };
+        let digits =
+            if size > 0.0 && size.is_finite() { -libm::floor(libm::log10(size)) } else { 1.0 };
+        let digits = digits.clamp(0.0, 9.0) as usize;
+        if self.error > 0.0 {
+            return write!(f, "{:.digits$} ± {:.digits$}", self.value, self.error);
+        }
+        write!(f, "{:.digits$}", self.value)
+    }
+}
+
+/// One side of a comparison.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Side {
+    /// A number.
+    Number(Estimate),
+    /// What is stated or seen, in words.
+    Words(String),
+}
+
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(estimate) => write!(f, "{estimate}"),
+            Self::Words(words) => f.write_str(words),
+        }
+    }
+}
+
+/// How far from a published number is still right, and why.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Band {
+    /// Half its width, in the unit of the check.
+    pub half: f64,
+    /// Where it comes from.
+    pub reason: &'static str,
+}
+
+/// A disagreement that was known before the comparison: its cause, and how large it was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Known {
+    /// Least and greatest of ours over the published number.
+    pub ratio: [f64; 2],
+    /// Why.
+    pub cause: &'static str,
+}
+
+impl Known {
+    /// Whether it covers ours being `ratio` times the published number.
+    #[must_use]
+    pub fn covers(&self, ratio: f64) -> bool {
+        (self.ratio[0]..=self.ratio[1]).contains(&ratio)
+    }
+}
+
+/// One comparison.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Check {
+    /// What is compared, with its unit.
+    pub what: String,
+    /// What the source has.
+    pub published: Side,
+    /// What came out here.
+    pub ours: Side,
+    /// The band and its reason; of a trend, what decides.
+    pub band: String,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The cause of a deviation, or why it cannot be checked; may be empty.
+    pub cause: String,
+}
+
+impl Check {
+    /// A number that has to come out as published within `band`.
+    #[must_use]
+    pub fn number(
+        what: impl Into<String>,
+        published: Estimate,
+        ours: Estimate,
+        band: Band,
+    ) -> Self {
+        let within = (ours.value - published.value).abs() <= band.half;
+        let half = Estimate::new(band.half, 0.0);
+        Self {
+            what: what.into(),
+            published: Side::Number(published),
+            ours: Side::Number(ours),
+            band: format!("± {half}: {}", band.reason),
+            verdict: if within { Verdict::Pass } else { Verdict::Fail },
+            cause: String::new(),
+        }
+    }
+
+    /// A number that must not be greater than `band` is wide.
+    #[must_use]
+    pub fn at_most(
+        what: impl Into<String>,
+        published: impl Into<String>,
+        ours: Estimate,
+        band: Band,
+    ) -> Self {
+        let limit = Estimate::new(band.half, 0.0);
+        Self {
+            what: what.into(),
+            published: Side::Words(published.into()),
+            ours: Side::Number(ours),
+            band: format!("at most {limit}: {}", band.reason),
+            verdict: if ours.value <= band.half { Verdict::Pass } else { Verdict::Fail },
+            cause: String::new(),
+        }
+    }
+
+    /// A statement that `holds` or does not, as `ours` shows by the test `decided`.
+    #[must_use]
+    pub fn trend(
+        what: impl Into<String>,
+        (published, ours): (&str, String),
+        decided: &str,
+        holds: bool,
+    ) -> Self {
+        Self {
+            what: what.into(),
+            published: Side::Words(published.to_owned()),
+            ours: Side::Words(ours),
+            band: decided.to_owned(),
+            verdict: if holds { Verdict::Pass } else { Verdict::Fail },
+            cause: String::new(),
+        }
+    }
+
+    /// What cannot be held against anything, and why.
+    #[must_use]
+    pub fn not_checkable(what: impl Into<String>, published: &str, why: &str) -> Self {
+        Self {
+            what: what.into(),
+            published: Side::Words(published.to_owned()),
+            ours: Side::Words("–".to_owned()),
+            band: "–".to_owned(),
+            verdict: Verdict::NotCheckable,
+            cause: why.to_owned(),
+        }
+    }
+
+    /// A failure turns into a deviation with a cause that was listed beforehand, where `is_known`.
+    #[must_use]
+    pub fn listed(mut self, is_known: bool, cause: &str) -> Self {
+        if self.verdict == Verdict::Fail && is_known {
+            self.verdict = Verdict::Deviates;
+            self.cause = cause.to_owned();
+        }
+        self
+    }
+
+    /// Likewise where ours over the published number is a `ratio` that `known` covers.
+    #[must_use]
+    pub fn unless_known(self, known: Option<&Known>, ratio: f64) -> Self {
+        match known {
+            Some(known) => self.listed(known.covers(ratio), known.cause),
+            None => self,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BAND: Band = Band { half: 0.1, reason: "a test" };
+    const KNOWN: Known = Known { ratio: [1.1, 1.3], cause: "the source says so" };
+
+    fn compared(ours: f64) -> Check {
+        Check::number("depth (m)", Estimate::new(1.0, 0.0), Estimate::new(ours, 0.0), BAND)
+    }
+
+    #[test]
+    fn only_what_was_listed_beforehand_deviates_and_the_rest_fails() {
+        let verdict = |ours: f64| compared(ours).unless_known(Some(&KNOWN), ours).verdict;
+        assert_eq!(verdict(1.05), Verdict::Pass);
+        assert_eq!(verdict(1.2), Verdict::Deviates);
+        assert_eq!(verdict(1.4), Verdict::Fail);
+        assert_eq!(verdict(0.8), Verdict::Fail);
+        assert_eq!(compared(1.2).unless_known(None, 1.2).verdict, Verdict::Fail);
+    }
+
+    #[test]
+    fn what_is_not_a_number_fails() {
+        assert_eq!(compared(f64::NAN).verdict, Verdict::Fail);
+        let none = Check::at_most("", "", Estimate::new(f64::NAN, 0.0), BAND);
+        assert_eq!(none.verdict, Verdict::Fail);
+    }
+
+    #[test]
+    fn a_number_is_shown_with_two_digits_of_its_error() {
+        assert_eq!(Estimate::new(0.123_456, 0.0123).to_string(), "0.123 ± 0.012");
+        assert_eq!(Estimate::new(12.3456, 0.0).to_string(), "12.35");
+        assert_eq!(Estimate::new(0.0, 0.0).to_string(), "0.0");
+    }
+}

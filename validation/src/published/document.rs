@@ -1,0 +1,188 @@
+//! What came of the rows, as JSON and as Markdown.
+
+use std::fmt::Write as _;
+
+use serde_json::{Value, json};
+
+use super::check::{Check, Verdict};
+use super::laboratory::Effort;
+use super::row::{Findings, Row, Table};
+
+/// A row and what came of it.
+pub struct Judged {
+    /// The row.
+    pub row: &'static Row,
+    /// What came of it; why there is nothing, else.
+    pub findings: Result<Findings, String>,
+}
+
+impl Judged {
+    /// The verdict; a row that could not be run fails.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        self.findings.as_ref().map_or(Verdict::Fail, Findings::verdict)
+    }
+
+    /// How many of its checks have `verdict`.
+    #[must_use]
+    pub fn count(&self, verdict: Verdict) -> usize {
+        let checks = self.findings.iter().flat_map(|findings| &findings.checks);
+        checks.filter(|check| check.verdict == verdict).count()
+    }
+
+    /// How it was run.
+    #[must_use]
+    pub fn how(&self, effort: Effort) -> &'static str {
+        self.row.how[usize::from(effort == Effort::Full)]
+    }
+
+    fn to_json(&self, effort: Effort) -> Value {
+        let mut value = json!({
+            "id": self.row.id,
+            "title": self.row.title,
+            "source": self.row.source,
+            "how": self.how(effort),
+            "verdict": self.verdict(),
+        });
+        match &self.findings {
+            Ok(findings) => {
+                value["checks"] = json!(findings.checks);
+                value["tables"] = json!(findings.tables);
+                value["figures"] = json!(findings.figures);
+                value["notes"] = json!(findings.notes);
+            }
+            Err(why) => value["error"] = json!(why),
+        }
+        value
+    }
+}
+
+/// Everything, as `validation.json` has it.
+#[must_use]
+pub fn to_json(judged: &[Judged], effort: Effort) -> Value {
+    json!({
+        "effort": word(effort),
+        "verdict": judged.iter().map(Judged::verdict).max(),
+        "rows": judged.iter().map(|one| one.to_json(effort)).collect::<Vec<_>>(),
+    })
+}
+
+/// Everything, as `REPORT.md` has it.
+#[must_use]
+pub fn markdown(judged: &[Judged], effort: Effort) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = write_all(&mut text, judged, effort);
+    text
+}
+
+fn word(effort: Effort) -> &'static str {
+    match effort {
+        Effort::Quick => "quick",
+        Effort::Full => "full",
+    }
+}
+
+fn write_all(text: &mut String, judged: &[Judged], effort: Effort) -> std::fmt::Result {
+    writeln!(text, "# Published results, run again ({})\n", word(effort))?;
+    writeln!(text, "| row | what | source | pass | deviates | fail | not checkable | verdict |")?;
+    writeln!(text, "|---|---|---|---|---|---|---|---|")?;
+    for one in judged {
+        let row = one.row;
+        write!(text, "| {} | {} | {} |", row.id, cell(row.title), cell(row.source))?;
+        for verdict in [Verdict::Pass, Verdict::Deviates, Verdict::Fail, Verdict::NotCheckable] {
+            write!(text, " {} |", one.count(verdict))?;
+        }
+        writeln!(text, " **{}** |", one.verdict())?;
+    }
+    judged.iter().try_for_each(|one| write_row(text, one, effort))
+}
+
+fn write_row(text: &mut String, one: &Judged, effort: Effort) -> std::fmt::Result {
+    let row = one.row;
+    writeln!(
+        text,
+        "\n## {}: {}\n\n{}. Run: {}.\n",
+        row.id,
+        row.title,
+        row.source,
+        one.how(effort)
+    )?;
+    let findings = match &one.findings {
+        Ok(findings) => findings,
+        Err(why) => return writeln!(text, "Could not be run: {why}."),
+    };
+    writeln!(text, "| check | published | ours | band | verdict |\n|---|---|---|---|---|")?;
+    for check in &findings.checks {
+        let Check { what, published, ours, band, verdict, cause } = check;
+        let because = if cause.is_empty() { String::new() } else { format!(": {cause}") };
+        let cells = [what.clone(), published.to_string(), ours.to_string(), band.clone()];
+        let [what, published, ours, band] = cells.map(|text| cell(&text));
+        writeln!(
+            text,
+            "| {what} | {published} | {ours} | {band} | **{verdict}**{} |",
+            cell(&because)
+        )?;
+    }
+    for table in &findings.tables {
+        write_table(text, table)?;
+    }
+    for note in &findings.notes {
+        writeln!(text, "\n{note}")?;
+    }
+    for figure in &findings.figures {
+        writeln!(text, "\n![{}]({})", figure.caption, figure.file)?;
+    }
+    Ok(())
+}
+
+fn write_table(text: &mut String, table: &Table) -> std::fmt::Result {
+    let line = |cells: &[String]| {
+        format!("| {} |", cells.iter().map(|text| cell(text)).collect::<Vec<_>>().join(" | "))
+    };
+    writeln!(text, "\n{}\n\n{}", table.caption, line(&table.head))?;
+    writeln!(text, "|{}", "---|".repeat(table.head.len()))?;
+    table.rows.iter().try_for_each(|row| writeln!(text, "{}", line(row)))
+}
+
+/// `text` as it stands in a cell.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|").replace('\n', " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::published::check::{Band, Estimate};
+
+    static ROW: Row = Row {
+        id: "E0",
+        title: "A test",
+        source: "nobody",
+        how: ["at once", "at length"],
+        judge: |_| Ok(Findings::default()),
+    };
+
+    fn judged(ours: f64) -> Judged {
+        let band = Band { half: 0.1, reason: "a|b" };
+        let check = Check::number("n", Estimate::new(1.0, 0.0), Estimate::new(ours, 0.0), band);
+        let findings = Findings { checks: vec![check], ..Findings::default() };
+        Judged { row: &ROW, findings: Ok(findings) }
+    }
+
+    #[test]
+    fn the_worst_row_decides_and_one_that_could_not_be_run_fails() {
+        let broken = Judged { row: &ROW, findings: Err("no bed".to_owned()) };
+        assert_eq!(to_json(&[judged(1.0)], Effort::Quick)["verdict"], "pass");
+        assert_eq!(to_json(&[judged(1.0), judged(2.0)], Effort::Quick)["verdict"], "fail");
+        assert_eq!(to_json(&[judged(1.0), broken], Effort::Full)["verdict"], "fail");
+    }
+
+    #[test]
+    fn a_table_in_markdown_keeps_its_columns() {
+        let text = markdown(&[judged(1.0)], Effort::Quick);
+        let line = text.lines().find(|line| line.starts_with("| n |")).expect("the check");
+        assert_eq!(line.replace("\\|", "").matches('|').count(), 6, "{line}");
+        assert!(text.contains("Run: at once."), "{text}");
+    }
+}

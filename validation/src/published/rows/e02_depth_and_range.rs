@@ -1,0 +1,97 @@
+//! E2: depth and range over the impact speed.
+
+use crate::published::check::{Band, Check, Known};
+use crate::published::laboratory::Laboratory;
+use crate::published::oblique::curves::{Curve, Form, Quantity, series};
+use crate::published::oblique::matrix::{self, Cell, READINGS};
+use crate::published::oblique::tables::Line;
+use crate::published::regression;
+use crate::published::row::{Findings, PublishedError, Row};
+
+pub(super) static ROW: Row = Row {
+    id: "E2",
+    title: "Depth and range are linear in the impact speed",
+    source: "Wang, Ye & Zheng 2012, eqs 5–6, Table 1",
+    how: [
+        "15°, 45° and 90° at 3 to 5 speeds, one position each, on 10 000 discs",
+        "7 angles × 8 speeds × 6 positions on 15 000 discs",
+    ],
+    judge,
+};
+
+const PRINTED: &str = "the law as printed goes too deep and too far in independent codes too: equation 2 \
+                       names a rolling moment without a coefficient, and the printed packing and height contradict each other";
+const ROLLING: &str = "one coefficient of rolling is fitted to the depths at 90°: slow impacts stay too shallow, ranges too long";
+
+/// The article's own scatter of depths between positions.
+const GOAL: Band = Band { half: 6.0, reason: "the article's scatter between positions" };
+
+/// Standard errors by which the curvature of a line may differ from zero.
+const SIGMAS: f64 = 3.0;
+
+const DEPTH: Quantity = Quantity {
+    name: "depth",
+    axis: "depth (m)",
+    of: |record| Some(record.deepest),
+    published: |one| Some(curve(&["λ_y1 (s)", "λ_y2 (m)"], one.depth)),
+    goal: GOAL,
+    stated_scatter: Some(0.06),
+    known: [
+        Known { ratio: [1.0, 1.2], cause: PRINTED },
+        Known { ratio: [0.86, 1.07], cause: ROLLING },
+    ],
+};
+
+const RANGE: Quantity = Quantity {
+    name: "range",
+    axis: "range (m)",
+    // Straight down there is none.
+    of: |record| (record.reached > 0.0).then_some(record.reached),
+    published: |one| Some(curve(&["λ_x1 (s)", "λ_x2 (m)"], one.range?)),
+    goal: GOAL,
+    stated_scatter: Some(0.06),
+    known: [
+        Known { ratio: [1.06, 1.23], cause: PRINTED },
+        Known { ratio: [1.06, 1.19], cause: ROLLING },
+    ],
+};
+
+fn curve(names: &'static [&'static str], line: Line) -> Curve {
+    Curve { form: Form::Line, names, values: vec![line.slope, line.intercept] }
+}
+
+fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
+    let cells = matrix::cells(laboratory, |_| true)?;
+    let mut findings = DEPTH.judge(&cells, "e2-depth.svg")?;
+    let range = RANGE.judge(&cells, "e2-range.svg")?;
+    findings.checks.extend(range.checks);
+    findings.tables.extend(range.tables);
+    findings.figures.extend(range.figures);
+    for quantity in [&DEPTH, &RANGE] {
+        for reading in &READINGS {
+            for angle in matrix::angles(&cells) {
+                let own = matrix::of(&cells, reading, angle);
+                findings.checks.extend(linearity(quantity, reading.name, angle, &own));
+            }
+        }
+    }
+    Ok(findings)
+}
+
+/// Whether a square of the speed would improve the line: nothing with fewer than four points.
+fn linearity(quantity: &Quantity, reading: &str, angle: f64, cells: &[&Cell]) -> Option<Check> {
+    let points = series(cells, quantity.of);
+    if points.speeds.len() < 4 {
+        return None;
+    }
+    let squares = points.speeds.iter().map(|v| v * v).collect();
+    let columns = [squares, points.speeds.clone(), vec![1.0; points.speeds.len()]];
+    let fitted = regression::linear(&columns, &points.means, points.errors.as_deref())?;
+    let sigmas = fitted.coefficients[0] / fitted.error(0);
+    Some(Check::trend(
+        format!("{angle}°, {reading}: the {} is linear in the speed", quantity.name),
+        ("linear", format!("a square of the speed is {sigmas:+.1} standard errors from zero")),
+        "less than three standard errors",
+        sigmas.abs() < SIGMAS,
+    ))
+}
