@@ -19,3 +19,4 @@ mod shapes;
 mod space;
 mod summary;
 mod threads;
+mod viewers;
