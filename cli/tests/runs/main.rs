@@ -9,6 +9,7 @@ mod conditions;
 mod csv;
 mod export;
 mod failures;
+mod faults;
 mod folders;
 mod kill;
 mod log;
