@@ -74,10 +74,13 @@ def bodies(run):
     count = 0
     for time, data in poly_data(run, "bodies"):
         state = states.iloc[abs(states["time_s"] - time).argmin()]
-        x, z = state["position_x_m"], state["position_z_m"]
-        bounds = np.array(data.GetBounds())[[0, 1, 4, 5]]
-        # A frame has the precision of single numbers.
-        require(np.allclose(bounds, [x - radius, x + radius, z - radius, z + radius], atol=1e-7), bounds)
+        west, east, _, _, low, high = data.GetBounds()
+        centre = [0.5 * (west + east), 0.5 * (low + high)]
+        # Frames have the precision of single numbers.
+        require(np.allclose(centre, state[["position_x_m", "position_z_m"]], atol=1e-8), centre)
+        # A polygon of 48 corners, turned by anything, is as wide as its circle to within cos(pi / 48).
+        widths = np.array([east - west, high - low]) / (2 * radius)
+        require(np.all((np.cos(np.pi / 48) - 1e-6 < widths) & (widths < 1 + 1e-6)), widths)
         require(data.GetNumberOfPolys() > 0 and data.GetNumberOfVerts() == 0, "a surface")
         count += 1
     require(count > 1, "more than one frame")
