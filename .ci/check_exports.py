@@ -7,6 +7,7 @@ extxyz, as `plunge export` leaves them.
 """
 
 import sys
+import tomllib
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
@@ -41,22 +42,49 @@ def tables(run):
     return f"{len(names)} tables, {len(budget)} rows"
 
 
-def of_vtk(run):
-    """Positions and radii, frame by frame, with their times."""
-    index = ElementTree.parse(run / "vtp" / "grains.pvd").getroot()
-    frames = []
+def poly_data(run, name):
+    """What ParaView reads of an index, frame by frame, with the times."""
+    index = ElementTree.parse(run / "vtp" / f"{name}.pvd").getroot()
     for entry in index.iter("DataSet"):
         reader = vtkXMLPolyDataReader()
         reader.SetFileName(str(run / "vtp" / entry.get("file")))
         reader.Update()
-        data = reader.GetOutput()
+        yield float(entry.get("timestep")), reader.GetOutput()
+
+
+def of_vtk(run):
+    """Positions and radii, frame by frame, with their times."""
+    frames = []
+    for time, data in poly_data(run, "grains"):
         points = vtk_to_numpy(data.GetPoints().GetData())
         radius = vtk_to_numpy(data.GetPointData().GetArray("radius"))
         ids = vtk_to_numpy(data.GetPointData().GetArray("id"))
         require(data.GetNumberOfVerts() == len(points), "a vertex per grain")
         order = np.argsort(ids)
-        frames.append((float(entry.get("timestep")), points[order], radius[order]))
+        frames.append((time, points[order], radius[order]))
     return frames
+
+
+def bodies(run):
+    """The disc of every frame is where the table of its states says, and as large as the model does."""
+    states = pd.read_csv(run / "csv" / "intruder_intruder_state.csv")
+    intruder = tomllib.loads((run / "model.toml").read_text())["intruder"]
+    number, unit = intruder["diameter"].split()
+    radius = 0.5 * float(number) * {"m": 1, "cm": 1e-2, "mm": 1e-3}[unit]
+    count = 0
+    for time, data in poly_data(run, "bodies"):
+        state = states.iloc[abs(states["time_s"] - time).argmin()]
+        west, east, _, _, low, high = data.GetBounds()
+        centre = [0.5 * (west + east), 0.5 * (low + high)]
+        # Frames have the precision of single numbers.
+        require(np.allclose(centre, state[["position_x_m", "position_z_m"]], atol=1e-8), centre)
+        # A polygon of 48 corners, turned by anything, is as wide as its circle to within cos(pi / 48).
+        widths = np.array([east - west, high - low]) / (2 * radius)
+        require(np.all((np.cos(np.pi / 48) - 1e-6 < widths) & (widths < 1 + 1e-6)), widths)
+        require(data.GetNumberOfPolys() > 0 and data.GetNumberOfVerts() == 0, "a surface")
+        count += 1
+    require(count > 1, "more than one frame")
+    return f"bodies.pvd: {count} frames"
 
 
 def of_ovito(path):
@@ -77,6 +105,7 @@ def of_ovito(path):
 def main():
     run = Path(sys.argv[1])
     print(tables(run))
+    print(bodies(run))
     vtk = of_vtk(run)
     require(len(vtk) > 1, "more than one frame")
     for path in (run / "lammps-dump" / "grains.dump", run / "extxyz" / "grains.xyz"):

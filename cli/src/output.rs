@@ -79,6 +79,8 @@ fn printable_lines(text: &str) -> String {
 
 /// Writes the result of a command; a reader that has left is no error.
 pub(crate) fn to_stdout(text: &str) -> CommandResult {
+    // Names and sources are of files from anywhere. Scripts for shells have tabulators.
+    let text = text.split('\t').map(configs::printable).collect::<Vec<_>>().join("\t");
     let mut stdout = io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {

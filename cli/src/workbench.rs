@@ -20,9 +20,12 @@ const SEED: u64 = 1;
 /// The file that says what the results of a folder are from.
 const INPUTS: &str = "inputs.blake3";
 
+/// Behind the hash there, while not all results are written.
+const UNFINISHED: &str = "unfinished";
+
 /// What these commands write, besides proposed models and [`where_it_fails::FILES`].
-const RESULTS: [&str; 6] =
-    [INPUTS, "comparison.json", "comparison.svg", "diagnosis.json", "paths.svg", reports::FILE];
+const RESULTS: [&str; 5] =
+    ["comparison.json", "comparison.svg", "diagnosis.json", "paths.svg", reports::FILE];
 
 /// The flags of commands about a measurement set.
 #[derive(Args, Clone, Debug)]
@@ -257,7 +260,10 @@ impl Results {
         let stamp = folder.join(INPUTS);
         let shown = folder.display();
         let refusal = match fs::read_to_string(&stamp) {
-            Ok(found) => (found.trim() != inputs).then_some("results of other inputs"),
+            Ok(found) => {
+                let of = found.split_whitespace().next().unwrap_or_default();
+                (of != inputs).then_some("results of other inputs")
+            }
             Err(error) if error.kind() == ErrorKind::NotFound => {
                 let occupied = fs::read_dir(&folder).is_ok_and(|mut files| files.next().is_some());
                 occupied.then_some("files that are no results of this command")
@@ -280,20 +286,21 @@ impl Results {
         let shown = self.folder.display();
         fs::create_dir_all(&self.folder)
             .map_err(|error| anyhow::Error::new(error).context(format!("cannot make {shown}")))?;
-        // While files of two diagnoses lie here, the folder is of neither.
+        // Whoever is stopped on the way may write here again: from now on the folder is of these inputs.
+        let stamp = self.folder.join(INPUTS);
+        write_whole(&stamp, &format!("{} {UNFINISHED}\n", self.inputs))?;
         for name in self.earlier()? {
             fs::remove_file(self.folder.join(&name)).map_err(|error| {
                 anyhow::Error::new(error).context(format!("cannot remove {shown}/{name}"))
             })?;
         }
-        let stamp = (INPUTS.to_owned(), format!("{}\n", self.inputs));
-        files
-            .iter()
-            .chain([&stamp])
-            .try_for_each(|(name, text)| write_whole(&self.folder.join(name), text))
+        for (name, text) in files {
+            write_whole(&self.folder.join(name), text)?;
+        }
+        write_whole(&stamp, &format!("{}\n", self.inputs))
     }
 
-    /// The stamp and the results of an earlier call, by their names.
+    /// The results of an earlier call, by their names.
     fn earlier(&self) -> Result<Vec<String>, CommandError> {
         let fail = |error| {
             let shown = format!("cannot read {}", self.folder.display());
@@ -308,7 +315,7 @@ impl Results {
                 names.push(name);
             }
         }
-        names.sort_by_key(|name| name != INPUTS);
+        names.sort();
         Ok(names)
     }
 
@@ -327,6 +334,8 @@ pub(crate) fn write_whole(path: &Path, text: &str) -> CommandResult {
         .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()))
         .and_then(|()| fs::rename(&partial, path))
         .map_err(|error| {
+            // What is there of it is worth nothing, and takes room.
+            drop(fs::remove_file(&partial));
             let shown = format!("cannot write {}", path.display());
             CommandError::Failed(anyhow::Error::new(error).context(shown))
         })

@@ -16,7 +16,6 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use mcap::records::Record;
-use prost_reflect::DescriptorPool;
 
 use fields::{EnergyFields, StateFields};
 use records::Records;
@@ -201,10 +200,7 @@ impl<'a> Reading<'a> {
             .schemas
             .get(&channel.schema_id)
             .ok_or_else(|| refusal("its messages come without a descriptor".to_owned()))?;
-        let message = DescriptorPool::decode(descriptor.as_slice())
-            .map_err(|error| refusal(error.to_string()))?
-            .get_message_by_name(name)
-            .ok_or_else(|| refusal(format!("its descriptor does not describe {name}")))?;
+        let message = messages::described(name, descriptor).map_err(refusal)?;
         match body {
             Some(body) => {
                 let fields = StateFields::of(message).map_err(refusal)?;

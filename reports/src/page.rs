@@ -72,7 +72,8 @@ pub(crate) struct Card {
 
 impl Page {
     pub(crate) fn html(&self) -> Result<String, ReportError> {
-        Ok(self.render()?)
+        // Names and texts are of files from anywhere.
+        Ok(configs::printable(&self.render()?))
     }
 }
 
@@ -98,6 +99,20 @@ impl Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn control_characters_of_a_file_do_not_reach_a_page() {
+        let page = Page {
+            title: "a\u{1b}[2Jb".to_owned(),
+            kind: "run",
+            lead: String::new(),
+            headline: Vec::new(),
+            sections: Vec::new(),
+            origin: Vec::new(),
+        };
+        let html = page.html().expect("a page");
+        assert!(html.contains("a\u{fffd}[2Jb") && !html.contains('\u{1b}'), "{html}");
+    }
 
     #[test]
     fn names_from_outside_cannot_become_tags_or_addresses() {

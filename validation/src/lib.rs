@@ -16,7 +16,7 @@
 //! 5. [`diagnose::diagnose`] says which effect is missing, as a [`verdict`];
 //! 6. [`next::recommend`] says what to measure next where several effects remain.
 //!
-//! [`runs`] holds a run against a run.
+//! [`runs`] holds a run against a run; [`command`] is what the programs in `bin/` have in common.
 
 pub mod beds;
 pub mod bench;
@@ -24,6 +24,7 @@ pub mod benchmark;
 pub mod case;
 mod cases;
 mod chord;
+pub mod command;
 pub mod compare;
 pub mod covariate;
 pub mod diagnose;

@@ -13,7 +13,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use lexopt::Arg;
-use xshell::{Shell, cmd};
+use xshell::{Cmd, Shell, cmd};
 
 const HELP: &str = "\
 Chores of the repository.
@@ -28,6 +28,7 @@ Usage: cargo xtask <task>
                      how often the diagnosis is right, in release; the arguments go to the program
   bench beds [ARG]...
                      the same on small beds of grains
+  fuzz [ARG]...      changed files against every reader; the arguments go to the program
   three-shapes [ARG]...
                      cylinder, hemisphere and cone on beds of grains, in release; the same
   validate [ARG]...  the published results, run again in release, and the page of them; the arguments
@@ -44,6 +45,7 @@ enum Task {
     BenchBeds(Vec<OsString>),
     BenchDiagnosis(Vec<OsString>),
     BenchResistive,
+    Fuzz(Vec<OsString>),
     Help,
     Lint,
     Tidy,
@@ -74,6 +76,7 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
         Arg::Short('h') | Arg::Long("help") => return Ok(Task::Help),
         Arg::Value(name) => match name.to_str() {
             Some("bench") => return benchmark(parser.raw_args()?.collect()),
+            Some("fuzz") => return Ok(Task::Fuzz(parser.raw_args()?.collect())),
             Some("help") => Task::Help,
             Some("lint") => Task::Lint,
             Some("tidy") => Task::Tidy,
@@ -126,18 +129,20 @@ fn run(task: Task) -> Result<ExitCode> {
             sh.change_dir(root()?);
             tidy::run(&sh)
         }
-        Task::Bench(args) => program(&sh, "speed", &args),
-        Task::BenchBeds(args) => program(&sh, "beds", &args),
-        Task::BenchDiagnosis(args) => program(&sh, "diagnosis", &args),
-        Task::BenchResistive => program(&sh, "bench", &[]),
-        Task::ThreeShapes(args) => program(&sh, "three_shapes", &args),
+        Task::Bench(args) => study(&sh, "speed", &args),
+        Task::BenchBeds(args) => study(&sh, "beds", &args),
+        Task::BenchDiagnosis(args) => study(&sh, "diagnosis", &args),
+        Task::BenchResistive => study(&sh, "bench", &[]),
+        // Not in release: arithmetic that overflows is something to be found.
+        Task::Fuzz(args) => start(cmd!(sh, "cargo run --quiet --locked -p fuzz -- {args...}")),
+        Task::ThreeShapes(args) => study(&sh, "three_shapes", &args),
         Task::Validate(args) => validate(&sh, &args),
     }
 }
 
 /// Runs the published results again and makes the page of what came out, also where a row fails.
 fn validate(sh: &Shell, args: &[OsString]) -> Result<ExitCode> {
-    let code = program(sh, "validate", args)?;
+    let code = study(sh, "validate", args)?;
     let shows_only = |arg: &OsString| ["--list", "--help", "-h"].iter().any(|one| arg == one);
     let folder = written_to(args);
     if args.iter().any(shows_only) || !folder.join("validation.json").is_file() {
@@ -162,10 +167,13 @@ fn written_to(args: &[OsString]) -> PathBuf {
     folder
 }
 
-/// Runs a program of `validation` from where the user stands and hands its exit status on.
-fn program(sh: &Shell, name: &str, args: &[OsString]) -> Result<ExitCode> {
-    let cargo =
-        cmd!(sh, "cargo run --quiet --release --locked -p validation --bin {name} -- {args...}");
+/// Runs a program of `validation`.
+fn study(sh: &Shell, name: &str, args: &[OsString]) -> Result<ExitCode> {
+    start(cmd!(sh, "cargo run --quiet --release --locked -p validation --bin {name} -- {args...}"))
+}
+
+/// Runs a program from where the user stands and hands its exit status on.
+fn start(cargo: Cmd<'_>) -> Result<ExitCode> {
     let status = std::process::Command::from(cargo).status().context("cannot start cargo")?;
     let code = status.code().and_then(|code| u8::try_from(code).ok());
     Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))

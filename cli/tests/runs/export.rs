@@ -103,7 +103,8 @@ fn frames_hold_every_grain_at_its_time() {
     // Two hundred frames per second; a frame is at the step nearest to its time.
     assert!(lines[n + 3].contains(" Time=0.005 "), "{}", lines[n + 3]);
     export(out.path(), "vtp").done();
-    assert_eq!(names(&out.path().join("vtp")).len(), frames + 1, "a file per frame, and the index");
+    let files = names(&out.path().join("vtp"));
+    assert_eq!(files.len(), 2 * (frames + 1), "grains and bodies of every frame, and two indices");
 }
 
 #[test]

@@ -1,13 +1,14 @@
-//! The states of grains in a log, frame by frame.
+//! The states of grains and bodies in a log, frame by frame.
 
 use std::path::{Path, PathBuf};
 
 use prost_reflect::{DynamicMessage, FieldDescriptor, MessageDescriptor, Value};
 
+use super::surfaces::{Bodies, Surface};
 use super::{ExportError, Exported};
 use crate::read::messages::{Receiver, Refusal, each_message};
 
-/// All grains at one time.
+/// All grains and bodies at one time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Frame {
     /// Which frame, from 0.
@@ -15,6 +16,8 @@ pub(super) struct Frame {
     /// Simulated time (s).
     pub(super) time: f64,
     pub(super) grains: Vec<Grain>,
+    /// In the order of their names.
+    pub(super) bodies: Vec<Surface>,
 }
 
 /// A grain as the log has it.
@@ -54,7 +57,8 @@ pub(super) trait FrameWriter {
 
 /// Hands every frame of the log at `path` to `writer`.
 pub(super) fn export(path: &Path, writer: impl FrameWriter) -> Result<Exported, ExportError> {
-    let mut frames = Frames { writer, frame: Frame::default(), n: 0, failed: None };
+    let mut frames =
+        Frames { writer, frame: Frame::default(), bodies: Bodies::default(), n: 0, failed: None };
     let read = each_message(path, &mut frames);
     if let Some(error) = frames.failed {
         return Err(error);
@@ -70,8 +74,19 @@ struct Frames<W> {
     writer: W,
     /// Taken again for every frame.
     frame: Frame,
+    /// Of the same frame: a log says where they are before it says where grains are.
+    bodies: Bodies,
     n: usize,
     failed: Option<ExportError>,
+}
+
+/// What is read of a frame.
+enum Topic {
+    Grains(Cloud),
+    /// Where bodies are.
+    Places(MessageDescriptor),
+    /// What they look like.
+    Shapes(MessageDescriptor),
 }
 
 /// Where a point cloud has what we read of it.
@@ -153,18 +168,39 @@ fn text_of(message: &Value, field: &str) -> Option<String> {
 }
 
 impl<W: FrameWriter> Receiver for Frames<W> {
-    type Channel = Cloud;
+    type Channel = Topic;
 
     fn introduce(
         &mut self,
         topic: &str,
         message: &MessageDescriptor,
-    ) -> Result<Option<Cloud>, String> {
-        if topic == "/grains" { Cloud::of(message).map(Some) } else { Ok(None) }
+    ) -> Result<Option<Topic>, String> {
+        Ok(match topic {
+            "/grains" => Some(Topic::Grains(Cloud::of(message)?)),
+            "/tf" => Some(Topic::Places(message.clone())),
+            "/scene" => Some(Topic::Shapes(message.clone())),
+            _ => None,
+        })
     }
 
-    fn receive(&mut self, cloud: &mut Cloud, data: &[u8]) -> Result<(), Refusal> {
+    fn receive(&mut self, topic: &mut Topic, data: &[u8]) -> Result<(), Refusal> {
+        let decoded = |message: &MessageDescriptor| {
+            DynamicMessage::decode(message.clone(), data)
+                .map_err(|error| Refusal::Damaged(error.to_string()))
+        };
+        let cloud = match topic {
+            Topic::Grains(cloud) => cloud,
+            Topic::Places(message) => {
+                self.bodies.place(&decoded(message)?);
+                return Ok(());
+            }
+            Topic::Shapes(message) => {
+                self.bodies.draw(&decoded(message)?);
+                return Ok(());
+            }
+        };
         cloud.read(data, &mut self.frame).map_err(Refusal::Damaged)?;
+        self.frame.bodies = self.bodies.surfaces();
         self.frame.number = self.n;
         self.n += 1;
         self.writer.frame(&self.frame).map_err(|error| {

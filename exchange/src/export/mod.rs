@@ -1,13 +1,14 @@
 //! Runs as files of other programs: tables for notebooks, grains for ParaView and OVITO.
 //!
 //! A [`Format`] is one file of this folder: tables of numbers go through `tables.rs`, states of grains
-//! through `grains.rs`. A file has its name once it is whole.
+//! through `grains.rs`, with the surfaces of bodies of `surfaces.rs`. A file has its name once it is whole.
 
 mod csv;
 mod extended_xyz;
 mod grains;
 mod lammps_dump;
 mod parquet;
+mod surfaces;
 mod tables;
 mod vtp;
 mod whole_file;
@@ -26,7 +27,7 @@ pub enum Format {
     Csv,
     /// The same as Apache Parquet.
     Parquet,
-    /// VTK poly data, one file per frame, with a ParaView index over time.
+    /// VTK poly data of grains and bodies, files for every frame, with ParaView indices over time.
     Vtp,
     /// A LAMMPS dump of all frames.
     LammpsDump,
@@ -57,7 +58,7 @@ impl Format {
         match self {
             Self::Csv => "tables of energies, states and loads, as text",
             Self::Parquet => "the same tables, smaller and read faster",
-            Self::Vtp => "grains for ParaView: open the .pvd",
+            Self::Vtp => "grains and bodies for ParaView: open both .pvd",
             Self::LammpsDump => "grains for OVITO and tools of LAMMPS",
             Self::ExtendedXyz => "grains for OVITO and ASE",
         }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::ExportError;
 
-/// A file that is being written under another name.
+/// A file that is being written under another name; given up, it leaves nothing.
 pub(super) struct WholeFile {
     path: PathBuf,
     partial: PathBuf,
@@ -38,7 +38,7 @@ impl WholeFile {
     pub(super) fn finish(mut self) -> Result<PathBuf, ExportError> {
         let done = self.file.flush().and_then(|()| self.file.get_ref().sync_all());
         done.and_then(|()| fs::rename(&self.partial, &self.path)).map_err(|e| self.failed(e))?;
-        Ok(self.path)
+        Ok(self.path.clone())
     }
 }
 
@@ -49,5 +49,12 @@ impl Write for WholeFile {
 
     fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
+    }
+}
+
+impl Drop for WholeFile {
+    fn drop(&mut self) {
+        // After `finish` nothing has this name any more.
+        drop(fs::remove_file(&self.partial));
     }
 }

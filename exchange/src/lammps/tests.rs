@@ -1,5 +1,4 @@
 use std::fs;
-use std::process::Command;
 
 use configs::{LoadOptions, Loaded, Model, ModelSource};
 use tempfile::TempDir;
@@ -175,45 +174,4 @@ fn both_files_are_written_into_a_new_folder() {
     deck.write(&into).expect("it can be written");
     let read = |name: &str| fs::read_to_string(into.join(name)).expect("a file");
     assert_eq!((read(INPUT), read(DATA)), (deck.input, deck.data));
-}
-
-/// The velocity (m/s) of the intruder of `loaded` after so many steps, by LAMMPS and by plunge.
-fn velocities(lammps: &std::ffi::OsStr, loaded: &Loaded, steps: u64) -> [[f64; 2]; 2] {
-    let grains = loaded.model.grains().expect("a bed");
-    let resting = grains.read_bed().expect("a table");
-    let folder = tempfile::tempdir().expect("a folder");
-    let deck = Deck::of(grains, &resting).expect("a model that LAMMPS can express");
-    deck.write(folder.path()).expect("it can be written");
-    let mut command = Command::new(lammps);
-    command.current_dir(folder.path()).args(["-in", INPUT, "-log", "none", "-var", "steps"]);
-    let output = command.arg(steps.to_string()).output().expect("PLUNGE_LAMMPS names a program");
-    let said = String::from_utf8_lossy(&output.stdout);
-    let state = said.lines().rfind(|line| line.starts_with("intruder at the end")).expect(&said);
-    let state: Vec<f64> = state.split([',', ' ']).filter_map(|word| word.parse().ok()).collect();
-    let (x, z) = (state[state.len() / 2 + 1], state[state.len() - 1]);
-
-    let condition = loaded.model.conditions()[0];
-    let mut simulation = grains.simulation(&resting, &condition).expect("a simulation");
-    for _ in 0..steps {
-        simulation.advance().expect("a step");
-    }
-    let velocity = simulation.intruder().bodies()[0].velocity;
-    [[x, z], [velocity.x, velocity.z]]
-}
-
-/// Needs a LAMMPS, which `PLUNGE_LAMMPS` names: `cargo test -p exchange -- --ignored`.
-#[test]
-#[ignore = "needs LAMMPS"]
-fn lammps_moves_the_intruder_as_plunge_does() {
-    let lammps = std::env::var_os("PLUNGE_LAMMPS").expect("PLUNGE_LAMMPS names an lmp");
-    // An oblique hit with spin, so that springs, damping and friction all act.
-    let sets =
-        ["impact.angle = \"80 deg\"", "impact.spin = \"20 rad/s\"", "impact.speed = \"1 m/s\""];
-    for (dimension, law) in [(2, LINEAR), (3, HERTZ)] {
-        let (_folder, loaded) = model(dimension, law, &sets);
-        let [theirs, ours] = velocities(&lammps, &loaded, 200);
-        let apart = libm::hypot(theirs[0] - ours[0], theirs[1] - ours[1]);
-        // Of the speed of the impact; damping of the half step and sliding springs differ.
-        assert!(apart < 0.02, "{dimension}D: {theirs:?} in LAMMPS, {ours:?} here");
-    }
 }

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use mcap::records::Record;
+use prost_reflect::prost::Message as _;
+use prost_reflect::prost_types::{FileDescriptorProto, FileDescriptorSet};
 use prost_reflect::{DescriptorPool, MessageDescriptor};
 
 use super::ReadError;
@@ -68,7 +70,7 @@ pub(crate) fn each_message<R: Receiver>(path: &Path, receiver: &mut R) -> Result
                     let message = schemas
                         .get(&channel.schema_id)
                         .ok_or_else(|| "its messages come without a descriptor".to_owned())
-                        .and_then(described)
+                        .and_then(|(name, set)| described(name, set))
                         .map_err(refusal)?;
                     let known = receiver.introduce(&channel.topic, &message).map_err(refusal)?;
                     channels.insert(channel.id, known);
@@ -89,8 +91,18 @@ pub(crate) fn each_message<R: Receiver>(path: &Path, receiver: &mut R) -> Result
     Ok(records.complete())
 }
 
-fn described((name, descriptor): &(String, Vec<u8>)) -> Result<MessageDescriptor, String> {
-    DescriptorPool::decode(descriptor.as_slice())
+/// The message `name` of a serialized set of descriptors.
+///
+/// # Errors
+/// What is wrong with the set, in a sentence.
+pub(crate) fn described(name: &str, set: &[u8]) -> Result<MessageDescriptor, String> {
+    let set = FileDescriptorSet::decode(set).map_err(|error| error.to_string())?;
+    // `prost-reflect` 0.16 panics where it should refuse an unknown syntax.
+    let known = |file: &&FileDescriptorProto| ["", "proto2", "proto3"].contains(&file.syntax());
+    if let Some(file) = set.file.iter().find(|file| !known(file)) {
+        return Err(format!("its descriptor is written in an unknown syntax, `{}`", file.syntax()));
+    }
+    DescriptorPool::from_file_descriptor_set(set)
         .map_err(|error| error.to_string())?
         .get_message_by_name(name)
         .ok_or_else(|| format!("its descriptor does not describe {name}"))

@@ -1,16 +1,17 @@
 //! `cargo xtask bench beds`: how often the diagnosis of a bed of grains is right.
 
-#![allow(clippy::print_stdout, reason = "stdout is where a command's result belongs")]
-
 use std::error::Error;
 use std::fs;
+use std::io::Write;
 use std::num::NonZero;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use lexopt::Parser;
 use lexopt::prelude::{Long, Short, ValueExt};
 use validation::beds::benchmark::{Case, Outcome, all, quick, table};
 use validation::beds::{Place, Unattended, Wish};
+use validation::command::conclude;
 
 const HELP: &str = "\
 How often the diagnosis of a bed of grains names what is hidden in it.
@@ -37,28 +38,11 @@ struct Wanted {
 }
 
 fn main() -> ExitCode {
-    let wanted = match parse() {
-        Ok(Some(wanted)) => wanted,
-        Ok(None) => {
-            print!("{HELP}");
-            return ExitCode::SUCCESS;
-        }
-        Err(error) => {
-            eprintln!("error: {error}\n\n{HELP}");
-            return ExitCode::from(2);
-        }
-    };
-    match bench(&wanted) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    conclude(HELP, parse, bench)
 }
 
-fn parse() -> Result<Option<Wanted>, lexopt::Error> {
-    let mut parser = lexopt::Parser::from_env();
+/// `None` for help.
+fn parse(mut parser: Parser) -> Result<Option<Wanted>, lexopt::Error> {
     let (mut draws, mut minutes, mut few) = (2, 5.0, false);
     let mut wanted = Wanted {
         cases: Vec::new(),
@@ -84,7 +68,7 @@ fn parse() -> Result<Option<Wanted>, lexopt::Error> {
     Ok(Some(wanted))
 }
 
-fn bench(wanted: &Wanted) -> Result<(), Box<dyn Error>> {
+fn bench(wanted: &Wanted, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
     let place = Place { cache: &wanted.cache, workers: wanted.threads, watch: &Unattended };
     let text = fs::read_to_string(&wanted.out).unwrap_or_default();
     let mut known: Vec<Outcome> =
@@ -107,8 +91,8 @@ fn bench(wanted: &Wanted) -> Result<(), Box<dyn Error>> {
         );
         outcomes.push(outcome);
     }
-    print!("{}", table(&outcomes));
-    Ok(())
+    write!(out, "{}", table(&outcomes))?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Writes the outcomes so far, whole or not at all.

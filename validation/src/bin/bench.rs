@@ -1,10 +1,20 @@
 //! `cargo xtask bench resistive`: how many impacts on a resistive medium one core integrates in a second.
 
-#![allow(clippy::print_stdout, reason = "stdout is where a command's result belongs")]
-
+use std::error::Error;
+use std::io::Write;
+use std::process::ExitCode;
 use std::time::Instant;
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
+use lexopt::Parser;
+use lexopt::prelude::{Long, Short};
+use validation::command::conclude;
+
+const HELP: &str = "\
+Impacts per second on resistive media, on one core and without a log.
+
+Usage: cargo xtask bench resistive
+";
 
 /// Impacts of each kind: enough for a second or so of work.
 const IMPACTS: u32 = 4000;
@@ -12,22 +22,38 @@ const IMPACTS: u32 = 4000;
 /// Repetitions; the median of their rates is shown.
 const REPEATS: usize = 5;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    println!("impacts per second on one core, without a log: median of {REPEATS} (least, most)\n");
+fn main() -> ExitCode {
+    conclude(HELP, parse, bench)
+}
+
+/// `None` for help: there is nothing to choose.
+fn parse(mut args: Parser) -> Result<Option<()>, lexopt::Error> {
+    match args.next()? {
+        None => Ok(Some(())),
+        Some(Short('h') | Long("help")) => Ok(None),
+        Some(other) => Err(other.unexpected()),
+    }
+}
+
+fn bench((): &(), out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
+    writeln!(
+        out,
+        "impacts per second on one core, without a log: median of {REPEATS} (least, most)\n"
+    )?;
     for name in ["two-term-vector", "two-term-components", "poncelet", "link"] {
         for angle in ["90 deg", "45 deg"] {
             let mut rates =
                 (0..REPEATS).map(|_| rate(name, angle)).collect::<Result<Vec<f64>, _>>()?;
             rates.sort_by(f64::total_cmp);
             let [least, median, most] = [0, REPEATS / 2, REPEATS - 1].map(|place| rates[place]);
-            println!("{name:<22}{angle:<9}{median:>9.0} ({least:.0}, {most:.0})");
+            writeln!(out, "{name:<22}{angle:<9}{median:>9.0} ({least:.0}, {most:.0})")?;
         }
     }
-    Ok(())
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Impacts per second of the shipped model `name` between 0.5 and 4 m/s; each is built anew.
-fn rate(name: &str, angle: &str) -> Result<f64, Box<dyn std::error::Error>> {
+fn rate(name: &str, angle: &str) -> Result<f64, Box<dyn Error>> {
     let text = find_shipped(name).ok_or("the model ships")?.text.to_owned();
     let source = ModelSource::Text { name: name.to_owned(), text, folder: ".".into() };
     let sets = vec![format!("impact.angle=\"{angle}\"")];

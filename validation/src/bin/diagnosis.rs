@@ -1,9 +1,8 @@
 //! `cargo xtask bench diagnosis`: how often the diagnosis is right.
 
-#![allow(clippy::print_stdout, reason = "stdout is where a command's result belongs")]
-
 use std::error::Error;
 use std::fs;
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -16,6 +15,7 @@ use validation::benchmark::interval::quantile;
 use validation::benchmark::plan::{Row, Seeds, Size};
 use validation::benchmark::trial::{Trial, baseline, draw};
 use validation::benchmark::{document, json, run, table};
+use validation::command::conclude;
 
 const HELP: &str = "\
 Worlds in which something is hidden, measured and diagnosed blindly: how often is it found?
@@ -51,24 +51,7 @@ struct Wish {
 }
 
 fn main() -> ExitCode {
-    let wish = match parse(Parser::from_env()) {
-        Ok(Some(wish)) => wish,
-        Ok(None) => {
-            print!("{HELP}");
-            return ExitCode::SUCCESS;
-        }
-        Err(message) => {
-            eprintln!("error: {message}\n\n{HELP}");
-            return ExitCode::from(2);
-        }
-    };
-    match work(&wish) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    conclude(HELP, parse, work)
 }
 
 /// `None` for help.
@@ -116,17 +99,17 @@ fn count(text: &str) -> Result<usize, String> {
         .ok_or(format!("`{text}` is no number of 1 to 1000"))
 }
 
-fn work(wish: &Wish) -> Result<(), Box<dyn Error>> {
+fn work(wish: &Wish, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
     let plans = wish.size.plans(wish.seeds);
     if let Some(folder) = &wish.export {
         let plan = plans.first().ok_or("nothing is asked for")?;
         let (nature, set) = draw(plan)?;
         set.write(folder)?;
-        println!("{}: drag {}, friction {}", folder.display(), nature.drag, nature.friction);
+        writeln!(out, "{}: drag {}, friction {}", folder.display(), nature.drag, nature.friction)?;
         for (hidden, q) in nature.hidden {
-            println!("hidden: {}, q = {q}: {}", hidden.id(), hidden.form().law);
+            writeln!(out, "hidden: {}, q = {q}: {}", hidden.id(), hidden.form().law)?;
         }
-        return Ok(());
+        return Ok(ExitCode::SUCCESS);
     }
     let model = baseline()?;
     let (total, finished) = (plans.len(), AtomicUsize::new(0));
@@ -152,8 +135,8 @@ fn work(wish: &Wish) -> Result<(), Box<dyn Error>> {
         );
     }
     match wish.json {
-        true => println!("{:#}", json::report(&trials, &bins)),
-        false => println!("{report}"),
+        true => writeln!(out, "{:#}", json::report(&trials, &bins))?,
+        false => writeln!(out, "{report}")?,
     }
     if wish.write {
         let path = "docs/diagnosis-benchmark.md";
@@ -163,5 +146,5 @@ fn work(wish: &Wish) -> Result<(), Box<dyn Error>> {
         fs::write(path, page)?;
         fs::write("docs/diagnosis-calibration.svg", picture(&bins)?)?;
     }
-    Ok(())
+    Ok(ExitCode::SUCCESS)
 }

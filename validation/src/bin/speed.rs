@@ -1,15 +1,15 @@
 //! `cargo xtask bench`: how fast beds of grains are stepped, alone or beside a peer.
 
-#![allow(clippy::print_stdout, reason = "stdout is where a command's result belongs")]
-
 use std::error::Error;
 use std::fs;
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use lexopt::Parser;
 use lexopt::prelude::{Long, Short, Value, ValueExt};
 use validation::benchmark::document;
+use validation::command::conclude;
 use validation::speed::lammps::Lammps;
 use validation::speed::plan::{self, Plan};
 use validation::speed::problem::{PROBLEMS, Problem};
@@ -36,7 +36,6 @@ Exit status: 0 done, 1 failed or a peer disagrees, 2 the command line was not un
 
 /// What the command line asks for.
 enum Wish {
-    Help,
     Bench(Bench),
     /// One trial, for the benchmark itself.
     Trial(Order),
@@ -54,31 +53,20 @@ struct Bench {
 }
 
 fn main() -> ExitCode {
-    let done = match parse(Parser::from_env()) {
-        Ok(Wish::Help) => {
-            print!("{HELP}");
-            return ExitCode::SUCCESS;
-        }
-        Ok(Wish::Trial(order)) => trial(&order),
-        Ok(Wish::Bench(wish)) => bench(&wish),
-        Err(message) => {
-            eprintln!("error: {message}\n\n{HELP}");
-            return ExitCode::from(2);
-        }
-    };
-    done.unwrap_or_else(|error| {
-        eprintln!("error: {error}");
-        ExitCode::FAILURE
+    conclude(HELP, parse, |wish, out| match wish {
+        Wish::Trial(order) => trial(order, out),
+        Wish::Bench(wish) => bench(wish, out),
     })
 }
 
-fn parse(mut args: Parser) -> Result<Wish, lexopt::Error> {
+/// `None` for help.
+fn parse(mut args: Parser) -> Result<Option<Wish>, lexopt::Error> {
     let (mut problems, mut peers, mut write) = (Vec::new(), false, false);
     let (mut repeats, mut shorter) = (None, 1);
     let (mut out, mut cache) = (PathBuf::from("target/bench"), None);
     while let Some(arg) = args.next()? {
         match arg {
-            Value(word) if word == "trial" => return order(&mut args).map(Wish::Trial),
+            Value(word) if word == "trial" => return order(&mut args).map(Wish::Trial).map(Some),
             Long("problem") => problems.extend(args.value()?.parse_with(named)?),
             Long("peers") => peers = true,
             Long("quick") => shorter = 4,
@@ -86,7 +74,7 @@ fn parse(mut args: Parser) -> Result<Wish, lexopt::Error> {
             Long("out") => out = PathBuf::from(args.value()?),
             Long("cache") => cache = Some(PathBuf::from(args.value()?)),
             Long("write") => write = true,
-            Short('h') | Long("help") => return Ok(Wish::Help),
+            Short('h') | Long("help") => return Ok(None),
             other => return Err(other.unexpected()),
         }
     }
@@ -95,7 +83,7 @@ fn parse(mut args: Parser) -> Result<Wish, lexopt::Error> {
     }
     let from_environment = || std::env::var_os("PLUNGE_CACHE").filter(|folder| !folder.is_empty());
     let cache = cache.or_else(|| from_environment().map(PathBuf::from));
-    Ok(Wish::Bench(Bench {
+    Ok(Some(Wish::Bench(Bench {
         problems,
         peers,
         repeats: repeats.unwrap_or(if shorter > 1 { 3 } else { 5 }),
@@ -103,7 +91,7 @@ fn parse(mut args: Parser) -> Result<Wish, lexopt::Error> {
         out,
         cache: cache.unwrap_or_else(|| PathBuf::from("runs/.cache")),
         write,
-    }))
+    })))
 }
 
 /// The problems that `name` stands for.
@@ -135,12 +123,12 @@ fn order(args: &mut Parser) -> Result<Order, lexopt::Error> {
     Ok(Order { model, span: Span { warm_up, steps }, threads: threads as usize, extent })
 }
 
-fn trial(order: &Order) -> Result<ExitCode, Box<dyn Error>> {
-    println!("{}", serde_json::to_string(&order.here()?)?);
+fn trial(order: &Order, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
+    writeln!(out, "{}", serde_json::to_string(&order.here()?)?)?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn bench(wish: &Bench) -> Result<ExitCode, Box<dyn Error>> {
+fn bench(wish: &Bench, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
     let environment = PathBuf::from("target/peers");
     let lammps = wish.peers.then(|| Lammps::find_or_install(&environment)).transpose()?;
     let plan = Plan {
@@ -156,7 +144,7 @@ fn bench(wish: &Bench) -> Result<ExitCode, Box<dyn Error>> {
     fs::create_dir_all(&wish.out)?;
     fs::write(wish.out.join("speed.json"), format!("{json:#}\n"))?;
     fs::write(wish.out.join("speed.md"), &markdown)?;
-    println!("{markdown}");
+    writeln!(out, "{markdown}")?;
     if wish.write {
         let path = "docs/performance.md";
         let page = fs::read_to_string(path).map_err(|error| format!("{path}: {error}"))?;

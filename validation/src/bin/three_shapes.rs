@@ -1,13 +1,14 @@
 //! `cargo xtask three-shapes`: cylinder, hemisphere and cone on beds of our own.
 
-#![allow(clippy::print_stdout, reason = "stdout is where a command's result belongs")]
-
 use std::error::Error;
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use lexopt::Parser;
 use lexopt::prelude::{Long, Short, ValueExt};
+use validation::command::conclude;
 use validation::three_shapes::{Places, cases, depths, frictions, run, table};
 
 const HELP: &str = "\
@@ -35,28 +36,11 @@ struct Wish {
 }
 
 fn main() -> ExitCode {
-    let wish = match parse() {
-        Ok(Some(wish)) => wish,
-        Ok(None) => {
-            print!("{HELP}");
-            return ExitCode::SUCCESS;
-        }
-        Err(error) => {
-            eprintln!("error: {error}\n\n{HELP}");
-            return ExitCode::from(2);
-        }
-    };
-    match study(&wish) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    conclude(HELP, parse, study)
 }
 
-fn parse() -> Result<Option<Wish>, lexopt::Error> {
-    let mut parser = lexopt::Parser::from_env();
+/// `None` for help.
+fn parse(mut parser: Parser) -> Result<Option<Wish>, lexopt::Error> {
     let mut wish = Wish {
         seeds: 3,
         threads: std::thread::available_parallelism().map_or(1, usize::from),
@@ -77,7 +61,7 @@ fn parse() -> Result<Option<Wish>, lexopt::Error> {
     Ok(Some(wish))
 }
 
-fn study(wish: &Wish) -> Result<(), Box<dyn Error>> {
+fn study(wish: &Wish, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
     let cases = cases(wish.seeds);
     let outcomes = run(&cases, &wish.places, wish.threads, &|case, outcome| {
         eprintln!(
@@ -89,7 +73,7 @@ fn study(wish: &Wish) -> Result<(), Box<dyn Error>> {
     })?;
     let results: Vec<_> = cases.into_iter().zip(outcomes).collect();
     let text = table(&results);
-    print!("{text}");
+    write!(out, "{text}")?;
     if wish.write {
         let path = Path::new("docs/three-shapes.md");
         let before = fs::read_to_string(path)?;
@@ -98,5 +82,5 @@ fn study(wish: &Wish) -> Result<(), Box<dyn Error>> {
         fs::write("docs/three-shapes-depth.svg", depths(&results)?)?;
         fs::write("docs/three-shapes-friction.svg", frictions(&results)?)?;
     }
-    Ok(())
+    Ok(ExitCode::SUCCESS)
 }

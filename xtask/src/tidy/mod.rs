@@ -4,6 +4,7 @@
 
 mod arrows;
 mod laws;
+mod promises;
 mod text;
 
 use std::fmt;
@@ -50,6 +51,7 @@ pub(crate) fn run(sh: &Shell) -> Result<ExitCode> {
 
     let mut problems = arrows::check(&metadata, &files)?;
     problems.extend(laws::check(&files));
+    problems.extend(promises::check(&files));
     problems.extend(files.iter().flat_map(|file| text::check(&file.path, &file.text)));
     problems.sort();
 
