@@ -201,7 +201,9 @@ impl<'a> Reading<'a> {
                         before = Before { signed: false, raised: true };
                         break;
                     }
-                    Some(c) if is_known(c) => return self.fail(1, SyntaxError::NoOperator),
+                    Some(c) if is_known(c) => {
+                        return self.fail(c.len_utf8(), SyntaxError::NoOperator);
+                    }
                     Some(c) => return self.fail(c.len_utf8(), SyntaxError::Character(c)),
                 }
             }
@@ -374,6 +376,7 @@ mod tests {
             ("v + ", 4..4, "a value is missing"),
             ("v * / z", 4..5, "a value is missing"),
             ("2 v", 2..3, "an operator is missing"),
+            ("2 λ", 2..4, "an operator is missing"),
             ("(v)(z)", 3..4, "an operator is missing"),
             ("(v + (z)", 0..1, "not closed"),
             ("v + z)", 5..6, "not opened"),
