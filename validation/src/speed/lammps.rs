@@ -161,6 +161,7 @@ fn understood(output: &str, ranks: usize) -> Option<Trial> {
         wall_s,
         cpu_s: wall_s * procs * share / 100.0,
         peak_bytes: None,
+        held_bytes: None,
         velocity_m_per_s: Some(velocity),
     })
 }

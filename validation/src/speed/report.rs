@@ -38,7 +38,7 @@ fn ratio(own: Option<Spread>, peer: Option<Spread>) -> Option<f64> {
 /// Memory of the process per grain (byte), what it started with included.
 fn memory_per_grain(measured: &Measured) -> Option<f64> {
     let trial = measured.one.first()?;
-    Some(trial.peak_bytes? as f64 / trial.grains as f64)
+    Some(trial.held_bytes? as f64 / trial.grains as f64)
 }
 
 /// CPU time per grain and step of each bed of spheres over that of the smallest (–), with its grains.
@@ -48,6 +48,17 @@ fn growth(results: &Results) -> Vec<(usize, f64)> {
     let rates: Vec<(usize, f64)> = rates.collect();
     let smallest = rates.first().map_or(f64::NAN, |(_, rate)| *rate);
     rates.into_iter().map(|(grains, rate)| (grains, smallest / rate)).collect()
+}
+
+/// Memory (byte) that each grain more takes, between the smallest and the largest bed of spheres; without the
+/// program itself.
+fn memory_per_further_grain(results: &Results) -> Option<f64> {
+    let spheres = results.measured.iter().filter(|one| one.problem.name.starts_with("3d"));
+    let trials = spheres.filter_map(|one| one.one.first());
+    let held: Vec<(f64, f64)> =
+        trials.filter_map(|one| Some((one.grains as f64, one.held_bytes? as f64))).collect();
+    let (small, large) = (held.first()?, held.last()?);
+    (large.0 > small.0).then(|| (large.1 - small.1) / (large.0 - small.0))
 }
 
 /// Everything as one JSON object.
@@ -90,6 +101,7 @@ pub fn as_json(plan: &Plan, results: &Results) -> Value {
         "growth": growth(results).iter().map(|(grains, factor)| json!({
             "grains": grains, "cpu_per_grain_step_over_smallest": factor,
         })).collect::<Vec<_>>(),
+        "memory_per_further_grain_bytes": memory_per_further_grain(results),
         "ledger_cost": results.ledger,
         "logging_cost": results.logging,
         "batch": results.batch.map(|batch| json!({
@@ -157,6 +169,9 @@ pub fn as_markdown(plan: &Plan, results: &Results) -> String {
             "- Growth, CPU time per grain and step over the smallest bed of spheres: {steps}."
         );
     }
+    if let Some(bytes) = memory_per_further_grain(results) {
+        let _ = writeln!(text, "- Memory: {bytes:.0} byte for each grain more in space.");
+    }
     for (what, cost) in [("energy ledger", results.ledger), ("default log", results.logging)] {
         if let Some(Spread { median, least, most }) = cost {
             let [median, least, most] = [median, least, most].map(share);
@@ -198,7 +213,8 @@ mod tests {
             steps: 100,
             wall_s: cpu_s,
             cpu_s,
-            peak_bytes: Some(1000 * grains as u64),
+            peak_bytes: Some(2000 * grains as u64),
+            held_bytes: Some(1000 * grains as u64 + 5_000_000),
             velocity_m_per_s: Some([0.0, 0.0, velocity]),
         }
     }
@@ -236,7 +252,8 @@ mod tests {
         let first = &json["problems"][0];
         assert_eq!(first["plunge"]["one_core_grain_steps_per_cpu_s"]["median"], 1e6);
         assert_eq!(first["plunge_over_lammps"]["one_core"], 0.5);
-        assert_eq!(first["plunge"]["memory_per_grain_bytes"], 1000.0);
+        assert_eq!(first["plunge"]["memory_per_grain_bytes"], 6000.0);
+        assert_eq!(json["memory_per_further_grain_bytes"], 1000.0);
         assert_eq!(
             (&first["agrees"], &first["plunge_over_lammps"]["two_cores"]),
             (&json!(true), &Value::Null)
@@ -251,7 +268,7 @@ mod tests {
         let (plan, results) = results();
         let page = as_markdown(&plan, &results);
         let row = page.lines().find(|line| line.starts_with("| 3d-12k")).expect("a row");
-        assert!(row.contains("| **1.00** (1.00 to 1.00) | **2.00** (2.00 to 2.00) | 0.50 | – | – | – | 1000 | 1.0 % |"), "{row}");
+        assert!(row.contains("| **1.00** (1.00 to 1.00) | **2.00** (2.00 to 2.00) | 0.50 | – | – | – | 6000 | 1.0 % |"), "{row}");
         assert!(page.contains("3.00 at 3000"), "{page}");
     }
 }

@@ -10,7 +10,7 @@ use engine::parallel::with_threads;
 use serde::{Deserialize, Serialize};
 
 use super::SpeedError;
-use super::clock::{cpu_seconds, peak_bytes};
+use super::clock::{cpu_seconds, memory};
 
 /// Which steps are timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +42,8 @@ pub struct Trial {
     pub cpu_s: f64,
     /// Largest memory of the process (byte), where it is known.
     pub peak_bytes: Option<u64>,
+    /// Memory that the process holds after the steps (byte), where it is known.
+    pub held_bytes: Option<u64>,
     /// Velocity of the intruder at the end (m/s), in the axes of plunge, where it is known.
     pub velocity_m_per_s: Option<[f64; 3]>,
 }
@@ -189,12 +191,14 @@ fn bare(order: &Order) -> Result<Trial, SpeedError> {
     }
     let (wall_s, cpu_s) = (wall.elapsed().as_secs_f64(), cpu_seconds() - cpu);
     let velocity = simulation.intruder().bodies()[0].velocity.into();
+    let memory = memory();
     Ok(Trial {
         grains: simulation.bed().grains.len(),
         steps: order.span.steps,
         wall_s,
         cpu_s,
-        peak_bytes: peak_bytes(),
+        peak_bytes: memory.as_ref().map(|memory| memory.peak),
+        held_bytes: memory.as_ref().map(|memory| memory.held),
         velocity_m_per_s: Some(velocity),
     })
 }
@@ -213,12 +217,14 @@ fn logged(order: &Order, folder: &Path) -> Result<Trial, SpeedError> {
     run(&loaded.model, &loaded.original, &places, &mut laps)?;
     let too_short = || SpeedError::TooShort { steps: order.span.steps };
     let (Some(first), Some(last)) = (laps.first, laps.last) else { return Err(too_short()) };
+    let memory = memory();
     Ok(Trial {
         grains: n_grains as usize,
         steps: last.step - first.step,
         wall_s: last.wall.duration_since(first.wall).as_secs_f64(),
         cpu_s: last.cpu - first.cpu,
-        peak_bytes: peak_bytes(),
+        peak_bytes: memory.as_ref().map(|memory| memory.peak),
+        held_bytes: memory.as_ref().map(|memory| memory.held),
         velocity_m_per_s: None,
     })
 }
