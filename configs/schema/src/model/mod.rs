@@ -68,7 +68,7 @@ pub struct EnergySettings {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Medium {
     /// Grains in a container.
-    Grains(GrainMedium),
+    Grains(Box<GrainMedium>),
     /// A force law.
     Resistive(ResistiveMedium),
 }

@@ -64,7 +64,7 @@ pub(super) fn model(
         run,
         log,
         energy: energy?,
-        medium: Medium::Grains(GrainMedium {
+        medium: Medium::Grains(Box::new(GrainMedium {
             space: medium?.0,
             gravity: medium?.1,
             container: container?,
@@ -75,7 +75,7 @@ pub(super) fn model(
             start: start?,
             stepping,
             log: grain_log,
-        }),
+        })),
         intruder: intruder?,
         impact: impact?,
         conditions: conditions?,
