@@ -49,7 +49,7 @@ pub(crate) enum Part {
     Listing(String),
 }
 
-/// A table, numbers to the right.
+/// A table: numbers to the right, sentences to the left and over several lines.
 #[derive(Default)]
 pub(crate) struct Table {
     pub(crate) head: Vec<String>,
@@ -68,6 +68,16 @@ pub(crate) struct Card {
     pub(crate) notes: Vec<(&'static str, String)>,
     /// Whether it is among those that the verdict names.
     pub(crate) named: bool,
+}
+
+/// Characters of the longest cell of a table of numbers.
+const LONGEST_NUMBER: usize = 40;
+
+impl Table {
+    /// Whether it holds sentences.
+    fn has_sentences(&self) -> bool {
+        self.rows.iter().flatten().any(|cell| cell.chars().count() > LONGEST_NUMBER)
+    }
 }
 
 impl Page {

@@ -129,7 +129,7 @@ mod tests {
             "what": "depth (m)",
             "published": { "value": 0.1, "error": 0.01 },
             "ours": "words",
-            "band": "\u{b1} 0.02: a reason",
+            "band": "\u{b1} 0.02: two standard errors of the difference",
             "verdict": "deviates",
             "cause": "a cause",
         });
@@ -141,6 +141,8 @@ mod tests {
         let svg = validation::picture::svg((30, 20), |_| Ok(())).expect("a picture");
         let texts = [(RESULT.to_owned(), found.to_string()), ("e1.svg".to_owned(), svg)];
         let html = page(&texts.into_iter().collect()).expect("a page");
+        // Words of a band are no number: they take several lines.
+        assert!(html.contains("<table class=\"sentences\">"), "{html}");
         for shown in ["0.1 \u{b1} 0.01", "deviates: a cause", "Could not be run: no bed", "<svg"] {
             assert!(html.contains(shown), "{shown} in {html}");
         }
