@@ -238,10 +238,10 @@ impl GrainBed {
         self.fastest = self.grains.fastest();
     }
 
-    /// Leaves every grain the share `left` (–) of its velocity and of its spin.
+    /// Leaves every grain the share `left` (–), at most 1, of its velocity and of its spin.
     pub(crate) fn slow_down(&mut self, left: f64) {
+        // What was fastest bounds what is slower now.
         self.grains.slow_down(left);
-        self.fastest = self.grains.fastest();
     }
 
     /// Has laws book no energies from now on.
@@ -346,7 +346,7 @@ impl GrainBed {
                 sums.rotation += rotation;
                 let lift = liftable * radius * mass;
                 sums.moving += u32::from(translation + rotation > lift);
-                sums.potential -= mass * gravity.dot(&position);
+                sums.potential -= weight.dot(&position);
                 sums.fastest_2 = sums.fastest_2.max(squares.drift_speed);
             }
         });

@@ -1,15 +1,15 @@
 //! Forces on single grains do what their formulas say, and their energy is accounted for.
 
-use engine::bed::{GrainKind, fill, random};
 use engine::body::NoIntruder;
 use engine::boundary::Container;
 use engine::grain_force::GrainForce;
-use engine::grains::{Grain, Space};
+use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::ParamTable;
 use engine::world::World;
-use rand::RngExt;
-use validation::rig::{LARGE, MIDDLE, ROOM, S1, SMALL, bed, run};
+use validation::rig::{MIDDLE, ROOM, S1, SMALL, bed, run};
+
+use crate::closure::discs_in_flight;
 
 fn force(name: &str, (key, value): (&'static str, f64)) -> Box<dyn GrainForce> {
     let mut params = ParamTable::new();
@@ -69,17 +69,7 @@ fn colliding(forces: Vec<Box<dyn GrainForce>>) -> (f64, Vec<f64>) {
     let accounts = forces.iter().map(|force| force.name().replace('-', "_"));
     let accounts: Vec<String> = accounts.map(|name| format!("dissipated_{name}_J")).collect();
     let room = Container::walled_box(0.12, 0.0);
-    let kinds = [(SMALL, 160), (LARGE, 40)].map(|(size, count)| GrainKind {
-        count,
-        radius: size.radius,
-        mass: size.mass,
-    });
-    let mut rng = random(1, "velocities");
-    let mut number = || 2.0 * rng.random::<f64>() - 1.0;
-    let grains: Vec<Grain> = fill(&kinds, (Space::Planar, &room), 1)
-        .into_iter()
-        .map(|grain| Grain { velocity: Vec3::new(number(), 0.0, number()), ..grain })
-        .collect();
+    let grains = discs_in_flight(&room);
     let gravity = Vec3::new(0.0, 0.0, -9.81);
     let bed = bed((Space::Planar, room), gravity, &grains, vec![S1.stage()], 0);
     let mut world = World::new(bed.with_forces(forces), Box::new(NoIntruder), 1e-5);
