@@ -1,8 +1,9 @@
 //! What a law says of itself, and how it is built by name.
 
-use engine::contact::{ContactLaw, ContactStage, Slot, Stage};
+use engine::contact::{ContactLaw, Slot};
 use engine::ledger::Channel;
 use engine::params::{ParamSpec, ParamTable};
+use engine::stage::{ContactStage, Stage};
 
 /// What a law acts on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

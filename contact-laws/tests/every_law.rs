@@ -1,12 +1,13 @@
 //! What must hold for every registered law, whatever it says.
 
 use contact_laws::{ActsOn, LAWS, LawEntry};
-use engine::contact::stage::{Batch, Histories};
-use engine::contact::{Contact, ContactStage, Encounter, Partner, Response, Slot, Sweep};
+use engine::contact::{Contact, Encounter, Partner, Response, Slot};
 use engine::grains::Space;
 use engine::lanes::{Four, Lanes, MOST_LANES, Vector, vector_of};
 use engine::math::{Quat, Vec3};
 use engine::params::{Default as Given, ParamTable};
+use engine::stage::{Batch, Histories};
+use engine::stage::{ContactStage, Sweep};
 
 const DT: f64 = 1e-5;
 
@@ -368,7 +369,7 @@ fn a_head_on_collision_of_a_linear_law_rebounds_as_its_damping_says() {
         table.set("normal_damping_rate", rate);
         let stages = [(entry.build)(&table)];
         let encounter = Encounter { mass_eff: mass, radius_eff: 1e-3, speed: 0.5 };
-        let found = engine::contact::restitution(&stages, Partner::Grain, &encounter);
+        let found = engine::stage::restitution(&stages, Partner::Grain, &encounter);
         // A damped oscillator through half its period; it may attract before it lets go.
         let natural = (stiffness / mass - 0.25 * rate * rate).sqrt();
         let exact = libm::exp(-0.5 * rate * std::f64::consts::PI / natural);

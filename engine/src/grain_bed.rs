@@ -5,12 +5,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::body::{Mechanism, Part};
 use crate::boundary::{Absorber, Container};
-use crate::contact::{ContactStage, Partner};
+use crate::contact::Partner;
+use crate::contacts::stage::ContactStage;
 use crate::contacts::{ContactSums, Contacts, Memory, SavedBlock};
-use crate::dimension::{Dimension, Load, Motion, Planar, Spatial, Stride};
+use crate::dimension::{Dimension, Planar, Spatial, Stride};
 use crate::error::StepError;
 use crate::footprint::Footprint;
-use crate::grain_force::{self, ForceOnGrain, GrainForce, GrainForces, MovingGrain, TakenByForces};
+use crate::grain_force::{self, GrainForce, GrainForces};
+use crate::grain_pass::{GrainPass, SumsOfGrains};
 use crate::grains::{Grain, Grains, Space};
 use crate::ledger::{ChannelKind, Term, TermKind};
 use crate::math::Vec3;
@@ -20,7 +22,7 @@ use crate::recessive::RecessiveWork;
 use crate::surface::Placement;
 
 /// Gap up to which grains are listed as neighbours, in mean grain diameters.
-const PAIR_MARGIN: f64 = 0.35;
+const PAIR_MARGIN: f64 = 0.2;
 
 /// Gap up to which grains are listed as near the intruder, in mean grain diameters.
 const INTRUDER_MARGIN: f64 = 0.4;
@@ -45,25 +47,6 @@ pub struct GrainBed {
     /// Greatest speed of a grain in the drift that has begun (m/s).
     fastest: f64,
 }
-
-/// What the grains of a block add up to: energies (J), and how they move.
-#[derive(Clone, Copy, Debug, Default)]
-struct SumsOfGrains {
-    translation: f64,
-    rotation: f64,
-    potential: f64,
-    /// What absorbing layers took in the last step.
-    absorbed: f64,
-    /// What forces on single grains took in the last step.
-    taken: TakenByForces,
-    /// How many of them move, see [`GrainBed::moving_share`].
-    moving: u32,
-    /// Square of the greatest speed in the drift that follows (m²/s²).
-    fastest_2: f64,
-}
-
-/// A grain moves when its energy would lift it by this share of its diameter.
-const MOVING_LIFT: f64 = 0.01;
 
 /// Everything of a bed that changes during a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -308,47 +291,17 @@ impl GrainBed {
     }
 
     fn kick_drift_in<D: Dimension<N>, const N: usize>(&mut self, stride: &Stride) {
-        let (gravity, period) = (self.gravity, self.grains.period);
-        let (contacts, absorber, forces) = (&self.contacts, &self.absorber, &self.forces);
-        let liftable = 2.0 * MOVING_LIFT * gravity.norm();
+        let contacts = &self.contacts;
+        let pass = GrainPass {
+            gravity: self.gravity,
+            period: self.grains.period,
+            absorber: self.absorber.as_ref(),
+            forces: &self.forces,
+            stride: *stride,
+        };
         self.grains.par_blocks::<D, N>().zip(&mut self.sums_of_grains).for_each(|(block, sums)| {
-            *sums = SumsOfGrains::default();
-            let mut loads = contacts.loads(block.block);
-            let moved = block.places.iter_mut().zip(block.motions.chunks_exact_mut(D::MOTION));
-            for (k, (place, motion)) in moved.enumerate() {
-                let grain = D::unpack(place, motion);
-                let Motion { position, velocity, velocity_now, radius, .. } = grain;
-                let (mass, inertia) = (block.mass[k], block.inertia[k]);
-                let weight = gravity * mass;
-                let mut more = Load { force: weight, torque: Vec3::zeros() };
-                if let Some(absorber) = absorber {
-                    let drag = mass * absorber.rate(position);
-                    more.force -= velocity_now * drag;
-                    // Second order: what acts half-way, over the way of the step.
-                    let half_way = absorber.rate(position - velocity * stride.before);
-                    let way_2 = velocity.norm_squared() * (2.0 * stride.before);
-                    sums.absorbed += mass * half_way * way_2;
-                }
-                for (force, taken) in forces.iter().zip(&mut sums.taken) {
-                    let moving = MovingGrain::half_way(&grain, mass, weight.norm());
-                    *taken -= force.on(&moving).power(&moving) * (2.0 * stride.before);
-                    let ForceOnGrain { force, torque } = force.on(&moving.now(&grain));
-                    more.force += force;
-                    more.torque += torque;
-                }
-                let mut load = loads.of::<D, N>(k);
-                D::add_load(&more, &mut load);
-                let squares = D::kick_drift(place, motion, &load, stride, block.inverse_inertia[k]);
-                D::wrap(place, &period);
-                let translation = 0.5 * mass * squares.speed;
-                let rotation = 0.5 * inertia * squares.spin;
-                sums.translation += translation;
-                sums.rotation += rotation;
-                let lift = liftable * radius * mass;
-                sums.moving += u32::from(translation + rotation > lift);
-                sums.potential -= weight.dot(&position);
-                sums.fastest_2 = sums.fastest_2.max(squares.drift_speed);
-            }
+            let loads = contacts.loads(block.block);
+            *sums = pass.over::<D, N>(block, loads);
         });
     }
 

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::boundary::Period;
-use crate::dimension::{Dimension, Motion, Planar, Quad, Spatial};
+use crate::dimension::{Dimension, Motion, Planar, Quad, Quads, Spatial};
 use crate::math::Vec3;
 use crate::parallel::BLOCK;
 
@@ -193,7 +193,10 @@ impl Grains {
     /// The centre of grain `i` at the end of the drift (m).
     #[inline]
     pub(crate) fn drifted(&self, i: usize) -> Vec3 {
-        self.motion(i).position
+        match self.space {
+            Space::Planar => Planar::position(self.place(i)),
+            Space::Spatial => Spatial::position(self.place(i)),
+        }
     }
 
     /// The state of grain `i`.
@@ -207,18 +210,17 @@ impl Grains {
 
     /// Gives grain `i` another state.
     pub(crate) fn set_motion(&mut self, i: usize, state: &Motion) {
-        let len = quads(self.space);
-        let (place, motion) = (&mut self.places[i], &mut self.motions[i * len..][..len]);
+        let (place, motions) = (&mut self.places[i], &mut self.motions[..]);
         match self.space {
-            Space::Planar => Planar::pack(state, place, motion),
-            Space::Spatial => Spatial::pack(state, place, motion),
+            Space::Planar => Planar::pack(state, place, &mut Quads::each_mut(motions)[i]),
+            Space::Spatial => Spatial::pack(state, place, &mut Quads::each_mut(motions)[i]),
         }
     }
 
     /// The state of grain `i` of a space known to be `D`.
     #[inline(always)]
     pub(crate) fn motion_in<D: Dimension<N>, const N: usize>(&self, i: usize) -> Motion {
-        D::unpack(self.place(i), self.moves::<D, N>(i))
+        D::unpack(self.place(i), &self.moves::<D, N>()[i])
     }
 
     /// Where grain `i` is and how large.
@@ -227,10 +229,10 @@ impl Grains {
         &self.places[i]
     }
 
-    /// How grain `i` of a space known to be `D` moves.
+    /// How the grains of a space known to be `D` move.
     #[inline(always)]
-    pub(crate) fn moves<D: Dimension<N>, const N: usize>(&self, i: usize) -> &[Quad] {
-        &self.motions[i * D::MOTION..][..D::MOTION]
+    pub(crate) fn moves<D: Dimension<N>, const N: usize>(&self) -> &[D::Moves] {
+        D::Moves::each(&self.motions)
     }
 
     /// From grain `j` to the nearest image of grain `i`, at the end of the drift (m).
@@ -354,7 +356,7 @@ impl Grains {
     ) -> impl IndexedParallelIterator<Item = BlockOfGrains<'_>> {
         (
             self.places.par_chunks_mut(BLOCK),
-            self.motions.par_chunks_mut(BLOCK * D::MOTION),
+            self.motions.par_chunks_mut(BLOCK * D::Moves::LEN),
             self.mass.par_chunks(BLOCK),
             self.inertia.par_chunks(BLOCK),
             self.inverse_inertia.par_chunks(BLOCK),
@@ -370,7 +372,7 @@ impl Grains {
 /// How many quads say how a grain moves.
 fn quads(space: Space) -> usize {
     match space {
-        Space::Planar => Planar::MOTION,
-        Space::Spatial => Spatial::MOTION,
+        Space::Planar => <Planar as Dimension<1>>::Moves::LEN,
+        Space::Spatial => <Spatial as Dimension<3>>::Moves::LEN,
     }
 }

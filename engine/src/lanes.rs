@@ -7,7 +7,7 @@
 
 use nalgebra::SVector;
 pub use simba::simd::SimdBool;
-use simba::simd::{SimdRealField, WideF64x4};
+use simba::simd::{SimdRealField, WideBoolF64x4, WideF64x4};
 
 /// Four numbers.
 pub type Four = WideF64x4;
@@ -25,6 +25,9 @@ pub trait Lanes: SimdRealField<Element = f64> + Copy + Send + Sync {
 
     /// The number of one lane, below [`Self::COUNT`].
     fn lane(&self, lane: usize) -> f64;
+
+    /// Whether a mask holds, lane by lane from the lowest bit.
+    fn bits(mask: Self::SimdBool) -> u64;
 
     /// Four numbers of each lane, `rows[lane]`, as four in lanes.
     fn columns(rows: [&[f64; 4]; MOST_LANES]) -> [Self; 4];
@@ -52,6 +55,11 @@ impl Lanes for f64 {
     }
 
     #[inline(always)]
+    fn bits(mask: bool) -> u64 {
+        u64::from(mask)
+    }
+
+    #[inline(always)]
     fn columns(rows: [&[f64; 4]; MOST_LANES]) -> [Self; 4] {
         *rows[0]
     }
@@ -73,6 +81,11 @@ impl Lanes for Four {
     #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
         self.into_arr()[lane]
+    }
+
+    #[inline(always)]
+    fn bits(mask: WideBoolF64x4) -> u64 {
+        mask.0.move_mask() as u64
     }
 
     #[inline(always)]

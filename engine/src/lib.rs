@@ -20,6 +20,7 @@ pub mod error;
 pub mod footprint;
 pub mod grain_bed;
 pub mod grain_force;
+mod grain_pass;
 pub mod grains;
 pub mod lanes;
 pub mod launch;
@@ -37,3 +38,5 @@ pub mod stopping;
 pub mod surface;
 pub mod units;
 pub mod world;
+
+pub use contacts::stage;

@@ -4,7 +4,9 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
+use crate::dimension::{Dimension, Planar, Spatial};
 use crate::grains::{Grains, Space};
+use crate::lanes::MOST_LANES;
 use crate::math::Vec3;
 
 /// Counts down to the next rebuild of a neighbour list: the list holds everything nearer than
@@ -169,11 +171,24 @@ impl CellGrid {
         margin: f64,
         keys: &mut Vec<[u32; 2]>,
     ) {
+        match grains.space {
+            Space::Planar => self.pairs_in::<Planar, 1>(grains, i, margin, keys),
+            Space::Spatial => self.pairs_in::<Spatial, 3>(grains, i, margin, keys),
+        }
+    }
+
+    #[inline(always)]
+    fn pairs_in<D: Dimension<N>, const N: usize>(
+        &self,
+        grains: &Grains,
+        i: usize,
+        margin: f64,
+        keys: &mut Vec<[u32; 2]>,
+    ) {
         let from = keys.len();
-        let position = grains.drifted(i);
-        let radius = grains.radius[i] + margin;
+        let place = grains.place(i);
         let [n_x, n_y, _] = self.axes.map(|axis| axis.n);
-        let cell = self.cell(position);
+        let cell = self.cell(D::position(place));
         let around = |axis: usize| self.axes[axis].around(cell[axis]);
         for z in around(2).into_iter().flatten() {
             for y in around(1).into_iter().flatten() {
@@ -185,9 +200,9 @@ impl CellGrid {
                         if j as usize <= i {
                             continue;
                         }
-                        let near = radius + grains.radius[j as usize];
-                        let apart = grains.apart(i, j as usize);
-                        if apart.norm_squared() < near * near {
+                        let [i_s, j_s] =
+                            [place, grains.place(j as usize)].map(|side| [side; MOST_LANES]);
+                        if D::are_near::<f64>(&i_s, &j_s, &grains.period, margin) {
                             keys.push([i as u32, j]);
                         }
                     }

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use engine::contact::ContactStage;
+use engine::stage::ContactStage;
 
 use crate::case::{Case, Outcome};
 use crate::rig::stage;

@@ -85,7 +85,7 @@ fn spinning(spin: f64) -> Motion {
     Motion { normal: SPEED, tangential: 0.0, spin }
 }
 
-fn law(material: Material) -> Vec<Box<dyn engine::contact::ContactStage>> {
+fn law(material: Material) -> Vec<Box<dyn engine::stage::ContactStage>> {
     vec![material.hertz_mindlin(RESTITUTION, FRICTION)]
 }
 

@@ -9,9 +9,9 @@
 
 use std::f64::consts::PI;
 
-use engine::contact::ContactStage;
 use engine::ledger::{ChannelKind, Ledger, TermKind};
 use engine::math::Vec3;
+use engine::stage::ContactStage;
 
 use crate::case::{Case, Outcome};
 use crate::encounter::{Encounter, Target};

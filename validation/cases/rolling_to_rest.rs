@@ -4,9 +4,9 @@
 //! at a lever h, give m a = F and I a/h = M − F h, so a = M h / (I + m h²): ⅔ μ_r g for a disc,
 //! 5/7 μ_r g for a sphere, as h → R. The way is v₀²/2a.
 
-use engine::contact::ContactStage;
 use engine::grains::Space;
 use engine::math::Vec3;
+use engine::stage::ContactStage;
 
 use crate::case::{Case, Outcome};
 use crate::rig::{S1, SMALL, on_floor, rolling, run, stage};

@@ -3,7 +3,7 @@
 //! C₁ = 1.15344 and C₂ = 3/5 C₁²; α = (3/2)^{5/2} k/m*, k = 4/3 E* √R*. Source: Ramírez, Pöschel,
 //! Brilliantov & Schwager, Phys. Rev. E 60, 4465 (1999).
 
-use engine::contact::ContactStage;
+use engine::stage::ContactStage;
 
 use crate::case::{Case, Outcome};
 use crate::spheres::{Material, Motion, Obstacle, collide, hertz_time};

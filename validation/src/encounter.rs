@@ -1,9 +1,9 @@
 //! Two bodies on a collision course.
 
 use engine::body::NoIntruder;
-use engine::contact::ContactStage;
 use engine::grains::{Grain, Space};
 use engine::math::Vec3;
+use engine::stage::ContactStage;
 use engine::world::World;
 
 use crate::rig::{MIDDLE, ROOM, Size, bed, run};

@@ -5,11 +5,11 @@
 
 use engine::body::{NoIntruder, RigidBody};
 use engine::boundary::Container;
-use engine::contact::ContactStage;
 use engine::grain_bed::{GrainBed, RestingBed};
 use engine::grains::{Grain, Space};
 use engine::math::{Quat, Vec3};
 use engine::params::ParamTable;
+use engine::stage::ContactStage;
 use engine::world::World;
 
 /// Where free experiments happen (m): below an eighth of a metre positions are rounded to 7e-18 m.

@@ -5,9 +5,9 @@
 
 use engine::body::NoIntruder;
 use engine::boundary::Container;
-use engine::contact::ContactStage;
 use engine::grains::{Grain, Space};
 use engine::math::Vec3;
+use engine::stage::ContactStage;
 use engine::world::World;
 
 use crate::rig::{bed, run, stage};

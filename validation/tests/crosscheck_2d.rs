@@ -6,12 +6,12 @@ use std::path::PathBuf;
 
 use engine::body::RigidBody;
 use engine::boundary::Container;
-use engine::contact::ContactStage;
 use engine::grain_bed::{GrainBed, RestingBed};
 use engine::grains::{Grain, Space};
 use engine::math::{Quat, Vec3};
 use engine::params::ParamTable;
 use engine::simulation::{Settings, Simulation};
+use engine::stage::ContactStage;
 use serde::Deserialize;
 
 #[derive(Deserialize)]

@@ -2,12 +2,12 @@
 
 use engine::bed::{GrainKind, Settling, SizeDistribution, fill, random};
 use engine::boundary::{Bottom, Container, Sides};
-use engine::contact::ContactStage;
 use engine::grain_bed::{GrainBed, RestingBed};
 use engine::grain_force::GrainForce;
 use engine::grains::Grain;
 use engine::math::Vec3;
 use engine::simulation::{Settings, Simulation};
+use engine::stage::ContactStage;
 use rand::Rng;
 use thiserror::Error;
 

@@ -1,7 +1,8 @@
 //! How fast contacts can change, and the time step that follows from it.
 
-use engine::contact::{ContactStage, Encounter, Partner};
+use engine::contact::{Encounter, Partner};
 use engine::grains::Space;
+use engine::stage::ContactStage;
 
 use crate::absorbing;
 use crate::model::{BedSource, GrainModel, LawChoice, TimeStep};

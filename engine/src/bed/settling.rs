@@ -8,7 +8,7 @@ use super::tapping::Tapping;
 use crate::body::NoIntruder;
 use crate::boundary::Container;
 use crate::clock::Clock;
-use crate::contact::ContactStage;
+use crate::contacts::stage::ContactStage;
 use crate::error::StepError;
 use crate::grain_bed::{GrainBed, RestingBed};
 use crate::grains::{Grain, Space};

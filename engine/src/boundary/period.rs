@@ -31,6 +31,7 @@ impl Period {
     }
 
     /// Whether nothing repeats.
+    #[inline(always)]
     pub(crate) fn is_none(&self) -> bool {
         *self == Self::NONE
     }

@@ -3,18 +3,13 @@
 //! A law sees a [`Contact`] at one instant, adds to its [`Response`] and books, from the same
 //! intermediate values, what became of the energy. It is written once, for one contact or for four side
 //! by side ([`crate::lanes`]), in a plane or in space. The engine finds the contacts ([`geometry`]),
-//! keeps their histories ([`table`]) and lowers a law to a loop over many contacts ([`stage`]).
+//! keeps their histories ([`table`]) and lowers a law to a loop over many contacts ([`crate::stage`]).
 
 pub mod geometry;
-mod rebound;
-pub mod stage;
 pub mod table;
 
 use crate::lanes::{Lanes, Record, Vector, vector_of, vector_where};
 use crate::ledger::Channel;
-
-pub use rebound::restitution;
-pub use stage::{ContactStage, Stage, Sweep};
 
 /// What a grain touches; each kind has its own parameters of a law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

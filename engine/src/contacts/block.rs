@@ -4,17 +4,19 @@ use std::ops::Range;
 
 use arrayvec::ArrayVec;
 
+use super::pairs::{Near, Pairs, Side};
+use super::tally::Tally;
 use crate::body::Part;
 use crate::contact::geometry::{loads_on_grain_and_part, with_surface};
-use crate::contact::stage::{Batch, Histories, Sweep};
 use crate::contact::table::{APART, ContactTable};
-use crate::contact::{Contact, ContactStage, Partner, Response};
-use crate::dimension::{Dimension, Frame, Motion, Quad};
-use crate::footprint::Footprint;
+use crate::contact::{Contact, Partner, Response};
+use crate::contacts::stage::ContactStage;
+use crate::contacts::stage::{Batch, Histories, Sweep};
+use crate::dimension::{Dimension, Motion, Quad, Quads};
 use crate::grains::Grains;
-use crate::lanes::{Four, Lanes, MOST_LANES, SimdBool};
+use crate::lanes::{Four, Lanes, MOST_LANES};
 use crate::math::Vec3;
-use crate::surface::{SurfacePoint, Wrench};
+use crate::surface::SurfacePoint;
 
 /// Groups of as many contacts as there are lanes that are evaluated together.
 const GROUPS: usize = 16;
@@ -46,33 +48,6 @@ pub(super) struct Delivery {
     pub(super) grain: u32,
 }
 
-/// The largest overlap in units of the smaller radius.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Deepest {
-    pub(crate) relative: f64,
-    /// (m).
-    pub(crate) overlap: f64,
-    /// Index of the grain.
-    pub(crate) grain: u32,
-}
-
-/// What one block adds to the sums of the bed.
-#[derive(Default)]
-pub(super) struct Tally {
-    /// Per stage and channel: energies (J) of contacts between grains and with the intruder; empty if
-    /// nothing is booked.
-    pub(super) energy: Vec<f64>,
-    /// The same for contacts with walls.
-    pub(super) wall_energy: Vec<f64>,
-    /// Per part.
-    pub(super) wrenches: Vec<Wrench>,
-    /// Per part: what grains do to it that its body does not feel.
-    pub(super) unfelt: Vec<Wrench>,
-    /// Per part; empty for walls.
-    pub(super) footprints: Vec<Footprint>,
-    pub(super) overlap: Deepest,
-}
-
 /// Buffers that are kept from step to step.
 #[derive(Default)]
 pub(super) struct Bench {
@@ -80,6 +55,8 @@ pub(super) struct Bench {
     points_half: Vec<Vec3>,
     pub(super) nearest: Vec<SurfacePoint>,
     nearest_half: Vec<SurfacePoint>,
+    /// As long as there are candidates; how many of them are near is known anew in each step.
+    near: Vec<Near>,
     near_rows: Vec<u32>,
     pub(super) keys: Vec<[u32; 2]>,
 }
@@ -134,34 +111,26 @@ where
         }
     }
 
-    /// Whether each lane of the group still touches, as bits.
-    #[inline(always)]
-    fn touching(&self, group: usize) -> u64 {
-        (self.contacts[group].overlaps() | self.responses[group].holds).bitmask()
-    }
-}
-
-impl Tally {
-    pub(super) fn clear(&mut self) {
-        self.energy.fill(0.0);
-        self.wall_energy.fill(0.0);
-        self.wrenches.fill(Wrench::default());
-        self.unfelt.fill(Wrench::default());
-        self.footprints.fill(Footprint::default());
-        self.overlap = Deepest::default();
-    }
-
-    /// Takes note of contacts of `grains`; `curvature` (1/m) is that of the smaller grain.
-    #[inline(always)]
-    fn note_overlap<R: Lanes>(&mut self, overlap: R, curvature: R, grain: impl Fn(usize) -> u32) {
-        let relative = overlap * curvature;
-        if relative.simd_gt(R::splat(self.overlap.relative)).any() {
-            for lane in 0..R::COUNT {
-                let (relative, overlap) = (relative.lane(lane), overlap.lane(lane));
-                if relative > self.overlap.relative {
-                    self.overlap = Deepest { relative, overlap, grain: grain(lane) };
-                }
-            }
+    /// Lets every law act on at most [`GROUPS`] groups of contacts between grains.
+    fn of_pairs<D: Dimension<N>>(
+        pairs: &mut Pairs<'_>,
+        stages: &[Box<dyn ContactStage>],
+        near: &[Near],
+    ) {
+        let mut evaluation = Self::new();
+        let mut sides = ArrayVec::<Side<R>, GROUPS>::new();
+        for near in near.chunks_exact(R::COUNT) {
+            let (contact, side) = pairs.meet::<D, R, N>(near);
+            evaluation.push(contact, side.records);
+            sides.push(side);
+        }
+        let Pairs { table, tally, dt, .. } = pairs;
+        evaluation.evaluate(Partner::Grain, stages, *dt, table, &mut tally.energy);
+        let answered = evaluation.contacts.iter().zip(&evaluation.responses);
+        for ((near, side), (contact, response)) in
+            near.chunks_exact(R::COUNT).zip(&sides).zip(answered)
+        {
+            pairs.settle::<D, R, N>(near, side, contact, response);
         }
     }
 }
@@ -176,28 +145,38 @@ impl Block {
     ) where
         dyn ContactStage: Sweep<f64, N> + Sweep<Four, N>,
     {
-        self.find_near::<D, N>(grains);
-        let near = std::mem::take(&mut self.bench.near_rows);
-        let in_lanes = near.len() - near.len() % Four::COUNT;
-        for rows in near[..in_lanes].chunks(GROUPS * Four::COUNT) {
-            self.sweep_rows::<D, Four, N>(grains, stages, rows, dt);
+        let n_near = self.find_near::<D, N>(grains);
+        let near = &self.bench.near[..n_near];
+        let mut pairs = Pairs {
+            grains,
+            first: self.first as u32,
+            near,
+            table: &mut self.pairs,
+            loads: &mut self.loads,
+            tally: &mut self.tally,
+            dt,
+        };
+        if let [stage] = stages {
+            stage.sweep_pairs(pairs);
+            return;
         }
-        if in_lanes < near.len() {
-            self.sweep_rows::<D, f64, N>(grains, stages, &near[in_lanes..], dt);
+        let (in_lanes, rest) = near.split_at(n_near - n_near % Four::COUNT);
+        for near in in_lanes.chunks(GROUPS * Four::COUNT) {
+            Evaluation::<Four, N>::of_pairs::<D>(&mut pairs, stages, near);
         }
-        self.bench.near_rows = near;
+        Evaluation::<f64, N>::of_pairs::<D>(&mut pairs, stages, rest);
     }
 
-    /// Which candidates overlap, or did a step ago.
-    fn find_near<D: Dimension<N>, const N: usize>(&mut self, grains: &Grains) {
-        let mut near = std::mem::take(&mut self.bench.near_rows);
+    /// Writes which candidates overlap, or did a step ago, and returns how many.
+    fn find_near<D: Dimension<N>, const N: usize>(&mut self, grains: &Grains) -> usize {
+        let mut near = std::mem::take(&mut self.bench.near);
         let n_rows = self.pairs.keys().len();
         let in_lanes = n_rows - n_rows % Four::COUNT;
-        near.resize(n_rows, 0);
+        near.resize(n_rows, Near::default());
         let found = self.find_near_in::<D, Four, N>(grains, 0..in_lanes, (&mut near, 0));
         let found = self.find_near_in::<D, f64, N>(grains, in_lanes..n_rows, (&mut near, found));
-        near.truncate(found);
-        self.bench.near_rows = near;
+        self.bench.near = near;
+        found
     }
 
     /// Writes those of `rows` behind the first of `near`, and returns how many it then has.
@@ -206,62 +185,29 @@ impl Block {
         &self,
         grains: &Grains,
         rows: Range<usize>,
-        (near, mut found): (&mut [u32], usize),
+        (near, mut found): (&mut [Near], usize),
     ) -> usize {
         let keys = self.pairs.keys()[rows.clone()].chunks_exact(R::COUNT);
         let records = self.pairs.records()[rows.clone()].chunks_exact(R::COUNT);
-        for (row, (keys, records)) in rows.step_by(R::COUNT).zip(keys.zip(records)) {
-            let keys = [0, 1, 2, 3].map(|lane: usize| keys[lane.min(R::COUNT - 1)]);
-            let [i, j] = [0, 1].map(|side| keys.map(|key| grains.place(key[side] as usize)));
-            let touch = D::touch::<R>(&i, &j, &grains.period).bitmask();
+        let targets = self.targets[rows.clone()].chunks_exact(R::COUNT);
+        for (row, ((keys, records), targets)) in
+            rows.step_by(R::COUNT).zip(keys.zip(records).zip(targets))
+        {
+            let of_lane = [0, 1, 2, 3].map(|lane: usize| keys[lane.min(R::COUNT - 1)]);
+            let [i, j] = [0, 1].map(|side| of_lane.map(|key| grains.place(key[side] as usize)));
+            let touch = R::bits(D::are_near::<R>(&i, &j, &grains.period, 0.0));
             // Without a branch: about half of the candidates touch, and which ones cannot be foreseen.
-            for (lane, &record) in records.iter().enumerate() {
-                near[found] = (row + lane) as u32;
-                found += usize::from((touch >> lane & 1 == 1) | (record != APART));
+            for lane in 0..R::COUNT {
+                near[found] = Near {
+                    grains: keys[lane],
+                    target: targets[lane],
+                    row: (row + lane) as u32,
+                    record: records[lane],
+                };
+                found += usize::from((touch >> lane & 1 == 1) | (records[lane] != APART));
             }
         }
         found
-    }
-
-    fn sweep_rows<D: Dimension<N>, R: Lanes, const N: usize>(
-        &mut self,
-        grains: &Grains,
-        stages: &[Box<dyn ContactStage>],
-        rows: &[u32],
-        dt: f64,
-    ) where
-        dyn ContactStage: Sweep<R, N>,
-    {
-        let mut evaluation = Evaluation::<R, N>::new();
-        let mut frames = ArrayVec::<(Frame<R>, [[u32; 2]; MOST_LANES]), GROUPS>::new();
-        for group in rows.chunks_exact(R::COUNT) {
-            let lanes = [0, 1, 2, 3].map(|lane: usize| group[lane.min(R::COUNT - 1)] as usize);
-            let keys = lanes.map(|row| self.pairs.keys()[row]);
-            let places = [0, 1].map(|side| keys.map(|key| grains.place(key[side] as usize)));
-            let moves = [0, 1].map(|side| keys.map(|key| grains.moves::<D, N>(key[side] as usize)));
-            let (i, j) = ((&places[0], &moves[0]), (&places[1], &moves[1]));
-            let (contact, frame) = D::between::<R>(i, j, &grains.period, dt);
-            evaluation.push(contact, lanes.map(|row| self.pairs.record(row)));
-            let first = self.first as u32;
-            let targets = [0, 1, 2, 3].map(|k| [keys[k][0] - first, self.targets[lanes[k]]]);
-            frames.push((frame, targets));
-        }
-        let energy = &mut self.tally.energy;
-        evaluation.evaluate(Partner::Grain, stages, dt, &mut self.pairs, energy);
-        for (group, (frame, targets)) in frames.iter().enumerate() {
-            let response = &evaluation.responses[group];
-            D::scatter(frame, response, targets, &mut self.loads);
-            let first = self.first as u32;
-            let overlap = evaluation.contacts[group].overlap;
-            let grain = |lane: usize| targets[lane][0] + first;
-            self.tally.note_overlap(overlap, frame.curvature, grain);
-            let touching = evaluation.touching(group);
-            if touching.trailing_ones() < R::COUNT as u32 {
-                for lane in (0..R::COUNT).filter(|lane| touching >> lane & 1 == 0) {
-                    self.pairs.open(rows[group * R::COUNT + lane] as usize);
-                }
-            }
-        }
     }
 
     /// Evaluates the contacts of grains with a wall or a part of the intruder.
@@ -325,9 +271,9 @@ impl Block {
                 let (on_grain, on_part) =
                     loads_on_grain_and_part(contact, &response, grain.radius, apart);
                 let i = table.keys()[row][0];
-                let at = (i as usize - self.first) * D::LOAD;
-                D::add_load(&on_grain, &mut self.loads[at..at + D::LOAD]);
-                if evaluation.touching(k) == 0 {
+                let loads = D::Load::each_mut(&mut self.loads);
+                D::add_load(&on_grain, &mut loads[i as usize - self.first]);
+                if !(evaluation.contacts[k].overlaps() | evaluation.responses[k].holds) {
                     table.open(row);
                 } else {
                     let felt = bench.nearest[row].felt;

@@ -6,14 +6,19 @@
 //! grains are kicked. Nothing is locked, and every sum has one order.
 
 mod block;
+mod pairs;
+mod rebound;
+pub mod stage;
+mod tally;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::body::Part;
+use crate::contact::Partner;
 use crate::contact::table::ContactTable;
-use crate::contact::{ContactStage, Partner, Sweep};
-use crate::dimension::{Dimension, MOST_QUADS, Planar, Quad, Spatial};
+use crate::contacts::stage::{ContactStage, Sweep};
+use crate::dimension::{Dimension, Planar, Quad, Quads, Spatial};
 use crate::footprint::Footprint;
 use crate::grains::{Grains, Space};
 use crate::lanes::Four;
@@ -22,8 +27,8 @@ use crate::neighbours::CellGrid;
 use crate::parallel::{BLOCK, block_of};
 use crate::surface::Wrench;
 
-pub(crate) use block::Deepest;
-use block::{Bench, Block, Delivery, Tally};
+use block::{Bench, Block, Delivery};
+use tally::{Deepest, Tally};
 
 /// The contacts of a bed, by block of grains.
 pub(crate) struct Contacts {
@@ -64,14 +69,7 @@ impl Contacts {
                 loads: Vec::new(),
                 inbox: Vec::new(),
                 surfaces: vec![ContactTable::new(&history_len); n_parts],
-                tally: Tally {
-                    energy: vec![0.0; n_channels],
-                    wall_energy: vec![0.0; n_channels],
-                    wrenches: vec![Wrench::default(); n_parts],
-                    unfelt: vec![Wrench::default(); n_parts],
-                    footprints: vec![Footprint::default(); n_parts],
-                    overlap: Deepest::default(),
-                },
+                tally: Tally::new(n_channels, n_parts),
                 bench: Bench::default(),
             })
             .collect();
@@ -190,7 +188,7 @@ impl Contacts {
         let stages = &self.stages[..];
         self.blocks.par_iter_mut().for_each(|block| {
             let own = (block.first + BLOCK).min(grains.len()) - block.first;
-            block.loads.resize((own + block.halo.len()) * D::LOAD, Quad::ZERO);
+            block.loads.resize((own + block.halo.len()) * D::Load::LEN, Quad::ZERO);
             block.loads.fill(Quad::ZERO);
             block.tally.clear();
             block.sweep_pairs::<D, N>(grains, stages, dt);
@@ -378,14 +376,11 @@ pub(crate) struct Loads<'a> {
 impl Loads<'_> {
     /// The load of grain `k` of the block; to be asked for one after the other.
     #[inline(always)]
-    pub(crate) fn of<D: Dimension<N>, const N: usize>(&mut self, k: usize) -> [Quad; MOST_QUADS] {
-        let mut load = [Quad::ZERO; MOST_QUADS];
-        load[..D::LOAD].copy_from_slice(&self.own[k * D::LOAD..][..D::LOAD]);
+    pub(crate) fn of<D: Dimension<N>, const N: usize>(&mut self, k: usize) -> D::Load {
+        let mut load = D::Load::each(self.own)[k];
         while let Some(sent) = self.inbox.as_slice().first().filter(|sent| sent.grain == k as u32) {
-            let from = &self.blocks[sent.block as usize].loads[sent.from as usize * D::LOAD..];
-            for (load, part) in load.iter_mut().zip(&from[..D::LOAD]) {
-                load.add(part);
-            }
+            let loads = D::Load::each(&self.blocks[sent.block as usize].loads);
+            load.add(&loads[sent.from as usize]);
             self.inbox.next();
         }
         load

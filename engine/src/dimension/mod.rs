@@ -33,6 +33,42 @@ impl Quad {
     }
 }
 
+/// A few of them that belong to one grain.
+pub(crate) trait Quads: Copy + Send + Sync {
+    /// How many.
+    const LEN: usize;
+
+    /// All of them, grain by grain.
+    fn each(all: &[Quad]) -> &[Self];
+
+    /// The same, to be changed.
+    fn each_mut(all: &mut [Quad]) -> &mut [Self];
+
+    /// Adds `other`, number by number.
+    fn add(&mut self, other: &Self);
+}
+
+impl<const LEN: usize> Quads for [Quad; LEN] {
+    const LEN: usize = LEN;
+
+    #[inline(always)]
+    fn each(all: &[Quad]) -> &[Self] {
+        all.as_chunks().0
+    }
+
+    #[inline(always)]
+    fn each_mut(all: &mut [Quad]) -> &mut [Self] {
+        all.as_chunks_mut().0
+    }
+
+    #[inline(always)]
+    fn add(&mut self, other: &Self) {
+        for (own, part) in self.iter_mut().zip(other) {
+            own.add(part);
+        }
+    }
+}
+
 /// The state of one grain in the step that has begun: its place at the end of the drift, the velocities
 /// with which it gets there, and as `velocity_now`, `spin_now` the velocities extrapolated to that end. A grain
 /// that has not been stepped yet has one velocity and one spin.
@@ -76,36 +112,41 @@ pub(crate) struct Frame<R: Lanes> {
     pub(crate) curvature: R,
 }
 
-/// Quads of the longest load.
-pub(crate) const MOST_QUADS: usize = 2;
-
 /// Where a grain is and how large, apart from how it moves: the search for what touches reads only this.
 /// One in each lane.
 pub(crate) type Places<'a> = [&'a Quad; MOST_LANES];
 
-/// How a grain moves, in each lane.
-pub(crate) type Motions<'a> = [&'a [Quad]; MOST_LANES];
+/// How a grain moves, in `M` quads, in each lane.
+pub(crate) type Motions<'a, Moves> = [&'a Moves; MOST_LANES];
 
 /// A kind of space, in which slips and spins have `N` components.
 pub(crate) trait Dimension<const N: usize>: Send + Sync + 'static {
-    /// Quads that say how a grain moves.
-    const MOTION: usize;
-    /// Quads of a grain's load, at most [`MOST_QUADS`].
-    const LOAD: usize;
+    /// How a grain moves.
+    type Moves: Quads;
+    /// The load of a grain.
+    type Load: Quads;
 
     /// Writes the state of a grain.
-    fn pack(state: &Motion, place: &mut Quad, motion: &mut [Quad]);
+    fn pack(state: &Motion, place: &mut Quad, motion: &mut Self::Moves);
 
     /// Reads the state of a grain.
-    fn unpack(place: &Quad, motion: &[Quad]) -> Motion;
+    fn unpack(place: &Quad, motion: &Self::Moves) -> Motion;
 
-    /// Whether the grains at the places `i` and `j` overlap.
-    fn touch<R: Lanes>(i: &Places<'_>, j: &Places<'_>, period: &Period) -> R::SimdBool;
+    /// The centre of a grain (m).
+    fn position(place: &Quad) -> Vec3;
+
+    /// Whether the grains at the places `i` and `j` are nearer to each other than `margin` (m).
+    fn are_near<R: Lanes>(
+        i: &Places<'_>,
+        j: &Places<'_>,
+        period: &Period,
+        margin: f64,
+    ) -> R::SimdBool;
 
     /// The contacts of the grains `i` with `j`; `dt` (s) is the step.
     fn between<R: Lanes>(
-        i: (&Places<'_>, &Motions<'_>),
-        j: (&Places<'_>, &Motions<'_>),
+        i: (&Places<'_>, &Motions<'_, Self::Moves>),
+        j: (&Places<'_>, &Motions<'_, Self::Moves>),
         period: &Period,
         dt: f64,
     ) -> (Contact<R, N>, Frame<R>);
@@ -115,7 +156,7 @@ pub(crate) trait Dimension<const N: usize>: Send + Sync + 'static {
         frame: &Frame<R>,
         response: &Response<R, N>,
         targets: &[[u32; 2]; MOST_LANES],
-        loads: &mut [Quad],
+        loads: &mut [Self::Load],
     );
 
     /// The contact of a grain with a surface as laws see it here.
@@ -125,14 +166,14 @@ pub(crate) trait Dimension<const N: usize>: Send + Sync + 'static {
     fn widen(response: &Response<f64, N>, normal: Vec3) -> Response;
 
     /// Adds a load to that of a grain.
-    fn add_load(load: &Load, to: &mut [Quad]);
+    fn add_load(load: &Load, to: &mut Self::Load);
 
     /// Ends a step and begins the next: half a kick under `load`, the same again, and the drift, after
     /// which the velocities are extrapolated to its end. `inverse_inertia` is 1/I (1/(kg m²)).
     fn kick_drift(
         place: &mut Quad,
-        motion: &mut [Quad],
-        load: &[Quad],
+        motion: &mut Self::Moves,
+        load: &Self::Load,
         stride: &Stride,
         inverse_inertia: f64,
     ) -> Squares;
@@ -178,7 +219,7 @@ fn gather_place<R: Lanes>(places: &Places<'_>) -> [R; 4] {
 
 /// The four numbers of one quad of how grains move, in lanes.
 #[inline(always)]
-fn gather<R: Lanes>(motions: &Motions<'_>, quad: usize) -> [R; 4] {
+fn gather<R: Lanes, const M: usize>(motions: &Motions<'_, [Quad; M]>, quad: usize) -> [R; 4] {
     R::columns(motions.map(|motion| &motion[quad].0))
 }
 

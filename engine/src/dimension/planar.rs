@@ -27,10 +27,10 @@ fn in_plane(x: f64, z: f64) -> Vec3 {
 }
 
 impl Dimension<1> for Planar {
-    const MOTION: usize = 2;
-    const LOAD: usize = 1;
+    type Moves = [Quad; 2];
+    type Load = [Quad; 1];
 
-    fn pack(state: &Motion, place: &mut Quad, motion: &mut [Quad]) {
+    fn pack(state: &Motion, place: &mut Quad, motion: &mut [Quad; 2]) {
         let quad = |velocity, spin, last| {
             let [x, z, turn] = components(velocity, spin);
             Quad([x, z, turn, last])
@@ -42,7 +42,7 @@ impl Dimension<1> for Planar {
     }
 
     #[inline(always)]
-    fn unpack(place: &Quad, motion: &[Quad]) -> Motion {
+    fn unpack(place: &Quad, motion: &[Quad; 2]) -> Motion {
         let [x, z, radius, inverse_radius] = place.0;
         let [v_x, v_z, spin, inverse_mass] = motion[0].0;
         let [now_x, now_z, spin_now, rolling_mobility] = motion[1].0;
@@ -60,18 +60,28 @@ impl Dimension<1> for Planar {
     }
 
     #[inline(always)]
-    fn touch<R: Lanes>(i: &Places<'_>, j: &Places<'_>, period: &Period) -> R::SimdBool {
+    fn position(place: &Quad) -> Vec3 {
+        in_plane(place.0[0], place.0[1])
+    }
+
+    #[inline(always)]
+    fn are_near<R: Lanes>(
+        i: &Places<'_>,
+        j: &Places<'_>,
+        period: &Period,
+        margin: f64,
+    ) -> R::SimdBool {
         let [[x_i, z_i, r_i, _], [x_j, z_j, r_j, _]] = [i, j].map(gather_place::<R>);
         let x = period.nearest(0, x_i - x_j);
         let z = z_i - z_j;
-        let reach = r_i + r_j;
+        let reach = r_i + r_j + R::splat(margin);
         (x * x + z * z).simd_lt(reach * reach)
     }
 
     #[inline(always)]
     fn between<R: Lanes>(
-        (place_i, i): (&Places<'_>, &Motions<'_>),
-        (place_j, j): (&Places<'_>, &Motions<'_>),
+        (place_i, i): (&Places<'_>, &Motions<'_, [Quad; 2]>),
+        (place_j, j): (&Places<'_>, &Motions<'_, [Quad; 2]>),
         period: &Period,
         dt: f64,
     ) -> (Contact<R, 1>, Frame<R>) {
@@ -88,15 +98,15 @@ impl Dimension<1> for Planar {
         let overlap = reach - distance;
         let arms = [half * overlap - r_i, r_j - half * overlap];
 
-        let [x_i, z_i, spin_i, mobility_i] = gather::<R>(i, 1);
-        let [x_j, z_j, spin_j, mobility_j] = gather::<R>(j, 1);
+        let [x_i, z_i, spin_i, mobility_i] = gather::<R, 2>(i, 1);
+        let [x_j, z_j, spin_j, mobility_j] = gather::<R, 2>(j, 1);
         let (v_x, v_z) = (x_i - x_j, z_i - z_j);
         let overlap_rate = -(v_x * n_x + v_z * n_z);
         let slip_velocity = v_x * n_z - v_z * n_x + (spin_i * arms[0] - spin_j * arms[1]);
 
         // The same in the middle of the step, over the way made in it.
-        let [x_i, z_i, turn_i, inverse_mass_i] = gather::<R>(i, 0);
-        let [x_j, z_j, turn_j, inverse_mass_j] = gather::<R>(j, 0);
+        let [x_i, z_i, turn_i, inverse_mass_i] = gather::<R, 2>(i, 0);
+        let [x_j, z_j, turn_j, inverse_mass_j] = gather::<R, 2>(j, 0);
         let (d_x, d_z) = ((x_i - x_j) * step, (z_i - z_j) * step);
         let turns = [turn_i * step, turn_j * step];
         let (h_x, h_z) = (x - half * d_x, z - half * d_z);
@@ -136,7 +146,7 @@ impl Dimension<1> for Planar {
         frame: &Frame<R>,
         response: &Response<R, 1>,
         targets: &[[u32; 2]; MOST_LANES],
-        loads: &mut [Quad],
+        loads: &mut [[Quad; 1]],
     ) {
         let (n_x, n_z) = (frame.normal[0], frame.normal[2]);
         let (pressed, sheared) = (response.normal_force, response.tangential_force[0]);
@@ -148,8 +158,8 @@ impl Dimension<1> for Planar {
         let on_j = R::rows([-f_x, -f_z, on_j, R::zero()]);
         for lane in 0..R::COUNT {
             let [i, j] = targets[lane].map(|target| target as usize);
-            loads[i].add(&Quad(on_i[lane]));
-            loads[j].add(&Quad(on_j[lane]));
+            loads[i][0].add(&Quad(on_i[lane]));
+            loads[j][0].add(&Quad(on_j[lane]));
         }
     }
 
@@ -185,7 +195,7 @@ impl Dimension<1> for Planar {
     }
 
     #[inline(always)]
-    fn add_load(load: &Load, to: &mut [Quad]) {
+    fn add_load(load: &Load, to: &mut [Quad; 1]) {
         let [x, z, turn] = components(load.force, load.torque);
         to[0].add(&Quad([x, z, turn, 0.0]));
     }
@@ -193,8 +203,8 @@ impl Dimension<1> for Planar {
     #[inline(always)]
     fn kick_drift(
         place: &mut Quad,
-        motion: &mut [Quad],
-        load: &[Quad],
+        motion: &mut [Quad; 2],
+        load: &[Quad; 1],
         stride: &Stride,
         inverse_inertia: f64,
     ) -> Squares {

@@ -27,16 +27,16 @@ fn split(quad: &Quad) -> (Vec3, f64) {
 
 /// The vector and the number of one quad of how grains move, in lanes.
 #[inline(always)]
-fn gather_split<R: Lanes>(motions: &Motions<'_>, quad: usize) -> (Vector<R, 3>, R) {
+fn gather_split<R: Lanes>(motions: &Motions<'_, [Quad; 4]>, quad: usize) -> (Vector<R, 3>, R) {
     let [x, y, z, last] = gather(motions, quad);
     (Vector::from([x, y, z]), last)
 }
 
 impl Dimension<3> for Spatial {
-    const MOTION: usize = 4;
-    const LOAD: usize = 2;
+    type Moves = [Quad; 4];
+    type Load = [Quad; 2];
 
-    fn pack(state: &Motion, place: &mut Quad, motion: &mut [Quad]) {
+    fn pack(state: &Motion, place: &mut Quad, motion: &mut [Quad; 4]) {
         *place = quad(state.position, state.radius);
         motion[0] = quad(state.velocity, state.inverse_mass);
         motion[1] = quad(state.spin, state.rolling_mobility);
@@ -45,7 +45,7 @@ impl Dimension<3> for Spatial {
     }
 
     #[inline(always)]
-    fn unpack(place: &Quad, motion: &[Quad]) -> Motion {
+    fn unpack(place: &Quad, motion: &[Quad; 4]) -> Motion {
         let (position, radius) = split(place);
         let (velocity, inverse_mass) = split(&motion[0]);
         let (spin, rolling_mobility) = split(&motion[1]);
@@ -65,19 +65,29 @@ impl Dimension<3> for Spatial {
     }
 
     #[inline(always)]
-    fn touch<R: Lanes>(i: &Places<'_>, j: &Places<'_>, period: &Period) -> R::SimdBool {
+    fn position(place: &Quad) -> Vec3 {
+        split(place).0
+    }
+
+    #[inline(always)]
+    fn are_near<R: Lanes>(
+        i: &Places<'_>,
+        j: &Places<'_>,
+        period: &Period,
+        margin: f64,
+    ) -> R::SimdBool {
         let [[x_i, y_i, z_i, r_i], [x_j, y_j, z_j, r_j]] = [i, j].map(gather_place::<R>);
         let x = period.nearest(0, x_i - x_j);
         let y = period.nearest(1, y_i - y_j);
         let z = z_i - z_j;
-        let reach = r_i + r_j;
+        let reach = r_i + r_j + R::splat(margin);
         (x * x + y * y + z * z).simd_lt(reach * reach)
     }
 
     #[inline(always)]
     fn between<R: Lanes>(
-        (place_i, i): (&Places<'_>, &Motions<'_>),
-        (place_j, j): (&Places<'_>, &Motions<'_>),
+        (place_i, i): (&Places<'_>, &Motions<'_, [Quad; 4]>),
+        (place_j, j): (&Places<'_>, &Motions<'_, [Quad; 4]>),
         period: &Period,
         dt: f64,
     ) -> (Contact<R, 3>, Frame<R>) {
@@ -141,7 +151,7 @@ impl Dimension<3> for Spatial {
         frame: &Frame<R>,
         response: &Response<R, 3>,
         targets: &[[u32; 2]; MOST_LANES],
-        loads: &mut [Quad],
+        loads: &mut [[Quad; 2]],
     ) {
         let force = frame.normal * response.normal_force + response.tangential_force;
         let twist = frame.normal.cross(&response.tangential_force);
@@ -150,13 +160,13 @@ impl Dimension<3> for Spatial {
         let rows = |of: Vector<R, 3>| R::rows([of[0], of[1], of[2], R::zero()]);
         let (push, pull, on_i, on_j) = (rows(force), rows(-force), rows(on_i), rows(on_j));
         for lane in 0..R::COUNT {
-            let [i, j] = targets[lane].map(|target| target as usize * Self::LOAD);
-            let loads_i = &mut loads[i..i + Self::LOAD];
-            loads_i[0].add(&Quad(push[lane]));
-            loads_i[1].add(&Quad(on_i[lane]));
-            let loads_j = &mut loads[j..j + Self::LOAD];
-            loads_j[0].add(&Quad(pull[lane]));
-            loads_j[1].add(&Quad(on_j[lane]));
+            let [i, j] = targets[lane].map(|target| target as usize);
+            let [force_i, torque_i] = &mut loads[i];
+            force_i.add(&Quad(push[lane]));
+            torque_i.add(&Quad(on_i[lane]));
+            let [force_j, torque_j] = &mut loads[j];
+            force_j.add(&Quad(pull[lane]));
+            torque_j.add(&Quad(on_j[lane]));
         }
     }
 
@@ -171,7 +181,7 @@ impl Dimension<3> for Spatial {
     }
 
     #[inline(always)]
-    fn add_load(load: &Load, to: &mut [Quad]) {
+    fn add_load(load: &Load, to: &mut [Quad; 2]) {
         to[0].add(&quad(load.force, 0.0));
         to[1].add(&quad(load.torque, 0.0));
     }
@@ -179,8 +189,8 @@ impl Dimension<3> for Spatial {
     #[inline(always)]
     fn kick_drift(
         place: &mut Quad,
-        motion: &mut [Quad],
-        load: &[Quad],
+        motion: &mut [Quad; 4],
+        load: &[Quad; 2],
         stride: &Stride,
         inverse_inertia: f64,
     ) -> Squares {

@@ -2,9 +2,9 @@
 //! of walls.
 
 use engine::bed::random;
-use engine::contact::ContactStage;
 use engine::grains::{Grain, Space};
 use engine::math::Vec3;
+use engine::stage::ContactStage;
 use engine::world::World;
 use rand::RngExt;
 use validation::rig::{MIDDLE, ROOM, S1, Size, bed, rolling};

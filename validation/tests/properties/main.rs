@@ -6,6 +6,7 @@ mod closure;
 mod cloud;
 mod conservation;
 mod determinism;
+mod fused;
 mod grain_forces;
 mod neighbours;
 mod symmetry;

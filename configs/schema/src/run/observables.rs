@@ -3,12 +3,13 @@
 
 use engine::clock::steps_in;
 use engine::coarse_graining::{Plane, fields};
-use engine::contact::{Encounter, Partner, restitution};
+use engine::contact::{Encounter, Partner};
 use engine::crater::crater;
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::record::{BodyEstimate, RecordError, RunLog, Stamp};
 use engine::simulation::Simulation;
+use engine::stage::restitution;
 
 use crate::model::GrainModel;
 

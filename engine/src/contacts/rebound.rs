@@ -1,7 +1,8 @@
 //! What the laws of a contact make of a head-on collision.
 
-use crate::contact::stage::{Batch, Histories};
-use crate::contact::{Contact, ContactStage, Encounter, Partner, Response};
+use crate::contact::{Contact, Encounter, Partner, Response};
+use crate::contacts::stage::ContactStage;
+use crate::contacts::stage::{Batch, Histories};
 use crate::grains::Space;
 use crate::lanes::MOST_LANES;
 use crate::math::Vec3;

@@ -1,6 +1,9 @@
 //! Lowers a contact law to a loop over many contacts: chosen by name once per run, inlined inside.
 
+use super::pairs::{Near, Pairs};
+pub use super::rebound::restitution;
 use crate::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use crate::dimension::{Dimension, Planar, Spatial};
 use crate::grains::Space;
 use crate::lanes::{Four, Lanes, MOST_LANES, Record};
 use crate::ledger::Channel;
@@ -42,6 +45,8 @@ pub trait Sweep<R: Lanes, const N: usize> {
 pub trait ContactStage:
     Sweep<f64, 1> + Sweep<f64, 3> + Sweep<Four, 1> + Sweep<Four, 3> + Send + Sync
 {
+    /// Evaluates the contacts between grains of a block where no other law acts.
+    fn sweep_pairs(&self, pairs: Pairs<'_>);
     /// The name in TOML.
     fn name(&self) -> &'static str;
     /// When it acts.
@@ -93,6 +98,53 @@ impl<L: ContactLaw> Stage<L> {
         }
         booked
     }
+
+    /// The same for contacts between grains that no other law acts on, from the places of the grains to
+    /// their loads: a contact never goes through memory.
+    #[inline(always)]
+    fn act_alone<D: Dimension<N>, R: Lanes, const N: usize>(
+        &self,
+        pairs: &mut Pairs<'_>,
+        near: &[Near],
+    ) -> L::Energy<R> {
+        let pair = self.pairs[Partner::Grain.index()];
+        let mut booked = L::Energy::<R>::zero();
+        for near in near.chunks_exact(R::COUNT) {
+            let (contact, side) = pairs.meet::<D, R, N>(near);
+            let mut histories = Histories { values: pairs.table.histories_mut(), offset: 0 };
+            let mut history = read::<R, L::History<R, N>>(&histories, &side.records);
+            let mut response = Response::default();
+            L::act(&pair, &contact, pairs.dt, &mut history, &mut response, &mut booked);
+            write(&history, &mut histories, &side.records);
+            pairs.settle::<D, R, N>(near, &side, &contact, &response);
+        }
+        booked
+    }
+
+    fn sweep_pairs_in<D: Dimension<N>, const N: usize>(&self, pairs: &mut Pairs<'_>) {
+        let near = pairs.near;
+        let (in_lanes, rest) = near.split_at(near.len() - near.len() % Four::COUNT);
+        if pairs.tally.energy.is_empty() {
+            self.act_alone::<D, Four, N>(pairs, in_lanes);
+            self.act_alone::<D, f64, N>(pairs, rest);
+        } else {
+            let in_lanes = self.act_alone::<D, Four, N>(pairs, in_lanes);
+            let rest = self.act_alone::<D, f64, N>(pairs, rest);
+            book(&in_lanes, &mut pairs.tally.energy);
+            book(&rest, &mut pairs.tally.energy);
+        }
+    }
+}
+
+/// Adds what lanes have booked to `energy` (J), one entry per channel.
+#[inline(always)]
+fn book<R: Lanes>(booked: &impl Record<R>, energy: &mut [f64]) {
+    let mut channels = energy.iter_mut();
+    booked.write(&mut |part: R| {
+        if let Some(total) = channels.next() {
+            *total += part.sum_of_lanes();
+        }
+    });
 }
 
 impl<L: ContactLaw, R: Lanes, const N: usize> Sweep<R, N> for Stage<L> {
@@ -103,16 +155,10 @@ impl<L: ContactLaw, R: Lanes, const N: usize> Sweep<R, N> for Stage<L> {
         histories: Histories<'_>,
         energy: Option<&mut [f64]>,
     ) {
-        let Some(energy) = energy else {
-            self.act(batch, dt, histories);
-            return;
-        };
-        let mut channels = energy.iter_mut();
-        self.act(batch, dt, histories).write(&mut |part: R| {
-            if let Some(total) = channels.next() {
-                *total += part.sum_of_lanes();
-            }
-        });
+        match energy {
+            Some(energy) => book(&self.act(batch, dt, histories), energy),
+            None => drop(self.act(batch, dt, histories)),
+        }
     }
 }
 
@@ -176,6 +222,13 @@ fn write<R: Lanes, H: Record<R>>(
 }
 
 impl<L: ContactLaw> ContactStage for Stage<L> {
+    fn sweep_pairs(&self, mut pairs: Pairs<'_>) {
+        match pairs.space() {
+            Space::Planar => self.sweep_pairs_in::<Planar, 1>(&mut pairs),
+            Space::Spatial => self.sweep_pairs_in::<Spatial, 3>(&mut pairs),
+        }
+    }
+
     fn name(&self) -> &'static str {
         L::NAME
     }

@@ -1,0 +1,111 @@
+//! The pass over the grains in which one step ends and the next begins.
+
+use crate::boundary::{Absorber, Period};
+use crate::contacts::Loads;
+use crate::dimension::{Dimension, Load, Motion, Quads, Stride};
+use crate::grain_force::{ForceOnGrain, GrainForces, MovingGrain, TakenByForces};
+use crate::grains::BlockOfGrains;
+use crate::math::Vec3;
+
+/// A grain moves when its energy would lift it by this share of its diameter.
+const MOVING_LIFT: f64 = 0.01;
+
+/// What the grains of a block add up to: energies (J), and how they move.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SumsOfGrains {
+    pub(crate) translation: f64,
+    pub(crate) rotation: f64,
+    pub(crate) potential: f64,
+    /// What absorbing layers took in the last step.
+    pub(crate) absorbed: f64,
+    /// What forces on single grains took in the last step.
+    pub(crate) taken: TakenByForces,
+    /// How many of them move, see [`crate::grain_bed::GrainBed::moving_share`].
+    pub(crate) moving: u32,
+    /// Square of the greatest speed in the drift that follows (m²/s²).
+    pub(crate) fastest_2: f64,
+}
+
+/// What acts on the grains besides contacts, and for how long.
+pub(crate) struct GrainPass<'a> {
+    /// (m/s²).
+    pub(crate) gravity: Vec3,
+    pub(crate) period: Period,
+    pub(crate) absorber: Option<&'a Absorber>,
+    pub(crate) forces: &'a GrainForces,
+    pub(crate) stride: Stride,
+}
+
+impl GrainPass<'_> {
+    /// Completes the force on each grain with what acts besides contacts, gives it half a kick for the step
+    /// that ends, takes its energy, and sends it half a kick and a drift into the next.
+    pub(crate) fn over<D: Dimension<N>, const N: usize>(
+        &self,
+        block: BlockOfGrains<'_>,
+        loads: Loads<'_>,
+    ) -> SumsOfGrains {
+        match self.absorber.is_none() && self.forces.is_empty() {
+            true => self.with::<D, N>(block, loads, |_, _, _| None),
+            false => self.with::<D, N>(block, loads, |grain, mass, sums| {
+                Some(self.drags(grain, mass, sums))
+            }),
+        }
+    }
+
+    #[inline(always)]
+    fn with<D: Dimension<N>, const N: usize>(
+        &self,
+        block: BlockOfGrains<'_>,
+        mut loads: Loads<'_>,
+        drags: impl Fn(&Motion, f64, &mut SumsOfGrains) -> Option<Load>,
+    ) -> SumsOfGrains {
+        let mut sums = SumsOfGrains::default();
+        let liftable = 2.0 * MOVING_LIFT * self.gravity.norm();
+        let moved = block.places.iter_mut().zip(D::Moves::each_mut(block.motions));
+        let bodies = block.mass.iter().zip(block.inertia).zip(block.inverse_inertia);
+        for (k, ((place, motion), ((&mass, &inertia), &inverse_inertia))) in
+            moved.zip(bodies).enumerate()
+        {
+            let grain = D::unpack(place, motion);
+            let weight = self.gravity * mass;
+            let mut load = loads.of::<D, N>(k);
+            D::add_load(&Load { force: weight, torque: Vec3::zeros() }, &mut load);
+            if let Some(drag) = drags(&grain, mass, &mut sums) {
+                D::add_load(&drag, &mut load);
+            }
+            let squares = D::kick_drift(place, motion, &load, &self.stride, inverse_inertia);
+            D::wrap(place, &self.period);
+            let translation = 0.5 * mass * squares.speed;
+            let rotation = 0.5 * inertia * squares.spin;
+            sums.translation += translation;
+            sums.rotation += rotation;
+            sums.moving += u32::from(translation + rotation > liftable * grain.radius * mass);
+            sums.potential -= weight.dot(&grain.position);
+            sums.fastest_2 = sums.fastest_2.max(squares.drift_speed);
+        }
+        sums
+    }
+
+    /// What absorbing layers and forces on single grains do to one of `mass` (kg); what they took in the
+    /// step that ends goes to `sums`.
+    fn drags(&self, grain: &Motion, mass: f64, sums: &mut SumsOfGrains) -> Load {
+        let Motion { position, velocity, velocity_now, .. } = *grain;
+        let step = 2.0 * self.stride.before;
+        let mut load = Load { force: Vec3::zeros(), torque: Vec3::zeros() };
+        if let Some(absorber) = self.absorber {
+            load.force -= velocity_now * (mass * absorber.rate(position));
+            // Second order: what acts half-way, over the way of the step.
+            let half_way = absorber.rate(position - velocity * self.stride.before);
+            sums.absorbed += mass * half_way * velocity.norm_squared() * step;
+        }
+        let weight = self.gravity.norm() * mass;
+        for (force, taken) in self.forces.iter().zip(&mut sums.taken) {
+            let moving = MovingGrain::half_way(grain, mass, weight);
+            *taken -= force.on(&moving).power(&moving) * step;
+            let ForceOnGrain { force, torque } = force.on(&moving.now(grain));
+            load.force += force;
+            load.torque += torque;
+        }
+        load
+    }
+}
