@@ -39,8 +39,8 @@ fn a_law_alone_moves_grains_as_it_does_beside_one_that_does_nothing() {
         let mut beside = shaken(space, vec![S1.stage(), rolling(0.0, 0.0)]);
         run(&mut alone, 400);
         run(&mut beside, 400);
-        assert!(alone.bed.coordination() > 0.2, "{space:?}: {}", alone.bed.coordination());
-        let states = |world: &World| world.bed.grains.iter().collect::<Vec<_>>();
+        assert!(alone.bed().coordination() > 0.2, "{space:?}: {}", alone.bed().coordination());
+        let states = |world: &World| world.bed().grains.iter().collect::<Vec<_>>();
         assert!(states(&alone) == states(&beside), "{space:?}: other bits");
     }
 }
