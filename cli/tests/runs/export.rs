@@ -197,7 +197,7 @@ fn completions_and_manual_pages_know_every_command() {
     let out = folder();
     Call::new(["man"]).arg(out.path()).done();
     let pages = names(out.path());
-    for command in ["run", "compare", "diagnose", "export", "report"] {
+    for command in ["run", "sweep", "compare", "diagnose", "export", "report"] {
         assert!(script.contains(command), "{command}");
         assert!(pages.contains(&format!("plunge-{command}.1")), "{pages:?}");
     }

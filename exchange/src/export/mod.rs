@@ -14,7 +14,7 @@ mod parquet;
 mod surfaces;
 mod tables;
 mod vtp;
-mod whole_file;
+pub(crate) mod whole_file;
 
 use std::io;
 use std::path::{Path, PathBuf};

@@ -103,7 +103,7 @@ fn models(
 
 /// The text of the model that a campaign in `folder` calls `name`.
 fn source(name: &str, folder: &Path, allow_paths: &[PathBuf]) -> Result<ModelSource, String> {
-    let source = match (folder.join(name).exists(), shipped::find(name)) {
+    let source = match (folder.join(name).is_file(), shipped::find(name)) {
         (false, Some(shipped)) => ModelSource::Shipped(shipped),
         (false, None) => {
             let near = nearest(name, SHIPPED.iter().map(|shipped| shipped.name));
