@@ -16,9 +16,6 @@ from matplotlib.collections import EllipseCollection
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-GRAIN = np.dtype([(name, "<f4") for name in ("x", "y", "z", "radius", "speed", "force")] + [("id", "<u4")])
-
-
 def messages(log, topic):
     """Simulated time (s) and message of everything on a topic."""
     with open(log, "rb") as file:
@@ -74,7 +71,7 @@ def draw_bed(axes, time, grains, bodies, speed):
 
 def points(cloud):
     """The values of a point cloud by name."""
-    kinds = np.dtype([(field.name, "<f4") for field in cloud.fields])
+    kinds = np.dtype([(field.name, "<u4" if field.name == "id" else "<f4") for field in cloud.fields])
     return np.frombuffer(cloud.data, dtype=kinds)
 
 
@@ -131,7 +128,7 @@ def main():
     first = next(messages(run, f"/intruder/{names[0]}/state"))[1]
     speed, start = first.speed_m_per_s, first.position.x
     size = np.ptp(np.vstack([outline(entity, poses[0.0]) for entity, poses in bodies]), axis=0).max() / 2
-    frames = [(time, np.frombuffer(cloud.data, dtype=GRAIN)) for time, cloud in messages(grains, "/grains")]
+    frames = [(time, points(cloud)) for time, cloud in messages(grains, "/grains")]
     picked = [frames[round(share * (len(frames) - 1))] for share in (0, 0.08, 0.3, 1)]
     fields = list(zip(messages(run, "/bed/field"), messages(run, "/bed/crater")))
     window = dict(xlim=(start - 7 * size, start + 7 * size), ylim=(-9 * size, 4 * size))

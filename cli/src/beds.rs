@@ -45,7 +45,7 @@ pub(crate) struct Beds {
     candidates: Vec<String>,
 }
 
-fn time(text: &str) -> Result<f64, String> {
+pub(crate) fn time(text: &str) -> Result<f64, String> {
     let seconds = units::parse(text, Dimension::TIME).map_err(|error| error.to_string())?;
     match seconds > 0.0 {
         true => Ok(seconds),

@@ -22,6 +22,7 @@ mod own_effects;
 mod recover;
 mod report;
 mod run;
+mod sweep;
 mod workbench;
 
 use std::process::ExitCode;
@@ -54,7 +55,9 @@ enum Command {
     Effects(effects::Args),
     /// Write a commented starter model, or, called `measurements`, a measurement set.
     New(new::Args),
-    /// Make the HTML report of a run, a list of runs, a comparison or a diagnosis again.
+    /// Run a campaign: many models, seeds and settings side by side, each once.
+    Sweep(sweep::Args),
+    /// Make the HTML report of a run, a list of runs, a campaign, a comparison or a diagnosis again.
     Report(report::Args),
     /// Write a run or an impact as files of other programs: tables, grains for viewers, a LAMMPS input.
     Export(export::Args),
@@ -84,6 +87,7 @@ fn main() -> ExitCode {
         Command::Add(args) => add::run(&args),
         Command::Effects(args) => effects::run(&args),
         Command::New(args) => new::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Recover(args) => recover::run(&args),

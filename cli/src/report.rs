@@ -13,7 +13,8 @@ use crate::workbench::write_whole;
 /// Arguments of `plunge report`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// The folder of a run, of a list of runs, of a comparison, of a diagnosis or of a validation.
+    /// The folder of a run, of a list of runs, of a campaign, of a comparison, of a diagnosis or of a
+    /// validation.
     folder: PathBuf,
     /// Print one JSON object to stdout.
     #[arg(long)]

@@ -52,8 +52,10 @@ fn output(command: &str, folder: &Path) -> String {
 #[test]
 fn every_command_of_the_tour_runs_and_prints_what_the_document_shows() {
     let here = tempfile::tempdir().expect("a folder");
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../validation");
-    std::os::unix::fs::symlink(data, here.path().join("validation")).expect("a link");
+    for name in ["validation", "examples"] {
+        let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name);
+        std::os::unix::fs::symlink(data, here.path().join(name)).expect("a link");
+    }
     let (mut commands, mut shown, mut said) = (0, 0, String::new());
     for Block { language, lines } in blocks(TOUR) {
         match language {
@@ -73,7 +75,7 @@ fn every_command_of_the_tour_runs_and_prints_what_the_document_shows() {
     }
     // A document whose blocks are not found would pass without a command.
     assert!(commands >= 10 && shown >= 10, "{commands} commands, {shown} lines shown");
-    for report in ["runs/two-term-vector", "runs/seen", "runs/both"] {
+    for report in ["runs/two-term-vector", "runs/seen", "runs/both", "runs/sphere-in-beads"] {
         assert!(here.path().join(report).join("report.html").is_file(), "{report}");
     }
 }

@@ -50,11 +50,8 @@ fn a_log_of_scalars_every_step_and_frames_is_written_for_other_readers() {
         };
         log.body_load(at, 0, &load).unwrap();
         if step.is_multiple_of(500) {
-            let body = BodyFrame {
-                position: sample.position,
-                orientation: Quat::identity(),
-                force: load.forces[0],
-            };
+            let body =
+                BodyFrame { state: sample, orientation: Quat::identity(), force: load.forces[0] };
             log.frame(at, &[body], &mut grains()).unwrap();
         }
         let middle = speed + 0.5 * DT * (GRAVITY - DRAG / MASS * speed);
@@ -73,7 +70,7 @@ fn grains() -> impl Iterator<Item = GrainSample> {
     (0..1000_u32).map(|id| GrainSample {
         position: Vec3::new(f64::from(id % 50) * 0.002 - 0.05, 0.0, f64::from(id / 50) * 0.002),
         radius: 0.001,
-        speed: 0.0,
+        velocity: Vec3::zeros(),
         force: 0.0,
         id,
     })

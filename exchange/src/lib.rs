@@ -4,3 +4,4 @@ pub mod export;
 pub mod lammps;
 pub mod read;
 pub mod recover;
+pub mod table;

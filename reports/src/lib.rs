@@ -1,4 +1,4 @@
-//! Reports: one HTML page per run, list of runs, comparison, diagnosis, validation or measurement set.
+//! Reports: one HTML page per run, list of runs, campaign, comparison, diagnosis, validation or measurement set.
 //!
 //! A page holds its figures, its style and its script, asks nothing of any network, and reads on
 //! screen, in the dark and on paper. It is made of the files of one folder and of nothing else, so that
@@ -6,6 +6,7 @@
 //!
 //! What a page consists of is in `page.rs`, what it looks like in `templates/`.
 
+mod campaign;
 mod comparison;
 mod diagnosis;
 mod figure;
@@ -21,6 +22,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use campaigns::{Folder, FolderError, PLAN, Results};
 use configs::run::{ListSummary, Summary};
 use exchange::read::ReadError;
 use serde_json::Value;
@@ -47,8 +49,8 @@ pub enum ReportError {
     },
     /// A folder without results.
     #[error(
-        "{} holds no finished run, comparison, diagnosis or validation: no summary.json, comparison.json, \
-         diagnosis.json or validation.json",
+        "{} holds no finished run, campaign, comparison, diagnosis or validation: no summary.json, \
+         {PLAN}, comparison.json, diagnosis.json or validation.json",
         folder.display()
     )]
     Nothing {
@@ -66,6 +68,9 @@ pub enum ReportError {
     /// The log of a run.
     #[error(transparent)]
     Log(#[from] ReadError),
+    /// The folder of a campaign.
+    #[error(transparent)]
+    Campaign(#[from] FolderError),
     /// A figure.
     #[error(transparent)]
     Picture(#[from] PictureError),
@@ -77,8 +82,8 @@ pub enum ReportError {
 /// The results of a comparison, diagnosis or validation, by the names of their files.
 pub type Texts = BTreeMap<String, String>;
 
-/// The page of what `folder` holds: a finished run, a list of them, a comparison, a diagnosis or a
-/// validation.
+/// The page of what `folder` holds: a finished run, a list of them, a campaign, however far it has come,
+/// a comparison, a diagnosis or a validation.
 ///
 /// # Errors
 /// If the folder holds none of them, or a file cannot be read or understood.
@@ -95,6 +100,9 @@ pub fn of_folder(folder: &Path) -> Result<String, ReportError> {
                 run::page(&summary, &run::Course::read(folder)?)
             }
         };
+    }
+    if folder.join(PLAN).is_file() {
+        return of_campaign(&Results::read(&Folder::new(folder))?);
     }
     let entries = fs::read_dir(folder).map_err(|source| io_error(folder, source))?;
     let mut texts = Texts::new();
@@ -129,6 +137,14 @@ pub fn of_texts(texts: &Texts) -> Option<Result<String, ReportError>> {
 /// If a figure cannot be drawn.
 pub fn of_list(summary: &ListSummary) -> Result<String, ReportError> {
     list::page(summary)
+}
+
+/// The page of what a campaign has come to.
+///
+/// # Errors
+/// If a figure cannot be drawn.
+pub fn of_campaign(results: &Results) -> Result<String, ReportError> {
+    campaign::page(results)
 }
 
 fn read(path: &Path) -> Result<String, ReportError> {

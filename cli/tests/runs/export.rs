@@ -90,7 +90,7 @@ fn a_table_has_a_row_per_message_and_the_unit_of_every_column() {
 }
 
 #[test]
-fn frames_hold_every_grain_at_its_time() {
+fn frames_hold_every_grain_and_the_disc_at_their_time() {
     let out = folder();
     Call::run(out.path()).done();
     let n = summary(out.path())["bed"]["grains"].as_u64().expect("a number") as usize;
@@ -98,13 +98,84 @@ fn frames_hold_every_grain_at_its_time() {
     export(out.path(), "extxyz").done();
     let text = fs::read_to_string(out.path().join("extxyz/grains.xyz")).expect("a file");
     let lines: Vec<&str> = text.lines().collect();
-    assert_eq!(lines.len(), frames * (n + 2));
-    assert_eq!(lines[0], n.to_string());
+    let of_frame = n + 3;
+    assert_eq!(lines.len(), frames * of_frame);
+    assert_eq!(lines[0], (n + 1).to_string());
     // Two hundred frames per second; a frame is at the step nearest to its time.
-    assert!(lines[n + 3].contains(" Time=0.005 "), "{}", lines[n + 3]);
+    assert!(lines[of_frame + 1].contains(" Time=0.005 "), "{}", lines[of_frame + 1]);
+
+    // The disc is the last of every frame, where the table of its states has it.
+    export(out.path(), "csv").done();
+    let states = rows(&out.path().join("csv/intruder_intruder_state.csv"));
+    let at = states.iter().find(|row| row[1] == "0.005").expect("a state every step");
+    let disc: Vec<&str> = lines[2 * of_frame - 1].split(' ').collect();
+    assert_eq!(disc[..3], [&n.to_string(), "Fe", "1"]);
+    // position and velocity; the table's velocity begins at its eighth column
+    for (cell, column) in [(3, 4), (5, 6), (7, 7), (9, 9), (10, 3)] {
+        let expected: f64 = at[column].parse().expect("a number");
+        assert_eq!(disc[cell].parse::<f32>().expect("a number"), expected as f32, "{cell}");
+    }
+    let grains = lines[of_frame + 2..2 * of_frame - 1].iter();
+    assert!(grains.clone().all(|line| line.split(' ').nth(1) == Some("Si")));
+    for line in grains {
+        let cells: Vec<f32> = line.split(' ').filter_map(|cell| cell.parse().ok()).collect();
+        let [x, y, z, speed] = [6, 7, 8, 9].map(|at| cells[at]);
+        // Two roundings of single numbers, and a square root.
+        assert!(((x * x + y * y + z * z).sqrt() - speed).abs() <= 4e-7 * speed, "{line}");
+    }
     export(out.path(), "vtp").done();
     let files = names(&out.path().join("vtp"));
     assert_eq!(files.len(), 2 * (frames + 1), "grains and bodies of every frame, and two indices");
+}
+
+#[test]
+fn beads_of_a_body_that_is_not_round_move_as_one() {
+    let out = folder();
+    let model = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../configs/schema/tests/good/small-chain-2d.toml");
+    Call::run_model(&model, out.path()).set(&["run.duration=60 ms"]).done();
+    export(out.path(), "lammps-dump").done();
+    let text = fs::read_to_string(out.path().join("lammps-dump/grains.dump")).expect("a file");
+    let last = text.rsplit("speed force\n").next().expect("a frame");
+    let particles: Vec<Vec<f64>> = last
+        .lines()
+        .map(|line| line.split(' ').map(|cell| cell.parse().expect("a number")).collect())
+        .collect();
+    for kind in [2.0, 3.0] {
+        let beads: Vec<_> =
+            particles.iter().filter(|cells| (cells[1] - kind).abs() < 0.5).collect();
+        assert_eq!(beads.len(), 1000, "type {kind}");
+        let apart = |other: usize, at: usize| -> [f64; 3] {
+            std::array::from_fn(|axis| beads[other][at + axis] - beads[0][at + axis])
+        };
+        for other in 1..beads.len() {
+            let (way, motion) = (apart(other, 3), apart(other, 6));
+            let along: f64 = way.iter().zip(motion).map(|(x, v)| x * v).sum();
+            // A rigid body keeps its distances; single numbers round way (m) and speed (m/s).
+            assert!(along.abs() < 1e-8, "{along}");
+        }
+    }
+    assert_eq!(particles.iter().filter(|cells| cells[1] < 1.5).count(), 300);
+}
+
+#[test]
+fn the_log_of_grains_is_a_table_of_them() {
+    let out = folder();
+    Call::run(out.path()).done();
+    let log = out.path().join("grains.mcap");
+    export(&log, "csv").done();
+    let (folder, log) = (out.path().join("csv"), Log::read(&log));
+    assert_eq!(names(&folder), ["grains.csv", "intruder_intruder_state.csv"]);
+    let grains = rows(&folder.join("grains.csv"));
+    let n = summary(out.path())["bed"]["grains"].as_u64().expect("a number") as usize;
+    assert_eq!(grains.len() - 1, n * log.count("/grains"));
+    assert_eq!(
+        grains[0].join(","),
+        "time_s,x_m,y_m,z_m,radius_m,vx_m_per_s,vy_m_per_s,vz_m_per_s,speed_m_per_s,force_N,id"
+    );
+    assert_eq!(grains[n + 1][0], "0.005", "the second frame");
+    let states = rows(&folder.join("intruder_intruder_state.csv"));
+    assert_eq!(states.len() - 1, log.count("/grains"), "a state per frame");
 }
 
 #[test]
@@ -126,7 +197,7 @@ fn completions_and_manual_pages_know_every_command() {
     let out = folder();
     Call::new(["man"]).arg(out.path()).done();
     let pages = names(out.path());
-    for command in ["run", "compare", "diagnose", "export", "report"] {
+    for command in ["run", "sweep", "compare", "diagnose", "export", "report"] {
         assert!(script.contains(command), "{command}");
         assert!(pages.contains(&format!("plunge-{command}.1")), "{pages:?}");
     }

@@ -1,4 +1,4 @@
-//! What `plunge run`, `bed`, `recover`, `compare` of runs and `check` of sets promise, seen from
+//! What `plunge run`, `sweep`, `bed`, `recover`, `compare` of runs and `check` of sets promise, seen from
 //! outside: bytes, folders, exit codes.
 
 mod beds;
@@ -19,5 +19,6 @@ mod resistive;
 mod shapes;
 mod space;
 mod summary;
+mod sweeps;
 mod threads;
 mod viewers;

@@ -47,6 +47,49 @@ impl ModelSource {
             None => Self::Path(path.to_owned()),
         }
     }
+
+    /// The same model as a text, read once.
+    ///
+    /// # Errors
+    /// If its file cannot be read.
+    pub fn into_text(self) -> Result<Self, ConfigError> {
+        let (name, text, folder) = self.open()?;
+        Ok(Self::Text { name, text, folder })
+    }
+
+    /// Name for messages, text, and the folder that relative paths start from.
+    pub(crate) fn open(self) -> Result<(String, String, PathBuf), ConfigError> {
+        match self {
+            Self::Shipped(shipped) => {
+                let name = format!("{}.toml (shipped)", shipped.name);
+                Ok((name, shipped.text.to_owned(), PathBuf::from(".")))
+            }
+            Self::Text { name, text, folder } => {
+                if text.len() as u64 > limits::FILE_BYTES {
+                    let reason = Reason::TooLarge(text.len() as u64).to_string();
+                    return Err(ConfigError::Unreadable { name, reason });
+                }
+                Ok((name, text, folder))
+            }
+            Self::Path(path) => {
+                let name = path.display().to_string();
+                let unreadable =
+                    |reason: String| ConfigError::Unreadable { name: name.clone(), reason };
+                let bytes = paths::read_bounded(&path, &name, limits::FILE_BYTES)
+                    .map_err(|error| unreadable(Reason::from(error, &path).to_string()))?;
+                let text = String::from_utf8(bytes).map_err(|error| {
+                    let at = error.utf8_error().valid_up_to();
+                    let line = 1 + error.as_bytes()[..at].iter().filter(|b| **b == b'\n').count();
+                    unreadable(format!("line {line} is not UTF-8; save the file as UTF-8"))
+                })?;
+                let folder = match path.parent() {
+                    Some(folder) if folder != Path::new("") => folder.to_owned(),
+                    _ => PathBuf::from("."),
+                };
+                Ok((name, text, folder))
+            }
+        }
+    }
 }
 
 /// What the command line says about a model.
@@ -119,7 +162,7 @@ impl Model {
     /// # Errors
     /// Everything that is wrong with it, at once.
     pub fn load(source: ModelSource, options: &LoadOptions) -> Result<Loaded, ConfigError> {
-        let (name, text, folder) = open(source)?;
+        let (name, text, folder) = source.open()?;
         let mut sources = Sources::default();
         let id = sources.add(name, text.as_str());
         let mut root = match document::parse(&sources, id) {
@@ -160,40 +203,6 @@ impl Model {
                 Ok(Loaded { model, warnings: diagnostics, sources, original: text })
             }
             _ => Err(ConfigError::Invalid { diagnostics, sources }),
-        }
-    }
-}
-
-/// Name for messages, text, and the folder that relative paths start from.
-fn open(source: ModelSource) -> Result<(String, String, PathBuf), ConfigError> {
-    match source {
-        ModelSource::Shipped(shipped) => {
-            let name = format!("{}.toml (shipped)", shipped.name);
-            Ok((name, shipped.text.to_owned(), PathBuf::from(".")))
-        }
-        ModelSource::Text { name, text, folder } => {
-            if text.len() as u64 > limits::FILE_BYTES {
-                let reason = Reason::TooLarge(text.len() as u64).to_string();
-                return Err(ConfigError::Unreadable { name, reason });
-            }
-            Ok((name, text, folder))
-        }
-        ModelSource::Path(path) => {
-            let name = path.display().to_string();
-            let unreadable =
-                |reason: String| ConfigError::Unreadable { name: name.clone(), reason };
-            let bytes = paths::read_bounded(&path, &name, limits::FILE_BYTES)
-                .map_err(|error| unreadable(Reason::from(error, &path).to_string()))?;
-            let text = String::from_utf8(bytes).map_err(|error| {
-                let at = error.utf8_error().valid_up_to();
-                let line = 1 + error.as_bytes()[..at].iter().filter(|b| **b == b'\n').count();
-                unreadable(format!("line {line} is not UTF-8; save the file as UTF-8"))
-            })?;
-            let folder = match path.parent() {
-                Some(folder) if folder != Path::new("") => folder.to_owned(),
-                _ => PathBuf::from("."),
-            };
-            Ok((name, text, folder))
         }
     }
 }

@@ -1,8 +1,8 @@
 //! The log of a run, in MCAP.
 //!
 //! Two files on one clock: `run.mcap` has the energy budget, state and load of every body at every
-//! step, events, and the drawn frames; `grains.mcap` has the grains of every frame, with frames of
-//! its own so that it opens alone. Messages are protobuf and carry their descriptors. Topics and
+//! step, events, and the drawn frames; `grains.mcap` has the grains of every frame, with frames and
+//! states of bodies of its own so that it opens alone. Messages are protobuf and carry their descriptors. Topics and
 //! field names are stable: renaming one is a breaking change.
 //!
 //! The bytes depend on the calls alone. Log time is simulated time, the sequence number of a
@@ -106,6 +106,7 @@ struct FrameChannels {
 #[derive(Default)]
 struct GrainChannels {
     grains: u16,
+    states: Vec<u16>,
     frames: Option<FrameChannels>,
 }
 
@@ -198,18 +199,8 @@ impl RunLog {
         body: usize,
         sample: &BodySample,
     ) -> Result<(), RecordError> {
-        let BodySample { position, velocity, spin, depth_m } = sample;
-        let name = &self.bodies[body];
-        finite(at, || format!("depth_m of {name}"), &[*depth_m])?;
-        finite(at, || format!("position of {name}"), position.as_slice())?;
-        finite(at, || format!("velocity of {name}"), velocity.as_slice())?;
-        finite(at, || format!("spin of {name}"), spin.as_slice())?;
-        let mut fields = Fields::begin(&mut self.buffer, at.step, at.time_s);
-        fields.number(*depth_m);
-        fields.number(velocity.norm());
-        fields.vector(&self.scene.to_log(position));
-        fields.vector(velocity);
-        fields.vector(spin);
+        finite_state(at, &self.bodies[body], sample)?;
+        encode_state(at, sample, &self.scene, &mut self.buffer);
         self.run.write(self.ids.states[body], at.encode()?, &self.buffer)
     }
 
@@ -327,8 +318,8 @@ impl RunLog {
         grains: &mut dyn Iterator<Item = GrainSample>,
     ) -> Result<(), RecordError> {
         assert_eq!(bodies.len(), self.bodies.len(), "one frame per body");
-        for (BodyFrame { position, orientation, force }, name) in bodies.iter().zip(&self.bodies) {
-            finite(at, || format!("position of {name}"), position.as_slice())?;
+        for (BodyFrame { state, orientation, force }, name) in bodies.iter().zip(&self.bodies) {
+            finite_state(at, name, state)?;
             finite(at, || format!("orientation of {name}"), orientation.coords.as_slice())?;
             finite(at, || format!("force on {name}"), force.as_slice())?;
         }
@@ -337,11 +328,16 @@ impl RunLog {
         if let (Some(file), Some(frames)) = (&mut self.grains, &self.grain_ids.frames) {
             self.scene.clear_grains();
             for grain in grains {
-                let GrainSample { position: p, radius, speed, force, id } = grain;
-                finite(at, || format!("grain {id}"), &[p.x, p.y, p.z, radius, speed, force])?;
+                let GrainSample { position: p, velocity: v, radius, force, id } = grain;
+                let values = [p.x, p.y, p.z, v.x, v.y, v.z, radius, force];
+                finite(at, || format!("grain {id}"), &values)?;
                 self.scene.push_grain(&grain);
             }
             write_frame(file, frames, &self.scene, stamp, &mut self.buffer)?;
+            for (body, &id) in bodies.iter().zip(&self.grain_ids.states) {
+                encode_state(at, &body.state, &self.scene, &mut self.buffer);
+                file.write(id, stamp, &self.buffer)?;
+            }
             self.scene.encode_grains(&mut self.buffer);
             file.write(self.grain_ids.grains, stamp, &self.buffer)?;
         }
@@ -430,9 +426,7 @@ impl RunLog {
         }
         let ids = RunChannels {
             energy: run.define(own("/energy/budget", &budget))?,
-            states: per_body(setup, |name| {
-                run.define(own(&format!("/intruder/{name}/state"), &state))
-            })?,
+            states: define_states(&mut run, setup, &state)?,
             loads: per_body(setup, |name| {
                 run.define(own(&format!("/intruder/{name}/load"), &load))
             })?,
@@ -461,6 +455,7 @@ impl RunLog {
             let cut = Cut { every: vec![checkpoint_every], chunk_bytes: 4 << 20 };
             let mut file = start(GRAIN_LOG, cut)?;
             grain_ids.grains = file.define(drawn::<PointCloud>("/grains"))?;
+            grain_ids.states = define_states(&mut file, setup, &state)?;
             grain_ids.frames = Some(define_frames(&mut file, setup)?);
             grains = Some(file);
         }
@@ -518,6 +513,14 @@ fn per_body(
     setup.bodies.iter().map(|body| define(&body.name)).collect()
 }
 
+fn define_states(
+    file: &mut LogFile,
+    setup: &LogSetup,
+    state: &Layout,
+) -> Result<Vec<u16>, RecordError> {
+    per_body(setup, |name| file.define(own(&format!("/intruder/{name}/state"), state)))
+}
+
 fn define_frames(file: &mut LogFile, setup: &LogSetup) -> Result<FrameChannels, RecordError> {
     Ok(FrameChannels {
         transforms: file.define(drawn::<FrameTransforms>("/tf"))?,
@@ -544,6 +547,24 @@ fn write_frame(
     }
     scene.encode_update(buffer);
     file.write(ids.scene, stamp, buffer)
+}
+
+fn encode_state(at: Stamp, sample: &BodySample, scene: &Scene, buffer: &mut Vec<u8>) {
+    let BodySample { position, velocity, spin, depth_m } = sample;
+    let mut fields = Fields::begin(buffer, at.step, at.time_s);
+    fields.number(*depth_m);
+    fields.number(velocity.norm());
+    fields.vector(&scene.to_log(position));
+    fields.vector(velocity);
+    fields.vector(spin);
+}
+
+fn finite_state(at: Stamp, name: &str, sample: &BodySample) -> Result<(), RecordError> {
+    let BodySample { position, velocity, spin, depth_m } = sample;
+    finite(at, || format!("depth_m of {name}"), &[*depth_m])?;
+    finite(at, || format!("position of {name}"), position.as_slice())?;
+    finite(at, || format!("velocity of {name}"), velocity.as_slice())?;
+    finite(at, || format!("spin of {name}"), spin.as_slice())
 }
 
 fn finite(at: Stamp, what: impl Fn() -> String, values: &[f64]) -> Result<(), RecordError> {

@@ -15,8 +15,11 @@ use crate::math::{Quat, Vec3};
 /// The frame that everything is drawn in: z up, surface of the undisturbed bed at z = 0.
 pub(super) const WORLD: &str = "world";
 
-/// Bytes of a grain in the cloud: six 32-bit floats and an identifier.
-const STRIDE: u32 = 28;
+/// What a grain in the cloud has, in order: an identifier behind 32-bit floats.
+const GRAIN: [&str; 10] = ["x", "y", "z", "radius", "vx", "vy", "vz", "speed", "force", "id"];
+
+/// Bytes of a number in the cloud.
+const WIDTH: u32 = 4;
 
 /// The messages of a frame, built once; a frame changes their numbers only.
 pub(super) struct Scene {
@@ -84,7 +87,7 @@ impl Scene {
         let arrows = arrows.into_iter().flatten();
         let bodies = bodies.iter().zip(&mut self.transforms.transforms).zip(&mut self.poses);
         for (((body, transform), pose), arrow) in bodies.zip(arrows) {
-            let position = shifted(&body.position, self.surface_z);
+            let position = shifted(&body.state.position, self.surface_z);
             let orientation = quaternion(&body.orientation);
             transform.timestamp = Some(now);
             transform.translation = Some(position);
@@ -102,9 +105,9 @@ impl Scene {
 
     /// Packs one grain; `clear_grains` starts a frame.
     pub(super) fn push_grain(&mut self, grain: &GrainSample) {
-        let GrainSample { position, radius, speed, force, id } = grain;
-        let z = position.z - self.surface_z;
-        for value in [position.x, position.y, z, *radius, *speed, *force] {
+        let GrainSample { position, radius, velocity: v, force, id } = grain;
+        let p = self.to_log(position);
+        for value in [p.x, p.y, p.z, *radius, v.x, v.y, v.z, v.norm(), *force] {
             self.points.extend_from_slice(&(value as f32).to_le_bytes());
         }
         self.points.extend_from_slice(&id.to_le_bytes());
@@ -146,7 +149,7 @@ pub(super) fn encode<M: Encode>(message: &M, buffer: &mut Vec<u8>) {
     message.encode(buffer).expect("a growing buffer has room for every message");
 }
 
-/// A viewer's timestamp of a simulated time [ns].
+/// A viewer's timestamp of a simulated time (ns).
 pub(super) fn timestamp(log_time: u64) -> Timestamp {
     Timestamp::new((log_time / 1_000_000_000) as u32, (log_time % 1_000_000_000) as u32)
 }
@@ -211,15 +214,14 @@ fn arrow(body: &LoggedBody) -> ArrowPrimitive {
 }
 
 fn cloud() -> PointCloud {
-    let names = ["x", "y", "z", "radius", "speed", "force", "id"];
-    let fields = (0..).step_by(4).zip(names).map(|(offset, name)| {
+    let fields = (0..).step_by(WIDTH as usize).zip(GRAIN).map(|(offset, name)| {
         let kind = if name == "id" { NumericType::Uint32 } else { NumericType::Float32 };
         PackedElementField { name: name.to_owned(), offset, r#type: kind as i32 }
     });
     PointCloud {
         frame_id: WORLD.to_owned(),
         pose: Some(Pose { position: Some(Vector3::default()), orientation: Some(UPRIGHT) }),
-        point_stride: STRIDE,
+        point_stride: WIDTH * GRAIN.len() as u32,
         fields: fields.collect(),
         ..Default::default()
     }

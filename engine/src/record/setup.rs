@@ -146,8 +146,8 @@ pub struct BodyEstimate {
 /// A body in a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyFrame {
-    /// Centre of mass (m).
-    pub position: Vec3,
+    /// Where it is and how it moves.
+    pub state: BodySample,
     /// Rotation from the body frame to the world frame.
     pub orientation: Quat,
     /// The force drawn as an arrow (N).
@@ -161,8 +161,8 @@ pub struct GrainSample {
     pub position: Vec3,
     /// Radius (m).
     pub radius: f64,
-    /// Magnitude of its velocity (m/s).
-    pub speed: f64,
+    /// Velocity of its centre (m/s).
+    pub velocity: Vec3,
     /// Magnitude of its contact force (N).
     pub force: f64,
     /// Its identifier, the same in every frame.

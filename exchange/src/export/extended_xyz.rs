@@ -4,11 +4,16 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::ExportError;
-use super::grains::{Frame, FrameWriter};
+use super::grains::{Frame, FrameWriter, Grain};
 use super::whole_file::WholeFile;
 
-/// What a line holds. Every grain is of the species G.
-const PROPERTIES: &str = "id:I:1:species:S:1:pos:R:3:radius:R:1:speed:R:1:force:R:1";
+/// What a line holds. `body` is 0 for a grain and counts bodies from 1, in the order of their names.
+const PROPERTIES: &str =
+    "id:I:1:species:S:1:body:I:1:pos:R:3:radius:R:1:velo:R:3:speed:R:1:force:R:1";
+
+/// Species of grains and of bodies. ASE takes no species but chemical elements; these stand for sand and
+/// steel, whatever the grains and the body are made of.
+const SPECIES: [&str; 2] = ["Si", "Fe"];
 
 /// `grains.xyz`, in SI units.
 ///
@@ -22,12 +27,15 @@ impl ExtendedXyz {
 
     fn write(&mut self, frame: &Frame) -> io::Result<()> {
         let file = &mut self.0;
-        writeln!(file, "{}", frame.grains.len())?;
+        writeln!(file, "{}", frame.particles().count())?;
         writeln!(file, "Properties={PROPERTIES} Time={:?} pbc=\"F F F\"", frame.time)?;
-        for grain in &frame.grains {
-            let [x, y, z] = grain.position;
-            let (id, radius, speed, force) = (grain.id, grain.radius, grain.speed, grain.force);
-            writeln!(file, "{id} G {x:?} {y:?} {z:?} {radius:?} {speed:?} {force:?}")?;
+        for (body, Grain { id, position, radius, velocity, speed, force }) in frame.particles() {
+            let ([x, y, z], [vx, vy, vz]) = (position, velocity);
+            let species = SPECIES[usize::from(body > 0)];
+            writeln!(
+                file,
+                "{id} {species} {body} {x:?} {y:?} {z:?} {radius:?} {vx:?} {vy:?} {vz:?} {speed:?} {force:?}"
+            )?;
         }
         Ok(())
     }

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use prost_reflect::{DynamicMessage, FieldDescriptor, MessageDescriptor, Value};
+use prost_reflect::{DynamicMessage, MessageDescriptor};
 
-use super::surfaces::{Bodies, Surface};
+use super::bodies::{Bodies, Body, MovingBead};
+use super::cloud::{Cloud, CloudReader};
 use super::{ExportError, Exported};
 use crate::read::messages::{Receiver, Refusal, each_message};
 
@@ -17,7 +18,7 @@ pub(super) struct Frame {
     pub(super) time: f64,
     pub(super) grains: Vec<Grain>,
     /// In the order of their names.
-    pub(super) bodies: Vec<Surface>,
+    pub(super) bodies: Vec<Body>,
 }
 
 /// A grain as the log has it.
@@ -29,21 +30,48 @@ pub(super) struct Grain {
     /// (m).
     pub(super) radius: f32,
     /// (m/s).
+    pub(super) velocity: [f32; 3],
+    /// Magnitude of the velocity (m/s).
     pub(super) speed: f32,
     /// Magnitude of the sum of contact forces (N).
     pub(super) force: f32,
 }
 
 impl Frame {
-    /// The least and the greatest coordinate of any grain along each axis (m).
-    pub(super) fn bounds(&self) -> [[f32; 2]; 3] {
-        [0, 1, 2].map(|axis| {
-            let ends = |[low, high]: [f32; 2], grain: &Grain| {
-                let (middle, radius) = (grain.position[axis], grain.radius);
-                [low.min(middle - radius), high.max(middle + radius)]
+    /// The grains and then the beads of every body, each with the number of its body: 0 for a grain.
+    /// Beads are identified by the numbers behind those of the grains, and bear no force.
+    pub(super) fn particles(&self) -> impl Iterator<Item = (usize, Grain)> {
+        let behind = self.grains.iter().map(|grain| grain.id.wrapping_add(1)).max().unwrap_or(0);
+        let beads = (1..).zip(&self.bodies);
+        let beads =
+            beads.flat_map(|(number, body)| body.beads.iter().map(move |bead| (number, bead)));
+        let beads = (0..).zip(beads).map(move |(place, (number, bead)): (u32, _)| {
+            let MovingBead { position, radius, velocity } = bead;
+            let single = |vector: &[f64; 3]| vector.map(|x| x as f32);
+            let speed = velocity.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let bead = Grain {
+                id: behind.wrapping_add(place),
+                position: single(position),
+                radius: *radius as f32,
+                velocity: single(velocity),
+                speed: speed as f32,
+                force: 0.0,
             };
-            self.grains.iter().fold([f32::INFINITY, f32::NEG_INFINITY], ends)
-        })
+            (number, bead)
+        });
+        self.grains.iter().map(|grain| (0, *grain)).chain(beads)
+    }
+
+    /// The least and the greatest coordinate of any particle along each axis (m).
+    pub(super) fn bounds(&self) -> [[f32; 2]; 3] {
+        let mut bounds = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
+        for (_, Grain { position, radius, .. }) in self.particles() {
+            for ([low, high], middle) in bounds.iter_mut().zip(position) {
+                *low = low.min(middle - radius);
+                *high = high.max(middle + radius);
+            }
+        }
+        bounds
     }
 }
 
@@ -82,89 +110,36 @@ struct Frames<W> {
 
 /// What is read of a frame.
 enum Topic {
-    Grains(Cloud),
+    Grains(CloudReader),
     /// Where bodies are.
     Places(MessageDescriptor),
     /// What they look like.
     Shapes(MessageDescriptor),
+    /// How the body of this name moves.
+    Motion(String, MessageDescriptor),
 }
 
-/// Where a point cloud has what we read of it.
-struct Cloud {
-    message: MessageDescriptor,
-    timestamp: FieldDescriptor,
-    stride: FieldDescriptor,
-    fields: FieldDescriptor,
-    data: FieldDescriptor,
-}
-
-impl Cloud {
-    fn of(message: &MessageDescriptor) -> Result<Self, String> {
-        let field = |name: &str| {
-            let found = message.get_field_by_name(name);
-            found.ok_or_else(|| format!("{} has no field `{name}`", message.full_name()))
-        };
-        Ok(Self {
-            timestamp: field("timestamp")?,
-            stride: field("point_stride")?,
-            fields: field("fields")?,
-            data: field("data")?,
-            message: message.clone(),
-        })
-    }
-
-    fn read(&self, data: &[u8], into: &mut Frame) -> Result<(), String> {
-        let message =
-            DynamicMessage::decode(self.message.clone(), data).map_err(|e| e.to_string())?;
-        into.time = seconds(message.get_field(&self.timestamp).as_ref());
-        let stride = message.get_field(&self.stride).as_u32().unwrap_or(0) as usize;
-        let fields = message.get_field(&self.fields);
-        let offset = |name: &str| {
-            let named = |field: &&Value| text_of(field, "name").as_deref() == Some(name);
-            let found = fields.as_list().unwrap_or(&[]).iter().find(named);
-            let at = found.and_then(|field| number_of(field, "offset"));
-            at.filter(|at| at + WIDTH <= stride)
-                .ok_or_else(|| format!("its points have no `{name}`"))
-        };
-        let names = ["x", "y", "z", "radius", "speed", "force"];
-        let mut places = [0; 6];
-        for (place, name) in places.iter_mut().zip(names) {
-            *place = offset(name)?;
-        }
-        let id = offset("id")?;
-        let points = message.get_field(&self.data);
-        let points = points.as_bytes().ok_or("its points are no bytes")?;
-        into.grains.clear();
-        into.grains.extend(points.chunks_exact(stride).map(|point| {
-            let word = |at: usize| [point[at], point[at + 1], point[at + 2], point[at + 3]];
-            let [x, y, z, radius, speed, force] = places.map(|at| f32::from_le_bytes(word(at)));
-            let id = u32::from_le_bytes(word(id));
-            Grain { id, position: [x, y, z], radius, speed, force }
+impl Frame {
+    /// Takes the grains of `cloud` in place of those that it has.
+    fn take(&mut self, cloud: &Cloud) -> Result<(), String> {
+        let [x, y, z] = ["x", "y", "z"].map(|name| cloud.column(name));
+        let [vx, vy, vz] = ["vx", "vy", "vz"].map(|name| cloud.column(name));
+        let [radius, speed, force] = ["radius", "speed", "force"].map(|name| cloud.column(name));
+        let (position, velocity) = ([x?, y?, z?], [vx?, vy?, vz?]);
+        let (radius, speed, force) = (radius?, speed?, force?);
+        let id = cloud.column("id")?;
+        self.time = cloud.time;
+        self.grains.clear();
+        self.grains.extend(cloud.points().map(|point| Grain {
+            id: id.count(point),
+            position: position.map(|column| column.quantity(point)),
+            radius: radius.quantity(point),
+            velocity: velocity.map(|column| column.quantity(point)),
+            speed: speed.quantity(point),
+            force: force.quantity(point),
         }));
         Ok(())
     }
-}
-
-/// Bytes of a number in a point cloud of ours.
-const WIDTH: usize = 4;
-
-/// A timestamp of a log (s).
-fn seconds(timestamp: &Value) -> f64 {
-    let part = |name: &str| number_of(timestamp, name).unwrap_or(0) as f64;
-    part("seconds") + 1e-9 * part("nanos")
-}
-
-fn number_of(message: &Value, field: &str) -> Option<usize> {
-    match message.as_message()?.get_field_by_name(field)?.as_ref() {
-        Value::U32(number) => Some(*number as usize),
-        Value::I32(number) => usize::try_from(*number).ok(),
-        Value::I64(number) => usize::try_from(*number).ok(),
-        _ => None,
-    }
-}
-
-fn text_of(message: &Value, field: &str) -> Option<String> {
-    message.as_message()?.get_field_by_name(field)?.as_str().map(str::to_owned)
 }
 
 impl<W: FrameWriter> Receiver for Frames<W> {
@@ -176,10 +151,14 @@ impl<W: FrameWriter> Receiver for Frames<W> {
         message: &MessageDescriptor,
     ) -> Result<Option<Topic>, String> {
         Ok(match topic {
-            "/grains" => Some(Topic::Grains(Cloud::of(message)?)),
+            "/grains" => Some(Topic::Grains(CloudReader::of(message)?)),
             "/tf" => Some(Topic::Places(message.clone())),
             "/scene" => Some(Topic::Shapes(message.clone())),
-            _ => None,
+            _ => {
+                let body =
+                    topic.strip_prefix("/intruder/").and_then(|of| of.strip_suffix("/state"));
+                body.map(|name| Topic::Motion(name.to_owned(), message.clone()))
+            }
         })
     }
 
@@ -188,8 +167,8 @@ impl<W: FrameWriter> Receiver for Frames<W> {
             DynamicMessage::decode(message.clone(), data)
                 .map_err(|error| Refusal::Damaged(error.to_string()))
         };
-        let cloud = match topic {
-            Topic::Grains(cloud) => cloud,
+        let reader = match topic {
+            Topic::Grains(reader) => reader,
             Topic::Places(message) => {
                 self.bodies.place(&decoded(message)?);
                 return Ok(());
@@ -198,9 +177,14 @@ impl<W: FrameWriter> Receiver for Frames<W> {
                 self.bodies.draw(&decoded(message)?);
                 return Ok(());
             }
+            Topic::Motion(name, message) => {
+                self.bodies.set_motion(name, &decoded(message)?);
+                return Ok(());
+            }
         };
-        cloud.read(data, &mut self.frame).map_err(Refusal::Damaged)?;
-        self.frame.bodies = self.bodies.surfaces();
+        let cloud = reader.read(data).map_err(Refusal::Damaged)?;
+        self.frame.take(&cloud).map_err(Refusal::Damaged)?;
+        self.frame.bodies = self.bodies.placed();
         self.frame.number = self.n;
         self.n += 1;
         self.writer.frame(&self.frame).map_err(|error| {

@@ -4,10 +4,11 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::ExportError;
-use super::grains::{Frame, FrameWriter};
+use super::grains::{Frame, FrameWriter, Grain};
 use super::whole_file::WholeFile;
 
-/// `grains.dump`, in SI units. Columns: `id type radius x y z speed force`.
+/// `grains.dump`, in SI units. Columns: `id type radius x y z vx vy vz speed force`. Grains are of type 1,
+/// bodies of one type each from 2 on, in the order of their names.
 ///
 /// Source: LAMMPS documentation, dump style custom, with `ITEM: UNITS` and `ITEM: TIME`.
 pub(super) struct LammpsDump(WholeFile);
@@ -24,16 +25,19 @@ impl LammpsDump {
         }
         writeln!(file, "ITEM: TIME\n{:?}", frame.time)?;
         writeln!(file, "ITEM: TIMESTEP\n{}", frame.number)?;
-        writeln!(file, "ITEM: NUMBER OF ATOMS\n{}", frame.grains.len())?;
+        writeln!(file, "ITEM: NUMBER OF ATOMS\n{}", frame.particles().count())?;
         writeln!(file, "ITEM: BOX BOUNDS ff ff ff")?;
         for [low, high] in frame.bounds() {
             writeln!(file, "{low:?} {high:?}")?;
         }
-        writeln!(file, "ITEM: ATOMS id type radius x y z speed force")?;
-        for grain in &frame.grains {
-            let [x, y, z] = grain.position;
-            let (id, radius, speed, force) = (grain.id, grain.radius, grain.speed, grain.force);
-            writeln!(file, "{id} 1 {radius:?} {x:?} {y:?} {z:?} {speed:?} {force:?}")?;
+        writeln!(file, "ITEM: ATOMS id type radius x y z vx vy vz speed force")?;
+        for (body, Grain { id, position, radius, velocity, speed, force }) in frame.particles() {
+            let ([x, y, z], [vx, vy, vz]) = (position, velocity);
+            let kind = 1 + body;
+            writeln!(
+                file,
+                "{id} {kind} {radius:?} {x:?} {y:?} {z:?} {vx:?} {vy:?} {vz:?} {speed:?} {force:?}"
+            )?;
         }
         Ok(())
     }

@@ -1,8 +1,11 @@
 //! Runs as files of other programs: tables for notebooks, grains for ParaView and OVITO.
 //!
 //! A [`Format`] is one file of this folder: tables of numbers go through `tables.rs`, states of grains
-//! through `grains.rs`, with the surfaces of bodies of `surfaces.rs`. A file has its name once it is whole.
+//! through `grains.rs`, with the bodies of `bodies.rs`. A file has its name once it is whole.
 
+mod beads;
+mod bodies;
+mod cloud;
 mod csv;
 mod extended_xyz;
 mod grains;
@@ -11,7 +14,7 @@ mod parquet;
 mod surfaces;
 mod tables;
 mod vtp;
-mod whole_file;
+pub(crate) mod whole_file;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -59,8 +62,8 @@ impl Format {
             Self::Csv => "tables of energies, states and loads, as text",
             Self::Parquet => "the same tables, smaller and read faster",
             Self::Vtp => "grains and bodies for ParaView: open both .pvd",
-            Self::LammpsDump => "grains for OVITO and tools of LAMMPS",
-            Self::ExtendedXyz => "grains for OVITO and ASE",
+            Self::LammpsDump => "grains and bodies as particles, for OVITO and tools of LAMMPS",
+            Self::ExtendedXyz => "grains and bodies as particles, for OVITO and ASE",
         }
     }
 }

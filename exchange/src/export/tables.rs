@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use prost_reflect::{DynamicMessage, FieldDescriptor, Kind, MessageDescriptor, Value};
 
+use super::cloud::{CloudColumn, CloudReader};
 use super::{ExportError, Exported};
 use crate::read::messages::{Receiver, Refusal, each_message};
 
@@ -34,7 +35,7 @@ pub(super) trait Sink {
 /// Opens the table called by the path without an ending, with these columns.
 type Create = fn(PathBuf, &[Column]) -> Result<Box<dyn Sink>, ExportError>;
 
-/// Writes every topic of scalars in the log at `path` into the folder `out`.
+/// Writes every topic of scalars and every cloud of points in the log at `path` into the folder `out`.
 pub(super) fn export(path: &Path, out: &Path, create: Create) -> Result<Exported, ExportError> {
     let mut tables = Tables { out, create, sinks: Vec::new(), failed: None };
     let read = each_message(path, &mut tables);
@@ -56,11 +57,25 @@ struct Tables<'a> {
     failed: Option<ExportError>,
 }
 
-/// A topic that becomes the table `sink`.
-struct Topic {
+/// A topic that becomes a table.
+enum Topic {
+    Scalars(Scalars),
+    Points(Points),
+}
+
+/// A message per row of the table `sink`.
+struct Scalars {
     sink: usize,
     message: MessageDescriptor,
     fields: Vec<Field>,
+    row: Vec<Cell>,
+}
+
+/// A point per row, behind the time of its cloud. What points have is known from the first cloud on.
+struct Points {
+    reader: CloudReader,
+    name: String,
+    table: Option<(usize, Vec<CloudColumn>)>,
     row: Vec<Cell>,
 }
 
@@ -78,29 +93,90 @@ impl Receiver for Tables<'_> {
         topic: &str,
         message: &MessageDescriptor,
     ) -> Result<Option<Topic>, String> {
-        let Some((columns, fields)) = columns(message) else { return Ok(None) };
         let name = topic.trim_start_matches('/').replace('/', "_");
-        match (self.create)(self.out.join(name), &columns) {
-            Ok(sink) => self.sinks.push(sink),
-            Err(error) => {
-                self.failed = Some(error);
-                return Err("its table cannot be written".to_owned());
-            }
+        if message.full_name() == "foxglove.PointCloud" {
+            let (reader, row) = (CloudReader::of(message)?, Vec::new());
+            return Ok(Some(Topic::Points(Points { reader, name, table: None, row })));
         }
-        let (sink, message) = (self.sinks.len() - 1, message.clone());
-        Ok(Some(Topic { sink, message, fields, row: Vec::with_capacity(columns.len()) }))
+        let Some((columns, fields)) = columns(message) else { return Ok(None) };
+        let Some(sink) = self.open(&name, &columns) else {
+            return Err("its table cannot be written".to_owned());
+        };
+        let (message, row) = (message.clone(), Vec::with_capacity(columns.len()));
+        Ok(Some(Topic::Scalars(Scalars { sink, message, fields, row })))
     }
 
     fn receive(&mut self, topic: &mut Topic, data: &[u8]) -> Result<(), Refusal> {
+        match topic {
+            Topic::Scalars(scalars) => self.message(scalars, data),
+            Topic::Points(points) => self.cloud(points, data),
+        }
+    }
+}
+
+impl Tables<'_> {
+    /// The place of a new table; `None` if it cannot be written.
+    fn open(&mut self, name: &str, columns: &[Column]) -> Option<usize> {
+        match (self.create)(self.out.join(name), columns) {
+            Ok(sink) => self.sinks.push(sink),
+            Err(error) => {
+                self.failed = Some(error);
+                return None;
+            }
+        }
+        Some(self.sinks.len() - 1)
+    }
+
+    fn message(&mut self, topic: &mut Scalars, data: &[u8]) -> Result<(), Refusal> {
         let message = DynamicMessage::decode(topic.message.clone(), data)
             .map_err(|error| Refusal::Damaged(error.to_string()))?;
         topic.row.clear();
         topic.row.extend(topic.fields.iter().map(|field| field.of(&message)));
-        self.sinks[topic.sink].row(&topic.row).map_err(|error| {
+        self.row(topic.sink, &topic.row)
+    }
+
+    fn cloud(&mut self, topic: &mut Points, data: &[u8]) -> Result<(), Refusal> {
+        let cloud = topic.reader.read(data).map_err(Refusal::Damaged)?;
+        if topic.table.is_none() {
+            let time = Column { name: "time_s".to_owned(), counts: false };
+            let columns: Vec<_> =
+                std::iter::once(time).chain(cloud.columns.iter().map(of_points)).collect();
+            let sink = self.open(&topic.name, &columns).ok_or(Refusal::Stop)?;
+            topic.table = Some((sink, cloud.columns.clone()));
+        }
+        let Some((sink, columns)) = &topic.table else { return Ok(()) };
+        if *columns != cloud.columns {
+            return Err(Refusal::Damaged("its points change what they hold".to_owned()));
+        }
+        for point in cloud.points() {
+            topic.row.clear();
+            topic.row.push(Cell::Number(cloud.time));
+            topic.row.extend(columns.iter().map(|column| match column.counts {
+                true => Cell::Count(u64::from(column.count(point))),
+                false => Cell::Number(f64::from(column.quantity(point))),
+            }));
+            self.row(*sink, &topic.row)?;
+        }
+        Ok(())
+    }
+
+    fn row(&mut self, sink: usize, cells: &[Cell]) -> Result<(), Refusal> {
+        self.sinks[sink].row(cells).map_err(|error| {
             self.failed = Some(error);
             Refusal::Stop
         })
     }
+}
+
+/// A column of points, whose name says its unit.
+fn of_points(column: &CloudColumn) -> Column {
+    let unit = match column.name.as_str() {
+        "x" | "y" | "z" | "radius" => "_m",
+        "vx" | "vy" | "vz" | "speed" => "_m_per_s",
+        "force" => "_N",
+        _ => "",
+    };
+    Column { name: format!("{}{unit}", column.name), counts: column.counts }
 }
 
 /// The columns of a message of ours that is made of numbers and vectors alone; `None` of others.

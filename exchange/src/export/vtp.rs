@@ -4,12 +4,13 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::ExportError;
+use super::bodies::Body;
 use super::grains::{Frame, FrameWriter, Grain};
-use super::surfaces::Surface;
 use super::whole_file::WholeFile;
 
 /// `grains-000000.vtp` … with `grains.pvd`, and the same of `bodies`, in SI units. Grains are points with
-/// `radius`, `speed`, `force`, `id`; bodies are surfaces, whose points have the number of their `body`.
+/// `radius`, `velocity`, `speed`, `force`, `id`; bodies are surfaces, whose points have a `velocity` and the
+/// number of their `body`.
 ///
 /// Source: The VTK User's Guide, XML file formats; the numbers stand behind the text, as they are.
 pub(super) struct Vtp {
@@ -53,8 +54,15 @@ impl Array {
     }
 
     fn points(coordinates: impl IntoIterator<Item = [f32; 3]>) -> Self {
-        let numbers = coordinates.into_iter().flat_map(|point| point.map(f32::to_le_bytes));
-        Self::new(r#"type="Float32" Name="Points" NumberOfComponents="3""#, numbers)
+        Self::vectors(r#"type="Float32" Name="Points" NumberOfComponents="3""#, coordinates)
+    }
+
+    fn velocities(velocities: impl IntoIterator<Item = [f32; 3]>) -> Self {
+        Self::vectors(r#"type="Float32" Name="velocity" NumberOfComponents="3""#, velocities)
+    }
+
+    fn vectors(attributes: &'static str, vectors: impl IntoIterator<Item = [f32; 3]>) -> Self {
+        Self::new(attributes, vectors.into_iter().flat_map(|vector| vector.map(f32::to_le_bytes)))
     }
 
     /// Connectivity of cells of `corners` points each, and where they end.
@@ -77,6 +85,7 @@ impl Piece {
             n_points: grains.len(),
             point_data: vec![
                 floats(r#"type="Float32" Name="radius""#, |grain| grain.radius),
+                Array::velocities(grains.iter().map(|grain| grain.velocity)),
                 floats(r#"type="Float32" Name="speed""#, |grain| grain.speed),
                 floats(r#"type="Float32" Name="force""#, |grain| grain.force),
                 Array::new(r#"type="UInt32" Name="id""#, grains.iter().map(|g| g.id.to_le_bytes())),
@@ -89,18 +98,24 @@ impl Piece {
         }
     }
 
-    fn of_bodies(bodies: &[Surface]) -> Self {
-        let (mut points, mut of_body, mut corners) = (Vec::new(), Vec::new(), Vec::new());
-        for (number, body) in (0_u32..).zip(bodies) {
+    fn of_bodies(bodies: &[Body]) -> Self {
+        let single = |vector: &[f64; 3]| vector.map(|x| x as f32);
+        let (mut points, mut velocities) = (Vec::new(), Vec::new());
+        let (mut of_body, mut corners) = (Vec::new(), Vec::new());
+        for (number, Body { surface, velocities: of_corners, .. }) in (0_u32..).zip(bodies) {
             let first = points.len() as i64;
-            points.extend(body.corners.iter().map(|corner| corner.map(|x| x as f32)));
+            points.extend(surface.corners.iter().map(single));
+            velocities.extend(of_corners.iter().map(single));
             of_body.resize(points.len(), number.to_le_bytes());
-            corners
-                .extend(body.triangles.iter().flatten().map(|&corner| first + i64::from(corner)));
+            let indices = surface.triangles.iter().flatten();
+            corners.extend(indices.map(|&corner| first + i64::from(corner)));
         }
         Self {
             n_points: points.len(),
-            point_data: vec![Array::new(r#"type="UInt32" Name="body""#, of_body)],
+            point_data: vec![
+                Array::velocities(velocities),
+                Array::new(r#"type="UInt32" Name="body""#, of_body),
+            ],
             points: [Array::points(points)],
             kind: "Polys",
             n_cells: corners.len() / 3,

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::ExportError;
 
 /// A file that is being written under another name; given up, it leaves nothing.
-pub(super) struct WholeFile {
+pub(crate) struct WholeFile {
     path: PathBuf,
     partial: PathBuf,
     file: BufWriter<File>,
@@ -15,7 +15,7 @@ pub(super) struct WholeFile {
 
 impl WholeFile {
     /// The file to be at `path`.
-    pub(super) fn create(path: PathBuf) -> Result<Self, ExportError> {
+    pub(crate) fn create(path: PathBuf) -> Result<Self, ExportError> {
         let mut partial = path.as_os_str().to_owned();
         partial.push(".partial");
         let partial = PathBuf::from(partial);
@@ -25,17 +25,17 @@ impl WholeFile {
         }
     }
 
-    pub(super) fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
     /// What went wrong, as an error of this file.
-    pub(super) fn failed(&self, source: impl Into<io::Error>) -> ExportError {
+    pub(crate) fn failed(&self, source: impl Into<io::Error>) -> ExportError {
         ExportError::Write { path: self.path.clone(), source: source.into() }
     }
 
     /// Gives the file its name, and says it.
-    pub(super) fn finish(mut self) -> Result<PathBuf, ExportError> {
+    pub(crate) fn finish(mut self) -> Result<PathBuf, ExportError> {
         let done = self.file.flush().and_then(|()| self.file.get_ref().sync_all());
         done.and_then(|()| fs::rename(&self.partial, &self.path)).map_err(|e| self.failed(e))?;
         Ok(self.path.clone())

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use configs::run::RunError;
+use configs::run::{Control, RunError};
 use configs::{BuildError, ConfigError, GrainModel, Model};
 use engine::checkpoint::CheckpointError;
 use engine::error::{StepError, ThreadsError};
@@ -165,13 +165,13 @@ impl Impacts for Place<'_> {
         let missing = first_of_each(&keys, |at| kept[at].is_none());
         let beds = self.missing_beds(jobs, &missing)?;
         let work = |&at: &usize| rate::SETTLING * jobs[at].work();
-        self.each(Stage::Beds, &beds, &work, |at, heed| {
+        self.side_by_side(Stage::Beds, &beds, (&work, 0), |at, heed| {
             jobs[at].prepare_bed(self.cache, heed)?.then_some(()).ok_or(CampaignError::Interrupted)
         })?;
         let done = jobs.len() - missing.len();
         let pace = Mutex::new(Rate::default());
         let work = |&at: &usize| jobs[at].work();
-        let ran = self.each_of(Stage::Impacts, &missing, (&work, done), |at, heed| {
+        let ran = self.side_by_side(Stage::Impacts, &missing, (&work, done), |at, heed| {
             match jobs[at].run(self.cache, heed) {
                 Ok(Some(record)) => {
                     pace.lock().unwrap_or_else(PoisonError::into_inner).learn(&record);
@@ -218,24 +218,19 @@ impl Place<'_> {
         Ok(first_of_each(&keys, is_missing).into_iter().map(|place| missing[place]).collect())
     }
 
-    fn each<R: Send>(
-        &self,
-        what: Stage,
-        tasks: &[usize],
-        work: &(dyn Fn(&usize) -> f64 + Sync),
-        task: impl Fn(usize, &mut Heed<'_>) -> Result<R, CampaignError> + Sync,
-    ) -> Result<Vec<R>, CampaignError> {
-        self.each_of(what, tasks, (work, 0), task)
-    }
-
-    /// Does `tasks` side by side, `done` of the stage having been done before; the longest in work
-    /// are not sorted first, so that results come in the order in which they are asked for.
-    fn each_of<R: Send>(
+    /// Does `tasks` side by side, each on one thread; `before` of the stage have been done before, and
+    /// `work` of a task (in any unit) is what the time left is estimated by. The longest are not sorted
+    /// first, so that results come in the order in which they are asked for.
+    ///
+    /// # Errors
+    /// The first of any task in their order, which keeps others from being begun;
+    /// [`CampaignError::Interrupted`] if it was stopped.
+    pub fn side_by_side<R: Send>(
         &self,
         what: Stage,
         tasks: &[usize],
         (work, before): (&(dyn Fn(&usize) -> f64 + Sync), usize),
-        task: impl Fn(usize, &mut Heed<'_>) -> Result<R, CampaignError> + Sync,
+        task: impl Fn(usize, &mut dyn Control) -> Result<R, CampaignError> + Sync,
     ) -> Result<Vec<R>, CampaignError> {
         let (next, start) = (AtomicUsize::new(0), Instant::now());
         let all: f64 = tasks.iter().map(work).sum();

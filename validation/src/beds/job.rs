@@ -80,7 +80,7 @@ impl Job {
     pub(super) fn prepare_bed(
         &self,
         cache: &Path,
-        heed: &mut Heed<'_>,
+        heed: &mut dyn Control,
     ) -> Result<bool, CampaignError> {
         let grains = self.bed.grains().ok_or_else(|| CampaignError::no_grains(&self.bed))?;
         Ok(prepare(grains, cache, heed)?.is_some())
@@ -90,7 +90,7 @@ impl Job {
     pub(super) fn run(
         &self,
         cache: &Path,
-        heed: &mut Heed<'_>,
+        heed: &mut dyn Control,
     ) -> Result<Option<Record>, CampaignError> {
         let grains = self.model.grains().ok_or_else(|| CampaignError::no_grains(&self.model))?;
         let of_bed = self.bed.grains().ok_or_else(|| CampaignError::no_grains(&self.bed))?;

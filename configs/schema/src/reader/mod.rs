@@ -23,6 +23,8 @@ pub enum FileKind {
     Model,
     /// A measurement set: quantities are bare SI numbers.
     MeasurementSet,
+    /// A campaign: keys of models, with values as models write them.
+    Campaign,
 }
 
 impl FileKind {
@@ -31,6 +33,7 @@ impl FileKind {
         match self {
             Self::Model => "a model",
             Self::MeasurementSet => "a measurement set",
+            Self::Campaign => "a campaign",
         }
     }
 }

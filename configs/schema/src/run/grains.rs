@@ -311,13 +311,7 @@ impl Run<'_> {
         for (index, (body, footprint)) in
             simulation.intruder().bodies().iter().zip(footprints).enumerate()
         {
-            let state = BodySample {
-                position: body.position,
-                velocity: body.velocity,
-                spin: body.spin(),
-                depth_m: simulation.surface() - body.lowest(),
-            };
-            log.body_state(at, index, &state)?;
+            log.body_state(at, index, &state_of(body, simulation.surface()))?;
             let load = BodyLoad {
                 forces: &[body.contact.force, body.weight],
                 torques: &[body.contact.torque, Vec3::zeros()],
@@ -342,7 +336,7 @@ impl Run<'_> {
             .bodies()
             .iter()
             .map(|body| BodyFrame {
-                position: body.position,
+                state: state_of(body, self.simulation.surface()),
                 orientation: body.orientation,
                 force: body.contact.force,
             })
@@ -350,11 +344,21 @@ impl Run<'_> {
         let mut samples = (0..grains.len()).map(|i| GrainSample {
             position: grains.position(i),
             radius: grains.radius[i],
-            speed: grains.velocity(i).norm(),
+            velocity: grains.velocity(i),
             force: (grains.force(i) - bed.gravity * grains.mass[i]).norm(),
             id: grains.id[i],
         });
         self.log.frame(at, &frames, &mut samples)?;
         Ok(())
+    }
+}
+
+/// Where `body` is and how it moves, above a bed whose surface lies at `surface` (m).
+fn state_of(body: &RigidBody, surface: f64) -> BodySample {
+    BodySample {
+        position: body.position,
+        velocity: body.velocity,
+        spin: body.spin(),
+        depth_m: surface - body.lowest(),
     }
 }

@@ -201,7 +201,7 @@ impl Writer<'_> {
             };
             self.log.body_load(at, index, &load)?;
             frames.push(BodyFrame {
-                position: centre,
+                state,
                 orientation: about_y(turned),
                 force: part.dynamic + part.friction,
             });

@@ -49,6 +49,10 @@ geometric_area_m2:double magnitudes_N:double force:xyz
         grains,
         "\
 /grains foxglove.PointCloud
+/intruder/ball/state plunge.IntruderState step:uint64 time_s:double depth_m:double \
+speed_m_per_s:double position:xyz velocity:xyz spin:xyz
+/intruder/rear/state plunge.IntruderState step:uint64 time_s:double depth_m:double \
+speed_m_per_s:double position:xyz velocity:xyz spin:xyz
 /tf foxglove.FrameTransforms
 /scene foxglove.SceneUpdate
 /intruder/ball/pose foxglove.PoseInFrame
@@ -101,15 +105,30 @@ fn the_grain_log_opens_alone_and_its_points_lie_below_their_fields() {
         .find(|message| message.channel.topic == "/grains")
         .map(|message| PointCloud::decode(message.data.as_ref()).unwrap())
         .unwrap();
-    assert_eq!(cloud.point_stride, 28);
+    assert_eq!(cloud.point_stride, 40);
     let offsets: Vec<_> = cloud.fields.iter().map(|f| (f.name.as_str(), f.offset)).collect();
-    let names = ["x", "y", "z", "radius", "speed", "force", "id"];
+    let names = ["x", "y", "z", "radius", "vx", "vy", "vz", "speed", "force", "id"];
     assert_eq!(offsets, names.into_iter().zip((0..).step_by(4)).collect::<Vec<_>>());
-    let point = &cloud.data[28..56];
+    let point = &cloud.data[40..80];
     let float = |at: usize| f32::from_le_bytes(point[at..at + 4].try_into().unwrap());
-    assert_eq!([0, 8, 12, 20].map(float), [1e-3, 0.0, 1e-3, 1.0]);
-    assert_eq!(point[24..], 1_u32.to_le_bytes());
-    assert_eq!(cloud.data.len(), 3 * 28);
+    assert_eq!([0, 8, 12].map(float), [1e-3, 0.0, 1e-3], "place and radius");
+    assert_eq!([16, 20, 24, 28].map(float), [0.0, -2.0, 0.0, 2.0], "velocity and speed");
+    assert_eq!(float(32), 1.0, "force");
+    assert_eq!(point[36..], 1_u32.to_le_bytes());
+    assert_eq!(cloud.data.len(), 3 * 40);
+}
+
+#[test]
+fn the_grain_log_says_of_every_frame_how_bodies_move_as_the_other_log_does() {
+    let scratch = Scratch::new();
+    write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
+    let [every_step, frames] = scratch.files().map(|log| {
+        let messages = mcap::MessageStream::new(&log).unwrap().map(|message| message.unwrap());
+        let states = messages.filter(|message| message.channel.topic == "/intruder/rear/state");
+        states.map(|message| (message.sequence, message.data.into_owned())).collect::<Vec<_>>()
+    });
+    assert_eq!(frames, [0, 7].map(|step| every_step[step].clone()));
+    assert_eq!(frames[1].0, 7);
 }
 
 #[test]
@@ -164,12 +183,17 @@ fn a_value_that_is_not_finite_is_refused_before_anything_of_it_is_written() {
     let before = log.position();
     let error = log.energy(stamp(3), &[0.0, 0.0, f64::NAN, 0.0, 0.0], 0.0, 0.0).unwrap_err();
     assert_eq!(error.to_string(), "step 3: elastic_normal_elastic_J is not finite");
-    let body =
-        BodyFrame { position: Vec3::zeros(), orientation: Quat::identity(), force: Vec3::zeros() };
+    let state = BodySample {
+        position: Vec3::zeros(),
+        velocity: Vec3::zeros(),
+        spin: Vec3::zeros(),
+        depth_m: 0.0,
+    };
+    let body = BodyFrame { state, orientation: Quat::identity(), force: Vec3::zeros() };
     let grain = GrainSample {
         position: Vec3::new(0.0, f64::INFINITY, 0.0),
         radius: 1.0,
-        speed: 0.0,
+        velocity: Vec3::zeros(),
         force: 0.0,
         id: 5,
     };

@@ -88,13 +88,13 @@ fn write_step(log: &mut RunLog, step: u64, n_grains: u32) -> Result<(), RecordEr
     let at = stamp(step);
     let x = libm::sin(step as f64 * 0.1);
     log.energy(at, &[x * x, 1.0, 0.5 * x, 2.0, 0.25], 1e-9 * x, 1e-9)?;
+    let sample = BodySample {
+        position: Vec3::new(x, 0.0, 0.3 - 0.01 * x),
+        velocity: Vec3::new(0.0, 3.0, -4.0),
+        spin: Vec3::new(0.0, x, 0.0),
+        depth_m: 0.01 * x,
+    };
     for body in 0..2 {
-        let sample = BodySample {
-            position: Vec3::new(x, 0.0, 0.3 - 0.01 * x),
-            velocity: Vec3::new(0.0, 3.0, -4.0),
-            spin: Vec3::new(0.0, x, 0.0),
-            depth_m: 0.01 * x,
-        };
         log.body_state(at, body, &sample)?;
         let load = BodyLoad {
             forces: &[Vec3::new(x, 0.0, 1.0), Vec3::new(0.0, 0.0, -9.81)],
@@ -110,14 +110,14 @@ fn write_step(log: &mut RunLog, step: u64, n_grains: u32) -> Result<(), RecordEr
     log.bed_activity(at, 0.125)?;
     if step.is_multiple_of(FRAME_EVERY) {
         let body = BodyFrame {
-            position: Vec3::new(x, 0.0, 0.3),
+            state: sample,
             orientation: Quat::identity(),
             force: Vec3::new(0.0, 0.0, 9.81),
         };
         let mut grains = (0..n_grains).map(|id| GrainSample {
             position: Vec3::new(f64::from(id) * 1e-3, 0.0, 0.3 + x * f64::from(id % 7)),
             radius: 1e-3,
-            speed: x.abs(),
+            velocity: Vec3::new(x, -2.0, 2.0 * x),
             force: f64::from(id),
             id,
         });

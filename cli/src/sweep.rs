@@ -1,0 +1,334 @@
+//! `plunge sweep`: a campaign on all cores of this machine, or on others by a scheduler.
+
+use std::fmt::Write as _;
+use std::num::NonZero;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use anyhow::Context as _;
+use campaigns::{
+    Counts, Folder, FolderError, Planned, Results, Scheduler, SchedulerError, SweepError, TABLE,
+    Task,
+};
+use configs::campaign::Campaign;
+use configs::estimate::{MEMORY_SHARE, available_memory_bytes};
+use serde_json::json;
+use validation::beds::{CampaignError, Impacts, Place, Progress, Watch};
+
+use crate::beds::time;
+use crate::common::cache_folder;
+use crate::control::Terminal;
+use crate::output::{self, CommandError, CommandResult};
+use crate::workbench::write_whole;
+
+/// Most failed points that are named in the text.
+const MOST_NAMED: usize = 5;
+
+/// Arguments of `plunge sweep`.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// A campaign file.
+    campaign: PathBuf,
+    /// The folder of the campaign; without it, `runs/` and its name.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Say which points there are and what they would take; run nothing.
+    #[arg(long)]
+    plan: bool,
+    /// Say how far the campaign has come; run nothing.
+    #[arg(long, conflicts_with = "plan")]
+    status: bool,
+    /// Where points are run. A scheduler gets those that are not done; --status says how far it is.
+    #[arg(long, value_name = "WHERE", default_value = "local")]
+    on: On,
+    /// Run this point of the plan alone: what a scheduler's tasks do.
+    #[arg(long, value_name = "N", hide = true, conflicts_with_all = ["plan", "status", "on"])]
+    point: Option<usize>,
+    /// Time after which to stop, such as "20 min"; the same command goes on.
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    budget: Option<f64>,
+    /// Points at a time, 1 to 256, each on one thread; one per core otherwise.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    threads: Option<u16>,
+    /// Print one JSON object to stdout.
+    #[arg(long)]
+    json: bool,
+    /// No progress and no warnings.
+    #[arg(long)]
+    quiet: bool,
+    /// The folder of prepared beds.
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+    /// Let the campaign and its models read files below this folder too.
+    #[arg(long = "allow-path", value_name = "DIR")]
+    allow_paths: Vec<PathBuf>,
+}
+
+/// Where points are run.
+#[derive(clap::ValueEnum, Clone, Copy, Debug)]
+enum On {
+    /// On the cores of this machine.
+    Local,
+    /// By SLURM, as job arrays.
+    Slurm,
+    /// By a running HyperQueue.
+    Hyperqueue,
+}
+
+pub(crate) fn run(args: &Args) -> CommandResult {
+    let campaign = Campaign::load(&args.campaign, &args.allow_paths)?;
+    let default = || Path::new("runs").join(&campaign.name);
+    let folder = Folder::new(&args.out.clone().unwrap_or_else(default));
+    if args.status {
+        return show(args, &folder, &Results::read(&folder).map_err(of_folder)?);
+    }
+    let planned = Planned::of(&campaign, &args.allow_paths)?;
+    let terminal = Terminal::new(args.quiet)?;
+    for warning in &planned.warnings {
+        Watch::warn(&terminal, warning);
+    }
+    let cache = cache_folder(args.cache.as_deref());
+    let deadline = args.budget.map(|budget| Instant::now() + Duration::from_secs_f64(budget));
+    let watch = Budgeted { terminal: &terminal, deadline };
+    let workers = args.threads.and_then(|n| NonZero::new(usize::from(n)));
+    let place = Place { cache: &cache, workers, watch: &watch };
+    if args.plan {
+        return plan(args, &folder, &planned, &place);
+    }
+    if let Some(point) = args.point {
+        return one(&planned, point, &folder, &place, &terminal);
+    }
+    let scheduler = match args.on {
+        On::Local => None,
+        On::Slurm => Some(Scheduler::Slurm),
+        On::Hyperqueue => Some(Scheduler::HyperQueue),
+    };
+    if let Some(scheduler) = scheduler {
+        return submit(args, &planned, &folder, &cache, scheduler);
+    }
+    refuse_too_large(&planned, place.n_workers())?;
+    let ran = campaigns::run(&planned, &folder, &place);
+    terminal.clear();
+    let interrupted = match ran {
+        Ok(()) => false,
+        Err(SweepError::Campaign(CampaignError::Interrupted)) => true,
+        Err(error) => return Err(of_sweep(error)),
+    };
+    let results = Results::read(&folder).map_err(of_folder)?;
+    let table = folder.path().join(TABLE);
+    exchange::table::write_parquet(&table, &campaigns::columns(&results))
+        .map_err(|error| CommandError::Failed(error.into()))?;
+    report(&folder, &results, &terminal);
+    if interrupted && !watch.is_over() {
+        let Counts { points, done, failed, .. } = results.counts();
+        let left =
+            format!("{} of {points} points have ended; the same command goes on", done + failed);
+        return Err(terminal.interrupted(&left));
+    }
+    show(args, &folder, &results)
+}
+
+/// A task of a scheduler: its point, and nothing on stdout.
+fn one(
+    planned: &Planned,
+    point: usize,
+    folder: &Folder,
+    place: &Place<'_>,
+    terminal: &Terminal,
+) -> CommandResult {
+    let n = planned.plan.points.len();
+    let Some(index) = point.checked_sub(1).filter(|index| *index < n) else {
+        return Err(CommandError::bad_input(format!(
+            "the plan has the points 1 to {n}, not {point}"
+        )));
+    };
+    match campaigns::run_one(planned, index, folder, place) {
+        Err(SweepError::Campaign(CampaignError::Interrupted)) => {
+            Err(terminal.interrupted("the same command goes on from here"))
+        }
+        ended => ended.map_err(of_sweep),
+    }
+}
+
+/// Gives the points that are not done to `scheduler`.
+fn submit(
+    args: &Args,
+    planned: &Planned,
+    folder: &Folder,
+    cache: &Path,
+    scheduler: Scheduler,
+) -> CommandResult {
+    let task = Task {
+        program: std::env::current_exe().context("cannot find this program")?,
+        campaign: args.campaign.clone(),
+        cache: cache.to_owned(),
+        allow_paths: args.allow_paths.clone(),
+    };
+    let submitted = scheduler.submit(planned, folder, &task).map_err(|error| match error {
+        SchedulerError::Folder(error) => of_folder(error),
+        SchedulerError::Refused { .. } => CommandError::Failed(error.into()),
+        error => CommandError::bad_input(error),
+    })?;
+    let Counts { points, done, failed, .. } = Results::read(folder).map_err(of_folder)?.counts();
+    if args.json {
+        return output::json_to_stdout(&json!({
+            "campaign": planned.plan.name,
+            "points": points,
+            "ended": done + failed,
+            "submitted": submitted,
+        }));
+    }
+    output::to_stdout(&format!(
+        "{}: {submitted} of {points} points submitted; --status says how far they are, and the same \
+         command without --on, once they have ended, makes table and report\n\n-> {}\n",
+        planned.plan.name,
+        folder.path().display()
+    ))
+}
+
+/// Refuses points that do not fit into memory side by side.
+fn refuse_too_large(planned: &Planned, n: usize) -> CommandResult {
+    let needed = planned.memory(n);
+    match available_memory_bytes() {
+        Some(available) if needed as f64 > MEMORY_SHARE * available as f64 => {
+            Err(CommandError::bad_input(format!(
+                "{n} points at a time need about {}, and {} are free; --threads N runs fewer at a time",
+                output::bytes(needed),
+                output::bytes(available)
+            )))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Leaves the report; one that cannot be made is told, and fails nothing.
+fn report(folder: &Folder, results: &Results, terminal: &Terminal) {
+    let file = folder.path().join(reports::FILE);
+    let written = match reports::of_campaign(results) {
+        Ok(page) => write_whole(&file, &page).map_err(|_| "it cannot be written".to_owned()),
+        Err(error) => Err(error.to_string()),
+    };
+    if let Err(why) = written {
+        Watch::warn(terminal, &format!("{}: {why}", file.display()));
+    }
+}
+
+/// What the campaign would run, and how long at most.
+fn plan(args: &Args, folder: &Folder, planned: &Planned, place: &Place<'_>) -> CommandResult {
+    let points = &planned.plan.points;
+    let mut hashes = std::collections::BTreeSet::new();
+    let mut beds = std::collections::BTreeSet::new();
+    let (mut to_run, mut work, mut on_grains) = (0_usize, 0.0, None);
+    for (index, point) in points.iter().enumerate() {
+        if hashes.insert(&point.hash) && folder.done(&point.hash).map_err(of_folder)?.is_none() {
+            let need = planned.needs[index];
+            to_run += 1;
+            work += need.work;
+            if let Some(key) = need.bed {
+                beds.insert(key);
+                on_grains.get_or_insert(index);
+            }
+        }
+    }
+    let rate = match on_grains {
+        None => configs::estimate::RATE_PER_THREAD,
+        Some(index) => {
+            let model = planned.load(index)?.model;
+            let rate = model.grains().map(|grains| place.rate(grains)).transpose();
+            rate.map_err(|error| CommandError::Failed(error.into()))?
+                .unwrap_or(configs::estimate::RATE_PER_THREAD)
+        }
+    };
+    let at_most = work / (rate * place.n_workers() as f64);
+    let object = json!({
+        "campaign": planned.plan.name,
+        "points": points.len(),
+        "distinct": hashes.len(),
+        "to_run": to_run,
+        "beds": beds.len(),
+        "cost": { "workers": place.n_workers(), "at_most_s": at_most.round() },
+    });
+    if args.json {
+        return output::json_to_stdout(&object);
+    }
+    let mut text = format!(
+        "{}: {} points, {} of them distinct, {to_run} to run on {} beds\n",
+        planned.plan.name,
+        points.len(),
+        hashes.len(),
+        beds.len()
+    );
+    let _ = writeln!(
+        text,
+        "  at most {at_most:.0} s, {} at a time; beds that are not in the cache come on top",
+        place.n_workers()
+    );
+    output::to_stdout(&text)
+}
+
+fn show(args: &Args, folder: &Folder, results: &Results) -> CommandResult {
+    let object = results.to_json();
+    if args.json {
+        return output::json_to_stdout(&object);
+    }
+    let Counts { points, done, failed, begun, waiting } = results.counts();
+    let mut text = format!("{}: {points} points\n\n", results.plan.name);
+    for (name, n) in [("done", done), ("failed", failed), ("begun", begun), ("waiting", waiting)] {
+        let _ = writeln!(text, "  {name:<8}{n:>7}");
+    }
+    let failures = object["failures"].as_array().map_or(&[][..], Vec::as_slice);
+    for failure in failures.iter().take(MOST_NAMED) {
+        let why = failure["error"].as_str().unwrap_or_default();
+        let _ = writeln!(text, "  point {} failed: {why}", failure["point"]);
+    }
+    if let Some(more @ 1..) = failures.len().checked_sub(MOST_NAMED) {
+        let _ = writeln!(text, "  {more} more failed; the report lists all");
+    }
+    let _ = writeln!(text, "\n-> {}", folder.path().display());
+    output::to_stdout(&text)
+}
+
+fn of_sweep(error: SweepError) -> CommandError {
+    match error {
+        SweepError::Folder(error) => of_folder(error),
+        SweepError::Campaign(CampaignError::Config(error)) => error.into(),
+        SweepError::Campaign(CampaignError::Run(error)) => error.into(),
+        SweepError::Campaign(error) => CommandError::Failed(error.into()),
+    }
+}
+
+/// A folder that is not ours to use is bad input.
+fn of_folder(error: FolderError) -> CommandError {
+    match error {
+        FolderError::Io { .. } | FolderError::Misunderstood { .. } => {
+            CommandError::Failed(error.into())
+        }
+        error => CommandError::bad_input(error),
+    }
+}
+
+/// A terminal with a time to stop.
+struct Budgeted<'a> {
+    terminal: &'a Terminal,
+    deadline: Option<Instant>,
+}
+
+impl Budgeted<'_> {
+    fn is_over(&self) -> bool {
+        self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+    }
+}
+
+impl Watch for Budgeted<'_> {
+    fn progress(&self, progress: &Progress) {
+        Watch::progress(self.terminal, progress);
+    }
+
+    fn warn(&self, message: &str) {
+        Watch::warn(self.terminal, message);
+    }
+
+    fn wants_to_stop(&self) -> bool {
+        self.is_over() || Watch::wants_to_stop(self.terminal)
+    }
+}

@@ -1,0 +1,160 @@
+//! A table of results as Apache Parquet: columns of numbers, counts and texts, with gaps.
+
+use std::io::Write;
+use std::path::Path;
+use std::sync::Arc;
+
+use parquet::basic::{Compression, ConvertedType, Repetition, Type as Physical, ZstdLevel};
+use parquet::column::writer::ColumnWriter;
+use parquet::data_type::ByteArray;
+use parquet::errors::{ParquetError, Result as Written};
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::types::Type;
+
+use crate::export::ExportError;
+use crate::export::whole_file::WholeFile;
+
+/// A column under its name, which has its unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableColumn {
+    /// Its name.
+    pub name: String,
+    /// Its cells, as many as every other column has.
+    pub cells: Cells,
+}
+
+/// What a column holds; a cell without a value is empty.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cells {
+    /// Quantities.
+    Numbers(Vec<Option<f64>>),
+    /// Whole numbers.
+    Counts(Vec<Option<i64>>),
+    /// Texts.
+    Texts(Vec<Option<String>>),
+    /// Yes or no.
+    Flags(Vec<Option<bool>>),
+}
+
+/// Writes `columns` into the file `path`, whole or not at all. The same columns give the same bytes.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_parquet(path: &Path, columns: &[TableColumn]) -> Result<(), ExportError> {
+    let failed = |error: ParquetError| ExportError::Write {
+        path: path.to_owned(),
+        source: std::io::Error::other(error),
+    };
+    let file = WholeFile::create(path.to_owned())?;
+    written(file, columns).map_err(failed)?.finish().map(drop)
+}
+
+fn written<W: Write + Send>(file: W, columns: &[TableColumn]) -> Written<W> {
+    let properties = WriterProperties::builder()
+        .set_created_by(format!("plunge {}", env!("CARGO_PKG_VERSION")))
+        .set_compression(Compression::ZSTD(ZstdLevel::default()))
+        .build();
+    let fields = columns.iter().map(field).collect::<Written<Vec<_>>>()?;
+    let schema = Arc::new(Type::group_type_builder("schema").with_fields(fields).build()?);
+    let mut writer = SerializedFileWriter::new(file, schema, Arc::new(properties))?;
+    let mut group = writer.next_row_group()?;
+    for column in columns {
+        let Some(mut into) = group.next_column()? else { break };
+        match (into.untyped(), &column.cells) {
+            (ColumnWriter::DoubleColumnWriter(into), Cells::Numbers(cells)) => {
+                let (values, levels) = split(cells, |value| *value);
+                into.write_batch(&values, Some(&levels), None)?;
+            }
+            (ColumnWriter::Int64ColumnWriter(into), Cells::Counts(cells)) => {
+                let (values, levels) = split(cells, |value| *value);
+                into.write_batch(&values, Some(&levels), None)?;
+            }
+            (ColumnWriter::ByteArrayColumnWriter(into), Cells::Texts(cells)) => {
+                let (values, levels) = split(cells, |text| ByteArray::from(text.as_str()));
+                into.write_batch(&values, Some(&levels), None)?;
+            }
+            (ColumnWriter::BoolColumnWriter(into), Cells::Flags(cells)) => {
+                let (values, levels) = split(cells, |value| *value);
+                into.write_batch(&values, Some(&levels), None)?;
+            }
+            _ => return Err(ParquetError::General("a column of another type".to_owned())),
+        }
+        into.close()?;
+    }
+    group.close()?;
+    writer.into_inner()
+}
+
+fn field(column: &TableColumn) -> Written<Arc<Type>> {
+    let physical = match &column.cells {
+        Cells::Numbers(_) => Physical::DOUBLE,
+        Cells::Counts(_) => Physical::INT64,
+        Cells::Texts(_) => Physical::BYTE_ARRAY,
+        Cells::Flags(_) => Physical::BOOLEAN,
+    };
+    let mut builder = Type::primitive_type_builder(&column.name, physical)
+        .with_repetition(Repetition::OPTIONAL);
+    if physical == Physical::BYTE_ARRAY {
+        builder = builder.with_converted_type(ConvertedType::UTF8);
+    }
+    Ok(Arc::new(builder.build()?))
+}
+
+/// The values that are there, and for every cell whether one is.
+fn split<T, U>(cells: &[Option<T>], value: impl Fn(&T) -> U) -> (Vec<U>, Vec<i16>) {
+    let levels = cells.iter().map(|cell| i16::from(cell.is_some())).collect();
+    (cells.iter().flatten().map(value).collect(), levels)
+}
+
+#[cfg(test)]
+mod tests {
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    use parquet::record::Field;
+
+    use super::*;
+
+    #[test]
+    fn every_kind_of_cell_is_read_back_and_gaps_stay_gaps() {
+        let column = |name: &str, cells| TableColumn { name: name.to_owned(), cells };
+        let columns = [
+            column("depth_m", Cells::Numbers(vec![Some(0.1), None])),
+            column("point", Cells::Counts(vec![Some(1), Some(2)])),
+            column("status", Cells::Texts(vec![None, Some("failed".to_owned())])),
+            column("stopped", Cells::Flags(vec![Some(true), None])),
+        ];
+        let folder = tempfile::tempdir().expect("a folder");
+        let [first, again] = ["a.parquet", "b.parquet"].map(|name| folder.path().join(name));
+        for path in [&first, &again] {
+            write_parquet(path, &columns).expect("a table");
+        }
+        let read = |path| std::fs::read(path).expect("a table");
+        assert!(read(&first) == read(&again), "the same bytes");
+        let file = std::fs::File::open(&first).expect("a table");
+        let reader = SerializedFileReader::new(file).expect("a table");
+        let rows: Vec<Vec<(String, Field)>> = reader
+            .get_row_iter(None)
+            .expect("rows")
+            .map(|row| row.expect("a row").get_column_iter().map(|(n, f)| (n.clone(), f.clone())))
+            .map(Iterator::collect)
+            .collect();
+        let named = |name: &str, field| (name.to_owned(), field);
+        assert_eq!(
+            rows,
+            [
+                vec![
+                    named("depth_m", Field::Double(0.1)),
+                    named("point", Field::Long(1)),
+                    named("status", Field::Null),
+                    named("stopped", Field::Bool(true)),
+                ],
+                vec![
+                    named("depth_m", Field::Null),
+                    named("point", Field::Long(2)),
+                    named("status", Field::Str("failed".to_owned())),
+                    named("stopped", Field::Null),
+                ],
+            ]
+        );
+    }
+}

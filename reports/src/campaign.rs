@@ -1,0 +1,273 @@
+//! The report of a campaign: what its points came to, over what was varied.
+
+use campaigns::{Counts, Headline, Outcome, Point, Results, Values, Varied, varied};
+use plotters::prelude::*;
+use validation::picture::legend::{self, Sign};
+use validation::picture::{Area, Drawn, GREY, Hover, PictureError, colour, letters, short, svg};
+
+use crate::ReportError;
+use crate::figure::figure;
+use crate::page::{Number, Page, Part, Section, Table};
+
+/// Size of a panel (pixels).
+const PANEL: (u32, u32) = (310, 270);
+
+/// Most panels side by side; further keys begin another row.
+const ACROSS: usize = 3;
+
+/// Most points that are listed one by one.
+const MOST_POINTS: usize = 500;
+
+/// What a row of panels shows of a point.
+struct Response {
+    title: &'static str,
+    scale: f64,
+    of: fn(&Headline) -> Option<f64>,
+}
+
+const RESPONSES: [Response; 3] = [
+    Response { title: "depth (mm)", scale: 1e3, of: |one| Some(one.depth_m) },
+    Response { title: "stopping time (ms)", scale: 1e3, of: |one| one.stopping_time_s },
+    Response { title: "range (mm)", scale: 1e3, of: |one| Some(one.range_m) },
+];
+
+/// A key over whose numbers results are drawn.
+struct Across {
+    title: String,
+    numbers: Vec<Option<f64>>,
+}
+
+/// The page of what a campaign has come to.
+pub(crate) fn page(results: &Results) -> Result<String, ReportError> {
+    let counts = results.counts();
+    let Counts { points, done, failed, begun, waiting } = counts;
+    let varied = varied(results);
+    let lead = match counts.is_complete() {
+        true => format!("{points} points, all of them done."),
+        false => format!("{} of {points} points so far.", done + failed),
+    };
+    let worst = results.outcomes.iter().filter_map(Outcome::headline).map(|one| one.closure);
+    let worst = worst.reduce(f64::max);
+    let page = Page {
+        title: results.plan.name.clone(),
+        kind: "campaign",
+        lead,
+        headline: vec![
+            Number::new("done", done.to_string(), format!("of {points}")),
+            Number::new("failed", failed.to_string(), ""),
+            Number::new("to do", (begun + waiting).to_string(), format!("{begun} begun")),
+            Number::new(
+                "closure",
+                worst.map_or("\u{2013}".to_owned(), |worst| format!("{worst:.1e}")),
+                "the worst of all",
+            ),
+        ],
+        sections: [
+            Section::new("Responses", responses(results, &varied)?),
+            Section::new("Failed", failures(results)),
+            Section::new("Points", listed(results, &varied)),
+        ]
+        .into_iter()
+        .flatten()
+        .collect(),
+        origin: vec![
+            ("plunge", results.plan.version.clone()),
+            ("varied", varied.iter().map(|one| one.key.as_str()).collect::<Vec<_>>().join(", ")),
+        ],
+    };
+    page.html()
+}
+
+/// One figure per response that differs from point to point.
+fn responses(results: &Results, varied: &[Varied]) -> Result<Vec<Part>, PictureError> {
+    let across: Vec<Across> = varied.iter().filter_map(Across::of).collect();
+    let models = models(results);
+    let mut parts = Vec::new();
+    for response in &RESPONSES {
+        let values: Vec<Option<f64>> = results
+            .outcomes
+            .iter()
+            .map(|one| one.headline().and_then(response.of).map(|value| response.scale * value))
+            .collect();
+        let found: Vec<f64> = values.iter().flatten().copied().collect();
+        if across.is_empty() || found.iter().all(|value| *value == found[0]) {
+            continue;
+        }
+        let caption = format!("{} of every point that is done.", sentence(response.title));
+        let drawing = Drawing { results, response, values: &values, models: &models };
+        parts.push(figure(&drawing.picture(&across)?, &caption));
+    }
+    if parts.is_empty() {
+        parts.push(Part::Text("Nothing is done yet that differs from point to point.".to_owned()));
+    }
+    Ok(parts)
+}
+
+fn sentence(title: &str) -> String {
+    let (first, rest) = title.split_at(1);
+    format!("{}{rest}", first.to_uppercase())
+}
+
+/// The models by their names, in the order of the plan.
+fn models(results: &Results) -> Vec<&str> {
+    let mut models: Vec<&str> = Vec::new();
+    for Point { model, .. } in &results.plan.points {
+        if !models.contains(&model.as_str()) {
+            models.push(model);
+        }
+    }
+    models
+}
+
+impl Across {
+    /// Of numbers those themselves; of few words their places in the order of the plan.
+    fn of(varied: &Varied) -> Option<Self> {
+        let unit = varied.unit.as_ref().map_or(String::new(), |unit| format!(" ({unit})"));
+        match &varied.values {
+            Values::Numbers(numbers) => {
+                Some(Self { title: format!("{}{unit}", varied.key), numbers: numbers.clone() })
+            }
+            Values::Texts(words) => {
+                let mut known: Vec<&String> = Vec::new();
+                let mut numbers = Vec::with_capacity(words.len());
+                for word in words {
+                    numbers.push(word.as_ref().map(|word| {
+                        let found = known.iter().position(|one| *one == word);
+                        let place = found.unwrap_or(known.len());
+                        if found.is_none() {
+                            known.push(word);
+                        }
+                        place as f64 + 1.0
+                    }));
+                }
+                let names: Vec<String> =
+                    (1..).zip(&known).map(|(at, word)| format!("{at} {word}")).collect();
+                let title = format!("{}: {}", varied.key, names.join(", "));
+                Some(Self { title, numbers })
+            }
+        }
+    }
+}
+
+/// One response, over all that was varied.
+struct Drawing<'a> {
+    results: &'a Results,
+    response: &'a Response,
+    /// In the order of the plan.
+    values: &'a [Option<f64>],
+    models: &'a [&'a str],
+}
+
+impl Drawing<'_> {
+    fn picture(&self, across: &[Across]) -> Result<String, PictureError> {
+        let columns = across.len().min(ACROSS);
+        let rows = across.len().div_ceil(ACROSS);
+        let signs: Vec<(Sign, String)> = match self.models {
+            [_] => Vec::new(),
+            models => models
+                .iter()
+                .enumerate()
+                .map(|(at, model)| (Sign::Dot(colour(at)), (*model).to_owned()))
+                .collect(),
+        };
+        let height = rows as u32 * PANEL.1;
+        let width = (columns as u32 * PANEL.0).max(2 * PANEL.0);
+        svg((width, height + legend::height(signs.len())), |area| {
+            let (charts, below) = area.split_vertically(height);
+            for (across, panel) in across.iter().zip(charts.split_evenly((rows, columns))) {
+                self.panel(&panel, across)?;
+            }
+            legend::draw(&below, &signs)
+        })
+    }
+
+    fn panel(&self, area: &Area<'_>, across: &Across) -> Drawn {
+        let points = || {
+            self.results
+                .points()
+                .zip(&across.numbers)
+                .zip(self.values)
+                .filter_map(|(((point, _), x), y)| Some((point, (*x)?, (*y)?)))
+        };
+        let range = |of: fn((&Point, f64, f64)) -> f64| {
+            let ends = points().map(of).fold(None, |ends: Option<(f64, f64)>, value| {
+                let (low, high) = ends.unwrap_or((value, value));
+                Some((low.min(value), high.max(value)))
+            });
+            let (low, high) = ends.unwrap_or((0.0, 1.0));
+            let pad = if high > low { (high - low) / 12.0 } else { high.abs().max(1.0) / 12.0 };
+            low - pad..high + pad
+        };
+        let mut chart = ChartBuilder::on(area)
+            .margin(8)
+            .x_label_area_size(36)
+            .y_label_area_size(56)
+            .build_cartesian_2d(range(|(_, x, _)| x), range(|(_, _, y)| y))?;
+        chart
+            .configure_mesh()
+            .x_labels(4)
+            .y_labels(6)
+            .x_label_formatter(&|x| short(*x))
+            .y_label_formatter(&|y| short(*y))
+            .x_desc(across.title.as_str())
+            .y_desc(self.response.title)
+            .axis_desc_style(letters())
+            .light_line_style(WHITE)
+            .bold_line_style(GREY)
+            .draw()?;
+        for (point, x, y) in points() {
+            let model = self.models.iter().position(|model| *model == point.model).unwrap_or(0);
+            chart.draw_series([Circle::new((x, y), 3, colour(model).filled())])?;
+            let text = format!(
+                "point {} of {}\n{}\n{}: {}",
+                point.point,
+                point.model,
+                point.set.join("\n"),
+                self.response.title,
+                short(y)
+            );
+            chart.draw_series([Hover::at((x, y), text)])?;
+        }
+        Ok(())
+    }
+}
+
+fn failures(results: &Results) -> Vec<Part> {
+    let mut table = Table::new(&["point", "model", "set", "why"]);
+    for (point, outcome) in results.points() {
+        if let Some(why) = outcome.error() {
+            table.rows.push(vec![
+                point.point.to_string(),
+                point.model.clone(),
+                point.set.join(", "),
+                why.to_owned(),
+            ]);
+        }
+    }
+    let any = !table.rows.is_empty();
+    any.then_some(Part::Table(table)).into_iter().collect()
+}
+
+fn listed(results: &Results, varied: &[Varied]) -> Vec<Part> {
+    let mut head = vec!["point", "model"];
+    head.extend(varied.iter().map(|one| one.key.as_str()));
+    head.extend(["", "depth (mm)", "stopping time (ms)", "folder"]);
+    let mut table = Table::new(&head);
+    for (at, (point, outcome)) in results.points().take(MOST_POINTS).enumerate() {
+        let one = outcome.headline();
+        let mut row = vec![point.point.to_string(), point.model.clone()];
+        row.extend(varied.iter().map(|varied| varied.shown(at)));
+        row.push(outcome.word().to_owned());
+        row.push(crate::numbers::fixed(one.map(|one| 1e3 * one.depth_m), 2));
+        let time = one.and_then(|one| one.stopping_time_s);
+        row.push(crate::numbers::fixed(time.map(|time| 1e3 * time), 2));
+        row.push(point.hash.clone());
+        table.rows.push(row);
+    }
+    let mut parts = vec![Part::Table(table)];
+    if results.plan.points.len() > MOST_POINTS {
+        let rest = format!("The first {MOST_POINTS}; all are in {}.", campaigns::TABLE);
+        parts.push(Part::Text(rest));
+    }
+    parts
+}
