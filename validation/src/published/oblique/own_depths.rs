@@ -52,14 +52,14 @@ mod tests {
     use super::super::tables::{PUBLISHED, published};
     use super::*;
 
-    /// Largest depth (m) under `law`, in steps so short that halving them changes the sixth digit.
+    /// Largest depth (m) under `law`, by midpoints.
     fn depth(law: ForceLaw, speed: f64) -> f64 {
         let (mut depth, mut velocity, dt) = (0.0, speed, 2e-6);
         while velocity > 0.0 {
             let at = |y: f64, v: f64| GRAVITY - (law.drag * v * v + law.friction * y) / MASS;
             let half = velocity + 0.5 * dt * at(depth, velocity);
+            velocity += dt * at(depth + 0.5 * dt * velocity, half);
             depth += dt * half;
-            velocity = half + 0.5 * dt * at(depth, half);
         }
         depth
     }
@@ -69,7 +69,7 @@ mod tests {
         for (drag, speed) in [(0.05, 0.5), (0.27, 2.0), (0.27, 4.0)] {
             let expected = ForceLaw { drag, friction: 4.5 };
             let found = friction(drag, depth(expected, speed), speed);
-            // The integration is of second order, with steps of 2 µs.
+            // The midpoints are of second order, with steps of 2 µs: far below.
             assert!((found / 4.5 - 1.0).abs() < 1e-5, "{found}");
         }
     }
