@@ -207,6 +207,14 @@ impl Impacts for Place<'_> {
 }
 
 impl Place<'_> {
+    /// The records of those of `jobs` that are kept, in their order; nothing is run.
+    ///
+    /// # Errors
+    /// If a model is no bed of grains.
+    pub fn kept(&self, jobs: &[Job]) -> Result<Vec<Option<Record>>, CampaignError> {
+        jobs.iter().map(|job| Ok(Job::kept(self.cache, &job.key()?))).collect()
+    }
+
     /// One of the `missing` jobs per bed that is not there yet.
     fn missing_beds(&self, jobs: &[Job], missing: &[usize]) -> Result<Vec<usize>, CampaignError> {
         let keys = missing.iter().map(|&at| jobs[at].bed_key()).collect::<Result<Vec<_>, _>>()?;

@@ -13,17 +13,20 @@ use std::time::{Duration, Instant};
 use engine::parallel::with_threads;
 use lexopt::prelude::{Long, Short, ValueExt};
 use validation::beds::{Place, Progress, Stage, Watch};
-use validation::published::{Effort, Judged, Laboratory, ROWS, Row, Verdict, markdown, to_json};
+use validation::published::{
+    Effort, Judged, Laboratory, Missing, ROWS, Row, Verdict, markdown, to_json,
+};
 use validation::{CASES, Case, three_shapes};
 
 const HELP: &str = "\
 The published results, run again and judged.
 
-Usage: cargo xtask validate [--quick | --full] [--only ID[,ID]...]... [--out DIR] [--cache DIR]
-                            [--threads N] [--list] [--case NAME]...
+Usage: cargo xtask validate [--quick | --full] [--so-far] [--only ID[,ID]...]... [--out DIR]
+                            [--cache DIR] [--threads N] [--list] [--case NAME]...
 
   --quick      every row at a reduced cost (default): under ten minutes on two cores, if its beds are there
   --full       what the sources ran: hours; impacts that are there are not run again
+  --so-far     runs no impact: judges those that are there, while others are still being run
   --only ID    these rows only; may be given several times
   --out DIR    where validation.json, REPORT.md and figures are written (target/validation)
   --cache DIR  where beds and impacts are kept (else $PLUNGE_CACHE, else runs/.cache)
@@ -41,6 +44,7 @@ const EVERY: Duration = Duration::from_secs(10);
 /// What the command line asks for.
 struct Wish {
     effort: Effort,
+    missing: Missing,
     rows: Vec<&'static Row>,
     out: PathBuf,
     cache: PathBuf,
@@ -86,6 +90,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Wish>, lexopt::Error> {
     let cache = std::env::var_os("PLUNGE_CACHE").unwrap_or_else(|| "runs/.cache".into());
     let mut wish = Wish {
         effort: Effort::Quick,
+        missing: Missing::Run,
         rows: Vec::new(),
         out: "target/validation".into(),
         cache: cache.into(),
@@ -97,6 +102,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Wish>, lexopt::Error> {
         match argument {
             Long("quick") => wish.effort = Effort::Quick,
             Long("full") => wish.effort = Effort::Full,
+            Long("so-far") => wish.missing = Missing::LeaveOut,
             Long("only") => wish.rows.extend(parser.value()?.parse_with(rows)?),
             Long("out") => wish.out = parser.value()?.into(),
             Long("cache") => wish.cache = parser.value()?.into(),
@@ -153,6 +159,7 @@ fn validate(wish: &Wish) -> Result<Verdict, Box<dyn Error>> {
         let teller = Teller { row: row.id, said: Mutex::new(None) };
         let laboratory = Laboratory {
             effort: wish.effort,
+            missing: wish.missing,
             place: Place { cache: &wish.cache, workers, watch: &teller },
             shapes: shapes.clone(),
             sets: "validation/data".into(),

@@ -8,7 +8,7 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// The source lost its numbers, or asks for what is not there.
+    /// The source lost its numbers, or asks for what is not there, or so few impacts do not decide it.
     NotCheckable,
     /// Within the band, or the trend holds.
     Pass,
@@ -168,6 +168,32 @@ impl Check {
         }
     }
 
+    /// A number that the source has positive, known to within `band`: it passes where it is positive all through the band and
+    /// fails where it is negative all through it; between, it is not decided.
+    #[must_use]
+    pub fn positive(
+        what: impl Into<String>,
+        published: impl Into<String>,
+        ours: Estimate,
+        band: Band,
+    ) -> Self {
+        let verdict = match ours.value {
+            value if value > band.half => Verdict::Pass,
+            value if value.abs() <= band.half => Verdict::NotCheckable,
+            _ => Verdict::Fail,
+        };
+        let undecided = verdict == Verdict::NotCheckable;
+        let half = Estimate::new(band.half, 0.0);
+        Self {
+            what: what.into(),
+            published: Side::Words(published.into()),
+            ours: Side::Number(ours),
+            band: format!("positive by {half}: {}", band.reason),
+            verdict,
+            cause: if undecided { "so few impacts do not decide its sign" } else { "" }.to_owned(),
+        }
+    }
+
     /// A statement that `holds` or does not, as `ours` shows by the test `decided`.
     #[must_use]
     pub fn trend(
@@ -245,6 +271,16 @@ mod tests {
         assert_eq!(compared(f64::NAN).verdict, Verdict::Fail);
         let none = Check::at_most("", "", Estimate::new(f64::NAN, 0.0), BAND);
         assert_eq!(none.verdict, Verdict::Fail);
+    }
+
+    #[test]
+    fn a_sign_is_decided_only_beyond_the_band() {
+        let verdict = |value: f64| Check::positive("", "", Estimate::new(value, 0.0), BAND).verdict;
+        assert_eq!(verdict(0.11), Verdict::Pass);
+        assert_eq!(verdict(0.09), Verdict::NotCheckable);
+        assert_eq!(verdict(-0.09), Verdict::NotCheckable);
+        assert_eq!(verdict(-0.11), Verdict::Fail);
+        assert_eq!(verdict(f64::NAN), Verdict::Fail);
     }
 
     #[test]

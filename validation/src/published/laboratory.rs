@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::beds::Place;
+use crate::beds::{CampaignError, Impacts, Job, Place, Record};
 use crate::three_shapes;
 
 /// How much is run.
@@ -14,11 +14,22 @@ pub enum Effort {
     Full,
 }
 
+/// What becomes of impacts that are not kept yet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Missing {
+    /// They are run.
+    Run,
+    /// They are left out: rows are judged by those that are there.
+    LeaveOut,
+}
+
 /// What the rows are judged with.
 #[derive(Clone)]
 pub struct Laboratory<'a> {
     /// How much is run.
     pub effort: Effort,
+    /// What becomes of impacts that are not kept yet.
+    pub missing: Missing,
     /// Where impacts on beds of grains are run and kept: what is there is not run again.
     pub place: Place<'a>,
     /// Where the impacts of three shapes are kept, likewise.
@@ -28,6 +39,18 @@ pub struct Laboratory<'a> {
 }
 
 impl Laboratory<'_> {
+    /// The records of `jobs`, in their order: run now where they are not kept, or left out. None of an impact whose
+    /// steps cannot be trusted.
+    ///
+    /// # Errors
+    /// If one cannot be run.
+    pub fn impacts(&self, jobs: &[Job]) -> Result<Vec<Option<Record>>, CampaignError> {
+        match self.missing {
+            Missing::Run => self.place.run(jobs),
+            Missing::LeaveOut => self.place.kept(jobs),
+        }
+    }
+
     /// The first of a pair when quick, else the second.
     #[must_use]
     pub fn quick_or_full<T>(&self, quick: T, full: T) -> T {

@@ -10,6 +10,7 @@ pub mod document;
 pub mod laboratory;
 pub mod links;
 pub mod oblique;
+pub mod planar;
 pub mod plot;
 pub mod regression;
 pub mod row;
@@ -19,6 +20,6 @@ pub mod signatures;
 
 pub use check::{Check, Estimate, Verdict};
 pub use document::{Judged, markdown, to_json};
-pub use laboratory::{Effort, Laboratory};
+pub use laboratory::{Effort, Laboratory, Missing};
 pub use row::{Findings, PublishedError, Row};
 pub use rows::ROWS;

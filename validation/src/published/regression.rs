@@ -3,6 +3,9 @@
 use argmin::core::{CostFunction, Executor, State};
 use argmin::solver::brent::BrentOpt;
 use nalgebra::{Cholesky, DMatrix, DVector};
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+
+use super::check::Estimate;
 
 /// Between which rates (s/m) the decay of an exponential is searched: a tenth of the slowest published one,
 /// and a plateau that is reached within a quarter of the slowest impact.
@@ -26,6 +29,8 @@ pub struct Fitted {
     pub r_squared: f64,
     /// Root mean square of what is left over, per degree of freedom; 0 without any.
     pub residual: f64,
+    /// Degrees of freedom that the errors were found with; none where the points came with theirs.
+    pub freedom: Option<usize>,
 }
 
 impl Fitted {
@@ -33,6 +38,13 @@ impl Fitted {
     #[must_use]
     pub fn error(&self, at: usize) -> f64 {
         self.covariance[(at, at)].max(0.0).sqrt()
+    }
+
+    /// How many of its standard errors hold a coefficient as surely as so many `sigmas` do where the scatter is
+    /// known: Student's t.
+    #[must_use]
+    pub fn as_surely_as(&self, sigmas: f64) -> f64 {
+        self.freedom.map_or(sigmas, |freedom| student(sigmas, freedom))
     }
 
     /// Correlation of the first two coefficients.
@@ -71,6 +83,7 @@ pub fn linear(columns: &[Vec<f64>], y: &[f64], errors: Option<&[f64]>) -> Option
         covariance,
         r_squared: 1.0 - left.norm_squared() / about_mean,
         residual: residual.sqrt(),
+        freedom: errors.is_none().then_some(freedom),
     })
 }
 
@@ -97,6 +110,7 @@ pub fn exponential(x: &[f64], y: &[f64], errors: Option<&[f64]>) -> Option<Fitte
         covariance: about.covariance,
         r_squared: at_rate.r_squared,
         residual: about.residual,
+        freedom: about.freedom,
     })
 }
 
@@ -121,7 +135,35 @@ pub fn logarithmic(x: &[f64], y: &[f64]) -> Option<Fitted> {
         covariance: about.covariance,
         r_squared: at_energy.r_squared,
         residual: about.residual,
+        freedom: about.freedom,
     })
+}
+
+/// How many standard errors that were found with so many degrees of `freedom` hold a number as surely as `sigmas` of a
+/// normal deviate do; infinite without any freedom.
+#[must_use]
+pub fn student(sigmas: f64, freedom: usize) -> f64 {
+    let share = Normal::standard().cdf(sigmas);
+    let student = StudentsT::new(0.0, 1.0, freedom as f64);
+    student.map_or(f64::INFINITY, |student| student.inverse_cdf(share))
+}
+
+/// Numbers that `fit` finds of `n` impacts, and their standard errors by leaving out one impact after another
+/// (the jackknife): what was read of one impact is not independent. `fit` is given which one to leave out.
+#[must_use]
+pub fn leaving_out(
+    n: usize,
+    fit: impl Fn(Option<usize>) -> Option<Vec<f64>>,
+) -> Option<Vec<Estimate>> {
+    let whole = fit(None)?;
+    let left: Vec<Vec<f64>> = (0..n).filter_map(|at| fit(Some(at))).collect();
+    let m = left.len() as f64;
+    let error = |number: usize| {
+        let mean = left.iter().map(|one| one[number]).sum::<f64>() / m;
+        let off = left.iter().map(|one| (one[number] - mean) * (one[number] - mean));
+        ((m - 1.0) / m * off.sum::<f64>()).sqrt()
+    };
+    Some(whole.into_iter().enumerate().map(|(at, value)| Estimate::new(value, error(at))).collect())
 }
 
 /// Root mean square that the best coefficients of `columns` leave of `y`.
@@ -129,8 +171,9 @@ fn left_over(columns: &[Vec<f64>], y: &[f64]) -> f64 {
     linear(columns, y, None).map_or(f64::INFINITY, |fitted| fitted.residual)
 }
 
-/// Where between `ends` the `cost` is least.
-fn search(ends: [f64; 2], cost: impl Fn(f64) -> f64) -> Option<f64> {
+/// Where between `ends` the `cost` is least; `None` if the search fails.
+#[must_use]
+pub fn search(ends: [f64; 2], cost: impl Fn(f64) -> f64) -> Option<f64> {
     let solver = BrentOpt::new(ends[0], ends[1]);
     let search = Executor::new(Cost(cost), solver).configure(|state| state.max_iters(EVALUATIONS));
     search.run().ok()?.state().get_best_param().copied()
@@ -184,6 +227,36 @@ mod tests {
         // As above: the square root of rounding, over a slope of order one.
         assert!((fitted.coefficients[0] / 0.012 - 1.0).abs() < 1e-5, "{fitted:?}");
         assert!((fitted.coefficients[1] / 0.02 - 1.0).abs() < 1e-5, "{fitted:?}");
+    }
+
+    #[test]
+    fn errors_that_few_points_leave_over_hold_a_coefficient_by_students_t() {
+        let sigmas = |points: usize| {
+            let x: Vec<f64> = (0..points).map(|at| at as f64).collect();
+            let y: Vec<f64> = x.iter().map(|x| x * x).collect();
+            linear(&[x, vec![1.0; points]], &y, None).expect("a line").as_surely_as(2.0)
+        };
+        // Of tables of the distribution at 95.45 %, as they are rounded there.
+        for (points, expected) in [(3, 13.97), (4, 4.53), (7, 2.65), (12, 2.28)] {
+            assert!((sigmas(points) - expected).abs() < 0.006, "{points}: {}", sigmas(points));
+        }
+        assert_eq!(sigmas(2), f64::INFINITY);
+        let known = linear(&[vec![1.0, 2.0, 3.0]], &[1.0, 2.0, 3.0], Some(&[0.1; 3]));
+        assert_eq!(known.map(|fitted| fitted.as_surely_as(2.0)), Some(2.0));
+    }
+
+    #[test]
+    fn the_mean_of_impacts_has_its_standard_error_by_leaving_out() {
+        let values = [1.0, 2.0, 3.0, 6.0];
+        let mean = |without: Option<usize>| {
+            let kept: Vec<f64> =
+                (0..4).filter(|at| Some(*at) != without).map(|at| values[at]).collect();
+            Some(vec![kept.iter().sum::<f64>() / kept.len() as f64])
+        };
+        let found = leaving_out(4, mean).expect("a mean");
+        // Of a mean it is the textbook's: the root of Σ(x − 3)² / (4 · 3), here of 14/12.
+        assert!((found[0].value - 3.0).abs() < 1e-15, "rounding");
+        assert!((found[0].error - (14.0_f64 / 12.0).sqrt()).abs() < 1e-14, "rounding");
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! The impacts of three shapes that rows E6 to E8 and E13 share.
 
-use super::laboratory::{Effort, Laboratory};
+use super::laboratory::{Effort, Laboratory, Missing};
 use super::row::PublishedError;
+use crate::beds::Impacts;
 use crate::three_shapes::{self, Bed, Case, FRICTIONS, Outcome, RUBBED, SHAPES};
 
 /// Speeds (m/s), quick and in full.
@@ -50,7 +51,8 @@ pub fn rubbed(laboratory: &Laboratory<'_>) -> Result<Vec<[Impact; 2]>, Published
     let with = |seed, friction| Case { model, speed, seed, friction: Some(friction), bed };
     let cases = (1..=SEEDS[which]).flat_map(|seed| FRICTIONS.map(|friction| with(seed, friction)));
     let impacts = run(laboratory, cases.collect())?;
-    Ok(impacts.chunks_exact(2).map(|pair| [pair[0].clone(), pair[1].clone()]).collect())
+    let pairs = impacts.chunk_by(|(a, _), (b, _)| a.seed == b.seed);
+    Ok(pairs.filter_map(|pair| <[Impact; 2]>::try_from(pair.to_vec()).ok()).collect())
 }
 
 /// Those of one shape.
@@ -72,11 +74,21 @@ fn of_effort(laboratory: &Laboratory<'_>) -> (Bed, usize) {
     }
 }
 
+/// The impacts of `cases`, or those of them that are there.
 fn run(laboratory: &Laboratory<'_>, cases: Vec<Case>) -> Result<Vec<Impact>, PublishedError> {
-    let workers = laboratory
-        .place
-        .workers
-        .map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
-    let outcomes = three_shapes::run(&cases, &laboratory.shapes, workers, &|_, _| ())?;
-    Ok(cases.into_iter().zip(outcomes).collect())
+    let places = &laboratory.shapes;
+    let outcomes = match laboratory.missing {
+        Missing::LeaveOut => three_shapes::kept(&cases, places)?,
+        Missing::Run => {
+            let workers = laboratory.place.n_workers();
+            let outcomes = three_shapes::run(&cases, places, workers, &|_, _| ())?;
+            outcomes.into_iter().map(Some).collect()
+        }
+    };
+    let impacts: Vec<Impact> =
+        cases.into_iter().zip(outcomes).filter_map(|(case, one)| Some((case, one?))).collect();
+    match impacts.is_empty() {
+        true => Err(PublishedError::Missing("none of its impacts was run yet".to_owned())),
+        false => Ok(impacts),
+    }
 }

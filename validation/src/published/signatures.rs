@@ -1,5 +1,6 @@
 //! Trends that other groups published, and where plunge answers to each.
 
+use super::check::Check;
 use super::row::Table;
 
 /// A published trend.
@@ -10,49 +11,83 @@ struct Signature {
     trend: &'static str,
     /// Where.
     source: &'static str,
-    /// Which row checks it, or why none does.
-    answered: &'static str,
+    /// Who answers to it.
+    answer: Answer,
 }
 
-/// Every trend, and who answers to it.
+/// Who answers to a trend.
+enum Answer {
+    /// These rows.
+    Rows(&'static str),
+    /// No row, and why.
+    None(&'static str),
+}
+
+/// Trends that rows answer to.
 #[must_use]
 pub fn table() -> Table {
-    let caption = "Published trends, and what here answers to them.";
+    let caption = "Published trends that rows answer to.";
     let mut table = Table::new(caption, &["system", "trend", "source", "answered by"]);
-    table.rows = SIGNATURES
-        .iter()
-        .map(|one| [one.system, one.trend, one.source, one.answered].map(str::to_owned).to_vec())
-        .collect();
+    let row = |one: &Signature| match one.answer {
+        Answer::Rows(rows) => {
+            Some([one.system, one.trend, one.source, rows].map(str::to_owned).to_vec())
+        }
+        Answer::None(_) => None,
+    };
+    table.rows = SIGNATURES.iter().filter_map(row).collect();
     table
+}
+
+/// Trends that no row answers to, each with the reason.
+#[must_use]
+pub fn unanswered() -> Vec<Check> {
+    let check = |one: &Signature| match one.answer {
+        Answer::None(why) => {
+            Some(Check::not_checkable(format!("{}: {}", one.system, one.trend), one.source, why))
+        }
+        Answer::Rows(_) => None,
+    };
+    SIGNATURES.iter().filter_map(check).collect()
 }
 
 const fn signature(
     system: &'static str,
     trend: &'static str,
     source: &'static str,
-    answered: &'static str,
+    answer: Answer,
 ) -> Signature {
-    Signature { system, trend, source, answered }
+    Signature { system, trend, source, answer }
 }
 
-/// What a bed of dry grains cannot show.
-const NO_AIR: &str = "no row: plunge has no air between grains";
-const NO_WATER: &str = "no row: plunge has no saturated grains";
-const NO_NUMBERS: &str = "no row: its coefficients are not published";
-const NOT_RUN: &str = "no row: plunge can run it, and it is not part of this table yet";
+/// What is not modelled, or not known.
+const NO_AIR: Answer = Answer::None("plunge has no air flow between grains");
+const NO_WATER: Answer = Answer::None("plunge has no saturated grains");
+const NO_NUMBERS: Answer = Answer::None("its coefficients are not published");
+const NO_DRIVE: Answer = Answer::None("plunge drives no intruder at a set speed");
+const NO_MEASURE: Answer = Answer::None("no number says how intermittent a force has to be");
+const NO_WHEELS: Answer = Answer::None("plunge has no wheels");
+const NOT_RUN: Answer = Answer::None("plunge can run it, and no row does yet");
+
+const E1_E5: Answer = Answer::Rows("E1, E5");
+const E2: Answer = Answer::Rows("E2");
+const E6: Answer = Answer::Rows("E6");
+const E7: Answer = Answer::Rows("E7");
+const E9: Answer = Answer::Rows("E9");
+const E10: Answer = Answer::Rows("E10");
+const E12: Answer = Answer::Rows("E12");
 
 static SIGNATURES: &[Signature] = &[
     signature(
         "sphere into beads",
         "the stopping time falls with speed",
         "Katsuragi & Durian 2007",
-        "E10",
+        E10,
     ),
     signature(
         "sphere into beads",
         "the deceleration jumps to zero at the stop",
         "Katsuragi & Durian 2007",
-        "E10",
+        E10,
     ),
     signature(
         "wooden sphere into beads",
@@ -64,62 +99,52 @@ static SIGNATURES: &[Signature] = &[
         "free link",
         "the stopping time falls with speed at 0°, 32°, 55°",
         "Marghitu & Lee 2013",
-        "E9",
+        E9,
     ),
-    signature("free link", "the stopping time falls with inclination", "Marghitu & Lee 2013", "E9"),
+    signature("free link", "the stopping time falls with inclination", "Marghitu & Lee 2013", E9),
     signature(
         "two-link chain",
         "time falls and depth grows with speed",
         "article on the chain",
-        "E9",
+        E9,
     ),
     signature(
         "disc, planar, oblique",
         "the stopping time falls to a plateau above 30°",
         "Wang, Ye & Zheng 2012",
-        "E1, E5",
+        E1_E5,
     ),
     signature(
         "disc, planar, oblique",
         "the stopping time rises linearly below 30°",
         "Wang, Ye & Zheng 2012",
-        "E1, E5",
+        E1_E5,
     ),
     signature(
         "disc, planar, oblique",
         "depth and range are linear in the speed",
         "Wang, Ye & Zheng 2012",
-        "E2",
+        E2,
     ),
     signature(
         "cylinder, hemisphere, cone",
         "cylinder < hemisphere < cone in depth",
         "three-shape study",
-        "E6",
+        E6,
     ),
     signature(
         "hemisphere",
         "friction of intruder and grains does not matter",
         "three-shape study",
-        "E7",
+        E7,
     ),
-    signature(
-        "sphere near a side wall",
-        "less deep, within a diameter",
-        "Seguin et al. 2008",
-        NOT_RUN,
-    ),
-    signature(
-        "sphere near the floor",
-        "less deep, within much less",
-        "Seguin et al. 2008",
-        NOT_RUN,
-    ),
+    signature("sphere near a side wall", "less deep, within a diameter", "Seguin et al. 2008", E10),
+    signature("sphere near the floor", "less deep, within much less", "Seguin et al. 2008", E10),
     signature(
         "cylinder near a wall",
         "moves away from it and turns",
         "Díaz-Melián et al. 2020",
-        NOT_RUN,
+        E10,
     ),
     signature("spinning sphere", "deeper with spin", "Carvalho et al. 2024", NOT_RUN),
     signature(
@@ -162,19 +187,19 @@ static SIGNATURES: &[Signature] = &[
         "intruder at constant speed",
         "no depth dependence before a crossover time",
         "Roth et al. 2019",
-        NOT_RUN,
+        NO_DRIVE,
     ),
     signature(
         "disc into discs, fast",
         "early peaks beyond Poncelet's law",
         "Krizou & Clark 2019",
-        NOT_RUN,
+        E12,
     ),
     signature(
         "planar intruders into discs",
         "drag comes from intermittent collisions",
         "Clark et al. 2016",
-        NOT_RUN,
+        NO_MEASURE,
     ),
     signature(
         "intruder, upward air flow",
@@ -186,7 +211,7 @@ static SIGNATURES: &[Signature] = &[
         "convex intruder, slow",
         "force not linear in depth, then linear",
         "Kang et al. 2018",
-        NOT_RUN,
+        NO_DRIVE,
     ),
     signature(
         "marble grazing sand",
@@ -204,15 +229,10 @@ static SIGNATURES: &[Signature] = &[
         "sphere, planar, no friction",
         "depth and time scale likewise",
         "Seguin et al. 2009",
-        NOT_RUN,
+        E10,
     ),
-    signature(
-        "wheel, fast",
-        "v² drag alone sinks the wrong way",
-        "Agarwal et al. 2021",
-        "no row: plunge has no wheels",
-    ),
-    signature("lifted plate", "drag grows with acceleration", "Athani & Rognon 2019", NOT_RUN),
+    signature("wheel, fast", "v² drag alone sinks the wrong way", "Agarwal et al. 2021", NO_WHEELS),
+    signature("lifted plate", "drag grows with acceleration", "Athani & Rognon 2019", NO_DRIVE),
     signature(
         "penetrometer on a beach",
         "drop height linear in depth squared",

@@ -229,7 +229,7 @@ pub fn run(
                 loop {
                     let index = next.fetch_add(1, Ordering::Relaxed);
                     let Some(case) = cases.get(index) else { break };
-                    let outcome = kept(case, places);
+                    let outcome = kept_or_run(case, places);
                     if let Ok(outcome) = &outcome {
                         done(case, outcome);
                     }
@@ -244,15 +244,29 @@ pub fn run(
     outcomes.collect()
 }
 
+/// The outcomes of those of `cases` that are there, in their order; nothing is run.
+///
+/// # Errors
+/// If a model does not load.
+pub fn kept(cases: &[Case], places: &Places) -> Result<Vec<Option<Outcome>>, StudyError> {
+    let key = |case: &Case| -> Result<String, StudyError> { Ok(key(&case.model()?.model)) };
+    cases.iter().map(|case| Ok(found(&case.path(places), &key(case)?))).collect()
+}
+
+/// The key of an impact of `model`, in hexadecimal.
+fn key(model: &Model) -> String {
+    result_key(&model.hash()).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 /// The outcome of `case`: as it was kept, or run now.
-fn kept(case: &Case, places: &Places) -> Result<Outcome, StudyError> {
+fn kept_or_run(case: &Case, places: &Places) -> Result<Outcome, StudyError> {
     let Loaded { model, .. } = case.model()?;
-    let path = places.out.join(format!("{}.json", case.name()));
+    let path = case.path(places);
     let io = |action, path: &Path| {
         let path = path.to_owned();
         move |source| StudyError::Io { action, path, source }
     };
-    let key: String = result_key(&model.hash()).iter().map(|byte| format!("{byte:02x}")).collect();
+    let key = key(&model);
     if let Some(outcome) = found(&path, &key) {
         return Ok(outcome);
     }
@@ -281,6 +295,11 @@ impl Case {
             friction.map_or_else(String::new, |friction| format!("-friction-{friction}"));
         let bed = if *bed == Bed::Small { "-small" } else { "" };
         format!("{model}-{speed}-seed-{seed}{friction}{bed}")
+    }
+
+    /// Where its outcome is kept.
+    fn path(&self, places: &Places) -> PathBuf {
+        places.out.join(format!("{}.json", self.name()))
     }
 
     /// The shipped model with the speed, the seed and the friction of this case.

@@ -47,9 +47,18 @@ pub struct Separated {
     pub correlation: f64,
     /// Share of the variance of the forces, averaged over positions, that the law explains.
     pub r_squared: f64,
+    /// Impacts that it was separated from, and that were left out one after another.
+    pub impacts: usize,
 }
 
 impl Separated {
+    /// How many of its standard errors hold a coefficient as surely as so many `sigmas` do where the scatter is
+    /// known.
+    #[must_use]
+    pub fn as_surely_as(&self, sigmas: f64) -> f64 {
+        regression::student(sigmas, self.impacts.saturating_sub(1))
+    }
+
     /// The law without its errors.
     #[must_use]
     pub fn law(&self) -> ForceLaw {
@@ -118,6 +127,7 @@ pub fn separate(cells: &[&Cell], component: Component) -> Option<Separated> {
         friction: Estimate::new(friction, errors[1]),
         correlation: covariance(0, 1) / (errors[0] * errors[1]),
         r_squared: explained(cells, component, [drag, friction]),
+        impacts: n,
     })
 }
 

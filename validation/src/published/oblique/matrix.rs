@@ -7,8 +7,8 @@ use std::sync::Arc;
 use configs::{ConfigError, LoadOptions, Model, ModelSource, find_shipped};
 
 use super::tables::{Published, published};
-use crate::beds::{Impacts, Job, Record};
-use crate::published::laboratory::{Effort, Laboratory};
+use crate::beds::{Job, Record};
+use crate::published::laboratory::{Effort, Laboratory, Missing};
 use crate::published::row::PublishedError;
 
 /// A reading of the contact law.
@@ -48,9 +48,23 @@ pub const MASS: f64 = 0.0322;
 /// Strength of gravity (m/s²).
 pub const GRAVITY: f64 = 9.81;
 
-/// Angles (deg), each with its speeds (m/s), of a quick run.
-const QUICK: [(f64, &[f64]); 3] =
-    [(15.0, &[1.0, 2.5, 4.0]), (45.0, &[0.5, 1.0, 2.0, 4.0]), (90.0, &[0.5, 1.0, 2.0, 3.0, 4.0])];
+/// A bed of the article's mixture and depth: counts of small and large discs, and its width (m).
+struct Bed {
+    counts: [u32; 2],
+    width: f64,
+}
+
+/// Half and two thirds of the article's width, and all of it.
+static HALF: Bed = Bed { counts: [6300, 1200], width: 0.509_25 };
+static TWO_THIRDS: Bed = Bed { counts: [8400, 1600], width: 0.679 };
+static WHOLE: Bed = Bed { counts: [12600, 2400], width: 1.0185 };
+
+/// Angles (deg) of a quick run, each with its speeds (m/s) and the bed that has room for its ranges.
+static QUICK: [(f64, &[f64], &Bed); 3] = [
+    (15.0, &[1.0, 2.0, 3.0, 4.0], &TWO_THIRDS),
+    (45.0, &[0.5, 1.0, 2.0, 3.0, 4.0], &HALF),
+    (90.0, &[0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0], &HALF),
+];
 
 /// Speeds (m/s) of the full matrix, at every angle of the tables.
 const SPEEDS: &[f64] = &[0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0];
@@ -58,12 +72,10 @@ const SPEEDS: &[f64] = &[0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0];
 /// Positions of the full matrix, as in the article.
 const POSITIONS: usize = 6;
 
-/// A quick bed: two thirds of the article's width, as deep and of the same mixture.
-const QUICK_BED: [&str; 3] =
-    ["bed.grains.0.count=8400", "bed.grains.1.count=1600", "container.width=\"0.679 m\""];
-
-/// Widths of both beds (m).
-const WIDTHS: [f64; 2] = [0.679, 1.0185];
+/// Angles (deg) and positions that are run first: one angle of each regime and the vertical one, two places
+/// away from each other and from the sides.
+const FIRST_ANGLES: [f64; 3] = [90.0, 45.0, 15.0];
+const FIRST_POSITIONS: [usize; 2] = [1, 4];
 
 /// How near to a side an impact starts or is expected to stop (diameters of the intruder).
 const FROM_SIDES: f64 = 2.0;
@@ -71,45 +83,91 @@ const FROM_SIDES: f64 = 2.0;
 /// How much longer than published an impact may be, in its range and in its time.
 const LONGER: f64 = 1.25;
 
+/// Cells of the matrix, and how many of their impacts there are.
+#[derive(Clone, Debug)]
+pub struct Matrix {
+    /// Those with an impact at least.
+    pub cells: Vec<Cell>,
+    /// Impacts that the effort asks for.
+    pub asked: usize,
+}
+
+impl Matrix {
+    /// What a report has to say of it while impacts are missing.
+    #[must_use]
+    pub fn note(&self) -> Option<String> {
+        let there: usize = self.cells.iter().map(|cell| cell.records.len()).sum();
+        (there < self.asked).then(|| format!("Judged by {there} of {} impacts.", self.asked))
+    }
+}
+
 /// The impacts of all readings at those angles (deg) of the effort that `wanted` is true of.
 ///
 /// # Errors
-/// If an impact cannot be run.
-pub fn cells(
+/// If an impact cannot be run, or a cell has none that ran to its end; of what is kept alone, if there is none.
+pub fn run(
     laboratory: &Laboratory<'_>,
     wanted: impl Fn(f64) -> bool,
-) -> Result<Vec<Cell>, PublishedError> {
+) -> Result<Matrix, PublishedError> {
     let conditions: Vec<(&Published, &[f64])> = match laboratory.effort {
         Effort::Quick => {
-            QUICK.iter().filter_map(|(angle, speeds)| Some((published(*angle)?, *speeds))).collect()
+            let own = |(angle, speeds, _): &(f64, &'static [f64], &Bed)| {
+                Some((published(*angle)?, *speeds))
+            };
+            QUICK.iter().filter_map(own).collect()
         }
         Effort::Full => super::tables::PUBLISHED.iter().map(|one| (one, SPEEDS)).collect(),
     };
     let mut cells = Vec::new();
-    let mut jobs = Vec::new();
+    let mut places = Vec::new();
     for reading in &READINGS {
         for (published, speeds) in conditions.iter().filter(|(one, _)| wanted(one.angle_deg)) {
             for (place, &speed) in speeds.iter().enumerate() {
+                let own = positions(laboratory.effort, place);
+                places.extend(own.map(|position| (cells.len(), position)));
                 cells.push(Cell { reading, published, speed, records: Vec::new() });
-                for position in positions(laboratory.effort, place) {
-                    jobs.push(job(laboratory.effort, &cells[cells.len() - 1], position)?);
-                }
             }
         }
     }
-    let each = jobs.len() / cells.len().max(1);
-    let mut records = laboratory.place.run(&jobs)?.into_iter();
-    for cell in &mut cells {
-        cell.records = records.by_ref().take(each).flatten().collect();
-        if cell.records.is_empty() {
-            let Cell { reading, published, speed, .. } = cell;
-            return Err(PublishedError::Missing(format!(
-                "no impact at {} deg and {speed} m/s {} could be run to its end",
-                published.angle_deg, reading.name
-            )));
-        }
+    // Steep ones first within a turn and a position, both readings of an angle one after the other.
+    places.sort_by_key(|&(cell, position)| {
+        let flatness = (90.0 - cells[cell].published.angle_deg) as u32;
+        (turn(&cells[cell], position), position, flatness)
+    });
+    let jobs = places
+        .iter()
+        .map(|&(cell, position)| job(laboratory.effort, &cells[cell], position))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut found: Vec<_> = places.iter().zip(laboratory.impacts(&jobs)?).collect();
+    // As they are numbered, whatever came first.
+    found.sort_by_key(|(place, _)| **place);
+    for (&(cell, _), record) in found {
+        cells[cell].records.extend(record);
     }
-    Ok(cells)
+    let empty = cells.iter().find(|cell| cell.records.is_empty());
+    if let (Some(Cell { reading, published, speed, .. }), Missing::Run) =
+        (empty, laboratory.missing)
+    {
+        return Err(PublishedError::Missing(format!(
+            "no impact at {} deg and {speed} m/s {} could be run to its end",
+            published.angle_deg, reading.name
+        )));
+    }
+    cells.retain(|cell| !cell.records.is_empty());
+    if cells.is_empty() {
+        return Err(PublishedError::Missing("none of its impacts was run yet".to_owned()));
+    }
+    Ok(Matrix { cells, asked: jobs.len() })
+}
+
+/// Which turn of the matrix an impact belongs to: what tells most with few impacts is run first.
+fn turn(cell: &Cell, position: usize) -> usize {
+    let is_first = FIRST_ANGLES.iter().any(|angle| (cell.published.angle_deg - angle).abs() < 1e-9);
+    match (FIRST_POSITIONS.contains(&position), is_first) {
+        (true, true) => 0,
+        (true, false) => 1,
+        (false, _) => 2,
+    }
 }
 
 /// Angles (deg) of which there are cells, in their order.
@@ -142,10 +200,17 @@ fn positions(effort: Effort, place: usize) -> std::ops::Range<usize> {
     }
 }
 
+/// The bed for impacts at an angle (deg).
+fn bed(effort: Effort, angle_deg: f64) -> &'static Bed {
+    let same = |(own, ..): &&(f64, &[f64], &Bed)| (own - angle_deg).abs() < 1e-9;
+    let quick = QUICK.iter().find(same).filter(|_| effort == Effort::Quick);
+    quick.map_or(&WHOLE, |(.., bed)| *bed)
+}
+
 /// The impact of `cell` at `position`.
 fn job(effort: Effort, cell: &Cell, position: usize) -> Result<Job, ConfigError> {
     let Cell { reading, published, speed, .. } = cell;
-    let width = WIDTHS[usize::from(effort == Effort::Full)];
+    let &Bed { counts, width } = bed(effort, published.angle_deg);
     let range = published.range.map_or(0.0, |line| LONGER * line.at(*speed).max(0.0));
     let (left, right) = (FROM_SIDES * DIAMETER, width - FROM_SIDES * DIAMETER - range);
     let x = left + (position as f64 + 0.5) / POSITIONS as f64 * (right - left);
@@ -156,7 +221,9 @@ fn job(effort: Effort, cell: &Cell, position: usize) -> Result<Job, ConfigError>
         "run.duration=\"2 s\"".to_owned(),
     ];
     if effort == Effort::Quick {
-        sets.extend(QUICK_BED.map(str::to_owned));
+        let count = |(kind, count)| format!("bed.grains.{kind}.count={count}");
+        sets.extend(counts.iter().enumerate().map(count));
+        sets.push(format!("container.width=\"{width} m\""));
     }
     let source = find_shipped(reading.model).map(ModelSource::Shipped);
     let source = source.unwrap_or_else(|| ModelSource::Path(PathBuf::from(reading.model)));
@@ -179,16 +246,41 @@ mod tests {
     }
 
     #[test]
-    fn every_impact_has_room_for_its_range_on_the_bed() {
-        for published in &super::super::tables::PUBLISHED {
-            for speed in SPEEDS {
+    fn every_impact_has_room_for_its_range_on_its_bed() {
+        let quick = QUICK.iter().map(|(angle, speeds, _)| (Effort::Quick, *angle, *speeds));
+        let full = super::super::tables::PUBLISHED.iter();
+        let full = full.map(|one| (Effort::Full, one.angle_deg, SPEEDS));
+        for (effort, angle, speeds) in quick.chain(full) {
+            let published = published(angle).expect("an angle of the tables");
+            let width = bed(effort, angle).width;
+            for speed in speeds {
                 let range = published.range.map_or(0.0, |line| line.at(*speed));
                 for position in 0..POSITIONS {
-                    let x = start(Effort::Full, published.angle_deg, *speed, position);
-                    assert!(x > DIAMETER && x + range < WIDTHS[1] - DIAMETER, "{published:?} {x}");
+                    let x = start(effort, angle, *speed, position);
+                    assert!(x > DIAMETER && x + range < width - DIAMETER, "{published:?} {x}");
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_bed_of_a_quick_run_has_the_articles_mixture_and_depth() {
+        for bed in [&HALF, &TWO_THIRDS] {
+            let [small, large] = bed.counts.map(f64::from);
+            // Counts are whole numbers of the article's share, widths to the last digit given.
+            assert!((small / large - 5.25).abs() < 1e-12, "{small} {large}");
+            assert!(((small + large) / bed.width / (15_000.0 / WHOLE.width) - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_matrix_of_which_little_is_there_says_so_and_one_that_is_whole_does_not() {
+        let published = published(90.0).expect("an angle of the tables");
+        let records = vec![super::super::records::record(1.0, vec![0.0; 2], vec![0.0, 0.1])];
+        let cell = Cell { reading: &READINGS[0], published, speed: 1.0, records };
+        let note = |asked| Matrix { cells: vec![cell.clone()], asked }.note();
+        assert_eq!(note(1), None);
+        assert!(note(6).is_some_and(|note| note.contains("1 of 6")));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 pub mod curves;
 pub mod force;
 pub mod matrix;
+pub mod own_depths;
 #[cfg(test)]
 pub(crate) mod records;
 pub mod tables;

@@ -4,9 +4,11 @@ use crate::published::check::{Band, Check, Estimate, Known};
 use crate::published::laboratory::Laboratory;
 use crate::published::oblique::force::{Component, Separated, mean_readings, separate};
 use crate::published::oblique::matrix::{self, Cell, READINGS};
-use crate::published::oblique::tables::ForceLaw;
+use crate::published::oblique::own_depths;
+use crate::published::oblique::tables::{ForceLaw, Published};
 use crate::published::plot::{Panel, Plot, Points};
 use crate::published::row::{Findings, PublishedError, Row};
+use crate::published::rows::e02_depth_and_range::DEPTHS;
 
 pub(super) static ROW: Row = Row {
     id: "E3",
@@ -25,22 +27,21 @@ const SIGMAS: f64 = 2.0;
 /// Angle (deg) from which on the article claims a vertical law.
 const FROM: f64 = 30.0;
 
-/// The article's own tables disagree: at 90° its law goes 0.92 to 1.24 times as deep as its Table 1 between 1
-/// and 4 m/s, at 45° 1.18 to 1.49 times.
-const KNOWN: Known = Known {
-    ratio: [0.5, 1.5],
-    cause: "the article's law contradicts its own depths by up to a half (1.18 to 1.49 at 45°, 0.92 to 1.24 at \
-            90°), and α and f trade off",
-};
+/// Why coefficients of a law that goes as deep as the article's own impacts are not those of its Table 3.
+const OWN_TABLES: &str = "the article's tables contradict each other: a law of this form that goes as deep as its Table 1 has 0.47 \
+                          to 0.67 times the α and 1.8 to 2.2 times the f of its Table 3; depths that differ, which E2 \
+                          judges, move both in inverse proportion";
 
 /// Their scatter is not published; that of ours stands for it.
-const REASON: &str = "two standard errors of the difference: of ours by leaving out impacts, the published taken as large";
+const REASON: &str = "two standard errors of the difference (Student's t): of ours by leaving out impacts, the published \
+                      taken as large, since none is stated";
 
 fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
-    let cells = matrix::cells(laboratory, |angle| angle >= 15.0)?;
+    let ran = matrix::run(laboratory, |angle| angle >= 15.0)?;
+    let cells = &ran.cells;
     let mut findings = Findings::default();
     let mut panels = Vec::new();
-    for angle in matrix::angles(&cells) {
+    for angle in matrix::angles(cells) {
         for component in [Component::Horizontal, Component::Vertical] {
             if component == Component::Horizontal && angle >= 90.0 {
                 continue;
@@ -48,21 +49,23 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
             let mut panel =
                 Panel { title: format!("{angle} deg, {}", word(component)), ..Panel::default() };
             for (at, reading) in READINGS.iter().enumerate() {
-                let own = matrix::of(&cells, reading, angle);
+                let own = matrix::of(cells, reading, angle);
                 let Some(found) = separate(&own, component) else { continue };
                 let title = format!("{angle}°, {}, {}", word(component), reading.name);
                 findings.checks.push(separable(&title, (angle, component), &found));
                 let published = own[0].published;
-                let law = match component {
-                    Component::Horizontal => published.horizontal,
-                    Component::Vertical => published.vertical,
+                let (law, known) = match component {
+                    Component::Horizontal => (published.horizontal, None),
+                    Component::Vertical => (published.vertical, known(published, DEPTHS[at])),
                 };
                 if let Some(law) = law {
-                    findings.checks.extend(coefficients(&title, law, &found));
+                    findings.checks.extend(coefficients(&title, law, &found, known));
                 }
                 panel.points.push(forces(at, &own, component, found.law()));
             }
-            panel.curves.push((READINGS.len(), vec![(0.0, 0.0), (1.0, 1.0)]));
+            let forces = panel.points.iter().flat_map(|one| &one.places).map(|place| place.0);
+            let most = forces.fold(0.0, f64::max);
+            panel.curves.push((READINGS.len(), vec![(0.0, 0.0), (most, most)]));
             panels.push(panel);
         }
     }
@@ -74,6 +77,7 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
         "Forces at nine depths and all speeds, averaged over positions, over the law that is fitted to them.",
         plot.draw()?,
     );
+    findings.notes.extend(ran.note());
     findings.notes.push(
         "Separable means: the additive law explains more than half of the variance of the forces between \
          depths and speeds, and both coefficients are positive by two standard errors."
@@ -91,7 +95,8 @@ fn word(component: Component) -> &'static str {
 
 /// Whether there is a law, where the article claims one, or none where it claims none.
 fn separable(title: &str, (angle, component): (f64, Component), found: &Separated) -> Check {
-    let positive = |one: Estimate| one.value > SIGMAS * one.error;
+    let sigmas = found.as_surely_as(SIGMAS);
+    let positive = |one: Estimate| one.value > sigmas * one.error;
     let is_law = found.r_squared > EXPLAINED && positive(found.drag) && positive(found.friction);
     let claimed = component == Component::Horizontal || angle >= FROM;
     let ours = format!(
@@ -104,21 +109,38 @@ fn separable(title: &str, (angle, component): (f64, Component), found: &Separate
     Check::trend(
         format!("{title}: the force is separable"),
         (if claimed { "yes" } else { "no" }, ours),
-        "more than half explained, α and f positive by two standard errors",
+        "more than half explained, α and f positive by two standard errors (Student's t)",
         is_law == claimed,
     )
 }
 
+/// How far α and f may be off by what the article's Table 1 says of them, for depths of between `depths` times
+/// its own: a law `s` times as deep has both 1/s times as large.
+fn known(published: &Published, depths: [f64; 2]) -> Option<[Known; 2]> {
+    let (own, printed) = (own_depths::law(published)?, published.vertical?);
+    let range = |ratio: f64| [ratio.min(1.0) / depths[1], ratio.max(1.0) / depths[0]];
+    let ratios = [own.drag / printed.drag, own.friction / printed.friction];
+    Some(ratios.map(|ratio| Known { ratio: range(ratio), cause: OWN_TABLES }))
+}
+
 /// Both coefficients beside those of Table 3.
-fn coefficients(title: &str, law: ForceLaw, found: &Separated) -> [Check; 2] {
-    let one = |name: &str, published: f64, ours: Estimate| {
-        let half = SIGMAS * (2.0_f64).sqrt() * ours.error;
-        let published = Estimate::new(published, 0.0);
-        let band = Band { half, reason: REASON };
-        Check::number(format!("{title}: {name}"), published, ours, band)
-            .unless_known(Some(&KNOWN), ours.value / published.value)
+fn coefficients(
+    title: &str,
+    law: ForceLaw,
+    found: &Separated,
+    known: Option<[Known; 2]>,
+) -> [Check; 2] {
+    let half = |one: Estimate| found.as_surely_as(SIGMAS) * (2.0_f64).sqrt() * one.error;
+    let compare = |name: &str, published: f64, ours: Estimate, known: Option<&Known>| {
+        let band = Band { half: half(ours), reason: REASON };
+        Check::number(format!("{title}: {name}"), Estimate::new(published, 0.0), ours, band)
+            .unless_known(known, ours.value / published)
     };
-    [one("α (kg/m)", law.drag, found.drag), one("f (N/m)", law.friction, found.friction)]
+    let [drag, friction] = known.map_or([None, None], |known| known.map(Some));
+    [
+        compare("α (kg/m)", law.drag, found.drag, drag.as_ref()),
+        compare("f (N/m)", law.friction, found.friction, friction.as_ref()),
+    ]
 }
 
 /// The mean forces over the law.

@@ -34,14 +34,15 @@ const EXCESS: f64 = 0.243;
 const ROUNDING: [f64; 2] = [0.5, 0.005];
 
 fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
-    let cells = matrix::cells(laboratory, |_| true)?;
+    let ran = matrix::run(laboratory, |_| true)?;
+    let cells = &ran.cells;
     let mut findings = Findings::default();
     let mut table = Table::new(
         "Slope of the stopping time over the impact speed (ms per m/s), a line through all speeds.",
         &["reading", "angle (deg)", "slope", "standard error"],
     );
     for reading in &READINGS {
-        let slopes = slopes(&cells, reading);
+        let slopes = slopes(cells, reading);
         for (angle, slope) in &slopes {
             table.rows.push(vec![
                 reading.name.to_owned(),
@@ -52,9 +53,10 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
         }
         findings.checks.push(regimes(reading, &slopes));
         findings.checks.push(critical(reading, &slopes));
-        findings.checks.extend(characteristic(reading, &matrix::of(&cells, reading, 90.0)));
+        findings.checks.extend(characteristic(reading, &matrix::of(cells, reading, 90.0)));
     }
     findings.tables.push(table);
+    findings.notes.extend(ran.note());
     Ok(findings)
 }
 
@@ -108,7 +110,14 @@ fn zero(line: &Fitted) -> Estimate {
 fn characteristic(reading: &Reading, cells: &[&Cell]) -> Vec<Check> {
     let points = series(cells, |record| record.stopping_time);
     let fitted = Form::Exponential.fit(&points.speeds, &points.means, points.errors.as_deref());
-    let Some(fitted) = fitted else { return Vec::new() };
+    let Some(fitted) = fitted else {
+        let what = format!("90°, {}: characteristic time and speed", reading.name);
+        return vec![Check::not_checkable(
+            what,
+            "0.16 s, 1 m/s",
+            "fewer than four speeds are there",
+        )];
+    };
     let [amplitude, rate, plateau] = [0, 1, 2].map(|at| fitted.coefficients[at]);
     let speed = libm::log(amplitude / (EXCESS * plateau)) / rate;
     // By the derivatives of that logarithm over the three coefficients.
@@ -117,11 +126,10 @@ fn characteristic(reading: &Reading, cells: &[&Cell]) -> Vec<Check> {
         .flat_map(|i| (0..3).map(move |j| (i, j)))
         .map(|(i, j)| by[i] * fitted.covariance[(i, j)] * by[j])
         .sum();
-    let reason = "the rounding of what is given, and two standard errors of ours";
-    let band = |rounding: f64, error: f64| Band {
-        half: (rounding * rounding + 4.0 * error * error).sqrt(),
-        reason,
-    };
+    let reason = "the rounding of what is given, and two standard errors of ours (Student's t)";
+    let sigmas = fitted.as_surely_as(2.0);
+    let band =
+        |rounding: f64, error: f64| Band { half: libm::hypot(rounding, sigmas * error), reason };
     let (time, speed) =
         (Estimate::new(plateau, fitted.error(2)), Estimate::new(speed, variance.max(0.0).sqrt()));
     vec![

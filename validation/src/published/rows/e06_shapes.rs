@@ -1,12 +1,12 @@
 //! E6: how deep cylinder, hemisphere and cone go at equal energy, and the logarithm of it.
 
-use crate::published::check::Check;
+use crate::published::check::{Check, Estimate};
 use crate::published::laboratory::Laboratory;
 use crate::published::plot::{Panel, Plot, Points};
 use crate::published::regression;
 use crate::published::row::{Findings, PublishedError, Row, Table};
 use crate::published::shapes::{self, Impact};
-use crate::three_shapes::SHAPES;
+use crate::three_shapes::{Case, SHAPES};
 
 pub(super) static ROW: Row = Row {
     id: "E6",
@@ -51,6 +51,7 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
         ));
         let Some(fitted) = fitted else { continue };
         let [scale, energy] = [fitted.coefficients[0], fitted.coefficients[1]];
+        let chi = MASS / (2.0 * scale);
         // χ = M/(2a) falls with a; β = Mg + c/a falls with a and rises with c.
         let by = [-energy / (scale * scale), 1.0 / scale];
         let covariance = |i: usize, j: usize| fitted.covariance[(i, j)];
@@ -61,8 +62,8 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
         let correlation = chi_beta / (fitted.error(0) * beta.max(0.0).sqrt());
         table.rows.push(vec![
             shapes::name(shape).to_owned(),
-            format!("{:.3}", MASS / (2.0 * scale)),
-            format!("{:.2}", MASS * GRAVITY + energy / scale),
+            Estimate::new(chi, chi * fitted.error(0) / scale).to_string(),
+            Estimate::new(MASS * GRAVITY + energy / scale, beta.max(0.0).sqrt()).to_string(),
             format!("{correlation:.2}"),
             format!("{r_squared:.3}"),
         ]);
@@ -90,12 +91,21 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
 
 /// Whether the order holds on every bed at every energy.
 fn order(impacts: &[Impact]) -> Check {
-    let depths = SHAPES.map(|shape| {
-        shapes::of(impacts, shape).into_iter().map(|(_, one)| one.depth_m).collect::<Vec<_>>()
-    });
-    let [cylinder, hemisphere, cone] = &depths;
-    let held: Vec<bool> =
-        cylinder.iter().zip(hemisphere).zip(cone).map(|((a, b), c)| a < b && b < c).collect();
+    let depth = |shape: &str, case: &Case| {
+        let same = |(other, _): &&Impact| {
+            other.model == shape
+                && other.seed == case.seed
+                && (other.speed - case.speed).abs() < 1e-9
+        };
+        impacts.iter().find(same).map(|(_, one)| one.depth_m)
+    };
+    let held: Vec<bool> = shapes::of(impacts, SHAPES[0])
+        .iter()
+        .filter_map(|(case, _)| {
+            let [cylinder, hemisphere, cone] = SHAPES.map(|shape| depth(shape, case));
+            Some(cylinder? < hemisphere? && hemisphere? < cone?)
+        })
+        .collect();
     let n = held.iter().filter(|held| **held).count();
     Check::trend(
         "depth at equal energy",

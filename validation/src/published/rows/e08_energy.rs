@@ -104,22 +104,22 @@ fn dissipation(impacts: &[Impact], tables: &mut Vec<Table>) -> Vec<Check> {
     }
     tables.push(table);
     let logs: Vec<f64> = points.iter().map(|(energy, ..)| libm::log(*energy)).collect();
-    let rising = |what: &str, published, of: fn(&(f64, f64, f64)) -> f64| {
+    let rising = |what: &str, published: &str, of: fn(&(f64, f64, f64)) -> f64| {
         let values: Vec<f64> = points.iter().map(of).collect();
         let fitted = regression::linear(&[logs.clone(), vec![1.0; logs.len()]], &values, None);
-        let (slope, r_squared) = fitted
-            .map_or((f64::NAN, f64::NAN), |fitted| (fitted.coefficients[0], fitted.r_squared));
-        Check::trend(
-            what,
-            (published, format!("slope over ln E {slope:.2e}, R² = {r_squared:.3}")),
-            "a positive slope that explains more than half of the variance",
-            slope > 0.0 && r_squared > 0.5,
-        )
+        let Some(fitted) = fitted else {
+            return Check::not_checkable(what, published, "fewer than two beds came to be calm");
+        };
+        let slope = Estimate::new(fitted.coefficients[0], fitted.error(0));
+        let reason = "two standard errors (Student's t) of what the line leaves over";
+        let band = Band { half: fitted.as_surely_as(2.0) * slope.error, reason };
+        let what = format!("{what}: slope, of a line that explains {:.3}", fitted.r_squared);
+        Check::positive(what, published, slope, band)
     };
     vec![
-        rising("T γ over ln E", "T γ = ζ ln E + c", |(_, time, share)| time * share),
+        rising("T γ (s) over ln E", "T γ = ζ ln E + c", |(_, time, share)| time * share),
         rising("γ over ln E", "rises with the energy", |(_, _, share)| *share),
-        rising("T over ln E", "rises with the energy", |(_, time, _)| *time),
+        rising("T (s) over ln E", "rises with the energy", |(_, time, _)| *time),
         Check::not_checkable(
             "ζ and c",
             "Fig. 15",

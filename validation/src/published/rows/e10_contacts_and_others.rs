@@ -10,13 +10,17 @@ use crate::published::check::{Band, Check, Estimate};
 use crate::published::laboratory::Laboratory;
 use crate::published::regression;
 use crate::published::row::{Findings, PublishedError, Row};
+use crate::published::rows::e10_trends;
 use crate::published::signatures;
 
 pub(super) static ROW: Row = Row {
     id: "E10",
     title: "Contacts whose answer is known; vertical impacts by the laws of other groups; published trends",
     source: "Chung & Ooi 2011; Katsuragi & Durian 2007; Ambroso et al. 2005; literature",
-    how: ["every case, and impacts on resistive media", "the same"],
+    how: [
+        "every case, impacts on resistive media, and 31 on planar beds of 1 040 and 3 000 discs",
+        "the same",
+    ],
     judge,
 };
 
@@ -32,12 +36,21 @@ const SPEEDS: [f64; 6] = [0.1, 0.5, 1.0, 2.0, 3.0, 4.0];
 /// Depth over the total drop distance: Ambroso, Santore, Abate & Durian 2005.
 const EXPONENT: f64 = 1.0 / 3.0;
 
-fn judge(_: &Laboratory<'_>) -> Result<Findings, PublishedError> {
+fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
+    let mut findings = without_beds()?;
+    findings.checks.extend(e10_trends::checks(laboratory)?);
+    findings.checks.extend(signatures::unanswered());
+    findings.tables.push(signatures::table());
+    Ok(findings)
+}
+
+/// What a few grains and a force law decide.
+pub(super) fn without_beds() -> Result<Findings, PublishedError> {
     // A few grains are no work for more than one thread.
     let mut checks: Vec<Check> =
         with_threads(1, || CASES.iter().map(|case| contacts(case)).collect())?;
     checks.extend(sphere()?);
-    Ok(Findings { checks, tables: vec![signatures::table()], ..Findings::default() })
+    Ok(Findings { checks, ..Findings::default() })
 }
 
 /// One case, all its rows together; the worst is shown.

@@ -18,28 +18,34 @@ pub(super) static ROW: Row = Row {
     judge,
 };
 
-/// Angle (deg) of the early and high force peak.
+/// Angle (deg) of the early and high force peak, and the speed (m/s) of Fig. 7.
 const STEEP: f64 = 45.0;
+const SPEED: f64 = 2.0;
+
+/// The article's scatter of depths and ranges between positions, as a share.
+const SCATTER: f64 = 0.06;
 
 /// Time that a force is averaged over (s): a twentieth of the shortest impact.
 const SMOOTH: f64 = 8e-3;
 
 fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
-    let cells = matrix::cells(laboratory, |_| true)?;
-    let angles = matrix::angles(&cells);
+    let ran = matrix::run(laboratory, |_| true)?;
+    let cells = &ran.cells;
+    let angles = matrix::angles(cells);
     let mut findings = Findings::default();
     for reading in &READINGS {
-        findings.checks.push(displacement(reading, &cells, &angles));
-        findings.checks.push(peaks(reading, &cells, angles[0]));
-        findings.checks.push(governed(reading, &cells));
-        findings.checks.push(straightness(reading, &cells));
-        findings.checks.push(regimes(reading, &cells));
+        findings.checks.push(displacement(reading, cells, &angles));
+        findings.checks.push(peaks(reading, cells, angles[0]));
+        findings.checks.push(governed(reading, cells));
+        findings.checks.push(straightness(reading, cells));
+        findings.checks.push(regimes(reading, cells));
     }
     findings.show(
         "e11-paths.svg",
         "Paths until the stop, as printed, at every angle and speed.",
-        paths(&cells, &angles)?,
+        paths(cells, &angles)?,
     );
+    findings.notes.extend(ran.note());
     findings.notes.push(
         "The asymmetric crater and the velocity fields of Figs 2 and 3 are not judged here; a run with \
          log.fields_at writes both."
@@ -57,7 +63,8 @@ fn same_speed<'a>(cells: &'a [Cell], reading: &Reading, speed: f64) -> Vec<&'a C
     cells.iter().filter(same).collect()
 }
 
-/// The whole displacement falls with the angle, at the speeds that every angle was run at.
+/// The whole displacement falls with the angle, at the speeds that every angle was run at: where by the article's own
+/// Table 1 it falls by more than its positions scatter. At 0.5 m/s from 75° to 90°, that table has it rise.
 fn displacement(reading: &Reading, cells: &[Cell], angles: &[f64]) -> Check {
     let speeds = matrix::of(cells, reading, angles[0]).into_iter().map(|cell| cell.speed);
     let common: Vec<Vec<&Cell>> = speeds
@@ -65,7 +72,14 @@ fn displacement(reading: &Reading, cells: &[Cell], angles: &[f64]) -> Check {
         .filter(|row| row.len() == angles.len())
         .collect();
     let way = |cell: &&Cell| mean(cell, |one| libm::hypot(one.deepest, one.reached));
-    let falls = |row: &Vec<&Cell>| row.windows(2).all(|pair| way(&pair[1]) < way(&pair[0]));
+    let published = |cell: &Cell| {
+        let range = cell.published.range.map_or(0.0, |line| line.at(cell.speed));
+        libm::hypot(cell.published.depth.at(cell.speed), range)
+    };
+    let is_asked = |pair: &[&Cell]| published(pair[1]) < (1.0 - SCATTER) * published(pair[0]);
+    let falls = |row: &Vec<&Cell>| {
+        row.windows(2).all(|pair| !is_asked(pair) || way(&pair[1]) < way(&pair[0]))
+    };
     let shown = common.iter().map(|row| {
         let ways: Vec<String> = row.iter().map(|cell| format!("{:.0}", 1e3 * way(cell))).collect();
         format!("{} m/s: {}", row[0].speed, ways.join(", "))
@@ -73,7 +87,7 @@ fn displacement(reading: &Reading, cells: &[Cell], angles: &[f64]) -> Check {
     Check::trend(
         format!("{}: whole displacement (mm), from flat to steep", reading.name),
         ("falls with the angle", shown.collect::<Vec<_>>().join("; ")),
-        "every step from angle to angle at every common speed",
+        "every step from angle to angle, at every common speed, by which Table 1 falls by more than 6 %",
         !common.is_empty() && common.iter().all(falls),
     )
 }
@@ -94,12 +108,9 @@ fn peak(record: &Record) -> (f64, f64) {
 
 /// The force peaks early and high at 45°, lower and later at the flattest angle.
 fn peaks(reading: &Reading, cells: &[Cell], flattest: f64) -> Check {
-    let fastest = |angle: f64| {
-        let own = matrix::of(cells, reading, angle);
-        own.into_iter().max_by(|a, b| a.speed.total_cmp(&b.speed))
-    };
     let of = |angle: f64| {
-        fastest(angle).map_or((f64::NAN, f64::NAN), |cell| {
+        let mut own = matrix::of(cells, reading, angle).into_iter();
+        own.find(|cell| (cell.speed - SPEED).abs() < 1e-9).map_or((f64::NAN, f64::NAN), |cell| {
             (mean(cell, |one| peak(one).0), mean(cell, |one| peak(one).1))
         })
     };
@@ -112,10 +123,10 @@ fn peaks(reading: &Reading, cells: &[Cell], flattest: f64) -> Check {
         1e3 * flat.0
     );
     Check::trend(
-        format!("{}: largest force over the mass at the fastest impacts", reading.name),
+        format!("{}: largest force over the mass at {SPEED} m/s", reading.name),
         ("early and high at 45°, much lower and later at 5°", ours),
-        "lower, and not earlier, at the flattest angle; over 8 ms",
-        flat.1 < steep.1 && flat.0 >= steep.0,
+        "lower and later at the flattest angle; over 8 ms",
+        flat.1 < steep.1 && flat.0 > steep.0,
     )
 }
 
