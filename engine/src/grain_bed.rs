@@ -22,7 +22,7 @@ use crate::recessive::RecessiveWork;
 use crate::surface::Placement;
 
 /// Gap up to which grains are listed as neighbours, in mean grain diameters.
-const PAIR_MARGIN: f64 = 0.2;
+const PAIR_MARGIN: f64 = 0.25;
 
 /// Gap up to which grains are listed as near the intruder, in mean grain diameters.
 const INTRUDER_MARGIN: f64 = 0.4;
