@@ -93,8 +93,8 @@ fn field(column: &TableColumn) -> Written<Arc<Type>> {
         Cells::Texts(_) => Physical::BYTE_ARRAY,
         Cells::Flags(_) => Physical::BOOLEAN,
     };
-    let mut builder = Type::primitive_type_builder(&column.name, physical)
-        .with_repetition(Repetition::OPTIONAL);
+    let mut builder =
+        Type::primitive_type_builder(&column.name, physical).with_repetition(Repetition::OPTIONAL);
     if physical == Physical::BYTE_ARRAY {
         builder = builder.with_converted_type(ConvertedType::UTF8);
     }

@@ -7,6 +7,10 @@ use serde::{Deserialize, Serialize};
 /// Marks a candidate that remembers nothing, because it does not touch.
 pub(crate) const APART: u32 = u32::MAX;
 
+/// Room for so many records more, and for an eighth of those that there are, is taken at a time: twice
+/// as much each time, as vectors do, would cost a large bed more memory than its contacts.
+const MORE_RECORDS: usize = 32;
+
 /// Candidate contacts sorted by key, with the history of those that touch.
 ///
 /// About half of the candidates touch; only they have a record in the histories. A rebuild of the
@@ -22,19 +26,12 @@ pub struct ContactTable {
     free: Vec<u32>,
     /// Numbers of each stage in a record.
     history_len: Vec<usize>,
-    #[serde(skip)]
-    spare: Spare,
 }
 
-#[derive(Clone, Debug, Default)]
-struct Spare {
+/// Room to merge two lists of candidates in.
+#[derive(Debug, Default)]
+pub struct Merger {
     records: Vec<u32>,
-}
-
-impl PartialEq for Spare {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
 }
 
 impl ContactTable {
@@ -104,7 +101,11 @@ impl ContactTable {
         let record = self.free.pop().unwrap_or_else(|| {
             let end = self.histories.len();
             // A law without memory needs records that differ all the same.
-            self.histories.resize(end + len.max(1), 0.0);
+            let new_end = end + len.max(1);
+            if new_end > self.histories.capacity() {
+                self.histories.reserve_exact(end / 8 + MORE_RECORDS * len.max(1));
+            }
+            self.histories.resize(new_end, 0.0);
             end as u32
         });
         self.records[row] = record;
@@ -132,26 +133,25 @@ impl ContactTable {
     }
 
     /// Replaces the candidates by `keys` (ascending); a contact in both lists keeps its history.
-    /// The old keys are handed back in `keys`, to be reused as a buffer.
-    pub(crate) fn rekey(&mut self, keys: &mut Vec<[u32; 2]>) {
+    pub(crate) fn rekey(&mut self, keys: &[[u32; 2]], merger: &mut Merger) {
         debug_assert!(keys.is_sorted());
-        std::mem::swap(&mut self.keys, keys);
-        let mut records = std::mem::take(&mut self.spare.records);
+        let records = &mut merger.records;
         records.clear();
-        records.resize(self.keys.len(), APART);
-        std::mem::swap(&mut self.records, &mut records);
+        records.resize(keys.len(), APART);
         let mut to = 0;
-        for (&key, &record) in keys.iter().zip(&records) {
-            while to < self.keys.len() && self.keys[to] < key {
+        for row in 0..self.keys.len() {
+            let (key, record) = (self.keys[row], self.records[row]);
+            while to < keys.len() && keys[to] < key {
                 to += 1;
             }
-            if to < self.keys.len() && self.keys[to] == key {
-                self.records[to] = record;
+            if to < keys.len() && keys[to] == key {
+                records[to] = record;
             } else {
                 self.forget(record);
             }
         }
-        self.spare.records = records;
+        replace(&mut self.keys, keys);
+        replace(&mut self.records, records);
     }
 
     /// Whether the parts fit together, for a table that was read from a file: contacts of the grains
@@ -183,6 +183,15 @@ impl ContactTable {
     }
 }
 
+/// Makes `list` a copy of `with`, and takes hardly more memory than that needs.
+fn replace<T: Copy>(list: &mut Vec<T>, with: &[T]) {
+    list.clear();
+    if with.len() > list.capacity() {
+        list.reserve_exact(with.len() + with.len() / 16);
+    }
+    list.extend_from_slice(with);
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -190,10 +199,10 @@ mod tests {
     #[test]
     fn a_contact_keeps_its_history_when_others_come_and_go() {
         let mut table = ContactTable::new(&[1, 2]);
-        table.rekey(&mut vec![[0, 3], [1, 2], [4, 7]]);
+        table.rekey(&[[0, 3], [1, 2], [4, 7]], &mut Merger::default());
         table.restore_row(1, 1, &[5.0, 6.0]);
         table.restore_row(0, 2, &[7.0]);
-        table.rekey(&mut vec![[0, 1], [1, 2], [1, 9]]);
+        table.rekey(&[[0, 1], [1, 2], [1, 9]], &mut Merger::default());
         assert!(table.is_touching(1) && !table.is_touching(0) && !table.is_touching(2));
         assert_eq!(table.history(1, 1), [5.0, 6.0]);
         assert_eq!(table.history(0, 1), [0.0]);
@@ -203,7 +212,7 @@ mod tests {
     #[test]
     fn a_contact_that_touches_anew_remembers_nothing() {
         let mut table = ContactTable::new(&[2]);
-        table.rekey(&mut vec![[0, 3], [1, 2]]);
+        table.rekey(&[[0, 3], [1, 2]], &mut Merger::default());
         table.restore_row(0, 0, &[5.0, 6.0]);
         table.open(0);
         let record = table.record(1) as usize;

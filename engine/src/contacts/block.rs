@@ -4,19 +4,17 @@ use std::ops::Range;
 
 use arrayvec::ArrayVec;
 
+use super::bench::Bench;
 use super::pairs::{Near, Pairs, Side};
 use super::tally::Tally;
 use crate::body::Part;
 use crate::contact::geometry::{loads_on_grain_and_part, with_surface};
 use crate::contact::table::{APART, ContactTable};
 use crate::contact::{Contact, Partner, Response};
-use crate::contacts::stage::ContactStage;
-use crate::contacts::stage::{Batch, Histories, Sweep};
+use crate::contacts::stage::{Batch, ContactStage, Histories, Sweep};
 use crate::dimension::{Dimension, Motion, Quad, Quads};
 use crate::grains::Grains;
 use crate::lanes::{Four, Lanes, MOST_LANES};
-use crate::math::Vec3;
-use crate::surface::SurfacePoint;
 
 /// Groups of as many contacts as there are lanes that are evaluated together.
 const GROUPS: usize = 16;
@@ -36,7 +34,6 @@ pub(super) struct Block {
     /// Per part of walls and intruder.
     pub(super) surfaces: Vec<ContactTable>,
     pub(super) tally: Tally,
-    pub(super) bench: Bench,
 }
 
 /// Loads from the halo of another block.
@@ -46,19 +43,6 @@ pub(super) struct Delivery {
     pub(super) from: u32,
     /// Index of the grain within its block.
     pub(super) grain: u32,
-}
-
-/// Buffers that are kept from step to step.
-#[derive(Default)]
-pub(super) struct Bench {
-    pub(super) points: Vec<Vec3>,
-    points_half: Vec<Vec3>,
-    pub(super) nearest: Vec<SurfacePoint>,
-    nearest_half: Vec<SurfacePoint>,
-    /// As long as there are candidates; how many of them are near is known anew in each step.
-    near: Vec<Near>,
-    near_rows: Vec<u32>,
-    pub(super) keys: Vec<[u32; 2]>,
 }
 
 /// Groups of contacts on their way through the laws.
@@ -142,11 +126,12 @@ impl Block {
         grains: &Grains,
         stages: &[Box<dyn ContactStage>],
         dt: f64,
+        bench: &mut Bench,
     ) where
         dyn ContactStage: Sweep<f64, N> + Sweep<Four, N>,
     {
-        let n_near = self.find_near::<D, N>(grains);
-        let near = &self.bench.near[..n_near];
+        let n_near = self.find_near::<D, N>(grains, &mut bench.near);
+        let near = &bench.near[..n_near];
         let mut pairs = Pairs {
             grains,
             first: self.first as u32,
@@ -168,15 +153,18 @@ impl Block {
     }
 
     /// Writes which candidates overlap, or did a step ago, and returns how many.
-    fn find_near<D: Dimension<N>, const N: usize>(&mut self, grains: &Grains) -> usize {
-        let mut near = std::mem::take(&mut self.bench.near);
+    fn find_near<D: Dimension<N>, const N: usize>(
+        &self,
+        grains: &Grains,
+        near: &mut Vec<Near>,
+    ) -> usize {
         let n_rows = self.pairs.keys().len();
         let in_lanes = n_rows - n_rows % Four::COUNT;
-        near.resize(n_rows, Near::default());
-        let found = self.find_near_in::<D, Four, N>(grains, 0..in_lanes, (&mut near, 0));
-        let found = self.find_near_in::<D, f64, N>(grains, in_lanes..n_rows, (&mut near, found));
-        self.bench.near = near;
-        found
+        if near.len() < n_rows {
+            near.resize(n_rows, Near::default());
+        }
+        let found = self.find_near_in::<D, Four, N>(grains, 0..in_lanes, (near, 0));
+        self.find_near_in::<D, f64, N>(grains, in_lanes..n_rows, (near, found))
     }
 
     /// Writes those of `rows` behind the first of `near`, and returns how many it then has.
@@ -217,6 +205,7 @@ impl Block {
         stages: &[Box<dyn ContactStage>],
         part: (usize, &Part),
         dt: f64,
+        bench: &mut Bench,
     ) where
         dyn ContactStage: Sweep<f64, N>,
     {
@@ -226,7 +215,6 @@ impl Block {
             return;
         }
         let placement = &part.placement;
-        let bench = &mut self.bench;
         let grain = |i: u32| {
             let motion = grains.motion_in::<D, N>(i as usize);
             let position = grains.period.image_near(motion.position, placement.position);

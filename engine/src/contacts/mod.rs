@@ -5,6 +5,7 @@
 //! its own grains and for its halo, grains of other blocks that touch them; those are added up when the
 //! grains are kicked. Nothing is locked, and every sum has one order.
 
+mod bench;
 mod block;
 mod pairs;
 mod rebound;
@@ -27,13 +28,15 @@ use crate::neighbours::CellGrid;
 use crate::parallel::{BLOCK, block_of};
 use crate::surface::Wrench;
 
-use block::{Bench, Block, Delivery};
+use bench::{Bench, Benches};
+use block::{Block, Delivery};
 use tally::{Deepest, Tally};
 
 /// The contacts of a bed, by block of grains.
 pub(crate) struct Contacts {
     stages: Vec<Box<dyn ContactStage>>,
     blocks: Vec<Block>,
+    benches: Benches,
 }
 
 /// The sums of a step over all contacts.
@@ -70,10 +73,9 @@ impl Contacts {
                 inbox: Vec::new(),
                 surfaces: vec![ContactTable::new(&history_len); n_parts],
                 tally: Tally::new(n_channels, n_parts),
-                bench: Bench::default(),
             })
             .collect();
-        Self { stages, blocks }
+        Self { stages, blocks, benches: Benches::new() }
     }
 
     pub(crate) fn stages(&self) -> &[Box<dyn ContactStage>] {
@@ -96,14 +98,14 @@ impl Contacts {
 
     /// Lists again which grains are nearer to each other than `margin` (m).
     pub(crate) fn list_pairs(&mut self, grains: &Grains, grid: &CellGrid, margin: f64) {
+        let benches = &self.benches;
         self.blocks.par_iter_mut().for_each(|block| {
-            let mut keys = std::mem::take(&mut block.bench.keys);
+            let Bench { keys, merger, .. } = &mut *benches.own();
             keys.clear();
             for i in block.first..(block.first + BLOCK).min(grains.len()) {
-                grid.pairs_of(grains, i, margin, &mut keys);
+                grid.pairs_of(grains, i, margin, keys);
             }
-            block.pairs.rekey(&mut keys);
-            block.bench.keys = keys;
+            block.pairs.rekey(keys, merger);
         });
         self.address_loads(grains.len());
     }
@@ -111,8 +113,9 @@ impl Contacts {
     /// Lists again which grains are nearer to `part` than `margin` (m).
     pub(crate) fn list_surface(&mut self, grains: &Grains, part: (usize, &Part), margin: f64) {
         let (index, part) = part;
+        let benches = &self.benches;
         self.blocks.par_iter_mut().for_each(|block| {
-            let bench = &mut block.bench;
+            let bench = &mut *benches.own();
             let end = (block.first + BLOCK).min(grains.len());
             let here = block.first..end;
             let placement = &part.placement;
@@ -121,15 +124,13 @@ impl Contacts {
             let positions = here.clone().map(|i| grains.drifted(i));
             bench.points.extend(positions.map(|x| placement.to_body(image(x))));
             part.surface.closest_many(&bench.points, &mut bench.nearest);
-            let mut keys = std::mem::take(&mut bench.keys);
-            keys.clear();
+            bench.keys.clear();
             for (i, nearest) in here.zip(&bench.nearest) {
                 if nearest.gap < grains.radius[i] + margin {
-                    keys.push([i as u32, 0]);
+                    bench.keys.push([i as u32, 0]);
                 }
             }
-            block.surfaces[index].rekey(&mut keys);
-            bench.keys = keys;
+            block.surfaces[index].rekey(&bench.keys, &mut bench.merger);
         });
     }
 
@@ -185,15 +186,16 @@ impl Contacts {
     ) where
         dyn ContactStage: Sweep<f64, N> + Sweep<Four, N>,
     {
-        let stages = &self.stages[..];
+        let (stages, benches) = (&self.stages[..], &self.benches);
         self.blocks.par_iter_mut().for_each(|block| {
+            let bench = &mut *benches.own();
             let own = (block.first + BLOCK).min(grains.len()) - block.first;
             block.loads.resize((own + block.halo.len()) * D::Load::LEN, Quad::ZERO);
             block.loads.fill(Quad::ZERO);
             block.tally.clear();
-            block.sweep_pairs::<D, N>(grains, stages, dt);
+            block.sweep_pairs::<D, N>(grains, stages, dt, bench);
             for (index, part) in parts.into_iter().flatten().enumerate() {
-                block.sweep_surface::<D, N>(grains, stages, (index, part), dt);
+                block.sweep_surface::<D, N>(grains, stages, (index, part), dt, bench);
             }
         });
     }
