@@ -93,8 +93,8 @@ fn field(column: &TableColumn) -> Written<Arc<Type>> {
         Cells::Texts(_) => Physical::BYTE_ARRAY,
         Cells::Flags(_) => Physical::BOOLEAN,
     };
-    let mut builder = Type::primitive_type_builder(&column.name, physical)
-        .with_repetition(Repetition::OPTIONAL);
+    let mut builder =
+        Type::primitive_type_builder(&column.name, physical).with_repetition(Repetition::OPTIONAL);
     if physical == Physical::BYTE_ARRAY {
         builder = builder.with_converted_type(ConvertedType::UTF8);
     }
@@ -135,8 +135,10 @@ mod tests {
         let rows: Vec<Vec<(String, Field)>> = reader
             .get_row_iter(None)
             .expect("rows")
-            .map(|row| row.expect("a row").get_column_iter().map(|(n, f)| (n.clone(), f.clone())))
-            .map(Iterator::collect)
+            .map(|row| {
+                let row = row.expect("a row");
+                row.get_column_iter().map(|(name, field)| (name.clone(), field.clone())).collect()
+            })
             .collect();
         let named = |name: &str, field| (name.to_owned(), field);
         assert_eq!(
