@@ -40,7 +40,7 @@ pub fn run(planned: &Planned, folder: &Folder, place: &Place<'_>) -> Result<(), 
     place.side_by_side(Stage::Impacts, &missing, (&work, before), |index, control| {
         let done = point(planned, index, (folder, place, &failures), control)?;
         conclude(&planned.plan.points[index], &done, planned.plan.keep_logs, folder)
-            .map_err(|error| error.into_campaign())
+            .map_err(FolderError::into_campaign)
     })?;
     Ok(())
 }
@@ -65,7 +65,7 @@ pub fn run_one(
     let work = |_: &usize| 1.0;
     place.side_by_side(Stage::Impacts, &[index], (&work, 0), |index, control| {
         let done = point(planned, index, (folder, place, &failures), control)?;
-        conclude(only, &done, planned.plan.keep_logs, folder).map_err(|error| error.into_campaign())
+        conclude(only, &done, planned.plan.keep_logs, folder).map_err(FolderError::into_campaign)
     })?;
     Ok(())
 }

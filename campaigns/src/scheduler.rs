@@ -3,7 +3,6 @@
 //! Every task of the scheduler is one point and does what is not done, so that a task that is killed,
 //! requeued or submitted twice does no point twice.
 
-use std::ffi::OsString;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -116,7 +115,7 @@ impl Scheduler {
 
     fn arguments(self, name: &str, block: &Block, script: &str, folder: &str) -> Vec<String> {
         let Block { offset, array } = block;
-        let arguments: Vec<String> = match self {
+        match self {
             Self::Slurm => vec![
                 format!("--job-name={name}"),
                 format!("--array={array}"),
@@ -141,14 +140,13 @@ impl Scheduler {
             ]
             .map(str::to_owned)
             .to_vec(),
-        };
-        arguments
+        }
     }
 
     fn call(self, arguments: &[String]) -> Result<(), SchedulerError> {
         let (program, hint) = self.program();
         let output = Command::new(program)
-            .args(arguments.iter().map(OsString::from))
+            .args(arguments)
             .output()
             .map_err(|source| SchedulerError::NotThere { program, source, hint })?;
         match output.status.success() {

@@ -135,8 +135,10 @@ mod tests {
         let rows: Vec<Vec<(String, Field)>> = reader
             .get_row_iter(None)
             .expect("rows")
-            .map(|row| row.expect("a row").get_column_iter().map(|(n, f)| (n.clone(), f.clone())))
-            .map(Iterator::collect)
+            .map(|row| {
+                let row = row.expect("a row");
+                row.get_column_iter().map(|(name, field)| (name.clone(), field.clone())).collect()
+            })
             .collect();
         let named = |name: &str, field| (name.to_owned(), field);
         assert_eq!(

@@ -90,7 +90,7 @@ fn responses(results: &Results, varied: &[Varied]) -> Result<Vec<Part>, PictureE
             .map(|one| one.headline().and_then(response.of).map(|value| response.scale * value))
             .collect();
         let found: Vec<f64> = values.iter().flatten().copied().collect();
-        if across.is_empty() || found.iter().all(|value| *value == found[0]) {
+        if across.is_empty() || found.iter().all(|value| value.total_cmp(&found[0]).is_eq()) {
             continue;
         }
         let caption = format!("{} of every point that is done.", sentence(response.title));

@@ -67,6 +67,8 @@ impl SampledRange {
             Scale::Linear => from + share * (to - from),
             Scale::Logarithmic => from * libm::pow(to / from, share),
         };
+        // Rounding must not lead beyond an end that a model just takes.
+        let value = value.clamp(from.min(to), from.max(to));
         let value = match &self.unit {
             Some(unit) => format!("\"{value} {unit}\""),
             None => format!("{value:?}"),
@@ -164,7 +166,7 @@ pub(super) fn range(reader: &Reader<'_>, key: String, entry: &Entry) -> Option<S
     if unit != other {
         return refuse("the ends have different units");
     }
-    if from == to || (scale == Scale::Logarithmic && !(from > 0.0 && to > 0.0)) {
+    if from.total_cmp(&to).is_eq() || (scale == Scale::Logarithmic && !(from > 0.0 && to > 0.0)) {
         return refuse("nothing can be drawn from this range");
     }
     Some(SampledRange { key, from, to, unit, scale, span: Some(entry.node.span) })
