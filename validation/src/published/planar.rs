@@ -118,7 +118,9 @@ mod tests {
 
     #[test]
     fn only_the_bed_without_friction_has_none() {
-        for (bed, expected) in [(Bed::Deep, 0.28), (Bed::Shallow, 0.28), (Bed::Frictionless, 0.0)] {
+        for (bed, expected) in
+            [(Bed::Deep, 0.28_f64), (Bed::Shallow, 0.28), (Bed::Frictionless, 0.0)]
+        {
             let [fall, ..] = Fall::everywhere(bed, 1.0);
             let job = fall.job().expect("a model");
             let toml = job.model.resolved_toml();
@@ -127,7 +129,10 @@ mod tests {
                 frictions.filter_map(|(_, value)| value.trim().parse().ok()).collect();
             // Of the rain and of the contacts, at least.
             assert!(frictions.len() > 1, "{bed:?}: {frictions:?}");
-            assert!(frictions.iter().all(|one| *one == expected), "{bed:?}: {frictions:?}");
+            assert!(
+                frictions.iter().all(|one| one.to_bits() == expected.to_bits()),
+                "{bed:?}: {frictions:?}"
+            );
         }
     }
 }

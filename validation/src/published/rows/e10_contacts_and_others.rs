@@ -18,7 +18,7 @@ pub(super) static ROW: Row = Row {
     title: "Contacts whose answer is known; vertical impacts by the laws of other groups; published trends",
     source: "Chung & Ooi 2011; Katsuragi & Durian 2007; Ambroso et al. 2005; literature",
     how: [
-        "every case, impacts on resistive media, and 31 on planar beds of 1 040 and 3 000 discs",
+        "every case, impacts on resistive media, and 35 on planar beds of 1 040 and 3 000 discs",
         "the same",
     ],
     judge,
