@@ -172,14 +172,15 @@ impl Impacts for Place<'_> {
         let pace = Mutex::new(Rate::default());
         let work = |&at: &usize| jobs[at].work();
         let ran = self.side_by_side(Stage::Impacts, &missing, (&work, done), |at, heed| {
-            match jobs[at].run(self.cache, heed) {
+            let job = &jobs[at];
+            match job.run(self.cache, heed) {
                 Ok(Some(record)) => {
                     pace.lock().unwrap_or_else(PoisonError::into_inner).learn(&record);
                     Job::keep(self.cache, &keys[at], &record).map(|()| Some(record))
                 }
                 Ok(None) => Err(CampaignError::Interrupted),
                 Err(CampaignError::Step(why)) => {
-                    let name = &jobs[at].model.run.name;
+                    let name = &job.model.run.name;
                     self.watch.warn(&format!("an impact of {name} is left out: {why}"));
                     Ok(None)
                 }
