@@ -171,21 +171,21 @@ impl Impacts for Place<'_> {
         let done = jobs.len() - missing.len();
         let pace = Mutex::new(Rate::default());
         let work = |&at: &usize| jobs[at].work();
-        let ran = self.side_by_side(Stage::Impacts, &missing, (&work, done), |at, heed| match jobs
-            [at]
-            .run(self.cache, heed)
-        {
-            Ok(Some(record)) => {
-                pace.lock().unwrap_or_else(PoisonError::into_inner).learn(&record);
-                Job::keep(self.cache, &keys[at], &record).map(|()| Some(record))
+        let ran = self.side_by_side(Stage::Impacts, &missing, (&work, done), |at, heed| {
+            let job = &jobs[at];
+            match job.run(self.cache, heed) {
+                Ok(Some(record)) => {
+                    pace.lock().unwrap_or_else(PoisonError::into_inner).learn(&record);
+                    Job::keep(self.cache, &keys[at], &record).map(|()| Some(record))
+                }
+                Ok(None) => Err(CampaignError::Interrupted),
+                Err(CampaignError::Step(why)) => {
+                    let name = &job.model.run.name;
+                    self.watch.warn(&format!("an impact of {name} is left out: {why}"));
+                    Ok(None)
+                }
+                Err(other) => Err(other),
             }
-            Ok(None) => Err(CampaignError::Interrupted),
-            Err(CampaignError::Step(why)) => {
-                let name = &jobs[at].model.run.name;
-                self.watch.warn(&format!("an impact of {name} is left out: {why}"));
-                Ok(None)
-            }
-            Err(other) => Err(other),
         });
         // What was learned of this machine stays, also where the campaign does not end.
         pace.into_inner().unwrap_or_else(PoisonError::into_inner).store(self.cache);
