@@ -1,9 +1,10 @@
 //! The folder of a campaign: a plan that never changes, and a folder per point.
 
 use std::fs::{self, File, TryLockError};
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
+use configs::engine::checkpoint::write_whole;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
@@ -194,17 +195,9 @@ fn pretty(value: &impl Serialize) -> String {
     format!("{value:#}\n")
 }
 
-/// Writes a file whole or not at all, and brings its name to the disk.
+/// Writes a file whole or not at all.
 fn write(path: &Path, text: &str) -> Result<(), FolderError> {
-    let partial = path.with_added_extension("partial");
-    File::create(&partial)
-        .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()))
-        .and_then(|()| fs::rename(&partial, path))
-        .and_then(|()| match path.parent().filter(|_| cfg!(unix)) {
-            Some(folder) => File::open(folder)?.sync_all(),
-            None => Ok(()),
-        })
-        .map_err(|source| failed("write", path, source))
+    write_whole(path, text.as_bytes()).map_err(|source| failed("write", path, source))
 }
 
 /// What is in a file of JSON; `None` if it is not there.

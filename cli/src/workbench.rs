@@ -1,10 +1,11 @@
 //! What `compare` and `diagnose` share: a set, models before it, and a folder for results.
 
-use std::fs::{self, File};
-use std::io::{ErrorKind, Write};
+use std::fs;
+use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 
 use clap::Args;
+use configs::engine::checkpoint;
 use configs::{LoadOptions, Loaded, Model, ModelSource};
 use validation::bench::BenchError;
 use validation::measurement::{self, MeasurementSet, SetError};
@@ -327,16 +328,8 @@ impl Results {
 
 /// Writes the file `path` whole or not at all.
 pub(crate) fn write_whole(path: &Path, text: &str) -> CommandResult {
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(".partial");
-    let partial = PathBuf::from(partial);
-    File::create(&partial)
-        .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()))
-        .and_then(|()| fs::rename(&partial, path))
-        .map_err(|error| {
-            // What is there of it is worth nothing, and takes room.
-            drop(fs::remove_file(&partial));
-            let shown = format!("cannot write {}", path.display());
-            CommandError::Failed(anyhow::Error::new(error).context(shown))
-        })
+    checkpoint::write_whole(path, text.as_bytes()).map_err(|error| {
+        let shown = format!("cannot write {}", path.display());
+        CommandError::Failed(anyhow::Error::new(error).context(shown))
+    })
 }

@@ -142,6 +142,20 @@ impl CheckpointError {
     }
 }
 
+/// Writes the file `path` whole or not at all, and brings its name to the disk.
+///
+/// # Errors
+/// If the system refuses: then what was there is there still, and nothing else.
+pub fn write_whole(path: &Path, content: &[u8]) -> io::Result<()> {
+    let partial = with_suffix(path, ".partial");
+    File::create(&partial)
+        .and_then(|mut file| file.write_all(content).and_then(|()| file.sync_all()))
+        .and_then(|()| fs::rename(&partial, path))
+        // What is there of it is worth nothing, and takes room.
+        .inspect_err(|_| drop(fs::remove_file(&partial)))
+        .and_then(|()| sync_folder_of(path))
+}
+
 /// `path` with `suffix` behind its name.
 #[must_use]
 pub fn with_suffix(path: &Path, suffix: &str) -> PathBuf {

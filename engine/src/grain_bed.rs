@@ -7,7 +7,7 @@ use crate::body::{Mechanism, Part};
 use crate::boundary::{Absorber, Container};
 use crate::contact::Partner;
 use crate::contacts::stage::ContactStage;
-use crate::contacts::{ContactSums, Contacts, Memory, SavedBlock};
+use crate::contacts::{Contacts, Memory, SavedBlock, Tally};
 use crate::dimension::{Dimension, Planar, Spatial, Stride};
 use crate::error::StepError;
 use crate::footprint::Footprint;
@@ -39,7 +39,7 @@ pub struct GrainBed {
     walls: Vec<Part>,
     recessive: RecessiveWork,
     contacts: Contacts,
-    sums: ContactSums,
+    sums: Tally,
     sums_of_grains: Vec<SumsOfGrains>,
     grid: CellGrid,
     pair_list: Freshness,
@@ -117,18 +117,16 @@ impl GrainBed {
             .map(|surface| Part { surface, placement: Placement::fixed(), partner: Partner::Wall })
             .collect();
         let mean_diameter = 2.0 * grains.radius.iter().sum::<f64>() / grains.len() as f64;
+        let n_parts = walls.len() + n_intruder_parts;
+        let contacts = Contacts::new(stages, (grains.space, grains.len()), n_parts);
         let mut bed = Self {
             gravity,
             absorber: container.absorber(resting.space),
             container,
             forces: GrainForces::new(),
             recessive: RecessiveWork::new(n_intruder_parts),
-            contacts: Contacts::new(
-                stages,
-                (grains.space, grains.len()),
-                walls.len() + n_intruder_parts,
-            ),
-            sums: ContactSums::default(),
+            sums: contacts.no_sums(),
+            contacts,
             sums_of_grains: vec![SumsOfGrains::default(); grains.len().div_ceil(BLOCK)],
             grid: CellGrid::default(),
             pair_list: Freshness::stale(PAIR_MARGIN * mean_diameter),

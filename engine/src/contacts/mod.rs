@@ -20,39 +20,21 @@ use crate::contact::Partner;
 use crate::contact::table::ContactTable;
 use crate::contacts::stage::{ContactStage, Sweep};
 use crate::dimension::{Dimension, Planar, Quad, Quads, Spatial};
-use crate::footprint::Footprint;
 use crate::grains::{Grains, Space};
 use crate::lanes::Four;
 use crate::math::Vec3;
 use crate::neighbours::CellGrid;
 use crate::parallel::{BLOCK, block_of};
-use crate::surface::Wrench;
 
 use bench::{Bench, Benches};
 use block::{Block, Delivery};
-use tally::{Deepest, Tally};
+pub(crate) use tally::Tally;
 
 /// The contacts of a bed, by block of grains.
 pub(crate) struct Contacts {
     stages: Vec<Box<dyn ContactStage>>,
     blocks: Vec<Block>,
     benches: Benches,
-}
-
-/// The sums of a step over all contacts.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct ContactSums {
-    /// Per stage and channel [J]: held now, or lost in this step, at grains and intruder.
-    pub(crate) energy: Vec<f64>,
-    /// The same at walls.
-    pub(crate) wall_energy: Vec<f64>,
-    /// Per part.
-    pub(crate) wrenches: Vec<Wrench>,
-    /// Per part: what grains do to it that its body does not feel.
-    pub(crate) unfelt: Vec<Wrench>,
-    /// Per part; empty for walls.
-    pub(crate) footprints: Vec<Footprint>,
-    pub(crate) overlap: Deepest,
 }
 
 impl Contacts {
@@ -206,40 +188,17 @@ impl Contacts {
         Loads { blocks: &self.blocks, own: loads, inbox: inbox.iter() }
     }
 
-    /// Adds up the blocks, in order.
-    pub(crate) fn sum(&self, sums: &mut ContactSums) {
+    /// Room for the sums over all blocks.
+    pub(crate) fn no_sums(&self) -> Tally {
         let n_channels = self.stages.iter().map(|stage| stage.channels().len()).sum();
-        let n_parts = self.blocks.first().map_or(0, |block| block.surfaces.len());
-        sums.energy.clear();
-        sums.energy.resize(n_channels, 0.0);
-        sums.wall_energy.clear();
-        sums.wall_energy.resize(n_channels, 0.0);
-        sums.wrenches.clear();
-        sums.wrenches.resize(n_parts, Wrench::default());
-        sums.unfelt.clear();
-        sums.unfelt.resize(n_parts, Wrench::default());
-        sums.footprints.clear();
-        sums.footprints.resize(n_parts, Footprint::default());
-        sums.overlap = Deepest::default();
+        Tally::new(n_channels, self.blocks.first().map_or(0, |block| block.surfaces.len()))
+    }
+
+    /// Adds up the blocks, in order.
+    pub(crate) fn sum(&self, sums: &mut Tally) {
+        sums.clear();
         for Block { tally, .. } in &self.blocks {
-            for (sum, part) in sums.energy.iter_mut().zip(&tally.energy) {
-                *sum += part;
-            }
-            for (sum, part) in sums.wall_energy.iter_mut().zip(&tally.wall_energy) {
-                *sum += part;
-            }
-            for (sum, part) in sums.wrenches.iter_mut().zip(&tally.wrenches) {
-                sum.add(part);
-            }
-            for (sum, part) in sums.unfelt.iter_mut().zip(&tally.unfelt) {
-                sum.add(part);
-            }
-            for (sum, part) in sums.footprints.iter_mut().zip(&tally.footprints) {
-                sum.add(part);
-            }
-            if tally.overlap.relative > sums.overlap.relative {
-                sums.overlap = tally.overlap;
-            }
+            sums.add(tally);
         }
     }
 

@@ -1,4 +1,4 @@
-//! What the contacts of one block add to the sums of the bed.
+//! What contacts add up to in a step: those of one block, or all of a bed.
 
 use crate::footprint::Footprint;
 use crate::lanes::{Lanes, SimdBool};
@@ -14,21 +14,21 @@ pub(crate) struct Deepest {
     pub(crate) grain: u32,
 }
 
-/// What one block adds to the sums of the bed.
-#[derive(Default)]
+/// Sums over contacts.
+#[derive(Debug)]
 pub(crate) struct Tally {
-    /// Per stage and channel: energies (J) of contacts between grains and with the intruder; empty if
-    /// nothing is booked.
-    pub(super) energy: Vec<f64>,
+    /// Per stage and channel: energies (J) of contacts between grains and with the intruder, held now or
+    /// lost in this step; empty if nothing is booked.
+    pub(crate) energy: Vec<f64>,
     /// The same for contacts with walls.
-    pub(super) wall_energy: Vec<f64>,
+    pub(crate) wall_energy: Vec<f64>,
     /// Per part.
-    pub(super) wrenches: Vec<Wrench>,
+    pub(crate) wrenches: Vec<Wrench>,
     /// Per part: what grains do to it that its body does not feel.
-    pub(super) unfelt: Vec<Wrench>,
+    pub(crate) unfelt: Vec<Wrench>,
     /// Per part; empty for walls.
-    pub(super) footprints: Vec<Footprint>,
-    pub(super) overlap: Deepest,
+    pub(crate) footprints: Vec<Footprint>,
+    pub(crate) overlap: Deepest,
 }
 
 impl Tally {
@@ -50,6 +50,29 @@ impl Tally {
         self.unfelt.fill(Wrench::default());
         self.footprints.fill(Footprint::default());
         self.overlap = Deepest::default();
+    }
+
+    /// Adds those of `other`.
+    pub(super) fn add(&mut self, other: &Self) {
+        let energies =
+            [(&mut self.energy, &other.energy), (&mut self.wall_energy, &other.wall_energy)];
+        for (sums, parts) in energies {
+            for (sum, part) in sums.iter_mut().zip(parts) {
+                *sum += part;
+            }
+        }
+        let wrenches = [(&mut self.wrenches, &other.wrenches), (&mut self.unfelt, &other.unfelt)];
+        for (sums, parts) in wrenches {
+            for (sum, part) in sums.iter_mut().zip(parts) {
+                sum.add(part);
+            }
+        }
+        for (sum, part) in self.footprints.iter_mut().zip(&other.footprints) {
+            sum.add(part);
+        }
+        if other.overlap.relative > self.overlap.relative {
+            self.overlap = other.overlap;
+        }
     }
 
     /// Takes note of contacts of `grains`; `curvature` (1/m) is that of the smaller grain.

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use configs::GrainModel;
+use engine::checkpoint::write_whole;
 
 use super::CampaignError;
 use super::record::Record;
@@ -47,9 +48,7 @@ impl Rate {
     /// Writes it down in `cache`; without it the next plan is estimated anew, which is no error.
     pub(super) fn store(&self, cache: &Path) {
         if let Some(rate) = self.per_second() {
-            let partial = cache.join(format!("{FILE}.partial"));
-            let _ = fs::write(&partial, format!("{rate:.4e}\n"))
-                .and_then(|()| fs::rename(&partial, cache.join(FILE)));
+            let _ = write_whole(&cache.join(FILE), format!("{rate:.4e}\n").as_bytes());
         }
     }
 }

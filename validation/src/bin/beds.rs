@@ -7,6 +7,7 @@ use std::num::NonZero;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use engine::checkpoint::write_whole;
 use lexopt::Parser;
 use lexopt::prelude::{Long, Short, ValueExt};
 use validation::beds::benchmark::{Case, Outcome, all, quick, table};
@@ -101,7 +102,5 @@ fn keep(path: &std::path::Path, outcomes: &[Outcome]) -> Result<(), Box<dyn Erro
         fs::create_dir_all(folder)?;
     }
     let lines = outcomes.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
-    let partial = path.with_extension("partial");
-    fs::write(&partial, lines.join("\n") + "\n")?;
-    Ok(fs::rename(&partial, path)?)
+    Ok(write_whole(path, (lines.join("\n") + "\n").as_bytes())?)
 }

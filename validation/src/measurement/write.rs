@@ -6,6 +6,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use configs::toml_string as quoted;
+use engine::checkpoint::write_whole;
 use thiserror::Error;
 
 use super::{
@@ -147,12 +148,10 @@ fn cell(value: Option<f64>) -> String {
     value.map_or(String::new(), |value| format!("{value:?}"))
 }
 
-/// Writes under another name first: a name that is there is a whole file.
+/// A name that is there is a whole file.
 fn put(path: &Path, content: io::Result<Vec<u8>>) -> Result<(), WriteError> {
-    let partial = path.with_extension("part");
     content
-        .and_then(|content| fs::write(&partial, content))
-        .and_then(|()| fs::rename(&partial, path))
+        .and_then(|content| write_whole(path, &content))
         .map_err(|source| WriteError::Io { path: path.to_owned(), source })
 }
 

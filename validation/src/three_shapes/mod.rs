@@ -15,6 +15,7 @@ use std::sync::{Mutex, PoisonError};
 
 use configs::run::{Control, Progress, RunError, prepare, result_key};
 use configs::{BuildError, ConfigError, LoadOptions, Loaded, Model, ModelSource, find_shipped};
+use engine::checkpoint::write_whole;
 use engine::error::{StepError, ThreadsError};
 use engine::ledger::{ChannelKind, TermKind};
 use engine::parallel::with_threads;
@@ -262,10 +263,6 @@ fn key(model: &Model) -> String {
 fn kept_or_run(case: &Case, places: &Places) -> Result<Outcome, StudyError> {
     let Loaded { model, .. } = case.model()?;
     let path = case.path(places);
-    let io = |action, path: &Path| {
-        let path = path.to_owned();
-        move |source| StudyError::Io { action, path, source }
-    };
     let key = key(&model);
     if let Some(outcome) = found(&path, &key) {
         return Ok(outcome);
@@ -273,9 +270,11 @@ fn kept_or_run(case: &Case, places: &Places) -> Result<Outcome, StudyError> {
     let outcome = Outcome { key, ..with_threads(1, || impact(&model, &places.cache))?? };
     let text = serde_json::to_string(&outcome)
         .map_err(|source| StudyError::Unwritable { path: path.clone(), source })?;
-    let partial = path.with_extension("partial");
-    fs::write(&partial, text).map_err(io("write", &partial))?;
-    fs::rename(&partial, &path).map_err(io("rename", &partial))?;
+    write_whole(&path, text.as_bytes()).map_err(|source| StudyError::Io {
+        action: "write",
+        path,
+        source,
+    })?;
     Ok(outcome)
 }
 

@@ -1,10 +1,10 @@
 //! The folder a run writes to: what may be in it, and that only one run writes.
 
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
-use engine::checkpoint::{sync_folder_of, with_suffix};
+use engine::checkpoint::write_whole;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -177,12 +177,7 @@ impl OutputFolder {
     /// Writes a file whole or not at all.
     pub(super) fn write(&self, name: &str, content: &[u8]) -> Result<(), RunError> {
         let path = self.file(name);
-        let partial = with_suffix(&path, ".partial");
-        let written = File::create(&partial)
-            .and_then(|mut file| file.write_all(content).and_then(|()| file.sync_all()))
-            .and_then(|()| fs::rename(&partial, &path))
-            .and_then(|()| sync_folder_of(&path));
-        written.map_err(|source| RunError::io("write", &path, source))
+        write_whole(&path, content).map_err(|source| RunError::io("write", &path, source))
     }
 
     pub(super) fn write_json<T: Serialize>(&self, name: &str, value: &T) -> Result<(), RunError> {
