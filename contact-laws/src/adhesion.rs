@@ -37,7 +37,7 @@ engine::record! {
 impl<R: Lanes> Bond<R> {
     /// Whether the two attract already.
     #[inline(always)]
-    pub(crate) fn is_bound(&self) -> R::SimdBool {
+    pub(crate) fn is_bound(&self) -> R::Mask {
         self.bound.simd_gt(R::zero())
     }
 
@@ -48,7 +48,7 @@ impl<R: Lanes> Bond<R> {
     #[inline(always)]
     pub(crate) fn act<const N: usize>(
         &mut self,
-        (holds, pull): (R::SimdBool, Pull<R>),
+        (holds, pull): (R::Mask, Pull<R>),
         contact: &Contact<R, N>,
         response: &mut Response<R, N>,
         energy: &mut Energy<R>,

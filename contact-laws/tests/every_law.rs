@@ -3,7 +3,7 @@
 use contact_laws::{ActsOn, LAWS, LawEntry};
 use engine::contact::{Contact, Encounter, Partner, Response, Slot};
 use engine::grains::Space;
-use engine::lanes::{Four, Lanes, MOST_LANES, Vector, vector_of};
+use engine::lanes::{Eight, Lanes, MOST_LANES, Vector, vector_of};
 use engine::math::{Quat, Vec3};
 use engine::params::{Default as Given, ParamTable};
 use engine::stage::{Batch, Histories};
@@ -219,11 +219,11 @@ fn every_registered_law_gives_equal_and_opposite_force_when_i_and_j_swap() {
     }
 }
 
-/// Four contacts side by side.
-fn side_by_side<const N: usize>(contacts: [Contact<f64, N>; 4]) -> Contact<Four, N> {
-    let number = |of: fn(&Contact<f64, N>) -> f64| Four::from_lanes(|lane| of(&contacts[lane]));
+/// Contacts side by side.
+fn side_by_side<const N: usize>(contacts: [Contact<f64, N>; MOST_LANES]) -> Contact<Eight, N> {
+    let number = |of: fn(&Contact<f64, N>) -> f64| Eight::from_lanes(|lane| of(&contacts[lane]));
     let vector = |of: fn(&Contact<f64, N>) -> Vector<f64, N>| {
-        vector_of(|at| Four::from_lanes(|lane| of(&contacts[lane])[at]))
+        vector_of(|at| Eight::from_lanes(|lane| of(&contacts[lane])[at]))
     };
     Contact {
         normal: vector(|contact| contact.normal),
@@ -258,36 +258,37 @@ fn flat(contact: &Contact) -> Contact<f64, 1> {
     }
 }
 
-/// Plays the episode in four lanes, each a contact ahead of the one before, and lane by lane.
+/// Plays the episode in eight lanes, each a contact ahead of the one before, and lane by lane.
 fn assert_lanes_agree<const N: usize>(
     law: &(dyn ContactStage + 'static),
     episode: &[Contact<f64, N>],
 ) where
-    dyn ContactStage: Sweep<f64, N> + Sweep<Four, N>,
+    dyn ContactStage: Sweep<f64, N> + Sweep<Eight, N>,
 {
     let space = if N == 1 { Space::Planar } else { Space::Spatial };
     let len = law.history_len(space);
-    let (mut together, mut alone) = (vec![0.0; 4 * len], vec![0.0; 4 * len]);
+    let (mut together, mut alone) = (vec![0.0; MOST_LANES * len], vec![0.0; MOST_LANES * len]);
     let mut energy = [vec![0.0; law.channels().len()], vec![0.0; law.channels().len()]];
-    let starts = [0, 1, 2, 3].map(|lane| lane * len as u32);
+    let starts: [u32; MOST_LANES] = std::array::from_fn(|lane| (lane * len) as u32);
     let base = |overlap: f64| match law.slot() {
         Slot::Base => [0.0; 2],
         _ => [3200.0 * overlap.max(0.0), 3200.0],
     };
     for step in 0..episode.len() {
-        let contacts = [0, 1, 2, 3].map(|lane| episode[(step + lane) % episode.len()]);
-        let pressed = |at: usize| Four::from_lanes(|lane| base(contacts[lane].overlap)[at]);
+        let contacts: [Contact<f64, N>; MOST_LANES] =
+            std::array::from_fn(|lane| episode[(step + lane) % episode.len()]);
+        let pressed = |at: usize| Eight::from_lanes(|lane| base(contacts[lane].overlap)[at]);
         let [normal_force, normal_stiffness] = [pressed(0), pressed(1)];
-        let mut four =
-            Response::<Four, N> { normal_force, normal_stiffness, ..Response::default() };
+        let mut eight =
+            Response::<Eight, N> { normal_force, normal_stiffness, ..Response::default() };
         let batch = Batch {
             partner: Partner::Grain,
             contacts: &[side_by_side(contacts)],
             records: &[starts],
-            responses: std::slice::from_mut(&mut four),
+            responses: std::slice::from_mut(&mut eight),
         };
         let histories = Histories { values: &mut together, offset: 0 };
-        Sweep::<Four, N>::sweep(law, batch, DT, histories, Some(&mut energy[0]));
+        Sweep::<Eight, N>::sweep(law, batch, DT, histories, Some(&mut energy[0]));
         for (lane, contact) in contacts.iter().enumerate() {
             let [normal_force, normal_stiffness] = base(contact.overlap);
             let mut one =
@@ -301,13 +302,16 @@ fn assert_lanes_agree<const N: usize>(
             let histories = Histories { values: &mut alone, offset: 0 };
             Sweep::<f64, N>::sweep(law, batch, DT, histories, Some(&mut energy[1]));
             let what = format!("{} in lane {lane} of step {step}", law.name());
-            let same = |four: Four, one: f64| four.lane(lane).total_cmp(&(one + 0.0)).is_eq();
-            let zero = Four::from_lanes(|_| 0.0);
-            assert!(same(four.normal_force + zero, one.normal_force), "{what}");
-            assert!(same(four.adhesive_force + zero, one.adhesive_force), "{what}");
+            let same = |eight: Eight, one: f64| eight.lane(lane).total_cmp(&(one + 0.0)).is_eq();
+            let zero = Eight::from_lanes(|_| 0.0);
+            assert!(same(eight.normal_force + zero, one.normal_force), "{what}");
+            assert!(same(eight.adhesive_force + zero, one.adhesive_force), "{what}");
             for at in 0..N {
-                assert!(same(four.tangential_force[at] + zero, one.tangential_force[at]), "{what}");
-                assert!(same(four.couple[at] + zero, one.couple[at]), "{what}");
+                assert!(
+                    same(eight.tangential_force[at] + zero, one.tangential_force[at]),
+                    "{what}"
+                );
+                assert!(same(eight.couple[at] + zero, one.couple[at]), "{what}");
             }
         }
         assert_eq!(together, alone, "{} remembers something else", law.name());
@@ -317,7 +321,7 @@ fn assert_lanes_agree<const N: usize>(
 }
 
 #[test]
-fn every_registered_law_says_the_same_of_four_contacts_at_once_and_of_each_alone() {
+fn every_registered_law_says_the_same_of_eight_contacts_at_once_and_of_each_alone() {
     for entry in LAWS {
         let law = (entry.build)(&table(entry));
         let flat: Vec<Contact<f64, 1>> = episode().iter().map(flat).collect();

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::dimension::{Dimension, Planar, Spatial};
 use crate::grains::{Grains, Space};
-use crate::lanes::MOST_LANES;
+use crate::lanes::{Eight, MOST_LANES, Mask, per_lane};
 use crate::math::Vec3;
 
 /// Counts down to the next rebuild of a neighbour list: the list holds everything nearer than
@@ -186,7 +186,8 @@ impl CellGrid {
         keys: &mut Vec<[u32; 2]>,
     ) {
         let from = keys.len();
-        let place = grains.place(i);
+        let i = i as u32;
+        let place = grains.place(i as usize);
         let [n_x, n_y, _] = self.axes.map(|axis| axis.n);
         let cell = self.cell(D::position(place));
         let around = |axis: usize| self.axes[axis].around(cell[axis]);
@@ -196,19 +197,24 @@ impl CellGrid {
                 for xs in around(0) {
                     let first = self.starts[row + xs.start] as usize;
                     let last = self.starts[row + xs.end] as usize;
-                    for &j in &self.members[first..last] {
-                        if j as usize <= i {
-                            continue;
-                        }
-                        let [i_s, j_s] =
-                            [place, grains.place(j as usize)].map(|side| [side; MOST_LANES]);
-                        if D::are_near::<f64>(&i_s, &j_s, &grains.period, margin) {
-                            keys.push([i as u32, j]);
-                        }
-                    }
+                    let later = self.members[first..last].iter().filter(|&&j| j > i);
+                    keys.extend(later.map(|&j| [i, j]));
                 }
             }
         }
+        let mut kept = from;
+        for at in (from..keys.len()).step_by(MOST_LANES) {
+            let n = (keys.len() - at).min(MOST_LANES);
+            let of_lane = per_lane(|lane| keys[at + lane.min(n - 1)]);
+            let places = per_lane(|lane| grains.place(of_lane[lane][1] as usize));
+            let here = [place; MOST_LANES];
+            let near = D::are_near::<Eight>(&here, &places, &grains.period, margin).bits();
+            for (lane, &key) in of_lane[..n].iter().enumerate() {
+                keys[kept] = key;
+                kept += (near >> lane & 1) as usize;
+            }
+        }
+        keys.truncate(kept);
         keys[from..].sort_unstable();
     }
 }

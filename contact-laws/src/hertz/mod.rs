@@ -5,7 +5,7 @@ pub(crate) mod params;
 mod restitution;
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
-use engine::lanes::{Lanes, SimdBool, Vector, select_vector, vector_where};
+use engine::lanes::{Lanes, Mask, Vector, select_vector, vector_where};
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::ParamTable;
 

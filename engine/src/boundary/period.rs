@@ -40,9 +40,7 @@ impl Period {
     /// another, given that of one between points inside of the container.
     #[inline(always)]
     pub(crate) fn nearest<R: Lanes>(&self, axis: usize, at: R) -> R {
-        if self.is_none() {
-            return at;
-        }
+        // Without a branch: where nothing repeats, nothing is beyond half of an infinite length.
         let [half, length] = [self.half[axis], 2.0 * self.half[axis]].map(R::splat);
         let below = (at - length).select(at.simd_gt(half), at);
         (at + length).select(at.simd_lt(-half), below)

@@ -1,7 +1,7 @@
 //! What a contact is and what a law makes of it: the page a physicist reads.
 //!
 //! A law sees a [`Contact`] at one instant, adds to its [`Response`] and books, from the same
-//! intermediate values, what became of the energy. It is written once, for one contact or for four side
+//! intermediate values, what became of the energy. It is written once, for one contact or for eight side
 //! by side ([`crate::lanes`]), in a plane or in space. The engine finds the contacts ([`geometry`]),
 //! keeps their histories ([`table`]) and lowers a law to a loop over many contacts ([`crate::stage`]).
 
@@ -90,7 +90,7 @@ impl<R: Lanes, const N: usize> Contact<R, N> {
     /// Whether the two overlap.
     #[inline(always)]
     #[must_use]
-    pub fn overlaps(&self) -> R::SimdBool {
+    pub fn overlaps(&self) -> R::Mask {
         self.overlap.simd_gt(R::zero())
     }
 
@@ -133,7 +133,7 @@ pub struct Response<R: Lanes = f64, const N: usize = 3> {
     pub adhesive_force: R,
     /// Whether a law holds the contact together though it may have opened: then it is kept, with all
     /// that its laws remember, and seen again in the next step.
-    pub holds: R::SimdBool,
+    pub holds: R::Mask,
     /// dF_n/dδ (N/m), which rolling resistance scales with.
     pub normal_stiffness: R,
     /// F_t (N).

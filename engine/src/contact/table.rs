@@ -14,8 +14,8 @@ const MORE_RECORDS: usize = 32;
 /// Candidate contacts sorted by key, with the history of those that touch.
 ///
 /// About half of the candidates touch; only they have a record in the histories. A rebuild of the
-/// neighbour list joins the old keys with the new ones by merging the two sorted lists, so a record
-/// stays where it is, and no order depends on anything but the keys.
+/// neighbour list joins the old keys with the new ones by merging the two sorted lists, and puts the records
+/// in their order, in which they are read. No order depends on anything but the keys.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactTable {
     keys: Vec<[u32; 2]>,
@@ -32,6 +32,7 @@ pub struct ContactTable {
 #[derive(Debug, Default)]
 pub struct Merger {
     records: Vec<u32>,
+    histories: Vec<f64>,
 }
 
 impl ContactTable {
@@ -115,10 +116,6 @@ impl ContactTable {
     /// The contact of `row` has opened: its record is forgotten.
     pub(crate) fn open(&mut self, row: usize) {
         let record = std::mem::replace(&mut self.records[row], APART);
-        self.forget(record);
-    }
-
-    fn forget(&mut self, record: u32) {
         if record != APART {
             let len = self.history_len.iter().sum::<usize>();
             self.histories[record as usize..][..len].fill(0.0);
@@ -135,7 +132,7 @@ impl ContactTable {
     /// Replaces the candidates by `keys` (ascending); a contact in both lists keeps its history.
     pub(crate) fn rekey(&mut self, keys: &[[u32; 2]], merger: &mut Merger) {
         debug_assert!(keys.is_sorted());
-        let records = &mut merger.records;
+        let Merger { records, histories } = merger;
         records.clear();
         records.resize(keys.len(), APART);
         let mut to = 0;
@@ -146,12 +143,18 @@ impl ContactTable {
             }
             if to < keys.len() && keys[to] == key {
                 records[to] = record;
-            } else {
-                self.forget(record);
             }
+        }
+        histories.clear();
+        let len = self.history_len.iter().sum::<usize>().max(1);
+        for record in records.iter_mut().filter(|record| **record != APART) {
+            let from = std::mem::replace(record, histories.len() as u32) as usize;
+            histories.extend_from_slice(&self.histories[from..from + len]);
         }
         replace(&mut self.keys, keys);
         replace(&mut self.records, records);
+        replace(&mut self.histories, histories);
+        self.free.clear();
     }
 
     /// Whether the parts fit together, for a table that was read from a file: contacts of the grains

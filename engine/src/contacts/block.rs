@@ -5,7 +5,7 @@ use std::ops::Range;
 use arrayvec::ArrayVec;
 
 use super::bench::Bench;
-use super::pairs::{Near, Pairs, Side};
+use super::pairs::{Near, Pairs, Side, lanes_of};
 use super::tally::Tally;
 use crate::body::Part;
 use crate::contact::geometry::{loads_on_grain_and_part, with_surface};
@@ -14,7 +14,7 @@ use crate::contact::{Contact, Partner, Response};
 use crate::contacts::stage::{Batch, ContactStage, Histories, Sweep};
 use crate::dimension::{Dimension, Motion, Quad, Quads};
 use crate::grains::Grains;
-use crate::lanes::{Four, Lanes, MOST_LANES};
+use crate::lanes::{Eight, Lanes, MOST_LANES, Mask, per_lane};
 
 /// Groups of as many contacts as there are lanes that are evaluated together.
 const GROUPS: usize = 16;
@@ -23,6 +23,7 @@ const GROUPS: usize = 16;
 pub(super) struct Block {
     /// Its first grain.
     pub(super) first: usize,
+    /// Its keys are grains of the bed: whoever lists or restores them sees to that.
     pub(super) pairs: ContactTable,
     /// Per pair: whose load the second grain has, counted in grains of the block and then of the halo.
     pub(super) targets: Vec<u32>,
@@ -120,7 +121,7 @@ where
 }
 
 impl Block {
-    /// Evaluates the contacts between grains: four at a time, then what is left over one by one.
+    /// Evaluates the contacts between grains: eight at a time, then what is left over one by one.
     pub(super) fn sweep_pairs<D: Dimension<N>, const N: usize>(
         &mut self,
         grains: &Grains,
@@ -128,7 +129,7 @@ impl Block {
         dt: f64,
         bench: &mut Bench,
     ) where
-        dyn ContactStage: Sweep<f64, N> + Sweep<Four, N>,
+        dyn ContactStage: Sweep<f64, N> + Sweep<Eight, N>,
     {
         let n_near = self.find_near::<D, N>(grains, &mut bench.near);
         let near = &bench.near[..n_near];
@@ -136,6 +137,7 @@ impl Block {
             grains,
             first: self.first as u32,
             near,
+            targets: &self.targets,
             table: &mut self.pairs,
             loads: &mut self.loads,
             tally: &mut self.tally,
@@ -145,9 +147,9 @@ impl Block {
             stage.sweep_pairs(pairs);
             return;
         }
-        let (in_lanes, rest) = near.split_at(n_near - n_near % Four::COUNT);
-        for near in in_lanes.chunks(GROUPS * Four::COUNT) {
-            Evaluation::<Four, N>::of_pairs::<D>(&mut pairs, stages, near);
+        let (in_lanes, rest) = near.split_at(n_near - n_near % Eight::COUNT);
+        for near in in_lanes.chunks(GROUPS * Eight::COUNT) {
+            Evaluation::<Eight, N>::of_pairs::<D>(&mut pairs, stages, near);
         }
         Evaluation::<f64, N>::of_pairs::<D>(&mut pairs, stages, rest);
     }
@@ -159,16 +161,17 @@ impl Block {
         near: &mut Vec<Near>,
     ) -> usize {
         let n_rows = self.pairs.keys().len();
-        let in_lanes = n_rows - n_rows % Four::COUNT;
+        let in_lanes = n_rows - n_rows % Eight::COUNT;
         if near.len() < n_rows {
             near.resize(n_rows, Near::default());
         }
-        let found = self.find_near_in::<D, Four, N>(grains, 0..in_lanes, (near, 0));
+        let found = self.find_near_in::<D, Eight, N>(grains, 0..in_lanes, (near, 0));
         self.find_near_in::<D, f64, N>(grains, in_lanes..n_rows, (near, found))
     }
 
     /// Writes those of `rows` behind the first of `near`, and returns how many it then has.
     #[inline(always)]
+    #[expect(unsafe_code, reason = "measured: see docs/performance.md")]
     fn find_near_in<D: Dimension<N>, R: Lanes, const N: usize>(
         &self,
         grains: &Grains,
@@ -177,22 +180,21 @@ impl Block {
     ) -> usize {
         let keys = self.pairs.keys()[rows.clone()].chunks_exact(R::COUNT);
         let records = self.pairs.records()[rows.clone()].chunks_exact(R::COUNT);
-        let targets = self.targets[rows.clone()].chunks_exact(R::COUNT);
-        for (row, ((keys, records), targets)) in
-            rows.step_by(R::COUNT).zip(keys.zip(records).zip(targets))
-        {
-            let of_lane = [0, 1, 2, 3].map(|lane: usize| keys[lane.min(R::COUNT - 1)]);
-            let [i, j] = [0, 1].map(|side| of_lane.map(|key| grains.place(key[side] as usize)));
-            let touch = R::bits(D::are_near::<R>(&i, &j, &grains.period, 0.0));
+        for (row, (keys, records)) in rows.step_by(R::COUNT).zip(keys.zip(records)) {
+            let of_lane = lanes_of::<R, _>(keys);
+            // SAFETY: tables hold grains of the bed alone, see [`Block::pairs`].
+            let place = |side: usize| {
+                per_lane(|lane| unsafe { grains.place_unchecked(of_lane[lane][side] as usize) })
+            };
+            let [i, j] = [place(0), place(1)];
+            let overlap = D::are_near::<R>(&i, &j, &grains.period, 0.0).bits();
+            let kept = overlap | R::differ(records, APART);
             // Without a branch: about half of the candidates touch, and which ones cannot be foreseen.
             for lane in 0..R::COUNT {
-                near[found] = Near {
-                    grains: keys[lane],
-                    target: targets[lane],
-                    row: (row + lane) as u32,
-                    record: records[lane],
-                };
-                found += usize::from((touch >> lane & 1 == 1) | (records[lane] != APART));
+                // SAFETY: not more are found than there are rows, see above.
+                *unsafe { near.get_unchecked_mut(found) } =
+                    Near { grains: keys[lane], row: (row + lane) as u32, record: records[lane] };
+                found += (kept >> lane & 1) as usize;
             }
         }
         found

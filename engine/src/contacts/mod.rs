@@ -21,7 +21,7 @@ use crate::contact::table::ContactTable;
 use crate::contacts::stage::{ContactStage, Sweep};
 use crate::dimension::{Dimension, Planar, Quad, Quads, Spatial};
 use crate::grains::{Grains, Space};
-use crate::lanes::Four;
+use crate::lanes::Eight;
 use crate::math::Vec3;
 use crate::neighbours::CellGrid;
 use crate::parallel::{BLOCK, block_of};
@@ -166,7 +166,7 @@ impl Contacts {
         parts: [&[Part]; 2],
         dt: f64,
     ) where
-        dyn ContactStage: Sweep<f64, N> + Sweep<Four, N>,
+        dyn ContactStage: Sweep<f64, N> + Sweep<Eight, N>,
     {
         let (stages, benches) = (&self.stages[..], &self.benches);
         self.blocks.par_iter_mut().for_each(|block| {

@@ -5,15 +5,13 @@ use crate::contact::table::{APART, ContactTable};
 use crate::contact::{Contact, Response};
 use crate::dimension::{Dimension, Frame, Quad, Quads};
 use crate::grains::{Grains, Space};
-use crate::lanes::{Lanes, MOST_LANES};
+use crate::lanes::{Lanes, MOST_LANES, Mask, per_lane};
 
 /// Two grains that overlap, or did a step ago.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Near {
     /// The grains.
     pub(crate) grains: [u32; 2],
-    /// Whose load the second one has, counted in grains of the block and then of its halo.
-    pub(crate) target: u32,
     /// Where the contact stands in the table.
     pub(crate) row: u32,
     /// Where its record begins, or [`APART`].
@@ -25,7 +23,10 @@ pub struct Pairs<'a> {
     pub(super) grains: &'a Grains,
     /// The first grain of the block.
     pub(super) first: u32,
+    /// Of listed pairs alone: grains of the bed, and rows of the table.
     pub(super) near: &'a [Near],
+    /// Per row of the table: whose load the second grain has, an index to the loads of the block.
+    pub(super) targets: &'a [u32],
     pub(super) table: &'a mut ContactTable,
     pub(super) loads: &'a mut [Quad],
     pub(super) tally: &'a mut Tally,
@@ -50,20 +51,31 @@ impl Pairs<'_> {
 
     /// The contacts of `near`, one in each lane.
     #[inline(always)]
+    #[expect(unsafe_code, reason = "measured: see docs/performance.md")]
     pub(super) fn meet<D: Dimension<N>, R: Lanes, const N: usize>(
         &mut self,
         near: &[Near],
     ) -> (Contact<R, N>, Side<R>) {
-        let near = lanes_of::<R>(near);
-        let mut records = near.map(|near| near.record);
+        let near = lanes_of::<R, _>(near);
+        let mut records = per_lane(|lane| near[lane].record);
         if records.contains(&APART) {
-            records = near.map(|near| self.table.record(near.row as usize));
+            records = per_lane(|lane| self.table.record(near[lane].row as usize));
         }
-        let targets = near.map(|near| [near.grains[0] - self.first, near.target]);
-        let [i, j] = [0, 1].map(|side| near.map(|near| near.grains[side] as usize));
+        let targets = per_lane(|lane| {
+            let Near { grains, row, .. } = near[lane];
+            [grains[0] - self.first, self.targets[row as usize]]
+        });
         let moves = self.grains.moves::<D, N>();
-        let [place_i, place_j] = [i, j].map(|side| side.map(|grain| self.grains.place(grain)));
-        let [moves_i, moves_j] = [i, j].map(|side| side.map(|grain| &moves[grain]));
+        let grain = |side: usize, lane: usize| near[lane].grains[side] as usize;
+        // SAFETY: tables hold grains of the bed alone, see [`Pairs::near`].
+        let place = |side: usize| {
+            per_lane(|lane| unsafe { self.grains.place_unchecked(grain(side, lane)) })
+        };
+        // SAFETY: as above; every grain that has a place has a motion.
+        let motion =
+            |side: usize| per_lane(|lane| unsafe { moves.get_unchecked(grain(side, lane)) });
+        let (place_i, moves_i) = (place(0), motion(0));
+        let (place_j, moves_j) = (place(1), motion(1));
         let (i, j) = ((&place_i, &moves_i), (&place_j, &moves_j));
         let (contact, frame) = D::between::<R>(i, j, &self.grains.period, self.dt);
         (contact, Side { frame, records, targets })
@@ -71,6 +83,7 @@ impl Pairs<'_> {
 
     /// Adds what the laws answer to the loads, and forgets contacts that have opened.
     #[inline(always)]
+    #[expect(unsafe_code, reason = "measured: see docs/performance.md")]
     pub(super) fn settle<D: Dimension<N>, R: Lanes, const N: usize>(
         &mut self,
         near: &[Near],
@@ -79,10 +92,11 @@ impl Pairs<'_> {
         response: &Response<R, N>,
     ) {
         let loads = D::Load::each_mut(self.loads);
-        D::scatter(&side.frame, response, &side.targets, loads);
+        // SAFETY: targets count the grains of the block and its halo, whose loads these are.
+        unsafe { D::scatter(&side.frame, response, &side.targets, loads) };
         let grain = |lane: usize| near[lane].grains[0];
         self.tally.note_overlap(contact.overlap, side.frame.curvature, grain);
-        let touching = R::bits(contact.overlaps() | response.holds);
+        let touching = (contact.overlaps() | response.holds).bits();
         if touching.trailing_ones() < R::COUNT as u32 {
             for lane in (0..R::COUNT).filter(|lane| touching >> lane & 1 == 0) {
                 self.table.open(near[lane].row as usize);
@@ -93,6 +107,6 @@ impl Pairs<'_> {
 
 /// One of `all` for each lane; lanes that there are not repeat the last.
 #[inline(always)]
-pub(super) fn lanes_of<R: Lanes>(all: &[Near]) -> [Near; MOST_LANES] {
-    [0, 1, 2, 3].map(|lane: usize| all[lane.min(R::COUNT - 1)])
+pub(super) fn lanes_of<R: Lanes, T: Copy>(all: &[T]) -> [T; MOST_LANES] {
+    per_lane(|lane| all[lane.min(R::COUNT - 1)])
 }

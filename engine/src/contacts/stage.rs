@@ -5,7 +5,7 @@ pub use super::rebound::restitution;
 use crate::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use crate::dimension::{Dimension, Planar, Spatial};
 use crate::grains::Space;
-use crate::lanes::{Four, Lanes, MOST_LANES, Record};
+use crate::lanes::{Eight, Lanes, MOST_LANES, Record, per_lane};
 use crate::ledger::Channel;
 
 /// Contacts that are evaluated together, small enough to stay in the first-level cache.
@@ -43,7 +43,7 @@ pub trait Sweep<R: Lanes, const N: usize> {
 
 /// A contact law as the engine runs it.
 pub trait ContactStage:
-    Sweep<f64, 1> + Sweep<f64, 3> + Sweep<Four, 1> + Sweep<Four, 3> + Send + Sync
+    Sweep<f64, 1> + Sweep<f64, 3> + Sweep<Eight, 1> + Sweep<Eight, 3> + Send + Sync
 {
     /// Evaluates the contacts between grains of a block where no other law acts.
     fn sweep_pairs(&self, pairs: Pairs<'_>);
@@ -53,7 +53,7 @@ pub trait ContactStage:
     fn slot(&self) -> Slot;
     /// The accounts it books to.
     fn channels(&self) -> &'static [Channel];
-    /// How many `f64` it remembers of a contact.
+    /// How many `f64` it takes in the record of a contact.
     fn history_len(&self, space: Space) -> usize;
     /// Duration (s) of a head-on collision, see [`ContactLaw::collision_time`].
     fn collision_time(&self, partner: Partner, encounter: &Encounter) -> Option<f64>;
@@ -123,12 +123,12 @@ impl<L: ContactLaw> Stage<L> {
 
     fn sweep_pairs_in<D: Dimension<N>, const N: usize>(&self, pairs: &mut Pairs<'_>) {
         let near = pairs.near;
-        let (in_lanes, rest) = near.split_at(near.len() - near.len() % Four::COUNT);
+        let (in_lanes, rest) = near.split_at(near.len() - near.len() % Eight::COUNT);
         if pairs.tally.energy.is_empty() {
-            self.act_alone::<D, Four, N>(pairs, in_lanes);
+            self.act_alone::<D, Eight, N>(pairs, in_lanes);
             self.act_alone::<D, f64, N>(pairs, rest);
         } else {
-            let in_lanes = self.act_alone::<D, Four, N>(pairs, in_lanes);
+            let in_lanes = self.act_alone::<D, Eight, N>(pairs, in_lanes);
             let rest = self.act_alone::<D, f64, N>(pairs, rest);
             book(&in_lanes, &mut pairs.tally.energy);
             book(&rest, &mut pairs.tally.energy);
@@ -165,21 +165,24 @@ impl<L: ContactLaw, R: Lanes, const N: usize> Sweep<R, N> for Stage<L> {
 /// Longest record of one stage.
 const MOST_NUMBERS: usize = 16;
 
+/// Room for `numbers` in a record: they are read by fours, and three are read sooner as four.
+const fn room(numbers: usize) -> usize {
+    if numbers % 4 == 3 { numbers + 1 } else { numbers }
+}
+
 /// The records that begin at `records`, one in each lane.
 #[inline(always)]
 fn read<R: Lanes, H: Record<R>>(histories: &Histories<'_>, records: &[u32; MOST_LANES]) -> H {
     const { assert!(H::LEN <= MOST_NUMBERS) }
-    let row = |lane: usize| -> &[f64] {
-        let from = records[lane.min(R::COUNT - 1)] as usize + histories.offset;
-        &histories.values[from..][..H::LEN]
-    };
-    let rows = [row(0), row(1), row(2), row(3)];
+    let rows: [&[f64]; MOST_LANES] = per_lane(|lane| {
+        let from = records[lane] as usize + histories.offset;
+        &histories.values[from..][..room(H::LEN)]
+    });
     let mut numbers = [R::zero(); MOST_NUMBERS];
-    let whole = H::LEN / 4 * 4;
+    let whole = room(H::LEN) / 4 * 4;
     for at in (0..whole).step_by(4) {
-        let quad = |row: &[f64]| [row[at], row[at + 1], row[at + 2], row[at + 3]];
-        let quads = [quad(rows[0]), quad(rows[1]), quad(rows[2]), quad(rows[3])];
-        let columns = R::columns([&quads[0], &quads[1], &quads[2], &quads[3]]);
+        let quads = per_lane(|lane| [0, 1, 2, 3].map(|k| rows[lane][at + k]));
+        let columns = R::columns(per_lane(|lane| &quads[lane]));
         numbers[at..at + 4].copy_from_slice(&columns);
     }
     for at in whole..H::LEN {
@@ -205,18 +208,19 @@ fn write<R: Lanes, H: Record<R>>(
         numbers[at] = value;
         at += 1;
     });
-    let whole = H::LEN / 4 * 4;
-    for at in (0..whole).step_by(4) {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|k| numbers[at + k]);
-        let rows = R::rows([a, b, c, d]);
-        for lane in 0..R::COUNT {
-            let from = records[lane] as usize + histories.offset + at;
-            histories.values[from..][..4].copy_from_slice(&rows[lane]);
-        }
+    let whole = room(H::LEN) / 4 * 4;
+    let mut quads = [[[0.0; 4]; MOST_LANES]; MOST_NUMBERS / 4];
+    for (quad, at) in quads.iter_mut().zip((0..whole).step_by(4)) {
+        *quad = R::rows([0, 1, 2, 3].map(|k| numbers[at + k]));
     }
-    for (at, number) in numbers.iter().enumerate().take(H::LEN).skip(whole) {
-        for (lane, &record) in records.iter().enumerate().take(R::COUNT) {
-            histories.values[record as usize + histories.offset + at] = number.lane(lane);
+    for lane in 0..R::COUNT {
+        let from = records[lane] as usize + histories.offset;
+        let row = &mut histories.values[from..][..room(H::LEN)];
+        for (quad, at) in quads.iter().zip((0..whole).step_by(4)) {
+            row[at..at + 4].copy_from_slice(&quad[lane]);
+        }
+        for at in whole..H::LEN {
+            row[at] = numbers[at].lane(lane);
         }
     }
 }
@@ -243,8 +247,8 @@ impl<L: ContactLaw> ContactStage for Stage<L> {
 
     fn history_len(&self, space: Space) -> usize {
         match space {
-            Space::Planar => <L::History<f64, 1> as Record<f64>>::LEN,
-            Space::Spatial => <L::History<f64, 3> as Record<f64>>::LEN,
+            Space::Planar => room(<L::History<f64, 1> as Record<f64>>::LEN),
+            Space::Spatial => room(<L::History<f64, 3> as Record<f64>>::LEN),
         }
     }
 

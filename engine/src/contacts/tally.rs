@@ -1,7 +1,7 @@
 //! What contacts add up to in a step: those of one block, or all of a bed.
 
 use crate::footprint::Footprint;
-use crate::lanes::{Lanes, SimdBool};
+use crate::lanes::{Lanes, Mask};
 use crate::surface::Wrench;
 
 /// The largest overlap in units of the smaller radius.

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::boundary::Period;
 use crate::contact::{Contact, Response};
-use crate::lanes::{Lanes, MOST_LANES, Vector};
+use crate::lanes::{Lanes, MOST_LANES, Vector, per_lane};
 use crate::math::Vec3;
 
 pub(crate) use planar::Planar;
@@ -136,12 +136,7 @@ pub(crate) trait Dimension<const N: usize>: Send + Sync + 'static {
     fn position(place: &Quad) -> Vec3;
 
     /// Whether the grains at the places `i` and `j` are nearer to each other than `margin` (m).
-    fn are_near<R: Lanes>(
-        i: &Places<'_>,
-        j: &Places<'_>,
-        period: &Period,
-        margin: f64,
-    ) -> R::SimdBool;
+    fn are_near<R: Lanes>(i: &Places<'_>, j: &Places<'_>, period: &Period, margin: f64) -> R::Mask;
 
     /// The contacts of the grains `i` with `j`; `dt` (s) is the step.
     fn between<R: Lanes>(
@@ -151,8 +146,12 @@ pub(crate) trait Dimension<const N: usize>: Send + Sync + 'static {
         dt: f64,
     ) -> (Contact<R, N>, Frame<R>);
 
-    /// Adds what the laws answer to the loads of both grains of each lane, which begin at `targets`.
-    fn scatter<R: Lanes>(
+    /// Adds what the laws answer to the loads of both grains of each lane, those at `targets`.
+    ///
+    /// # Safety
+    /// Every target is below the number of `loads`.
+    #[expect(unsafe_code, reason = "measured: see docs/performance.md")]
+    unsafe fn scatter<R: Lanes>(
         frame: &Frame<R>,
         response: &Response<R, N>,
         targets: &[[u32; 2]; MOST_LANES],
@@ -214,13 +213,13 @@ fn with_last_of(quad: [f64; 4], other: &Quad) -> Quad {
 /// The four numbers of a place, in lanes.
 #[inline(always)]
 fn gather_place<R: Lanes>(places: &Places<'_>) -> [R; 4] {
-    R::columns(places.map(|place| &place.0))
+    R::columns(per_lane(|lane| &places[lane].0))
 }
 
 /// The four numbers of one quad of how grains move, in lanes.
 #[inline(always)]
 fn gather<R: Lanes, const M: usize>(motions: &Motions<'_, [Quad; M]>, quad: usize) -> [R; 4] {
-    R::columns(motions.map(|motion| &motion[quad].0))
+    R::columns(per_lane(|lane| &motions[lane][quad].0))
 }
 
 /// 1/|d + s| from 1/|d|, where `change` = |d + s|²/|d|² − 1 is that of less than a step: the error is a

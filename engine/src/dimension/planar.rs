@@ -2,15 +2,15 @@
 //!
 //! Slips go along t = y × n, so that the tangential spring is one number that needs no turning.
 
-use simba::simd::SimdValue;
+use wide::f64x4;
 
 use super::{
-    Dimension, Frame, Load, Motion, Motions, Places, Quad, Squares, Stride, gather, gather_place,
-    inverse_nearby, with_last_of,
+    Dimension, Frame, Load, Motion, Motions, Places, Quad, Quads, Squares, Stride, gather,
+    gather_place, inverse_nearby, with_last_of,
 };
 use crate::boundary::Period;
 use crate::contact::{Contact, Response};
-use crate::lanes::{Four, Lanes, MOST_LANES, Vector};
+use crate::lanes::{Lanes, MOST_LANES, Vector};
 use crate::math::Vec3;
 
 /// A place is (x, z, r, 1/r), a motion (v_x, v_z, ω, 1/m), (v_x, v_z, ω at the end of the step, mobility),
@@ -65,12 +65,7 @@ impl Dimension<1> for Planar {
     }
 
     #[inline(always)]
-    fn are_near<R: Lanes>(
-        i: &Places<'_>,
-        j: &Places<'_>,
-        period: &Period,
-        margin: f64,
-    ) -> R::SimdBool {
+    fn are_near<R: Lanes>(i: &Places<'_>, j: &Places<'_>, period: &Period, margin: f64) -> R::Mask {
         let [[x_i, z_i, r_i, _], [x_j, z_j, r_j, _]] = [i, j].map(gather_place::<R>);
         let x = period.nearest(0, x_i - x_j);
         let z = z_i - z_j;
@@ -142,7 +137,8 @@ impl Dimension<1> for Planar {
     }
 
     #[inline(always)]
-    fn scatter<R: Lanes>(
+    #[expect(unsafe_code, reason = "measured: see docs/performance.md")]
+    unsafe fn scatter<R: Lanes>(
         frame: &Frame<R>,
         response: &Response<R, 1>,
         targets: &[[u32; 2]; MOST_LANES],
@@ -158,8 +154,10 @@ impl Dimension<1> for Planar {
         let on_j = R::rows([-f_x, -f_z, on_j, R::zero()]);
         for lane in 0..R::COUNT {
             let [i, j] = targets[lane].map(|target| target as usize);
-            loads[i][0].add(&Quad(on_i[lane]));
-            loads[j][0].add(&Quad(on_j[lane]));
+            // SAFETY: the caller's.
+            unsafe { loads.get_unchecked_mut(i) }.add(&[Quad(on_i[lane])]);
+            // SAFETY: the caller's.
+            unsafe { loads.get_unchecked_mut(j) }.add(&[Quad(on_j[lane])]);
         }
     }
 
@@ -209,16 +207,16 @@ impl Dimension<1> for Planar {
         inverse_inertia: f64,
     ) -> Squares {
         let inverse_mass = motion[0].0[3];
-        let mobility = Four::from_arr([inverse_mass, inverse_mass, inverse_inertia, 0.0]);
-        let acceleration = Four::from_arr(load[0].0) * mobility;
-        let between = Four::from_arr(motion[0].0) + acceleration * Four::splat(stride.before);
-        let kick = acceleration * Four::splat(stride.after);
+        let mobility = f64x4::new([inverse_mass, inverse_mass, inverse_inertia, 0.0]);
+        let acceleration = f64x4::new(load[0].0) * mobility;
+        let between = f64x4::new(motion[0].0) + acceleration * f64x4::splat(stride.before);
+        let kick = acceleration * f64x4::splat(stride.after);
         let during = between + kick;
-        motion[0] = Quad(during.into_arr());
-        motion[1] = with_last_of((during + kick).into_arr(), &motion[1]);
-        let way = Four::from_arr([stride.drift, stride.drift, 0.0, 0.0]) * during;
-        *place = Quad((Four::from_arr(place.0) + way).into_arr());
-        let [x_2, z_2, spin, _] = (between * between).into_arr();
+        motion[0] = Quad(during.to_array());
+        motion[1] = with_last_of((during + kick).to_array(), &motion[1]);
+        let way = f64x4::new([stride.drift, stride.drift, 0.0, 0.0]) * during;
+        *place = Quad((f64x4::new(place.0) + way).to_array());
+        let [x_2, z_2, spin, _] = (between * between).to_array();
         let [v_x, v_z, ..] = motion[0].0;
         Squares { speed: x_2 + z_2, spin, drift_speed: v_x * v_x + v_z * v_z }
     }

@@ -1,14 +1,14 @@
 //! Spheres in space.
 
-use simba::simd::SimdValue;
+use wide::f64x4;
 
 use super::{
-    Dimension, Frame, Load, Motion, Motions, Places, Quad, Squares, Stride, gather, gather_place,
-    inverse_nearby, with_last_of,
+    Dimension, Frame, Load, Motion, Motions, Places, Quad, Quads, Squares, Stride, gather,
+    gather_place, inverse_nearby, with_last_of,
 };
 use crate::boundary::Period;
 use crate::contact::{Contact, Response};
-use crate::lanes::{Four, Lanes, MOST_LANES, Vector};
+use crate::lanes::{Lanes, MOST_LANES, Vector};
 use crate::math::Vec3;
 
 /// A place is (x, r), a motion (v, 1/m), (ω, mobility), (v at the end of the step, 1/r), (ω at the end of
@@ -70,12 +70,7 @@ impl Dimension<3> for Spatial {
     }
 
     #[inline(always)]
-    fn are_near<R: Lanes>(
-        i: &Places<'_>,
-        j: &Places<'_>,
-        period: &Period,
-        margin: f64,
-    ) -> R::SimdBool {
+    fn are_near<R: Lanes>(i: &Places<'_>, j: &Places<'_>, period: &Period, margin: f64) -> R::Mask {
         let [[x_i, y_i, z_i, r_i], [x_j, y_j, z_j, r_j]] = [i, j].map(gather_place::<R>);
         let x = period.nearest(0, x_i - x_j);
         let y = period.nearest(1, y_i - y_j);
@@ -147,7 +142,8 @@ impl Dimension<3> for Spatial {
     }
 
     #[inline(always)]
-    fn scatter<R: Lanes>(
+    #[expect(unsafe_code, reason = "measured: see docs/performance.md")]
+    unsafe fn scatter<R: Lanes>(
         frame: &Frame<R>,
         response: &Response<R, 3>,
         targets: &[[u32; 2]; MOST_LANES],
@@ -161,12 +157,10 @@ impl Dimension<3> for Spatial {
         let (push, pull, on_i, on_j) = (rows(force), rows(-force), rows(on_i), rows(on_j));
         for lane in 0..R::COUNT {
             let [i, j] = targets[lane].map(|target| target as usize);
-            let [force_i, torque_i] = &mut loads[i];
-            force_i.add(&Quad(push[lane]));
-            torque_i.add(&Quad(on_i[lane]));
-            let [force_j, torque_j] = &mut loads[j];
-            force_j.add(&Quad(pull[lane]));
-            torque_j.add(&Quad(on_j[lane]));
+            // SAFETY: the caller's.
+            unsafe { loads.get_unchecked_mut(i) }.add(&[Quad(push[lane]), Quad(on_i[lane])]);
+            // SAFETY: the caller's.
+            unsafe { loads.get_unchecked_mut(j) }.add(&[Quad(pull[lane]), Quad(on_j[lane])]);
         }
     }
 
@@ -194,28 +188,28 @@ impl Dimension<3> for Spatial {
         stride: &Stride,
         inverse_inertia: f64,
     ) -> Squares {
-        let [before, after] = [stride.before, stride.after].map(Four::splat);
+        let [before, after] = [stride.before, stride.after].map(f64x4::splat);
         let accelerations = [
-            Four::from_arr(load[0].0) * Four::splat(motion[0].0[3]),
-            Four::from_arr(load[1].0) * Four::splat(inverse_inertia),
+            f64x4::new(load[0].0) * f64x4::splat(motion[0].0[3]),
+            f64x4::new(load[1].0) * f64x4::splat(inverse_inertia),
         ];
         let mut squares = [[0.0; 4]; 2];
         for (kind, acceleration) in accelerations.into_iter().enumerate() {
-            let between = Four::from_arr(motion[kind].0) + acceleration * before;
+            let between = f64x4::new(motion[kind].0) + acceleration * before;
             let kick = acceleration * after;
             let during = between + kick;
-            motion[kind] = Quad(during.into_arr());
-            motion[kind + 2] = with_last_of((during + kick).into_arr(), &motion[kind + 2]);
-            squares[kind] = (between * between).into_arr();
+            motion[kind] = Quad(during.to_array());
+            motion[kind + 2] = with_last_of((during + kick).to_array(), &motion[kind + 2]);
+            squares[kind] = (between * between).to_array();
         }
-        let drift = Four::from_arr([stride.drift, stride.drift, stride.drift, 0.0]);
-        let during = Four::from_arr(motion[0].0);
-        *place = Quad((Four::from_arr(place.0) + drift * during).into_arr());
+        let drift = f64x4::new([stride.drift, stride.drift, stride.drift, 0.0]);
+        let during = f64x4::new(motion[0].0);
+        *place = Quad((f64x4::new(place.0) + drift * during).to_array());
         let sum = |[x_2, y_2, z_2, _]: [f64; 4]| x_2 + y_2 + z_2;
         Squares {
             speed: sum(squares[0]),
             spin: sum(squares[1]),
-            drift_speed: sum((during * during).into_arr()),
+            drift_speed: sum((during * during).to_array()),
         }
     }
 

@@ -43,6 +43,7 @@ const ONLY: [(&str, &[&str]); 35] = [
     ("mcap", &["engine", "exchange"]),
     // The fits of `validation` speak the version that `levenberg-marquardt` is built on.
     ("nalgebra", &["engine", "validation"]),
+    ("num-traits", &["engine"]),
     ("parquet", &["exchange"]),
     ("parry3d-f64", &["intruders"]),
     ("plotters", &["validation", "reports"]),
@@ -54,11 +55,11 @@ const ONLY: [(&str, &[&str]); 35] = [
     ("rustix", &["validation"]),
     ("safe_arch", &["engine"]),
     ("signal-hook", &["plunge"]),
-    ("simba", &["engine"]),
     ("sobol_burley", &["campaigns"]),
     ("statrs", &["validation"]),
     ("toml", &["configs"]),
     ("toml_edit", &["configs"]),
+    ("wide", &["engine"]),
     ("xshell", &["xtask"]),
 ];
 

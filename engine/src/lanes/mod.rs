@@ -1,24 +1,56 @@
-//! Numbers side by side: the same contact law for one contact or for four at a time.
+//! Numbers side by side: the same contact law for one contact or for eight at a time.
 //!
 //! A law is written once, for any `R:` [`Lanes`]. Of `f64` it is the plain law that a reader checks by
-//! hand; of [`Four`] the compiler makes vector instructions of the same lines, with the same bits in each
+//! hand; of [`Eight`] the compiler makes vector instructions of the same lines, with the same bits in each
 //! lane. There are no branches in lanes: `a.select(mask, b)` is `a` where the mask holds, else `b`, and both
 //! are computed.
+//!
+//! Eight, not four: a law is one long chain of square roots and divisions, and a processor sees only so many
+//! instructions ahead. With more lanes it has more to do while it waits.
 
-use nalgebra::SVector;
-pub use simba::simd::SimdBool;
-use simba::simd::{SimdRealField, WideBoolF64x4, WideF64x4};
+mod eight;
 
-/// Four numbers.
-pub type Four = WideF64x4;
+use std::fmt::Debug;
+use std::ops::{BitAnd, BitOr, Not};
+
+use nalgebra::{
+    ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, SVector, Scalar,
+};
+use num_traits::{One, Zero};
+
+pub use eight::{Eight, EightBools};
 
 /// How many lanes the widest kind has.
-pub const MOST_LANES: usize = 4;
+pub const MOST_LANES: usize = 8;
 
-/// One number, or several side by side; comparisons give a mask ([`SimdBool`]).
-pub trait Lanes: SimdRealField<Element = f64> + Copy + Send + Sync {
+/// Something for each lane. Of an array this long the compiler makes a call of every `map`.
+#[inline(always)]
+pub(crate) fn per_lane<T>(mut of: impl FnMut(usize) -> T) -> [T; MOST_LANES] {
+    [of(0), of(1), of(2), of(3), of(4), of(5), of(6), of(7)]
+}
+
+/// One number, or several side by side; comparisons give a mask. Operations act lane by lane.
+pub trait Lanes:
+    Scalar
+    + Copy
+    + Send
+    + Sync
+    + Zero
+    + One
+    + std::ops::Neg<Output = Self>
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + ClosedDivAssign
+{
     /// How many numbers, at most [`MOST_LANES`].
     const COUNT: usize;
+
+    /// The answer to a question, lane by lane.
+    type Mask: Mask;
+
+    /// The same number in every lane.
+    fn splat(number: f64) -> Self;
 
     /// The numbers of the lanes, in order.
     fn from_lanes(of: impl FnMut(usize) -> f64) -> Self;
@@ -26,8 +58,41 @@ pub trait Lanes: SimdRealField<Element = f64> + Copy + Send + Sync {
     /// The number of one lane, below [`Self::COUNT`].
     fn lane(&self, lane: usize) -> f64;
 
-    /// Whether a mask holds, lane by lane from the lowest bit.
-    fn bits(mask: Self::SimdBool) -> u64;
+    /// Whether it is above `other`.
+    fn simd_gt(self, other: Self) -> Self::Mask;
+
+    /// Whether it is below `other`.
+    fn simd_lt(self, other: Self) -> Self::Mask;
+
+    /// Whether it differs from `other`.
+    fn simd_ne(self, other: Self) -> Self::Mask;
+
+    /// The larger one; `other` if the two do not compare.
+    fn simd_max(self, other: Self) -> Self;
+
+    /// The smaller one; `other` if the two do not compare.
+    fn simd_min(self, other: Self) -> Self;
+
+    /// Without its sign.
+    fn simd_abs(self) -> Self;
+
+    /// With the sign of `sign`.
+    fn simd_copysign(self, sign: Self) -> Self;
+
+    /// √.
+    fn simd_sqrt(self) -> Self;
+
+    /// Itself where `mask` holds, `other` elsewhere.
+    fn select(self, mask: Self::Mask, other: Self) -> Self;
+
+    /// `of` the number of each lane.
+    #[inline(always)]
+    fn map_lanes(self, of: impl Fn(f64) -> f64) -> Self {
+        Self::from_lanes(|lane| of(self.lane(lane)))
+    }
+
+    /// Which of as many `numbers` as there are lanes differ from `one`, from the lowest bit.
+    fn differ(numbers: &[u32], one: u32) -> u32;
 
     /// Four numbers of each lane, `rows[lane]`, as four in lanes.
     fn columns(rows: [&[f64; 4]; MOST_LANES]) -> [Self; 4];
@@ -41,8 +106,36 @@ pub trait Lanes: SimdRealField<Element = f64> + Copy + Send + Sync {
     }
 }
 
+/// A yes or no in each lane.
+pub trait Mask:
+    Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
+{
+    /// The answers, from the lowest bit.
+    fn bits(self) -> u32;
+
+    /// Whether any is yes.
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.bits() != 0
+    }
+}
+
+impl Mask for bool {
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        u32::from(self)
+    }
+}
+
 impl Lanes for f64 {
     const COUNT: usize = 1;
+
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(number: f64) -> Self {
+        number
+    }
 
     #[inline(always)]
     fn from_lanes(mut of: impl FnMut(usize) -> f64) -> Self {
@@ -55,8 +148,53 @@ impl Lanes for f64 {
     }
 
     #[inline(always)]
-    fn bits(mask: bool) -> u64 {
-        u64::from(mask)
+    fn simd_gt(self, other: Self) -> bool {
+        self > other
+    }
+
+    #[inline(always)]
+    fn simd_lt(self, other: Self) -> bool {
+        self < other
+    }
+
+    #[inline(always)]
+    fn simd_ne(self, other: Self) -> bool {
+        self.partial_cmp(&other) != Some(std::cmp::Ordering::Equal)
+    }
+
+    #[inline(always)]
+    fn simd_max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+
+    #[inline(always)]
+    fn simd_min(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+
+    #[inline(always)]
+    fn simd_abs(self) -> Self {
+        self.abs()
+    }
+
+    #[inline(always)]
+    fn simd_copysign(self, sign: Self) -> Self {
+        self.copysign(sign)
+    }
+
+    #[inline(always)]
+    fn simd_sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn select(self, mask: bool, other: Self) -> Self {
+        if mask { self } else { other }
+    }
+
+    #[inline(always)]
+    fn differ(numbers: &[u32], one: u32) -> u32 {
+        u32::from(numbers[0] != one)
     }
 
     #[inline(always)]
@@ -68,60 +206,6 @@ impl Lanes for f64 {
     fn rows(columns: [Self; 4]) -> [[f64; 4]; MOST_LANES] {
         [columns; MOST_LANES]
     }
-}
-
-impl Lanes for Four {
-    const COUNT: usize = 4;
-
-    #[inline(always)]
-    fn from_lanes(mut of: impl FnMut(usize) -> f64) -> Self {
-        Self::from_arr([of(0), of(1), of(2), of(3)])
-    }
-
-    #[inline(always)]
-    fn lane(&self, lane: usize) -> f64 {
-        self.into_arr()[lane]
-    }
-
-    #[inline(always)]
-    fn bits(mask: WideBoolF64x4) -> u64 {
-        mask.0.move_mask() as u64
-    }
-
-    #[inline(always)]
-    fn columns(rows: [&[f64; 4]; MOST_LANES]) -> [Self; 4] {
-        transposed(rows.map(|row| Self::from_arr(*row)))
-    }
-
-    #[inline(always)]
-    fn rows(columns: [Self; 4]) -> [[f64; 4]; MOST_LANES] {
-        transposed(columns).map(Self::into_arr)
-    }
-}
-
-/// Rows to columns. Left to itself the compiler loads number by number, which takes twice as long.
-#[cfg(target_feature = "avx")]
-#[inline(always)]
-fn transposed(rows: [Four; 4]) -> [Four; 4] {
-    use safe_arch::{m256d, permute2z_m256d, unpack_hi_m256d, unpack_lo_m256d};
-    let [a, b, c, d] = rows.map(|row| m256d::from_array(row.into_arr()));
-    let even = [unpack_lo_m256d(a, b), unpack_lo_m256d(c, d)];
-    let odd = [unpack_hi_m256d(a, b), unpack_hi_m256d(c, d)];
-    [
-        permute2z_m256d::<0x20>(even[0], even[1]),
-        permute2z_m256d::<0x20>(odd[0], odd[1]),
-        permute2z_m256d::<0x31>(even[0], even[1]),
-        permute2z_m256d::<0x31>(odd[0], odd[1]),
-    ]
-    .map(|column| Four::from_arr(column.to_array()))
-}
-
-/// Rows to columns.
-#[cfg(not(target_feature = "avx"))]
-#[inline(always)]
-fn transposed(rows: [Four; 4]) -> [Four; 4] {
-    let [a, b, c, d] = rows.map(Four::into_arr);
-    [0, 1, 2, 3].map(|at| Four::from_arr([a[at], b[at], c[at], d[at]]))
 }
 
 /// A vector of `N` components, each in lanes.
@@ -136,17 +220,14 @@ pub fn vector_of<R: Lanes, const N: usize>(component: impl FnMut(usize) -> R) ->
 
 /// `vector` where the mask holds, zero elsewhere.
 #[inline(always)]
-pub fn vector_where<R: Lanes, const N: usize>(
-    mask: R::SimdBool,
-    vector: Vector<R, N>,
-) -> Vector<R, N> {
+pub fn vector_where<R: Lanes, const N: usize>(mask: R::Mask, vector: Vector<R, N>) -> Vector<R, N> {
     vector_of(|at| vector[at].select(mask, R::zero()))
 }
 
 /// `one` where the mask holds, `other` elsewhere.
 #[inline(always)]
 pub fn select_vector<R: Lanes, const N: usize>(
-    mask: R::SimdBool,
+    mask: R::Mask,
     one: Vector<R, N>,
     other: Vector<R, N>,
 ) -> Vector<R, N> {
