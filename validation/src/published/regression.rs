@@ -166,6 +166,16 @@ pub fn leaving_out(
     Some(whole.into_iter().enumerate().map(|(at, value)| Estimate::new(value, error(at))).collect())
 }
 
+/// Up to what mean absolute deviation points with these standard `errors` have of a curve that they would lie on
+/// without: the mean of |ε| is σ √(2/π), its variance σ² (1 − 2/π), and `sigmas` of that are allowed for.
+#[must_use]
+pub fn deviation_by_scatter(errors: &[f64], sigmas: f64) -> f64 {
+    let share = std::f64::consts::FRAC_2_PI;
+    let n = errors.len() as f64;
+    let squares: f64 = errors.iter().map(|error| error * error).sum();
+    (errors.iter().sum::<f64>() * share.sqrt() + sigmas * (squares * (1.0 - share)).sqrt()) / n
+}
+
 /// Root mean square that the best coefficients of `columns` leave of `y`.
 fn left_over(columns: &[Vec<f64>], y: &[f64]) -> f64 {
     linear(columns, y, None).map_or(f64::INFINITY, |fitted| fitted.residual)
@@ -257,6 +267,18 @@ mod tests {
         // Of a mean it is the textbook's: the root of Σ(x − 3)² / (4 · 3), here of 14/12.
         assert!((found[0].value - 3.0).abs() < 1e-15, "rounding");
         assert!((found[0].error - (14.0_f64 / 12.0).sqrt()).abs() < 1e-14, "rounding");
+    }
+
+    #[test]
+    fn points_that_scatter_about_a_right_curve_deviate_by_less_than_is_allowed_for() {
+        // Quantiles of a normal deviate at 5, 15, … 95 %.
+        let quantiles: Vec<f64> =
+            (0..10).map(|k| Normal::standard().inverse_cdf(0.05 + 0.1 * f64::from(k))).collect();
+        let mean = quantiles.iter().map(|one| one.abs()).sum::<f64>() / 10.0;
+        let [exact, allowed] = [0.0, 2.0].map(|sigmas| deviation_by_scatter(&[1.0; 10], sigmas));
+        // Ten quantiles stand for the whole to a few hundredths.
+        assert!((exact - mean).abs() < 0.03, "{exact} {mean}");
+        assert!(mean < allowed && allowed < 1.2, "{allowed}");
     }
 
     #[test]
