@@ -137,11 +137,11 @@ fn coefficients(
     found: &Separated,
     known: Option<[Known; 2]>,
 ) -> [Check; 2] {
-    let half = |one: Estimate| found.as_surely_as(SIGMAS) * (2.0_f64).sqrt() * one.error;
     let compare = |name: &str, published: f64, ours: Estimate, known: Option<&Known>| {
-        let band = Band { half: half(ours), reason: REASON };
+        let margin = found.as_surely_as(SIGMAS) * ours.error;
+        let band = Band { half: (2.0_f64).sqrt() * margin, reason: REASON };
         Check::number(format!("{title}: {name}"), Estimate::new(published, 0.0), ours, band)
-            .unless_known(known, (ours.value / published, 0.0))
+            .unless_known(known, (ours.value / published, margin / published))
     };
     let [drag, friction] = known.map_or([None, None], |known| known.map(Some));
     [

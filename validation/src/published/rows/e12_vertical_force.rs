@@ -72,16 +72,9 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
             for (name, ours, there) in
                 [("α/m (1/m)", drag, OTHERS[0]), ("f/m (1/s²)", friction, OTHERS[1])]
             {
-                let ratio = ours.value / there;
-                findings.checks.push(Check::trend(
-                    format!(
-                        "90°, {}: {name} is of the order of Katsuragi & Durian's",
-                        reading.name
-                    ),
-                    ("the same order of magnitude", format!("{ours}: {ratio:.2} times theirs")),
-                    "within a factor of ten",
-                    (1.0 / ORDER..=ORDER).contains(&ratio),
-                ));
+                let title = format!("90°, {}: {name}", reading.name);
+                let margin = found.as_surely_as(SIGMAS) * ours.error;
+                findings.checks.push(of_the_order(title, (ours, margin), there));
             }
         }
         findings.checks.extend(early_peak(reading.name, &own));
@@ -99,6 +92,20 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
     );
     findings.notes.extend(ran.note());
     Ok(findings)
+}
+
+/// Whether a number of ours, known within a margin, is of the order of one `there`.
+fn of_the_order(title: String, (ours, margin): (Estimate, f64), there: f64) -> Check {
+    let ratio = ours.value / there;
+    let is_of_it = |value: f64| (1.0 / ORDER..=ORDER).contains(&(value / there));
+    let reached = ours.value + margin >= there / ORDER && ours.value - margin <= ORDER * there;
+    Check::trend(
+        format!("{title} is of the order of Katsuragi & Durian's"),
+        ("the same order of magnitude", format!("{ours}: {ratio:.2} times theirs")),
+        "within a factor of ten, by two standard errors (Student's t)",
+        is_of_it(ours.value),
+    )
+    .undecided_if(!is_of_it(ours.value) && reached)
 }
 
 /// Whether the force rises with v² at the three depths by one slope, from a force at rest that rises with depth.
@@ -266,6 +273,16 @@ mod tests {
         // Against this force the disc goes on at a speed of its own.
         assert_eq!(verdicts(|_, v| v * v - 0.3)[1], Verdict::Fail);
         assert_eq!(verdicts(|y, v| 0.27 * v * v + 0.7 - 2.0 * y)[2], Verdict::Fail);
+    }
+
+    #[test]
+    fn a_number_a_hundredth_of_theirs_fails_unless_its_error_reaches_a_tenth() {
+        let verdict = |value: f64, margin: f64| {
+            of_the_order(String::new(), (Estimate::new(value, 0.0), margin), 1040.0).verdict
+        };
+        assert_eq!(verdict(150.0, 10.0), Verdict::Pass);
+        assert_eq!(verdict(98.0, 80.0), Verdict::NotCheckable);
+        assert_eq!(verdict(10.0, 5.0), Verdict::Fail);
     }
 
     #[test]
