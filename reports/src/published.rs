@@ -21,7 +21,12 @@ const VERDICTS: [(&str, &str); 4] = [
 pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
     let found = object(texts, RESULT)?;
     let rows = list(&found["rows"]);
-    let mut sections = vec![Section::new("All rows", vec![Part::Table(overview(rows))])];
+    let mut parts = vec![Part::Table(overview(rows))];
+    for headline in rows.iter().map(|row| &row["headline"]).filter(|headline| headline.is_object())
+    {
+        parts.extend(numbers(headline));
+    }
+    let mut sections = vec![Section::new("All rows", parts)];
     sections.extend(rows.iter().map(|row| section(row, texts)));
     let page = Page {
         title: "Published results, run again".to_owned(),
@@ -50,12 +55,14 @@ fn headline(rows: &[Value]) -> Vec<Number> {
 fn overview(rows: &[Value]) -> Table {
     let mut table = Table::new(&["row", "what", "verdict"]);
     table.head.extend(VERDICTS.iter().map(|(_, name)| (*name).to_owned()));
+    table.head.push("of them undecided".to_owned());
     for row in rows {
         let checks = list(&row["checks"]);
         let count =
             |verdict: &str| checks.iter().filter(|check| check["verdict"] == verdict).count();
         let mut cells = vec![text(&row["id"]), text(&row["title"]), text(&row["verdict"])];
         cells.extend(VERDICTS.iter().map(|(key, _)| count(key).to_string()));
+        cells.push(checks.iter().filter(|check| check["undecided"] == true).count().to_string());
         table.rows.push(cells);
     }
     table
@@ -79,13 +86,18 @@ fn section(row: &Value, texts: &Texts) -> Option<Section> {
             parts.push(figure(svg, &text(&shown["caption"])));
         }
     }
-    for numbers in list(&row["tables"]) {
-        parts.push(Part::Text(text(&numbers["caption"])));
-        let rows = list(&numbers["rows"]).iter().map(strings).collect();
-        parts.push(Part::Table(Table { head: strings(&numbers["head"]), rows }));
-    }
+    parts.extend(list(&row["tables"]).iter().flat_map(numbers));
     parts.extend(strings(&row["notes"]).into_iter().map(Part::Text));
     Section::new(&text(&row["id"]), parts)
+}
+
+/// A table of numbers below its caption.
+fn numbers(table: &Value) -> [Part; 2] {
+    let rows = list(&table["rows"]).iter().map(strings).collect();
+    [
+        Part::Text(text(&table["caption"])),
+        Part::Table(Table { head: strings(&table["head"]), rows }),
+    ]
 }
 
 fn table_of(checks: &[Value]) -> Table {
@@ -135,6 +147,7 @@ mod tests {
         });
         let found = json!({ "effort": "quick", "rows": [
             { "id": "E1", "title": "one", "verdict": "deviates", "checks": [check],
+              "headline": { "caption": "at a glance", "head": ["angle"], "rows": [["90"]] },
               "figures": [{ "file": "e1.svg", "caption": "a figure" }] },
             { "id": "E2", "title": "two", "verdict": "fail", "error": "no bed" },
         ] });
@@ -143,7 +156,13 @@ mod tests {
         let html = page(&texts.into_iter().collect()).expect("a page");
         // Words of a band are no number: they take several lines.
         assert!(html.contains("<table class=\"sentences\">"), "{html}");
-        for shown in ["0.1 \u{b1} 0.01", "deviates: a cause", "Could not be run: no bed", "<svg"] {
+        for shown in [
+            "0.1 \u{b1} 0.01",
+            "deviates: a cause",
+            "Could not be run: no bed",
+            "at a glance",
+            "<svg",
+        ] {
             assert!(html.contains(shown), "{shown} in {html}");
         }
     }

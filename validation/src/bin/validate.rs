@@ -164,8 +164,7 @@ fn validate(wish: &Wish) -> Result<Verdict, Box<dyn Error>> {
             shapes: shapes.clone(),
             sets: "validation/data".into(),
         };
-        let findings = (row.judge)(&laboratory).map_err(|error| error.to_string());
-        let one = Judged { row, findings };
+        let one = Judged::by(row, &laboratory);
         println!(
             "{:4}{:14} {} ({:.0} s)",
             row.id,

@@ -8,7 +8,8 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// The source lost its numbers, or asks for what is not there, or so few impacts do not decide it.
+    /// The source lost its numbers, or asks for what is not there, or the impacts that were run do not decide it
+    /// ([`Check::undecided`]).
     NotCheckable,
     /// Within the band, or the trend holds.
     Pass,
@@ -104,11 +105,18 @@ pub struct Known {
 }
 
 impl Known {
-    /// Whether it covers ours being `ratio` times the published number.
+    /// Whether it covers ours being `ratio` times the published number, which is known to within `margin`.
     #[must_use]
-    pub fn covers(&self, ratio: f64) -> bool {
-        (self.ratio[0]..=self.ratio[1]).contains(&ratio)
+    pub fn covers(&self, ratio: f64, margin: f64) -> bool {
+        ratio + margin >= self.ratio[0] && ratio - margin <= self.ratio[1]
     }
+}
+
+/// Half a band, endless where it is not known: without any freedom left, an infinite factor times an error of nought is
+/// not a number.
+#[must_use]
+pub fn or_endless(half: f64) -> f64 {
+    if half.is_nan() { f64::INFINITY } else { half }
 }
 
 /// One comparison.
@@ -124,12 +132,17 @@ pub struct Check {
     pub band: String,
     /// The verdict.
     pub verdict: Verdict,
+    /// Whether there is something to hold it against, but more impacts are needed to tell.
+    pub undecided: bool,
     /// The cause of a deviation, or why it cannot be checked; may be empty.
     pub cause: String,
 }
 
+/// Why a check is undecided.
+const TOO_FEW: &str = "the scatter of the impacts that were run allows either";
+
 impl Check {
-    /// A number that has to come out as published within `band`.
+    /// A number that has to come out as published within `band`; undecided where zero would pass as well.
     #[must_use]
     pub fn number(
         what: impl Into<String>,
@@ -137,16 +150,35 @@ impl Check {
         ours: Estimate,
         band: Band,
     ) -> Self {
+        let band = Band { half: or_endless(band.half), ..band };
         let within = (ours.value - published.value).abs() <= band.half;
         let half = Estimate::new(band.half, 0.0);
-        Self {
+        let check = Self {
             what: what.into(),
             published: Side::Number(published),
             ours: Side::Number(ours),
             band: format!("± {half}: {}", band.reason),
             verdict: if within { Verdict::Pass } else { Verdict::Fail },
+            undecided: false,
             cause: String::new(),
-        }
+        };
+        check.undecided_if(within && published.value.abs() <= band.half)
+    }
+
+    /// A mean deviation from a curve, to which the scatter of ours alone adds up to `by_scatter`
+    /// ([`regression::deviation_by_scatter`](super::regression::deviation_by_scatter)): it passes within `band`, and
+    /// fails where that scatter does not explain what is beyond; between, it is undecided.
+    #[must_use]
+    pub fn deviation(
+        what: impl Into<String>,
+        published: impl Into<String>,
+        ours: Estimate,
+        by_scatter: f64,
+        band: Band,
+    ) -> Self {
+        let (excess, by_scatter) = (ours.value - band.half, or_endless(by_scatter));
+        Self::at_most(what, published, ours, band)
+            .undecided_if(excess > 0.0 && excess <= by_scatter)
     }
 
     /// A number that must not be greater than `band` is wide.
@@ -164,12 +196,13 @@ impl Check {
             ours: Side::Number(ours),
             band: format!("at most {limit}: {}", band.reason),
             verdict: if ours.value <= band.half { Verdict::Pass } else { Verdict::Fail },
+            undecided: false,
             cause: String::new(),
         }
     }
 
     /// A number that the source has positive, known to within `band`: it passes where it is positive all through the band and
-    /// fails where it is negative all through it; between, it is not decided.
+    /// fails where it is negative all through it; between, it is undecided.
     #[must_use]
     pub fn positive(
         what: impl Into<String>,
@@ -177,21 +210,18 @@ impl Check {
         ours: Estimate,
         band: Band,
     ) -> Self {
-        let verdict = match ours.value {
-            value if value > band.half => Verdict::Pass,
-            value if value.abs() <= band.half => Verdict::NotCheckable,
-            _ => Verdict::Fail,
-        };
-        let undecided = verdict == Verdict::NotCheckable;
+        let band = Band { half: or_endless(band.half), ..band };
         let half = Estimate::new(band.half, 0.0);
-        Self {
+        let check = Self {
             what: what.into(),
             published: Side::Words(published.into()),
             ours: Side::Number(ours),
             band: format!("positive by {half}: {}", band.reason),
-            verdict,
-            cause: if undecided { "so few impacts do not decide its sign" } else { "" }.to_owned(),
-        }
+            verdict: if ours.value > band.half { Verdict::Pass } else { Verdict::Fail },
+            undecided: false,
+            cause: String::new(),
+        };
+        check.undecided_if(ours.value.abs() <= band.half)
     }
 
     /// A statement that `holds` or does not, as `ours` shows by the test `decided`.
@@ -208,6 +238,7 @@ impl Check {
             ours: Side::Words(ours),
             band: decided.to_owned(),
             verdict: if holds { Verdict::Pass } else { Verdict::Fail },
+            undecided: false,
             cause: String::new(),
         }
     }
@@ -221,8 +252,20 @@ impl Check {
             ours: Side::Words("–".to_owned()),
             band: "–".to_owned(),
             verdict: Verdict::NotCheckable,
+            undecided: false,
             cause: why.to_owned(),
         }
+    }
+
+    /// The same, neither passed nor failed where the impacts allow `either`.
+    #[must_use]
+    pub fn undecided_if(mut self, either: bool) -> Self {
+        if either {
+            self.verdict = Verdict::NotCheckable;
+            self.undecided = true;
+            self.cause = TOO_FEW.to_owned();
+        }
+        self
     }
 
     /// A failure turns into a deviation with a cause that was listed beforehand, where `is_known`.
@@ -235,11 +278,11 @@ impl Check {
         self
     }
 
-    /// Likewise where ours over the published number is a `ratio` that `known` covers.
+    /// Likewise where ours over the published number is a `ratio` that `known` covers within a `margin`.
     #[must_use]
-    pub fn unless_known(self, known: Option<&Known>, ratio: f64) -> Self {
+    pub fn unless_known(self, known: Option<&Known>, (ratio, margin): (f64, f64)) -> Self {
         match known {
-            Some(known) => self.listed(known.covers(ratio), known.cause),
+            Some(known) => self.listed(known.covers(ratio, margin), known.cause),
             None => self,
         }
     }
@@ -258,12 +301,42 @@ mod tests {
 
     #[test]
     fn only_what_was_listed_beforehand_deviates_and_the_rest_fails() {
-        let verdict = |ours: f64| compared(ours).unless_known(Some(&KNOWN), ours).verdict;
+        let within =
+            |ours, margin| compared(ours).unless_known(Some(&KNOWN), (ours, margin)).verdict;
+        let verdict = |ours| within(ours, 0.0);
         assert_eq!(verdict(1.05), Verdict::Pass);
         assert_eq!(verdict(1.2), Verdict::Deviates);
         assert_eq!(verdict(1.4), Verdict::Fail);
         assert_eq!(verdict(0.8), Verdict::Fail);
-        assert_eq!(compared(1.2).unless_known(None, 1.2).verdict, Verdict::Fail);
+        // An error of ours that reaches what was listed.
+        assert_eq!(within(1.35, 0.06), Verdict::Deviates);
+        assert_eq!(within(1.35, 0.04), Verdict::Fail);
+        assert_eq!(compared(1.2).unless_known(None, (1.2, 0.0)).verdict, Verdict::Fail);
+    }
+
+    #[test]
+    fn a_number_that_might_as_well_be_zero_is_undecided_and_one_beyond_its_band_still_fails() {
+        let verdict = |ours: f64, half: f64| {
+            let check = Check::number(
+                "",
+                Estimate::new(1.0, 0.0),
+                Estimate::new(ours, 0.0),
+                Band { half, reason: "a test" },
+            );
+            (check.verdict, check.undecided)
+        };
+        assert_eq!(verdict(1.5, 0.9), (Verdict::Pass, false));
+        assert_eq!(verdict(1.5, 1.1), (Verdict::NotCheckable, true));
+        assert_eq!(verdict(2.5, 1.1), (Verdict::Fail, false));
+    }
+
+    #[test]
+    fn a_deviation_fails_only_by_more_than_the_scatter_of_ours_explains() {
+        let verdict = |ours| Check::deviation("", "", Estimate::new(ours, 0.0), 0.05, BAND).verdict;
+        assert_eq!(verdict(0.09), Verdict::Pass);
+        assert_eq!(verdict(0.14), Verdict::NotCheckable);
+        assert_eq!(verdict(0.16), Verdict::Fail);
+        assert_eq!(verdict(f64::NAN), Verdict::Fail);
     }
 
     #[test]

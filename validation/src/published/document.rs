@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 
 use super::check::{Check, Verdict};
-use super::laboratory::Effort;
-use super::row::{Findings, Row, Table};
+use super::laboratory::{Effort, Laboratory};
+use super::row::{Findings, PublishedError, Row, Table};
 
 /// A row and what came of it.
 pub struct Judged {
@@ -17,6 +17,18 @@ pub struct Judged {
 }
 
 impl Judged {
+    /// Judges `row`. One of whose impacts none was run yet has nothing to be held against, and does not fail.
+    #[must_use]
+    pub fn by(row: &'static Row, laboratory: &Laboratory<'_>) -> Self {
+        let findings = match (row.judge)(laboratory) {
+            Err(why @ PublishedError::NotYet) => {
+                Ok(Findings { notes: vec![format!("Not judged: {why}.")], ..Findings::default() })
+            }
+            found => found.map_err(|error| error.to_string()),
+        };
+        Self { row, findings }
+    }
+
     /// The verdict; a row that could not be run fails.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
@@ -28,6 +40,13 @@ impl Judged {
     pub fn count(&self, verdict: Verdict) -> usize {
         let checks = self.findings.iter().flat_map(|findings| &findings.checks);
         checks.filter(|check| check.verdict == verdict).count()
+    }
+
+    /// How many of its checks are undecided.
+    #[must_use]
+    pub fn undecided(&self) -> usize {
+        let checks = self.findings.iter().flat_map(|findings| &findings.checks);
+        checks.filter(|check| check.undecided).count()
     }
 
     /// How it was run.
@@ -46,6 +65,7 @@ impl Judged {
         });
         match &self.findings {
             Ok(findings) => {
+                value["headline"] = json!(findings.headline);
                 value["checks"] = json!(findings.checks);
                 value["tables"] = json!(findings.tables);
                 value["figures"] = json!(findings.figures);
@@ -83,18 +103,30 @@ fn word(effort: Effort) -> &'static str {
     }
 }
 
+/// What stands below the table of rows.
+const UNDECIDED: &str = "A check is undecided where the scatter of the impacts that were run allows either answer: a full run has \
+                         enough of them for most.";
+
 fn write_all(text: &mut String, judged: &[Judged], effort: Effort) -> std::fmt::Result {
     writeln!(text, "# Published results, run again ({})\n", word(effort))?;
-    writeln!(text, "| row | what | source | pass | deviates | fail | not checkable | verdict |")?;
-    writeln!(text, "|---|---|---|---|---|---|---|---|")?;
+    writeln!(
+        text,
+        "| row | what | source | pass | deviates | fail | not checkable | of them undecided | verdict |"
+    )?;
+    writeln!(text, "|---|---|---|---|---|---|---|---|---|")?;
     for one in judged {
         let row = one.row;
         write!(text, "| {} | {} | {} |", row.id, cell(row.title), cell(row.source))?;
         for verdict in [Verdict::Pass, Verdict::Deviates, Verdict::Fail, Verdict::NotCheckable] {
             write!(text, " {} |", one.count(verdict))?;
         }
-        writeln!(text, " **{}** |", one.verdict())?;
+        writeln!(text, " {} | **{}** |", one.undecided(), one.verdict())?;
     }
+    writeln!(text, "\n{UNDECIDED}")?;
+    let findings = judged.iter().flat_map(|one| &one.findings);
+    findings
+        .filter_map(|found| found.headline.as_ref())
+        .try_for_each(|one| write_table(text, one))?;
     judged.iter().try_for_each(|one| write_row(text, one, effort))
 }
 
@@ -112,9 +144,11 @@ fn write_row(text: &mut String, one: &Judged, effort: Effort) -> std::fmt::Resul
         Ok(findings) => findings,
         Err(why) => return writeln!(text, "Could not be run: {why}."),
     };
-    writeln!(text, "| check | published | ours | band | verdict |\n|---|---|---|---|---|")?;
+    if !findings.checks.is_empty() {
+        writeln!(text, "| check | published | ours | band | verdict |\n|---|---|---|---|---|")?;
+    }
     for check in &findings.checks {
-        let Check { what, published, ours, band, verdict, cause } = check;
+        let Check { what, published, ours, band, verdict, cause, .. } = check;
         let because = if cause.is_empty() { String::new() } else { format!(": {cause}") };
         let cells = [what.clone(), published.to_string(), ours.to_string(), band.clone()];
         let [what, published, ours, band] = cells.map(|text| cell(&text));
@@ -176,6 +210,19 @@ mod tests {
         assert_eq!(to_json(&[judged(1.0)], Effort::Quick)["verdict"], "pass");
         assert_eq!(to_json(&[judged(1.0), judged(2.0)], Effort::Quick)["verdict"], "fail");
         assert_eq!(to_json(&[judged(1.0), broken], Effort::Full)["verdict"], "fail");
+    }
+
+    #[test]
+    fn what_is_undecided_is_counted_and_a_headline_stands_before_the_rows() {
+        let mut one = judged(1.0);
+        if let Ok(findings) = &mut one.findings {
+            let check = findings.checks[0].clone();
+            findings.checks.push(check.undecided_if(true));
+            findings.headline = Some(Table::new("at a glance", &["angle"]));
+        }
+        let text = markdown(&[one], Effort::Quick);
+        assert!(text.contains("| E0 | A test | nobody | 1 | 0 | 0 | 1 | 1 | **pass** |"), "{text}");
+        assert!(text.find("at a glance") < text.find("## E0"), "{text}");
     }
 
     #[test]

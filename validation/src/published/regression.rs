@@ -105,11 +105,12 @@ pub fn exponential(x: &[f64], y: &[f64], errors: Option<&[f64]>) -> Option<Fitte
     let by_rate = x.iter().zip(&decay).map(|(x, decay)| -amplitude * x * decay).collect();
     let left: Vec<f64> = (y.iter().zip(&decay)).map(|(y, d)| y - amplitude * d - level).collect();
     let about = linear(&[decay, by_rate, plateau], &left, errors)?;
+    let residual = residual(&left, 3);
     Some(Fitted {
         coefficients: vec![amplitude, rate, level],
         covariance: about.covariance,
         r_squared: at_rate.r_squared,
-        residual: about.residual,
+        residual,
         freedom: about.freedom,
     })
 }
@@ -130,13 +131,22 @@ pub fn logarithmic(x: &[f64], y: &[f64]) -> Option<Fitted> {
     let by_energy = x.iter().map(|x| -scale * x / (energy * (energy + x))).collect();
     let left: Vec<f64> = y.iter().zip(column(energy)).map(|(y, c)| y - scale * c).collect();
     let about = linear(&[column(energy), by_energy], &left, None)?;
+    let residual = residual(&left, 2);
     Some(Fitted {
         coefficients: vec![scale, energy],
         covariance: about.covariance,
         r_squared: at_energy.r_squared,
-        residual: about.residual,
+        residual,
         freedom: about.freedom,
     })
+}
+
+/// Root mean square per degree of freedom of what a curve of so many coefficients leaves over; where its search ended at
+/// an end of its range, that is more than its linear form about there leaves.
+fn residual(left: &[f64], coefficients: usize) -> f64 {
+    let squares: f64 = left.iter().map(|one| one * one).sum();
+    let freedom = left.len().saturating_sub(coefficients);
+    if freedom > 0 { (squares / freedom as f64).sqrt() } else { 0.0 }
 }
 
 /// How many standard errors that were found with so many degrees of `freedom` hold a number as surely as `sigmas` of a
@@ -164,6 +174,16 @@ pub fn leaving_out(
         ((m - 1.0) / m * off.sum::<f64>()).sqrt()
     };
     Some(whole.into_iter().enumerate().map(|(at, value)| Estimate::new(value, error(at))).collect())
+}
+
+/// Up to what mean absolute deviation points with these standard `errors` have of a curve that they would lie on
+/// without: the mean of |ε| is σ √(2/π), its variance σ² (1 − 2/π), and `sigmas` of that are allowed for.
+#[must_use]
+pub fn deviation_by_scatter(errors: &[f64], sigmas: f64) -> f64 {
+    let share = std::f64::consts::FRAC_2_PI;
+    let n = errors.len() as f64;
+    let squares: f64 = errors.iter().map(|error| error * error).sum();
+    (errors.iter().sum::<f64>() * share.sqrt() + sigmas * (squares * (1.0 - share)).sqrt()) / n
 }
 
 /// Root mean square that the best coefficients of `columns` leave of `y`.
@@ -257,6 +277,27 @@ mod tests {
         // Of a mean it is the textbook's: the root of Σ(x − 3)² / (4 · 3), here of 14/12.
         assert!((found[0].value - 3.0).abs() < 1e-15, "rounding");
         assert!((found[0].error - (14.0_f64 / 12.0).sqrt()).abs() < 1e-14, "rounding");
+    }
+
+    #[test]
+    fn points_that_scatter_about_a_right_curve_deviate_by_less_than_is_allowed_for() {
+        // Quantiles of a normal deviate at 5, 15, … 95 %.
+        let quantiles: Vec<f64> =
+            (0..10).map(|k| Normal::standard().inverse_cdf(0.05 + 0.1 * f64::from(k))).collect();
+        let mean = quantiles.iter().map(|one| one.abs()).sum::<f64>() / 10.0;
+        let [exact, allowed] = [0.0, 2.0].map(|sigmas| deviation_by_scatter(&[1.0; 10], sigmas));
+        // Ten quantiles stand for the whole to a few hundredths.
+        assert!((exact - mean).abs() < 0.03, "{exact} {mean}");
+        assert!(mean < allowed && allowed < 1.2, "{allowed}");
+    }
+
+    #[test]
+    fn what_a_curve_leaves_over_is_told_also_where_its_search_ends_at_an_end() {
+        let energies = [0.002, 0.004, 0.008, 0.015, 0.03];
+        let falling = energies.map(|energy| 0.02 - 2e-3 * libm::log(energy / 1e-3));
+        let fitted = logarithmic(&energies, &falling).expect("a logarithm");
+        // No logarithm falls: its mean is about 16 mm, and it lies off by 2 mm and more.
+        assert!(fitted.residual > 2e-3, "{fitted:?}");
     }
 
     #[test]

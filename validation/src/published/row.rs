@@ -31,6 +31,8 @@ pub struct Row {
 /// What came of a row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Findings {
+    /// What belongs at the head of a report, if anything does.
+    pub headline: Option<Table>,
     /// Its comparisons.
     pub checks: Vec<Check>,
     /// Numbers behind them.
@@ -106,6 +108,8 @@ pub enum PublishedError {
     Picture(#[from] PictureError),
     #[error(transparent)]
     Threads(#[from] ThreadsError),
+    #[error("none of its impacts was run yet")]
+    NotYet,
     #[error("{0}")]
     Missing(String),
 }

@@ -1,7 +1,7 @@
 //! Numbers of an impact over its speed, one curve per angle: fitted as the article fits them, and held
 //! against its curves and its coefficients.
 
-use super::matrix::{self, Cell, READINGS};
+use super::matrix::{self, Cell, READINGS, Reading};
 use super::tables::Published;
 use crate::beds::Record;
 use crate::published::check::{Band, Check, Estimate, Known};
@@ -185,6 +185,16 @@ impl Quantity {
         Ok(findings)
     }
 
+    /// Mean absolute deviation (%) of our means from the published curve of an angle (deg), from 1 m/s on; none where
+    /// nothing is published or no such impact is there.
+    #[must_use]
+    pub fn deviation(&self, cells: &[Cell], reading: &Reading, angle: f64) -> Option<f64> {
+        let own = matrix::of(cells, reading, angle);
+        let curve = (self.published)(own.first()?.published)?;
+        let ratios = ratios(&series(&own, self.of), &curve);
+        (!ratios.is_empty()).then(|| mean_deviation(&ratios))
+    }
+
     /// What becomes of mean and of single deviations.
     fn tables(&self) -> [Table; 2] {
         let caption = format!(
@@ -209,26 +219,30 @@ impl Quantity {
         curve: &Curve,
     ) -> f64 {
         let title = format!("{angle}°, {}", READINGS[at].name);
-        let ratios: Vec<f64> = (series.speeds.iter().zip(&series.means))
-            .filter(|(v, _)| **v >= FROM)
-            .map(|(v, y)| y / curve.form.at(&curve.values, *v))
-            .collect();
+        let ratios = ratios(series, curve);
         let n = ratios.len() as f64;
         let mean = ratios.iter().sum::<f64>() / n;
-        let off = 100.0 * ratios.iter().map(|ratio| (ratio - 1.0).abs()).sum::<f64>() / n;
+        let off = mean_deviation(&ratios);
         // The scatter of one mean, as a share.
         let scatter = series.errors.as_ref().map_or(0.0, |errors| {
             let shares = errors.iter().zip(&series.means).map(|(e, y)| e / y.abs());
             shares.sum::<f64>() / errors.len() as f64
         });
-        let ours = Estimate::new(off, 100.0 * scatter / n.sqrt());
+        let of_mean = scatter / n.sqrt();
+        let ours = Estimate::new(off, 100.0 * of_mean);
         let what = format!(
             "{title}: {}, mean deviation from the published curve (%), {mean:.3} of it in the mean",
             self.name
         );
-        let known = &self.known[at];
-        let check = Check::at_most(what, "0", ours, self.goal).unless_known(Some(known), mean);
-        findings.checks.push(check);
+        let (known, sigmas) = (&self.known[at], series.sigmas());
+        let margin = if scatter > 0.0 { sigmas * of_mean } else { 0.0 };
+        let by_scatter = match scatter > 0.0 {
+            true => 100.0 * regression::deviation_by_scatter(&vec![scatter; ratios.len()], sigmas),
+            // Nothing is known of it.
+            false => f64::INFINITY,
+        };
+        let check = Check::deviation(what, "0", ours, by_scatter, self.goal);
+        findings.checks.push(check.unless_known(Some(known), (mean, margin)));
         let share = self.stated_scatter.unwrap_or(scatter);
         let fitted = curve.form.fit(&series.speeds, &series.means, series.errors.as_deref());
         for (name, number) in curve.names.iter().zip(0..) {
@@ -240,12 +254,11 @@ impl Quantity {
                 continue;
             };
             let ours = Estimate::new(fitted.coefficients[number], fitted.error(number));
-            let sigmas = series.sigmas();
             let half = libm::hypot(SIGMAS * published.error, sigmas * ours.error);
             let reason = "two standard errors (Student's t): of the published fit by the scatter of its positions, \
                           and of ours";
             let check = Check::number(what, published, ours, Band { half, reason });
-            findings.checks.push(check.listed(known.covers(mean), known.cause));
+            findings.checks.push(check.listed(known.covers(mean, margin), known.cause));
         }
         off
     }
@@ -265,6 +278,28 @@ impl Series {
     fn sigmas(&self) -> f64 {
         regression::student(SIGMAS, self.freedom)
     }
+
+    /// How many standard errors of a curve `fitted` to it hold a coefficient as surely as so many `sigmas` do where the
+    /// scatter is known.
+    #[must_use]
+    pub fn as_surely_as(&self, fitted: &Fitted, sigmas: f64) -> f64 {
+        match self.errors {
+            Some(_) => regression::student(sigmas, self.freedom),
+            None => fitted.as_surely_as(sigmas),
+        }
+    }
+}
+
+/// Means over the published curve, from 1 m/s on.
+fn ratios(series: &Series, curve: &Curve) -> Vec<f64> {
+    let places = series.speeds.iter().zip(&series.means).filter(|(v, _)| **v >= FROM);
+    places.map(|(v, y)| y / curve.form.at(&curve.values, *v)).collect()
+}
+
+/// Mean absolute deviation of `ratios` from one (%).
+fn mean_deviation(ratios: &[f64]) -> f64 {
+    let off = ratios.iter().map(|ratio| (ratio - 1.0).abs());
+    100.0 * off.sum::<f64>() / ratios.len() as f64
 }
 
 /// How far single means are off (%), a line per speed.

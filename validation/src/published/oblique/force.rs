@@ -37,7 +37,7 @@ pub struct Reading {
 }
 
 /// A law separated from the readings of impacts.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Separated {
     /// α (kg/m).
     pub drag: Estimate,
@@ -46,9 +46,9 @@ pub struct Separated {
     /// Correlation of both.
     pub correlation: f64,
     /// Share of the variance of the forces, averaged over positions, that the law explains.
-    pub r_squared: f64,
-    /// Impacts that it was separated from, and that were left out one after another.
-    pub impacts: usize,
+    pub explained: Estimate,
+    /// The laws without one of the impacts after another.
+    pub left_out: Vec<ForceLaw>,
 }
 
 impl Separated {
@@ -56,7 +56,7 @@ impl Separated {
     /// known.
     #[must_use]
     pub fn as_surely_as(&self, sigmas: f64) -> f64 {
-        regression::student(sigmas, self.impacts.saturating_sub(1))
+        regression::student(sigmas, self.left_out.len().saturating_sub(1))
     }
 
     /// The law without its errors.
@@ -103,31 +103,41 @@ pub fn readings(record: &Record, component: Component) -> Vec<Option<Reading>> {
 /// impact after another: the forces of one path are not independent. `None` where the paths do not decide.
 #[must_use]
 pub fn separate(cells: &[&Cell], component: Component) -> Option<Separated> {
-    let by_impact: Vec<Vec<Reading>> = cells
+    let impacts: Vec<(usize, Vec<Option<Reading>>)> = cells
         .iter()
-        .flat_map(|cell| &cell.records)
-        .map(|record| readings(record, component).into_iter().flatten().collect())
+        .enumerate()
+        .flat_map(|(cell, one)| one.records.iter().map(move |record| (cell, record)))
+        .map(|(cell, record)| (cell, readings(record, component)))
         .collect();
-    let n = by_impact.len();
-    let without = |left_out: Option<usize>| {
-        let kept = by_impact.iter().enumerate().filter(|(at, _)| Some(*at) != left_out);
-        fit(&kept.flat_map(|(_, readings)| readings.iter().copied()).collect::<Vec<_>>())
+    // Both coefficients and what they explain.
+    let without = |left_out: Option<usize>| -> Option<[f64; 3]> {
+        let kept = impacts.iter().enumerate().filter(|(at, _)| Some(*at) != left_out);
+        let kept: Vec<_> = kept.map(|(_, impact)| impact).collect();
+        let all: Vec<Reading> =
+            kept.iter().flat_map(|(_, own)| own.iter().flatten()).copied().collect();
+        let law = fit(&all)?;
+        let means = (0..cells.len()).flat_map(|cell| {
+            let own = kept.iter().filter(|(of, _)| *of == cell).map(|(_, own)| &own[..]);
+            means(&own.collect::<Vec<_>>())
+        });
+        Some([law.drag, law.friction, explained(&means.collect::<Vec<_>>(), law)])
     };
-    let [drag, friction] = without(None)?;
-    let left: Vec<[f64; 2]> = (0..n).filter_map(|at| without(Some(at))).collect();
+    let whole = without(None)?;
+    let left: Vec<[f64; 3]> = (0..impacts.len()).filter_map(|at| without(Some(at))).collect();
     let covariance = |i: usize, j: usize| -> f64 {
         let mean = |k: usize| left.iter().map(|one| one[k]).sum::<f64>() / left.len() as f64;
         let (a, b) = (mean(i), mean(j));
         let sum: f64 = left.iter().map(|one| (one[i] - a) * (one[j] - b)).sum();
         sum * (left.len() as f64 - 1.0) / left.len() as f64
     };
-    let errors = [covariance(0, 0).sqrt(), covariance(1, 1).sqrt()];
+    let [drag, friction, explained] =
+        [0, 1, 2].map(|at| Estimate::new(whole[at], covariance(at, at).sqrt()));
     Some(Separated {
-        drag: Estimate::new(drag, errors[0]),
-        friction: Estimate::new(friction, errors[1]),
-        correlation: covariance(0, 1) / (errors[0] * errors[1]),
-        r_squared: explained(cells, component, [drag, friction]),
-        impacts: n,
+        drag,
+        friction,
+        correlation: covariance(0, 1) / (drag.error * friction.error),
+        explained,
+        left_out: left.iter().map(|&[drag, friction, _]| ForceLaw { drag, friction }).collect(),
     })
 }
 
@@ -136,6 +146,11 @@ pub fn separate(cells: &[&Cell], component: Component) -> Option<Separated> {
 pub fn mean_readings(cell: &Cell, component: Component) -> Vec<Reading> {
     let all: Vec<Vec<Option<Reading>>> =
         cell.records.iter().map(|record| readings(record, component)).collect();
+    means(&all.iter().map(Vec::as_slice).collect::<Vec<_>>())
+}
+
+/// The means at each depth that one of `all` impacts at least passes.
+fn means(all: &[&[Option<Reading>]]) -> Vec<Reading> {
     let at_depth = |at: usize| {
         let here: Vec<Reading> = all.iter().filter_map(|readings| readings[at]).collect();
         let n = here.len() as f64;
@@ -149,15 +164,15 @@ pub fn mean_readings(cell: &Cell, component: Component) -> Vec<Reading> {
     (0..DEPTHS.len()).filter_map(at_depth).collect()
 }
 
-fn fit(readings: &[Reading]) -> Option<[f64; 2]> {
+fn fit(readings: &[Reading]) -> Option<ForceLaw> {
     let column = |of: fn(&Reading) -> f64| readings.iter().map(of).collect::<Vec<f64>>();
     let columns = [column(|one| one.square), column(|one| one.depth)];
     let fitted = regression::linear(&columns, &column(|one| one.force), None)?;
-    Some([fitted.coefficients[0], fitted.coefficients[1]])
+    Some(ForceLaw { drag: fitted.coefficients[0], friction: fitted.coefficients[1] })
 }
 
-fn explained(cells: &[&Cell], component: Component, [drag, friction]: [f64; 2]) -> f64 {
-    let all: Vec<Reading> = cells.iter().flat_map(|cell| mean_readings(cell, component)).collect();
+/// Share of the variance of the forces `all` that the law explains.
+fn explained(all: &[Reading], ForceLaw { drag, friction }: ForceLaw) -> f64 {
     let mean = all.iter().map(|one| one.force).sum::<f64>() / all.len() as f64;
     let left = |one: &Reading| one.force - drag * one.square - friction * one.depth;
     let left: f64 = all.iter().map(|one| left(one) * left(one)).sum();
@@ -167,59 +182,29 @@ fn explained(cells: &[&Cell], component: Component, [drag, friction]: [f64; 2]) 
 
 #[cfg(test)]
 mod tests {
-    use super::super::matrix::READINGS;
-    use super::super::records::record;
+    use super::super::records::{cells, straight_down};
     use super::super::tables::published;
     use super::*;
-
-    /// An impact straight down under `α v² + f y` from `speed` (m/s), integrated finely.
-    fn impact(law: ForceLaw, speed: f64) -> Record {
-        let (mut depth, mut velocity, dt) = (0.0, speed, 1e-6);
-        let (mut path, mut time) = (vec![0.0], 0.0);
-        for step in 1.. {
-            let at = |y: f64, v: f64| GRAVITY - (law.drag * v * v + law.friction * y) / MASS;
-            let half = velocity + 0.5 * dt * at(depth, velocity);
-            depth += dt * half;
-            velocity = half + 0.5 * dt * at(depth, half);
-            time = f64::from(step) * dt;
-            if step % 500 == 0 {
-                path.push(depth);
-            }
-            if velocity <= 0.0 {
-                break;
-            }
-        }
-        let stopped = Record {
-            deepest: depth,
-            stopping_time: Some(time),
-            ..record(5e-4, vec![0.0; path.len()], path)
-        };
-        Record { end: time, ..stopped }
-    }
 
     #[test]
     fn the_published_law_is_found_again_in_its_own_paths() {
         let published = published(90.0).expect("an angle of the tables");
         let law = published.vertical.expect("a law at 90 deg");
-        let cell = |speed: f64| Cell {
-            reading: &READINGS[0],
-            published,
-            speed,
-            records: vec![impact(law, speed)],
-        };
-        let cells: Vec<Cell> = [1.0, 2.0, 3.0, 4.0].map(cell).into();
+        let cells = cells(90.0, &[1.0, 2.0, 3.0, 4.0], |speed| {
+            straight_down(speed, |y, v| law.drag * v * v + law.friction * y)
+        });
         let found = separate(&cells.iter().collect::<Vec<_>>(), Component::Vertical);
         let found = found.expect("four speeds decide");
         // Velocities and forces are means over 1 mm of a force that bends: a hundredth.
         assert!((found.drag.value / law.drag - 1.0).abs() < 0.01, "{found:?}");
         assert!((found.friction.value / law.friction - 1.0).abs() < 0.01, "{found:?}");
-        assert!(found.r_squared > 0.999, "{found:?}");
+        assert!(found.explained.value > 0.999 && found.left_out.len() == 4, "{found:?}");
     }
 
     #[test]
     fn depths_below_the_stop_have_no_reading() {
         // From rest twice the weight over the friction, 70 mm, and a little more.
-        let record = impact(ForceLaw { drag: 0.3, friction: 9.0 }, 0.2);
+        let record = straight_down(0.2, |y, v| 0.3 * v * v + 9.0 * y);
         let n = readings(&record, Component::Vertical).iter().flatten().count();
         let passed = DEPTHS.iter().filter(|depth| **depth + WINDOW < record.deepest).count();
         assert!(n >= passed && n < DEPTHS.len(), "{n} of {passed} at {}", record.deepest);

@@ -93,6 +93,14 @@ pub struct Matrix {
 }
 
 impl Matrix {
+    /// What it cost to run.
+    #[must_use]
+    pub fn cost(&self) -> String {
+        let records = || self.cells.iter().flat_map(|cell| &cell.records);
+        let steps: f64 = records().map(|one| one.steps as f64 * one.grains as f64).sum();
+        format!("{} impacts, {steps:.1e} grain-steps.", records().count())
+    }
+
     /// What a report has to say of it while impacts are missing.
     #[must_use]
     pub fn note(&self) -> Option<String> {
@@ -155,7 +163,7 @@ pub fn run(
     }
     cells.retain(|cell| !cell.records.is_empty());
     if cells.is_empty() {
-        return Err(PublishedError::Missing("none of its impacts was run yet".to_owned()));
+        return Err(PublishedError::NotYet);
     }
     Ok(Matrix { cells, asked: jobs.len() })
 }

@@ -2,6 +2,7 @@
 
 pub mod curves;
 pub mod force;
+pub mod headline;
 pub mod matrix;
 pub mod own_depths;
 #[cfg(test)]

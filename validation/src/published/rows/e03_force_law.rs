@@ -1,6 +1,6 @@
 //! E3: the force on the intruder at nine depths, separated into α v² + f y.
 
-use crate::published::check::{Band, Check, Estimate, Known};
+use crate::published::check::{Band, Check, Estimate, Known, or_endless};
 use crate::published::laboratory::Laboratory;
 use crate::published::oblique::force::{Component, Separated, mean_readings, separate};
 use crate::published::oblique::matrix::{self, Cell, READINGS};
@@ -80,7 +80,7 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
     findings.notes.extend(ran.note());
     findings.notes.push(
         "Separable means: the additive law explains more than half of the variance of the forces between \
-         depths and speeds, and both coefficients are positive by two standard errors."
+         depths and speeds, and both coefficients are positive, each by two standard errors of leaving out impacts."
             .to_owned(),
     );
     Ok(findings)
@@ -96,12 +96,17 @@ fn word(component: Component) -> &'static str {
 /// Whether there is a law, where the article claims one, or none where it claims none.
 fn separable(title: &str, (angle, component): (f64, Component), found: &Separated) -> Check {
     let sigmas = found.as_surely_as(SIGMAS);
-    let positive = |one: Estimate| one.value > sigmas * one.error;
-    let is_law = found.r_squared > EXPLAINED && positive(found.drag) && positive(found.friction);
+    let surely = |above: bool| {
+        let side = if above { -1.0 } else { 1.0 };
+        let ends = [(found.explained, EXPLAINED), (found.drag, 0.0), (found.friction, 0.0)];
+        ends.map(|(one, end)| one.value + side * or_endless(sigmas * one.error) > end)
+    };
+    let is_law = surely(true).into_iter().all(|surely| surely);
+    let is_none = surely(false).into_iter().any(|possible| !possible);
     let claimed = component == Component::Horizontal || angle >= FROM;
     let ours = format!(
-        "explains {:.0} %; α = {} kg/m, f = {} N/m, correlation {:.2}",
-        100.0 * found.r_squared,
+        "explains {} %; α = {} kg/m, f = {} N/m, correlation {:.2}",
+        found.explained.times(100.0),
         found.drag,
         found.friction,
         found.correlation
@@ -109,9 +114,11 @@ fn separable(title: &str, (angle, component): (f64, Component), found: &Separate
     Check::trend(
         format!("{title}: the force is separable"),
         (if claimed { "yes" } else { "no" }, ours),
-        "more than half explained, α and f positive by two standard errors (Student's t)",
-        is_law == claimed,
+        "more than half explained, α and f positive, each by two standard errors (Student's t); no law where one of them \
+         is not by as much",
+        if claimed { is_law } else { is_none },
     )
+    .undecided_if(!is_law && !is_none)
 }
 
 /// How far α and f may be off by what the article's Table 1 says of them, for depths of between `depths` times
@@ -130,11 +137,11 @@ fn coefficients(
     found: &Separated,
     known: Option<[Known; 2]>,
 ) -> [Check; 2] {
-    let half = |one: Estimate| found.as_surely_as(SIGMAS) * (2.0_f64).sqrt() * one.error;
     let compare = |name: &str, published: f64, ours: Estimate, known: Option<&Known>| {
-        let band = Band { half: half(ours), reason: REASON };
+        let margin = found.as_surely_as(SIGMAS) * ours.error;
+        let band = Band { half: (2.0_f64).sqrt() * margin, reason: REASON };
         Check::number(format!("{title}: {name}"), Estimate::new(published, 0.0), ours, band)
-            .unless_known(known, ours.value / published)
+            .unless_known(known, (ours.value / published, margin / published))
     };
     let [drag, friction] = known.map_or([None, None], |known| known.map(Some));
     [
@@ -150,4 +157,48 @@ fn forces(series: usize, cells: &[&Cell], component: Component, law: ForceLaw) -
         (law.drag * one.square + law.friction * one.depth, one.force, 0.0)
     };
     Points { series, places: readings.map(place).collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::published::Verdict;
+    use crate::published::oblique::tables::published;
+
+    /// A law of twenty impacts that explains so much, with an error, and has an f of its own.
+    fn found(explained: [f64; 2], friction: f64) -> Separated {
+        let law = ForceLaw { drag: 0.27, friction };
+        Separated {
+            drag: Estimate::new(law.drag, 0.02),
+            friction: Estimate::new(friction, 0.3),
+            correlation: 0.0,
+            explained: Estimate::new(explained[0], explained[1]),
+            left_out: vec![law; 20],
+        }
+    }
+
+    #[test]
+    fn a_law_is_one_where_it_explains_the_forces_and_is_claimed_from_30_degrees_on() {
+        let verdict =
+            |angle, found: &Separated| separable("", (angle, Component::Vertical), found).verdict;
+        let [law, none] = [found([0.8, 0.05], 4.5), found([0.2, 0.05], 4.5)];
+        assert_eq!([verdict(90.0, &law), verdict(90.0, &none)], [Verdict::Pass, Verdict::Fail]);
+        assert_eq!([verdict(15.0, &law), verdict(15.0, &none)], [Verdict::Fail, Verdict::Pass]);
+        assert_eq!(verdict(15.0, &found([0.8, 0.05], -1.0)), Verdict::Pass);
+        let vague = found([0.55, 0.1], 4.5);
+        assert_eq!([15.0, 90.0].map(|angle| verdict(angle, &vague)), [Verdict::NotCheckable; 2]);
+    }
+
+    #[test]
+    fn coefficients_between_both_laws_of_the_article_deviate_and_others_fail() {
+        let published = published(90.0).expect("an angle of the tables");
+        let law = published.vertical.expect("a law at 90 deg");
+        let verdict = |friction: f64| {
+            let known = known(published, [1.0, 1.0]);
+            coefficients("", law, &found([0.8, 0.05], friction), known)[1].verdict
+        };
+        assert_eq!(verdict(law.friction), Verdict::Pass);
+        assert_eq!(verdict(1.5 * law.friction), Verdict::Deviates);
+        assert_eq!(verdict(0.5 * law.friction), Verdict::Fail);
+    }
 }

@@ -1,9 +1,9 @@
 //! E6: how deep cylinder, hemisphere and cone go at equal energy, and the logarithm of it.
 
-use crate::published::check::{Check, Estimate};
+use crate::published::check::{Band, Check, Estimate};
 use crate::published::laboratory::Laboratory;
 use crate::published::plot::{Panel, Plot, Points};
-use crate::published::regression;
+use crate::published::regression::{self, Fitted};
 use crate::published::row::{Findings, PublishedError, Row, Table};
 use crate::published::shapes::{self, Impact};
 use crate::three_shapes::{Case, SHAPES};
@@ -13,14 +13,18 @@ pub(super) static ROW: Row = Row {
     title: "Cylinder < hemisphere < cone in depth, logarithmic in the energy",
     source: "three-shape study, eqs 17, 22, Fig. 13",
     how: [
-        "3 shapes × 3 speeds on one bed of 3 000 spheres, 2.6 diameters across",
+        "3 shapes × 5 speeds on one bed of 3 000 spheres, 2.6 diameters across",
         "3 shapes × 8 speeds × 3 beds of 8 000 spheres, 3.6 diameters across",
     ],
     judge,
 };
 
-/// Share of the variance of the depths that the logarithm has to explain: as much as a figure shows by eye.
-const EXPLAINED: f64 = 0.9;
+/// What depths of one shape scatter by from bed to bed, as a share (`docs/three-shapes.md`: the root mean square over
+/// four speeds on three beds each), in the order of the shapes.
+const SCATTER: [f64; 3] = [0.103, 0.074, 0.025];
+
+/// Standard errors by which a slope is positive, and which a residual may be above the scatter of beds.
+const SIGMAS: f64 = 2.0;
 
 /// Mass of every shape (kg) and strength of gravity (m/s²).
 const MASS: f64 = 0.015;
@@ -38,17 +42,12 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
     for (at, shape) in SHAPES.into_iter().enumerate() {
         let own = shapes::of(&impacts, shape);
         let energies: Vec<f64> = own.iter().map(|(_, one)| one.impact_energy_j).collect();
-        let depths: Vec<f64> = own.iter().map(|(_, one)| one.depth_m).collect();
+        let depths: Vec<f64> = own.iter().map(|(_, one)| shapes::deepest(one)).collect();
         let places = energies.iter().zip(&depths).map(|(k, z)| (1e3 * k, 1e3 * z, 0.0)).collect();
         panel.points.push(Points { series: at, places });
         let fitted = regression::logarithmic(&energies, &depths);
-        let r_squared = fitted.as_ref().map_or(f64::NAN, |fitted| fitted.r_squared);
-        findings.checks.push(Check::trend(
-            format!("{}: depth over the energy of the impact", shapes::name(shape)),
-            ("a logarithm (eq. 22)", format!("R² = {r_squared:.3}")),
-            "nine tenths of the variance of the depths",
-            r_squared > EXPLAINED,
-        ));
+        findings.checks.extend(over_energy(shapes::name(shape), &energies, &depths));
+        findings.checks.push(logarithm(shapes::name(shape), fitted.as_ref(), &depths, SCATTER[at]));
         let Some(fitted) = fitted else { continue };
         let [scale, energy] = [fitted.coefficients[0], fitted.coefficients[1]];
         let chi = MASS / (2.0 * scale);
@@ -65,7 +64,7 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
             Estimate::new(chi, chi * fitted.error(0) / scale).to_string(),
             Estimate::new(MASS * GRAVITY + energy / scale, beta.max(0.0).sqrt()).to_string(),
             format!("{correlation:.2}"),
-            format!("{r_squared:.3}"),
+            format!("{:.3}", fitted.r_squared),
         ]);
         let greatest = energies.iter().copied().fold(0.0, f64::max);
         let curve = (0..=60).map(|k| greatest * f64::from(k) / 60.0);
@@ -89,6 +88,37 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
     Ok(findings)
 }
 
+/// Whether the depths rise with the logarithm of the energy.
+fn over_energy(shape: &str, energies: &[f64], depths: &[f64]) -> Option<Check> {
+    let logs = energies.iter().map(|energy| libm::log(*energy)).collect();
+    let in_mm: Vec<f64> = depths.iter().map(|depth| 1e3 * depth).collect();
+    let fitted = regression::linear(&[logs, vec![1.0; depths.len()]], &in_mm, None)?;
+    let slope = Estimate::new(fitted.coefficients[0], fitted.error(0));
+    let reason = "two standard errors (Student's t) of what the line leaves over";
+    let band = Band { half: fitted.as_surely_as(SIGMAS) * slope.error, reason };
+    let what = format!("{shape}: depth (mm) over ln K, the slope");
+    Some(Check::positive(what, "rises with the energy", slope, band))
+}
+
+/// Whether the depths lie about equation 22 as closely as beds let them, `scatter` being the share that they differ by
+/// from bed to bed.
+fn logarithm(shape: &str, fitted: Option<&Fitted>, depths: &[f64], scatter: f64) -> Check {
+    let what = format!("{shape}: what equation 22 leaves of the depths, over their mean (%)");
+    let published = "a logarithm (eq. 22)";
+    let Some(fitted) = fitted else {
+        return Check::not_checkable(what, published, "fewer than three energies are there");
+    };
+    let freedom = fitted.freedom.unwrap_or(0);
+    let mean = depths.iter().sum::<f64>() / depths.len() as f64;
+    let left = Estimate::new(100.0 * fitted.residual / mean, 0.0);
+    // A residual with so much freedom scatters by 1/√(2n) of itself.
+    let allowed = 1.0 + SIGMAS / (2.0 * freedom as f64).sqrt();
+    let reason =
+        "what beds differ by (docs/three-shapes.md), and two standard errors of such a residual";
+    Check::at_most(what, published, left, Band { half: 100.0 * scatter * allowed, reason })
+        .undecided_if(freedom == 0)
+}
+
 /// Whether the order holds on every bed at every energy.
 fn order(impacts: &[Impact]) -> Check {
     let depth = |shape: &str, case: &Case| {
@@ -97,7 +127,7 @@ fn order(impacts: &[Impact]) -> Check {
                 && other.seed == case.seed
                 && (other.speed - case.speed).abs() < 1e-9
         };
-        impacts.iter().find(same).map(|(_, one)| one.depth_m)
+        impacts.iter().find(same).map(|(_, one)| shapes::deepest(one))
     };
     let held: Vec<bool> = shapes::of(impacts, SHAPES[0])
         .iter()
@@ -113,4 +143,44 @@ fn order(impacts: &[Impact]) -> Check {
         "on every bed at every energy",
         n == held.len() && n > 0,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::published::Verdict;
+
+    const ENERGIES: [f64; 5] = [0.002, 0.004, 0.008, 0.015, 0.03];
+
+    fn verdicts(depths: [f64; 5]) -> [Verdict; 2] {
+        let fitted = regression::logarithmic(&ENERGIES, &depths);
+        let rises = over_energy("cone", &ENERGIES, &depths).expect("a line").verdict;
+        [rises, logarithm("cone", fitted.as_ref(), &depths, SCATTER[2]).verdict]
+    }
+
+    #[test]
+    fn depths_that_are_a_logarithm_pass_and_others_fail() {
+        let logarithm = ENERGIES.map(|energy| 2e-3 * libm::log1p(energy / 1e-4));
+        assert_eq!(verdicts(logarithm), [Verdict::Pass; 2]);
+        let falling = ENERGIES.map(|energy| 0.02 - 2e-3 * libm::log(energy / 1e-3));
+        assert_eq!(verdicts(falling), [Verdict::Fail; 2]);
+        // A square bends the other way than a logarithm ever does.
+        let square = ENERGIES.map(|energy| 5e-3 + 10.0 * energy * energy);
+        assert_eq!(verdicts(square)[1], Verdict::Fail);
+        let scattered = [0.010, 0.012, 0.009, 0.013, 0.0105];
+        assert_eq!(verdicts(scattered), [Verdict::NotCheckable, Verdict::Fail]);
+    }
+
+    #[test]
+    fn shapes_in_the_published_order_pass_and_two_that_changed_places_fail() {
+        let verdict = |depths: [f64; 3]| {
+            let impacts = SHAPES.into_iter().zip(depths).map(|(shape, depth_m)| {
+                let (case, outcome) = shapes::blank(shape, 1.0);
+                (case, crate::three_shapes::Outcome { depth_m, ..outcome })
+            });
+            order(&impacts.collect::<Vec<_>>()).verdict
+        };
+        assert_eq!(verdict([0.007, 0.012, 0.021]), Verdict::Pass);
+        assert_eq!(verdict([0.012, 0.007, 0.021]), Verdict::Fail);
+    }
 }

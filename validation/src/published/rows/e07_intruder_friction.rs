@@ -31,12 +31,7 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
     let mut findings = Findings::default();
     let mut panels = Vec::new();
     for [(case, without), (_, with)] in &pairs {
-        let speeds = without.down_m_per_s.iter().zip(&with.down_m_per_s);
-        let off = 100.0 * speeds.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / RUBBED.1;
-        let what =
-            format!("bed {}: largest difference of speed (% of the impact speed)", case.seed);
-        let check = Check::at_most(what, "none visible", Estimate::new(off, 0.0), BAND);
-        findings.checks.push(check.listed(off <= LISTED, CAUSE));
+        findings.checks.push(difference(case.seed, &without.down_m_per_s, &with.down_m_per_s));
         let path = |one: &crate::three_shapes::Outcome| {
             let samples = one.time_s.iter().zip(&one.down_m_per_s).step_by(10);
             samples.map(|(t, v)| (1e3 * t, *v)).collect::<Vec<_>>()
@@ -56,4 +51,28 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
         plot.draw()?,
     );
     Ok(findings)
+}
+
+/// How far the speeds (m/s) of an impact on the bed `seed` drift apart without and with friction.
+fn difference(seed: u64, without: &[f64], with: &[f64]) -> Check {
+    let off = without.iter().zip(with).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let off = 100.0 * off / RUBBED.1;
+    let what = format!("bed {seed}: largest difference of speed (% of the impact speed)");
+    let check = Check::at_most(what, "none visible", Estimate::new(off, 0.0), BAND);
+    check.listed(off <= LISTED, CAUSE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::published::Verdict;
+
+    #[test]
+    fn speeds_that_agree_pass_those_of_the_study_of_ours_deviate_and_others_fail() {
+        let verdict = |off: f64| difference(1, &[2.0, 1.0], &[2.0, 1.0 - off]).verdict;
+        assert_eq!(
+            [0.02, 0.2, 0.3].map(verdict),
+            [Verdict::Pass, Verdict::Deviates, Verdict::Fail]
+        );
+    }
 }

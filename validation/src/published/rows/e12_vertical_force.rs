@@ -1,7 +1,7 @@
 //! E12: the force of vertical impacts over v² and depth, its coefficients and the plateau beside other scales.
 
 use crate::beds::Record;
-use crate::published::check::{Band, Check, Estimate};
+use crate::published::check::{Band, Check, Estimate, Known};
 use crate::published::laboratory::Laboratory;
 use crate::published::oblique::curves::{Form, series};
 use crate::published::oblique::force::{Component, Reading, mean_readings, readings, separate};
@@ -9,6 +9,7 @@ use crate::published::oblique::matrix::{self, Cell, DIAMETER, GRAVITY, MASS, REA
 use crate::published::plot::{Panel, Plot, Points};
 use crate::published::regression;
 use crate::published::row::{Findings, PublishedError, Row, Table};
+use crate::published::rows::e01_stopping_time::KNOWN;
 use crate::three_shapes::mean_and_error;
 
 pub(super) static ROW: Row = Row {
@@ -25,6 +26,9 @@ const DEPTHS: [f64; 3] = [0.055, 0.075, 0.085];
 /// 1/d₁ (1/m) and k/m (1/s²) of a steel sphere of an inch in glass beads: Katsuragi & Durian 2007, with
 /// d₁ = 0.087 m.
 const OTHERS: [f64; 2] = [1.0 / 0.087, 1040.0];
+
+/// The published plateau (s).
+const PLATEAU: f64 = 0.16;
 
 /// Standard errors by which a number is positive.
 const SIGMAS: f64 = 2.0;
@@ -50,10 +54,10 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
         "Force over mass: α/m (1/m) and f/m (1/s²), beside a steel sphere of an inch in glass beads.",
         &["reading", "α/m", "f/m", "α/m there", "f/m there"],
     );
-    for (at, reading) in READINGS.iter().enumerate() {
+    for (number, reading) in READINGS.iter().enumerate() {
         let own = matrix::of(cells, reading, 90.0);
         for (depth, panel) in DEPTHS.iter().zip(&mut panels) {
-            panel.points.push(Points { series: at, places: places(*depth, &own) });
+            panel.points.push(Points { series: number, places: places(*depth, &own) });
         }
         findings.checks.extend(over_square(reading.name, &own));
         if let Some(found) = separate(&own, Component::Vertical) {
@@ -68,20 +72,13 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
             for (name, ours, there) in
                 [("α/m (1/m)", drag, OTHERS[0]), ("f/m (1/s²)", friction, OTHERS[1])]
             {
-                let ratio = ours.value / there;
-                findings.checks.push(Check::trend(
-                    format!(
-                        "90°, {}: {name} is of the order of Katsuragi & Durian's",
-                        reading.name
-                    ),
-                    ("the same order of magnitude", format!("{ours}: {ratio:.2} times theirs")),
-                    "within a factor of ten",
-                    (1.0 / ORDER..=ORDER).contains(&ratio),
-                ));
+                let title = format!("90°, {}: {name}", reading.name);
+                let margin = found.as_surely_as(SIGMAS) * ours.error;
+                findings.checks.push(of_the_order(title, (ours, margin), there));
             }
         }
-        findings.checks.extend(early(reading.name, &own));
-        findings.checks.push(plateau(reading.name, &own));
+        findings.checks.extend(early_peak(reading.name, &own));
+        findings.checks.push(plateau(reading.name, &own, &KNOWN[number]));
     }
     findings.tables.push(others);
     findings.tables.push(scales());
@@ -95,6 +92,20 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
     );
     findings.notes.extend(ran.note());
     Ok(findings)
+}
+
+/// Whether a number of ours, known within a margin, is of the order of one `there`.
+fn of_the_order(title: String, (ours, margin): (Estimate, f64), there: f64) -> Check {
+    let ratio = ours.value / there;
+    let is_of_it = |value: f64| (1.0 / ORDER..=ORDER).contains(&(value / there));
+    let reached = ours.value + margin >= there / ORDER && ours.value - margin <= ORDER * there;
+    Check::trend(
+        format!("{title} is of the order of Katsuragi & Durian's"),
+        ("the same order of magnitude", format!("{ours}: {ratio:.2} times theirs")),
+        "within a factor of ten, by two standard errors (Student's t)",
+        is_of_it(ours.value),
+    )
+    .undecided_if(!is_of_it(ours.value) && reached)
 }
 
 /// Whether the force rises with v² at the three depths by one slope, from a force at rest that rises with depth.
@@ -150,7 +161,7 @@ fn places(depth: f64, cells: &[&Cell]) -> Vec<(f64, f64, f64)> {
 }
 
 /// The largest early force of the fastest impacts over that of the law which all impacts give.
-fn early(reading: &str, cells: &[&Cell]) -> Option<Check> {
+fn early_peak(reading: &str, cells: &[&Cell]) -> Option<Check> {
     let law = separate(cells, Component::Vertical)?.law();
     let fastest = cells.iter().max_by(|a, b| a.speed.total_cmp(&b.speed))?;
     let ratio = |record: &Record| {
@@ -194,7 +205,7 @@ fn forms() -> [(&'static str, f64, Option<f64>); 3] {
 }
 
 /// Where the plateau of the stopping time lies among those forms.
-fn plateau(reading: &str, cells: &[&Cell]) -> Check {
+fn plateau(reading: &str, cells: &[&Cell], known: &Known) -> Check {
     let what =
         format!("90°, {reading}: plateau of the stopping time (s) among the forms of others");
     let published = "0.16 s: above (2R/g)^½, below (2ρ_b R/(ρ_g g))^½";
@@ -205,7 +216,7 @@ fn plateau(reading: &str, cells: &[&Cell]) -> Check {
     };
     let ours = Estimate::new(fitted.coefficients[2], fitted.error(2));
     let [(_, shortest, _), _, (_, longest, _)] = forms();
-    let margin = fitted.as_surely_as(SIGMAS) * ours.error;
+    let margin = points.as_surely_as(&fitted, SIGMAS) * ours.error;
     Check::trend(
         what,
         (published, ours.to_string()),
@@ -214,6 +225,7 @@ fn plateau(reading: &str, cells: &[&Cell]) -> Check {
         ),
         (shortest - margin..=longest + margin).contains(&ours.value),
     )
+    .unless_known(Some(known), (ours.value / PLATEAU, margin / PLATEAU))
 }
 
 fn scales() -> Table {
@@ -233,6 +245,8 @@ fn scales() -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::published::Verdict;
+    use crate::published::oblique::records::{cells, record, straight_down};
 
     #[test]
     fn the_published_plateau_lies_between_the_forms_of_others() {
@@ -240,5 +254,60 @@ mod tests {
         assert!(shortest < 0.16 && 0.16 < longest, "{shortest} {longest}");
         // "Slightly larger than (2gR)^½": the article's characteristic speed is about 1 m/s.
         assert!(speed.is_some_and(|speed| speed < 1.0), "{speed:?}");
+    }
+
+    const SPEEDS: [f64; 4] = [1.0, 2.0, 3.0, 4.0];
+
+    fn of_force(force: impl Fn(f64, f64) -> f64) -> Vec<Cell> {
+        cells(90.0, &SPEEDS, |speed| straight_down(speed, &force))
+    }
+
+    #[test]
+    fn a_force_that_rises_with_the_square_and_the_depth_passes_and_others_fail() {
+        let verdicts = |force: fn(f64, f64) -> f64| {
+            let cells = of_force(force);
+            over_square("", &cells.iter().collect::<Vec<_>>()).map(|check| check.verdict)
+        };
+        assert_eq!(verdicts(|y, v| 0.27 * v * v + 4.5 * y), [Verdict::Pass; 3]);
+        assert_eq!(verdicts(|y, v| 8.0 * y - 0.01 * v * v)[0], Verdict::Fail);
+        // Against this force the disc goes on at a speed of its own.
+        assert_eq!(verdicts(|_, v| v * v - 0.3)[1], Verdict::Fail);
+        assert_eq!(verdicts(|y, v| 0.27 * v * v + 0.7 - 2.0 * y)[2], Verdict::Fail);
+    }
+
+    #[test]
+    fn a_number_a_hundredth_of_theirs_fails_unless_its_error_reaches_a_tenth() {
+        let verdict = |value: f64, margin: f64| {
+            of_the_order(String::new(), (Estimate::new(value, 0.0), margin), 1040.0).verdict
+        };
+        assert_eq!(verdict(150.0, 10.0), Verdict::Pass);
+        assert_eq!(verdict(98.0, 80.0), Verdict::NotCheckable);
+        assert_eq!(verdict(10.0, 5.0), Verdict::Fail);
+    }
+
+    #[test]
+    fn an_early_peak_beyond_the_law_passes_and_a_soft_start_fails() {
+        let verdict = |early: f64| {
+            let cells = of_force(|y, v| {
+                let factor = if y < 0.01 { early } else { 1.0 };
+                factor * (0.27 * v * v + 4.5 * y)
+            });
+            early_peak("", &cells.iter().collect::<Vec<_>>()).expect("four speeds").verdict
+        };
+        assert_eq!([verdict(2.0), verdict(0.3)], [Verdict::Pass, Verdict::Fail]);
+    }
+
+    #[test]
+    fn a_plateau_beyond_the_forms_deviates_as_listed_or_fails() {
+        let speeds = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0];
+        let verdict = |factor: f64| {
+            let time = |v: f64| factor * (0.16083 * libm::exp(-1.42537 * v) + 0.1591);
+            let cells = cells(90.0, &speeds, |v| record(time(v), vec![0.0; 2], vec![0.0; 2]));
+            plateau("", &cells.iter().collect::<Vec<_>>(), &KNOWN[0]).verdict
+        };
+        assert_eq!(
+            [1.0, 1.25, 1.6].map(verdict),
+            [Verdict::Pass, Verdict::Deviates, Verdict::Fail]
+        );
     }
 }

@@ -38,12 +38,63 @@ pub static ROWS: &[&Row] = &[
 
 #[cfg(test)]
 mod tests {
+    use std::num::NonZero;
     use std::path::Path;
 
     use super::*;
     use crate::beds::{Place, Unattended};
-    use crate::published::{Check, Effort, Laboratory, Missing, Verdict};
+    use crate::published::check::{Band, Estimate};
+    use crate::published::planar::{self, Bed, Fall};
+    use crate::published::row::{Findings, PublishedError};
+    use crate::published::{
+        Check, Effort, Judged, Laboratory, Missing, Verdict, markdown, to_json,
+    };
     use crate::three_shapes::Places;
+
+    /// Two impacts on a bed of a thousand grains.
+    static SHALLOW: Row = Row {
+        id: "E0",
+        title: "A shallow bed",
+        source: "nobody",
+        how: ["at once", "at once"],
+        judge: shallow,
+    };
+
+    fn shallow(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
+        let [left, middle, _] = Fall::everywhere(Bed::Shallow, 0.5);
+        let records = planar::impacts(laboratory, &[left, middle])?;
+        let band = Band { half: 0.1, reason: "more than the bed is deep" };
+        let check = |record: &crate::beds::Record| {
+            let error = record.stopping_time.unwrap_or(0.0);
+            Check::at_most("depth (m)", "", Estimate::new(record.deepest, error), band)
+        };
+        let checks = records.iter().flatten().map(check).collect();
+        Ok(Findings { checks, ..Findings::default() })
+    }
+
+    /// Where everything is run anew in `folder`, so many impacts at a time.
+    fn laboratory(folder: &Path, workers: usize) -> Laboratory<'_> {
+        Laboratory {
+            effort: Effort::Quick,
+            missing: Missing::Run,
+            place: Place { cache: folder, workers: NonZero::new(workers), watch: &Unattended },
+            shapes: Places { out: folder.into(), cache: folder.into() },
+            sets: Path::new(env!("CARGO_MANIFEST_DIR")).join("data"),
+        }
+    }
+
+    #[test]
+    fn judged_from_an_empty_cache_on_one_thread_and_on_two_the_bytes_are_the_same() {
+        let texts = [1, 2].map(|workers| {
+            let folder = tempfile::tempdir().expect("a folder");
+            let laboratory = laboratory(folder.path(), workers);
+            let rows = [&SHALLOW, &e09_links::ROW, &e14_chain_forces::ROW];
+            let judged = rows.map(|row| Judged::by(row, &laboratory));
+            assert_eq!(judged[0].count(Verdict::Pass), 2);
+            [to_json(&judged, Effort::Quick).to_string(), markdown(&judged, Effort::Quick)]
+        });
+        assert_eq!(texts[0], texts[1]);
+    }
 
     #[test]
     fn every_row_has_an_id_of_its_own_a_source_and_says_how_it_is_run() {
@@ -58,13 +109,7 @@ mod tests {
     #[test]
     fn what_needs_no_bed_is_judged_and_does_not_fail() {
         let folder = tempfile::tempdir().expect("a folder");
-        let laboratory = Laboratory {
-            effort: Effort::Quick,
-            missing: Missing::Run,
-            place: Place { cache: folder.path(), workers: None, watch: &Unattended },
-            shapes: Places { out: folder.path().into(), cache: folder.path().into() },
-            sets: Path::new(env!("CARGO_MANIFEST_DIR")).join("data"),
-        };
+        let laboratory = laboratory(folder.path(), 1);
         let e10 = e10_contacts_and_others::without_beds();
         let judged =
             [e09_links::ROW.judge, e14_chain_forces::ROW.judge].map(|judge| judge(&laboratory));
@@ -73,5 +118,21 @@ mod tests {
             let failing = findings.checks.iter().filter(|check| check.verdict == Verdict::Fail);
             assert_eq!(failing.collect::<Vec<_>>(), Vec::<&Check>::new());
         }
+    }
+
+    #[test]
+    fn rows_whose_impacts_are_still_to_be_run_are_not_judged_and_do_not_fail() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let laboratory = Laboratory {
+            effort: Effort::Full,
+            missing: Missing::LeaveOut,
+            ..laboratory(folder.path(), 1)
+        };
+        let judged = ROWS.iter().map(|row| Judged::by(row, &laboratory));
+        for one in judged.filter(|one| one.row.id != "E10") {
+            assert!(one.verdict() < Verdict::Fail, "{}: {:?}", one.row.id, one.findings);
+        }
+        let trends = e10_trends::checks(&laboratory).expect("models");
+        assert!(trends.iter().all(|check| check.verdict == Verdict::NotCheckable), "{trends:?}");
     }
 }
