@@ -112,7 +112,7 @@ mod tests {
             let depth = |v: f64| 0.07 + 0.03 * v + square * v * v;
             let cells = cells(90.0, &[0.5, 1.0, 1.5, 2.0, 3.0, 4.0], |v| {
                 // A few per mille to either side.
-                let off = if v < 1.2 || v > 2.5 { 2e-4 } else { -2e-4 };
+                let off = if (1.2..=2.5).contains(&v) { -2e-4 } else { 2e-4 };
                 record(0.1, vec![0.0; 2], vec![0.0, depth(v) + off])
             });
             let own: Vec<&Cell> = cells.iter().collect();
