@@ -90,7 +90,7 @@ fn headlines(outcomes: &[Outcome]) -> Vec<TableColumn> {
         ("stopping_time_s", |one| one.stopping_time_s),
         ("rest_time_s", |one| one.rest_time_s),
         ("impact_energy_J", |one| Some(one.impact_energy)),
-        ("closure", |one| Some(one.closure)),
+        ("closure", |one| one.closure),
         ("packing_fraction", |one| one.packing_fraction),
     ];
     let stopped = outcomes.iter().map(|one| one.headline().map(|one| one.stopped)).collect();
