@@ -5,6 +5,7 @@ mod add;
 mod bed;
 mod beds;
 mod check;
+mod check_cost;
 mod check_set;
 mod common;
 mod compare;

@@ -6,11 +6,13 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
+use campaigns::pace::Pace;
 use campaigns::{
     Counts, Folder, FolderError, Planned, Results, Scheduler, SchedulerError, SweepError, TABLE,
     Task,
 };
 use configs::campaign::Campaign;
+use configs::engine::parallel::with_threads;
 use configs::estimate::{MEMORY_SHARE, available_memory_bytes};
 use serde_json::json;
 use validation::beds::{CampaignError, Impacts, Place, Progress, Watch};
@@ -230,23 +232,25 @@ fn plan(args: &Args, folder: &Folder, planned: &Planned, place: &Place<'_>) -> C
             }
         }
     }
-    let rate = match on_grains {
-        None => configs::estimate::RATE_PER_THREAD,
-        Some(index) => {
-            let model = planned.load(index)?.model;
-            let rate = model.grains().map(|grains| place.rate(grains)).transpose();
-            rate.map_err(|error| CommandError::Failed(error.into()))?
-                .unwrap_or(configs::estimate::RATE_PER_THREAD)
-        }
-    };
-    let at_most = work / (rate * place.n_workers() as f64);
+    let workers = place.n_workers() as f64;
+    let pace = on_grains.map(|index| pace(planned, index, place)).transpose()?;
+    let (rate, bed_time) = pace.unwrap_or((configs::estimate::RATE_PER_THREAD, None));
+    let at_most = work / (rate * workers);
+    // Beds are as many as there are workers at a time.
+    let beds_time = bed_time.map(|time| time * (beds.len() as f64 / workers).ceil());
+    let memory = planned.memory(place.n_workers());
     let object = json!({
         "campaign": planned.plan.name,
         "points": points.len(),
         "distinct": hashes.len(),
         "to_run": to_run,
         "beds": beds.len(),
-        "cost": { "workers": place.n_workers(), "at_most_s": at_most.round() },
+        "cost": {
+            "workers": place.n_workers(),
+            "at_most_s": at_most.round(),
+            "beds_s": beds_time.map(f64::round),
+            "memory_bytes": memory,
+        },
     });
     if args.json {
         return output::json_to_stdout(&object);
@@ -260,10 +264,33 @@ fn plan(args: &Args, folder: &Folder, planned: &Planned, place: &Place<'_>) -> C
     );
     let _ = writeln!(
         text,
-        "  at most {at_most:.0} s, {} at a time; beds that are not in the cache come on top",
-        place.n_workers()
+        "  at most {at_most:.0} s, {} at a time, in about {}; beds that are not in the cache come on top{}",
+        place.n_workers(),
+        output::bytes(memory),
+        bed_time.map_or(String::new(), |time| format!(": {time:.1} s each"))
     );
     output::to_stdout(&text)
+}
+
+/// Grain-steps per second of one worker on the bed of the point at `index`, and the time (s) that one
+/// takes to prepare it, if that can be measured.
+fn pace(
+    planned: &Planned,
+    index: usize,
+    place: &Place<'_>,
+) -> Result<(f64, Option<f64>), CommandError> {
+    let model = planned.load(index)?.model;
+    let Some(grains) = model.grains() else {
+        return Ok((configs::estimate::RATE_PER_THREAD, None));
+    };
+    let failed = |error: anyhow::Error| CommandError::Failed(error);
+    let measured = with_threads(1, || Pace::of(grains, place.cache))
+        .map_err(|error| failed(error.into()))?
+        .map_err(|error| failed(error.into()))?;
+    match measured {
+        Some(pace) => Ok((pace.resting_per_s, Some(pace.preparation(grains.n_grains(), 1)))),
+        None => Ok((place.rate(grains).map_err(|error| failed(error.into()))?, None)),
+    }
 }
 
 fn show(args: &Args, folder: &Folder, results: &Results) -> CommandResult {
