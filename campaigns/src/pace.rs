@@ -201,7 +201,8 @@ mod tests {
         let of_width = medium.container.width / grains.medium.container.width;
         // Whole grains: one of each kind too many or too few is below a hundredth of five hundred.
         assert!((narrow / grains.n_grains() as f64 / of_width - 1.0).abs() < 0.01);
-        assert!((0.9 * GRAINS..1.3 * GRAINS).contains(&narrow), "{narrow}");
+        // Of the 500 that were wanted it has more, since it would be too narrow.
+        assert!((500.0..1000.0).contains(&narrow), "{narrow}");
     }
 
     #[test]

@@ -112,7 +112,7 @@ fn part_of(file: &Served, range: Option<&str>) -> io::Result<Answer> {
         Some(Ok(ranges)) if ranges.len() == 1 => (206, Some(ranges[0].clone())),
         Some(Err(_)) => {
             let all = format!("bytes */{length}");
-            return Ok(with_headers(empty(416), &[("Content-Range", &all)]));
+            return Ok(with_headers(empty(416), &[("Content-Range", all.as_str())]));
         }
         _ => (200, None),
     };
@@ -131,7 +131,9 @@ fn part_of(file: &Served, range: Option<&str>) -> io::Result<Answer> {
     .with_chunked_threshold(usize::MAX);
     let answer = with_headers(answer, &[("Content-Type", "application/octet-stream")]);
     Ok(match part {
-        Some(part) => with_headers(answer, &[("Content-Range", &content_range(&part, length))]),
+        Some(part) => {
+            with_headers(answer, &[("Content-Range", content_range(&part, length).as_str())])
+        }
         None => answer,
     })
 }
