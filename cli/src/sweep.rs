@@ -84,21 +84,22 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     if args.status {
         return show(args, &folder, &Results::read(&folder).map_err(of_folder)?);
     }
-    let planned = Planned::of(&campaign, &args.allow_paths)?;
     let terminal = Terminal::new(args.quiet)?;
-    for warning in &planned.warnings {
-        Watch::warn(&terminal, warning);
-    }
     let cache = cache_folder(args.cache.as_deref());
     let deadline = args.budget.map(|budget| Instant::now() + Duration::from_secs_f64(budget));
     let watch = Budgeted { terminal: &terminal, deadline };
     let workers = args.threads.and_then(|n| NonZero::new(usize::from(n)));
     let place = Place { cache: &cache, workers, watch: &watch };
+    if let Some(point) = args.point {
+        let only = only(&campaign, point, &folder, &args.allow_paths)?;
+        return one(&only, &folder, &place, &terminal);
+    }
+    let planned = Planned::of(&campaign, &args.allow_paths)?;
+    for warning in &planned.warnings {
+        Watch::warn(&terminal, warning);
+    }
     if args.plan {
         return plan(args, &folder, &planned, &place);
-    }
-    if let Some(point) = args.point {
-        return one(&planned, point, &folder, &place, &terminal);
     }
     let scheduler = match args.on {
         On::Local => None,
@@ -130,21 +131,27 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     show(args, &folder, &results)
 }
 
-/// A task of a scheduler: its point, and nothing on stdout.
-fn one(
-    planned: &Planned,
+/// The point of that number, counted from 1, in the plan that `folder` holds.
+fn only(
+    campaign: &Campaign,
     point: usize,
     folder: &Folder,
-    place: &Place<'_>,
-    terminal: &Terminal,
-) -> CommandResult {
-    let n = planned.plan.points.len();
+    allow_paths: &[PathBuf],
+) -> Result<Planned, CommandError> {
+    let plan = folder.plan().map_err(of_folder)?;
+    let n = plan.points.len();
     let Some(index) = point.checked_sub(1).filter(|index| *index < n) else {
         return Err(CommandError::bad_input(format!(
             "the plan has the points 1 to {n}, not {point}"
         )));
     };
-    match campaigns::run_one(planned, index, folder, place) {
+    let other = || FolderError::OtherPlan { folder: folder.path().to_owned() };
+    Planned::of_point(campaign, plan, index, allow_paths)?.ok_or_else(|| of_folder(other()))
+}
+
+/// A task of a scheduler: its point, and nothing on stdout.
+fn one(only: &Planned, folder: &Folder, place: &Place<'_>, terminal: &Terminal) -> CommandResult {
+    match campaigns::run_one(only, folder, place) {
         Err(SweepError::Campaign(CampaignError::Interrupted)) => {
             Err(terminal.interrupted("the same command goes on from here"))
         }
