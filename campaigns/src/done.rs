@@ -51,7 +51,8 @@ pub struct Headline {
     /// By channel, `snake_case`.
     #[serde(rename = "dissipated_J")]
     pub dissipated: BTreeMap<String, f64>,
-    pub closure: f64,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub closure: Option<f64>,
     /// Of a bed of grains.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub packing_fraction: Option<f64>,
@@ -86,7 +87,7 @@ impl Done {
             hash: hash.to_owned(),
             error: None,
             headline: Some(headline),
-            cost: Cost { wall_s: cost.wall_s },
+            cost: Cost { wall_s: cost.wall_s.unwrap_or(0.0) },
         }
     }
 

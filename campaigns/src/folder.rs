@@ -127,7 +127,7 @@ impl Folder {
     ///
     /// # Errors
     /// If it holds none, or another.
-    pub(crate) fn holds(&self, plan: &Plan) -> Result<(), FolderError> {
+    fn holds(&self, plan: &Plan) -> Result<(), FolderError> {
         let (file, folder) = (self.path.join(PLAN), self.path.clone());
         match fs::read(&file) {
             Ok(found) if found == pretty(plan).as_bytes() => Ok(()),

@@ -8,6 +8,7 @@
 
 mod done;
 mod folder;
+pub mod pace;
 mod plan;
 mod results;
 mod run;

@@ -129,6 +129,33 @@ impl Planned {
         })
     }
 
+    /// The point at `index` of `plan`, alone: what a task needs that runs it, whatever else is planned.
+    /// `None` if it is no longer what `campaign` says.
+    ///
+    /// # Errors
+    /// If its model cannot be loaded.
+    pub fn of_point(
+        campaign: &Campaign,
+        plan: Plan,
+        index: usize,
+        allow_paths: &[PathBuf],
+    ) -> Result<Option<Self>, ConfigError> {
+        let Some(point) = plan.points.into_iter().nth(index) else { return Ok(None) };
+        let model = campaign.models.iter().find(|model| model.name == point.model);
+        let Some(model) = model else { return Ok(None) };
+        let loaded = load(model, point.set.clone(), allow_paths)?;
+        if hash(&loaded.model) != point.hash {
+            return Ok(None);
+        }
+        Ok(Some(Self {
+            needs: vec![need(&loaded.model)],
+            warnings: loaded.warnings.iter().map(|one| one.message.clone()).collect(),
+            models: BTreeMap::from([(model.name.clone(), model.clone())]),
+            allow_paths: allow_paths.to_owned(),
+            plan: Plan { points: vec![point], ..plan },
+        }))
+    }
+
     /// Memory (byte) of the `n` largest points at once.
     #[must_use]
     pub fn memory(&self, n: usize) -> u64 {

@@ -45,27 +45,21 @@ pub fn run(planned: &Planned, folder: &Folder, place: &Place<'_>) -> Result<(), 
     Ok(())
 }
 
-/// Runs the point at `index` of `planned` alone, unless it is done: for a scheduler, which runs others at
-/// the same time. The plan has to be there.
+/// Runs the one point of `only` ([`Planned::of_point`]), unless it is done: for a scheduler, which runs
+/// others at the same time.
 ///
 /// # Errors
 /// As [`run`].
-pub fn run_one(
-    planned: &Planned,
-    index: usize,
-    folder: &Folder,
-    place: &Place<'_>,
-) -> Result<(), SweepError> {
-    folder.holds(&planned.plan)?;
-    let only = &planned.plan.points[index];
-    if folder.done(&only.hash)?.is_some() {
+pub fn run_one(only: &Planned, folder: &Folder, place: &Place<'_>) -> Result<(), SweepError> {
+    let planned = &only.plan.points[0];
+    if folder.done(&planned.hash)?.is_some() {
         return Ok(());
     }
-    let failures = beds(planned, &[index], place)?;
+    let failures = beds(only, &[0], place)?;
     let work = |_: &usize| 1.0;
-    place.side_by_side(Stage::Impacts, &[index], (&work, 0), |index, control| {
-        let done = point(planned, index, (folder, place, &failures), control)?;
-        conclude(only, &done, planned.plan.keep_logs, folder).map_err(FolderError::into_campaign)
+    place.side_by_side(Stage::Impacts, &[0], (&work, 0), |index, control| {
+        let done = point(only, index, (folder, place, &failures), control)?;
+        conclude(planned, &done, only.plan.keep_logs, folder).map_err(FolderError::into_campaign)
     })?;
     Ok(())
 }

@@ -90,7 +90,7 @@ fn headlines(outcomes: &[Outcome]) -> Vec<TableColumn> {
         ("stopping_time_s", |one| one.stopping_time_s),
         ("rest_time_s", |one| one.rest_time_s),
         ("impact_energy_J", |one| Some(one.impact_energy)),
-        ("closure", |one| Some(one.closure)),
+        ("closure", |one| one.closure),
         ("packing_fraction", |one| one.packing_fraction),
     ];
     let stopped = outcomes.iter().map(|one| one.headline().map(|one| one.stopped)).collect();
@@ -132,8 +132,8 @@ impl Varied {
     #[must_use]
     pub fn shown(&self, index: usize) -> String {
         let number = |number: f64| match &self.unit {
-            Some(unit) => format!("{number} {unit}"),
-            None => number.to_string(),
+            Some(unit) => format!("{} {unit}", six_digits(number)),
+            None => six_digits(number),
         };
         let shown = match &self.values {
             Values::Numbers(numbers) => numbers[index].map(number),
@@ -154,6 +154,12 @@ impl Varied {
     }
 }
 
+/// `number` to six digits, for a table: what is drawn from a range has all of its sixteen.
+fn six_digits(number: f64) -> String {
+    let rounded = format!("{number:.5e}");
+    rounded.parse::<f64>().map_or(rounded, |number| number.to_string())
+}
+
 /// The number, and the unit if there is one, of a value in TOML.
 fn quantity(value: &str) -> Option<(f64, Option<&str>)> {
     let plain = value.trim().trim_matches('"');
@@ -172,6 +178,14 @@ mod tests {
     fn column_of(values: &[Option<&str>]) -> (String, Values) {
         let varied = Varied::of("impact.speed", values);
         (varied.column(), varied.values)
+    }
+
+    #[test]
+    fn a_reader_is_shown_six_digits_with_the_unit() {
+        let values = ["\"1.2345678901234567 m/s\"", "\"0.5 m/s\"", "\"123456.789 m/s\""].map(Some);
+        let varied = Varied::of("impact.speed", &values);
+        let shown = [0, 1, 2].map(|index| varied.shown(index));
+        assert_eq!(shown, ["1.23457 m/s", "0.5 m/s", "123457 m/s"]);
     }
 
     #[test]

@@ -7,9 +7,10 @@ use configs::estimate::Estimate;
 use configs::{Color, GrainModel, Medium, Model, ResistiveModel, TimeStep, stability};
 use serde_json::{Map, Value, json};
 
+use crate::check_cost::GrainCost;
 use crate::check_set;
 use crate::common::Common;
-use crate::output::{self, CommandResult};
+use crate::output::{self, CommandError, CommandResult};
 
 /// Arguments of `plunge check`.
 #[derive(clap::Args, Debug)]
@@ -17,8 +18,11 @@ pub(crate) struct Args {
     /// A model file, or the name of a shipped model. Or a measurement set: its folder or its file.
     #[arg(value_name = "MODEL|SET")]
     model: PathBuf,
+    /// Measure on a column of the bed what bed and impact will take here: some seconds, once for a bed.
+    #[arg(long)]
+    pub(crate) measure: bool,
     #[command(flatten)]
-    common: Common,
+    pub(crate) common: Common,
 }
 
 pub(crate) fn run(args: &Args) -> CommandResult {
@@ -29,7 +33,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let model = &loaded.model;
     args.common.refuse_too_large(model)?;
     let facts = match &model.medium {
-        Medium::Grains(medium) => of_grains(GrainModel { model, medium }),
+        Medium::Grains(medium) => of_grains(GrainModel { model, medium }, args)?,
         Medium::Resistive(medium) => of_resistance(ResistiveModel { model, medium }),
     };
     match args.common.json {
@@ -50,7 +54,7 @@ struct Facts {
     json: Map<String, Value>,
 }
 
-fn of_grains(grains: GrainModel<'_>) -> Facts {
+fn of_grains(grains: GrainModel<'_>, args: &Args) -> Result<Facts, CommandError> {
     let estimate = Estimate::of(grains);
     let times = stability::times(grains);
     let collision = times.collision;
@@ -73,11 +77,8 @@ fn of_grains(grains: GrainModel<'_>) -> Facts {
         }
         _ => lines.push(("time step", "known when the laws are built".to_owned())),
     }
-    lines.push(("memory", format!("about {}", output::bytes(estimate.memory_bytes))));
-    if let Some(time) = estimate.run_time_s {
-        let note = "at most, per impact, without preparing the bed";
-        lines.push(("run time", format!("about {} {note}", duration(time))));
-    }
+    let cost = GrainCost::of(grains, args)?;
+    lines.extend(cost.lines());
     let json = [
         ("bed", json!({ "grains": estimate.n_grains })),
         (
@@ -89,15 +90,10 @@ fn of_grains(grains: GrainModel<'_>) -> Facts {
                 "shortest_collision_s": collision,
             }),
         ),
-        (
-            "cost",
-            json!({
-                "memory_bytes": estimate.memory_bytes,
-                "run_time_s": estimate.run_time_s,
-            }),
-        ),
+        ("cost", cost.json()),
     ];
-    Facts { lines, json: json.map(|(key, value)| (key.to_owned(), value)).into_iter().collect() }
+    let json = json.map(|(key, value)| (key.to_owned(), value)).into_iter().collect();
+    Ok(Facts { lines, json })
 }
 
 fn of_resistance(resistive: ResistiveModel<'_>) -> Facts {
@@ -163,15 +159,4 @@ fn as_json(model: &Model, facts: Facts, warnings: &[String]) -> Value {
     object["resolved_toml"] = json!(model.resolved_toml());
     object["warnings"] = json!(warnings);
     object
-}
-
-/// A duration in the unit that one would say.
-fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 1.0 => "1 s".to_owned(),
-        s if s < 120.0 => format!("{s:.0} s"),
-        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
-        s if s < 172_800.0 => format!("{:.0} h", s / 3600.0),
-        s => format!("{:.0} days", s / 86_400.0),
-    }
 }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context as _;
 use configs::run::Summary;
 use exchange::read::{BodyStates, Keep, read_run};
+use exchange::run_files::{RunFiles, is_log};
 use reports::run::Course;
 use serde_json::{Map, Value, json};
 use validation::runs::{Change, PathDifference, StopDifference, Track, TrackPoint, Values};
@@ -27,7 +28,7 @@ const NAMED: usize = 10;
 
 /// What a path is to a comparison of runs.
 pub(crate) enum Found {
-    /// The folder of one finished run.
+    /// One finished run: its folder or its log.
     Run,
     /// Something about runs that cannot be compared, and why not.
     NoRun(String),
@@ -39,11 +40,13 @@ pub(crate) enum Found {
 pub(crate) fn what_is(path: &Path) -> Found {
     let shown = path.display();
     let holds = |name: &str| path.join(name).is_file();
-    if holds(SUMMARY) && holds(LOG) {
+    if RunFiles::of(path).are_there() {
         return Found::Run;
     }
-    if path.is_file() && path.extension().is_some_and(|extension| extension == "mcap") {
-        return Found::NoRun(format!("{shown} is a log; name the folder of its run"));
+    if path.is_file() && is_log(path) {
+        let summary = RunFiles::of(path).summary;
+        let missing = summary.display();
+        return Found::NoRun(format!("{shown} is a log without a summary: {missing} is not there"));
     }
     let runs = runs_below(path);
     if !runs.is_empty() {
@@ -65,13 +68,13 @@ pub(crate) fn what_is(path: &Path) -> Found {
 fn runs_below(path: &Path) -> Vec<String> {
     let Ok(entries) = fs::read_dir(path) else { return Vec::new() };
     let folders = entries.filter_map(Result::ok).map(|entry| entry.path());
-    let finished = folders.filter(|one| one.join(SUMMARY).is_file() && one.join(LOG).is_file());
+    let finished = folders.filter(|one| one.is_dir() && RunFiles::of(one).are_there());
     let mut names: Vec<String> = finished.map(|one| one.display().to_string()).collect();
     names.sort();
     names
 }
 
-/// Compares the runs in two folders; writes nothing unless `--out` says where.
+/// Compares two runs, each a folder or a log; writes nothing unless `--out` says where.
 pub(crate) fn run(folders: [&Path; 2], flags: &Flags) -> CommandResult {
     if flags.change_models() {
         return Err(CommandError::bad_input("--set changes models; a run is what it is"));
@@ -142,13 +145,13 @@ struct Run {
 }
 
 impl Run {
-    fn read(folder: &Path) -> Result<Self, CommandError> {
-        let path = folder.join(SUMMARY);
+    fn read(run: &Path) -> Result<Self, CommandError> {
+        let RunFiles { log, summary: path, .. } = RunFiles::of(run);
         let text = fs::read_to_string(&path).map_err(|error| unreadable(&path, &error))?;
         let summary = serde_json::from_str(&text).map_err(|error| unreadable(&path, &error))?;
-        let log = read_run(&folder.join(LOG), Keep::States).map_err(CommandError::bad_input)?;
+        let log = read_run(&log, Keep::States).map_err(CommandError::bad_input)?;
         let tracks = log.bodies.iter().map(track).collect();
-        Ok(Self { name: folder.display().to_string(), summary, tracks, complete: log.complete })
+        Ok(Self { name: run.display().to_string(), summary, tracks, complete: log.complete })
     }
 }
 
@@ -177,7 +180,8 @@ fn inputs(folders: [&Path; 2]) -> Result<blake3::Hash, CommandError> {
     hash.update(concat!(env!("CARGO_PKG_VERSION"), " compare runs").as_bytes());
     for folder in folders {
         hash.update(folder.as_os_str().as_encoded_bytes());
-        for path in [folder.join(SUMMARY), folder.join(LOG)] {
+        let RunFiles { log, summary, .. } = RunFiles::of(folder);
+        for path in [summary, log] {
             let read = File::open(&path).and_then(|file| hash.update_reader(file).map(drop));
             read.with_context(|| format!("cannot read {}", path.display()))?;
         }
@@ -233,7 +237,7 @@ fn dissipated(runs: &[Run; 2], channel: &str) -> [Option<f64>; 2] {
     runs.each_ref().map(|run| run.summary.energy.dissipated.get(channel).copied())
 }
 
-fn closures(runs: &[Run; 2]) -> [f64; 2] {
+fn closures(runs: &[Run; 2]) -> [Option<f64>; 2] {
     runs.each_ref().map(|run| run.summary.energy.closure)
 }
 
@@ -305,7 +309,9 @@ fn energies(runs: &[Run; 2]) -> String {
         let [first, second] = dissipated(runs, channel).map(number);
         table.add_row([channel.replace('_', "-"), first, second]);
     }
-    let [first, second] = closures(runs).map(|closure| format!("{closure:.1e}"));
+    let known =
+        |closure: Option<f64>| closure.map_or("-".to_owned(), |closure| format!("{closure:.1e}"));
+    let [first, second] = closures(runs).map(known);
     table.add_row(["closure (of the impact)".to_owned(), first, second]);
     lines(&table)
 }

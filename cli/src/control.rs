@@ -76,7 +76,8 @@ impl Terminal {
         }
     }
 
-    fn is_asked_to_stop(&self) -> bool {
+    /// Whether a signal has asked to stop.
+    pub(crate) fn is_asked_to_stop(&self) -> bool {
         self.signal.load(Ordering::Relaxed) != 0
     }
 

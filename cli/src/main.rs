@@ -5,6 +5,7 @@ mod add;
 mod bed;
 mod beds;
 mod check;
+mod check_cost;
 mod check_set;
 mod common;
 mod compare;
@@ -14,6 +15,7 @@ mod control;
 mod diagnose;
 mod effects;
 mod export;
+mod import;
 mod new;
 mod new_set;
 mod next;
@@ -23,6 +25,7 @@ mod recover;
 mod report;
 mod run;
 mod sweep;
+mod view;
 mod workbench;
 
 use std::process::ExitCode;
@@ -61,8 +64,12 @@ enum Command {
     Report(report::Args),
     /// Write a run or an impact as files of other programs: tables, grains for viewers, a LAMMPS input.
     Export(export::Args),
+    /// Bring a run of LAMMPS, of an exported impact, into a log.
+    Import(import::Args),
     /// Save everything readable of a damaged or unfinished log.
     Recover(recover::Args),
+    /// Serve a log to viewers in a browser, and say how to open it in the others.
+    View(view::Args),
     /// Print what makes a shell complete the arguments.
     Completions(completions::CompletionArgs),
     /// Write manual pages.
@@ -90,7 +97,9 @@ fn main() -> ExitCode {
         Command::Sweep(args) => sweep::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Export(args) => export::run(&args),
+        Command::Import(args) => import::run(&args),
         Command::Recover(args) => recover::run(&args),
+        Command::View(args) => view::run(&args),
         Command::Completions(args) => completions::completions(&args, Cli::command()),
         Command::Man(args) => completions::man(&args, Cli::command()),
     };

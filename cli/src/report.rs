@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use configs::run::{ListSummary, Summary};
+use exchange::run_files::{RunFiles, is_log};
 use reports::run::Course;
 use reports::{FILE, ReportError};
 use serde_json::json;
@@ -14,7 +15,7 @@ use crate::workbench::write_whole;
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// The folder of a run, of a list of runs, of a campaign, of a comparison, of a diagnosis or of a
-    /// validation.
+    /// validation. Or the log of a run.
     folder: PathBuf,
     /// Print one JSON object to stdout.
     #[arg(long)]
@@ -26,7 +27,10 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> CommandResult {
     let page = reports::of_folder(&args.folder).map_err(CommandError::bad_input)?;
-    let file = args.folder.join(FILE);
+    let file = match is_log(&args.folder) {
+        true => RunFiles::of(&args.folder).report,
+        false => args.folder.join(FILE),
+    };
     write_whole(&file, &page)?;
     match (args.json, args.quiet) {
         (true, _) => output::json_to_stdout(&json!({ "report": file.display().to_string() })),

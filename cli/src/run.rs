@@ -126,17 +126,21 @@ fn one_as_text(summary: &Summary, course: Option<&Course>, out: &Path) -> String
         share(&name.replace('_', "-"), *value, "lost");
     }
     if summary.bed.is_some() {
-        share("springs", energy.at_end.elastic, "more than before");
+        if let Some(elastic) = energy.at_end.elastic {
+            share("springs", elastic, "more than before");
+        }
         share("grains", energy.at_end.grains, "more than before, in motion and height");
-    } else if energy.at_end.elastic != 0.0 {
-        share("medium", energy.at_end.elastic, "held by it");
+    } else if let Some(held) = energy.at_end.elastic.filter(|held| *held != 0.0) {
+        share("medium", held, "held by it");
     }
     share("intruder", energy.at_end.intruder, "in motion, less the height it has lost");
     for (name, value) in &energy.input {
         share(&name.replace('_', "-"), -value, "put in");
     }
-    share("unaccounted for", -energy.unaccounted, "");
-    line("closure", format!("{:.1e} of the energy at impact, at worst", energy.closure));
+    if let (Some(unaccounted), Some(closure)) = (energy.unaccounted, energy.closure) {
+        share("unaccounted for", -unaccounted, "");
+        line("closure", format!("{closure:.1e} of the energy at impact, at worst"));
+    }
     line("cost", cost_as_text(cost));
     format!("{text}\n-> {}\n", out.display())
 }
@@ -168,15 +172,15 @@ fn link_as_text(link: &LinkSummary) -> String {
 }
 
 fn cost_as_text(cost: &CostSummary) -> String {
+    let wall = cost.wall_s.unwrap_or(0.0);
     match (cost.dt_s, cost.grain_steps_per_s) {
         (Some(dt), Some(rate)) => format!(
-            "{} steps of {dt:e} s in {:.1} s on {} threads, {:.1} million grain-steps/s",
+            "{} steps of {dt:e} s in {wall:.1} s on {} threads, {:.1} million grain-steps/s",
             cost.steps,
-            cost.wall_s,
-            cost.threads,
+            cost.threads.unwrap_or(1),
             1e-6 * rate
         ),
-        _ => format!("{} steps of the solver in {:.0} ms", cost.steps, 1e3 * cost.wall_s),
+        _ => format!("{} steps of the solver in {:.0} ms", cost.steps, 1e3 * wall),
     }
 }
 

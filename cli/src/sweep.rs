@@ -6,11 +6,13 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
+use campaigns::pace::Pace;
 use campaigns::{
     Counts, Folder, FolderError, Planned, Results, Scheduler, SchedulerError, SweepError, TABLE,
     Task,
 };
 use configs::campaign::Campaign;
+use configs::engine::parallel::with_threads;
 use configs::estimate::{MEMORY_SHARE, available_memory_bytes};
 use serde_json::json;
 use validation::beds::{CampaignError, Impacts, Place, Progress, Watch};
@@ -82,21 +84,22 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     if args.status {
         return show(args, &folder, &Results::read(&folder).map_err(of_folder)?);
     }
-    let planned = Planned::of(&campaign, &args.allow_paths)?;
     let terminal = Terminal::new(args.quiet)?;
-    for warning in &planned.warnings {
-        Watch::warn(&terminal, warning);
-    }
     let cache = cache_folder(args.cache.as_deref());
     let deadline = args.budget.map(|budget| Instant::now() + Duration::from_secs_f64(budget));
     let watch = Budgeted { terminal: &terminal, deadline };
     let workers = args.threads.and_then(|n| NonZero::new(usize::from(n)));
     let place = Place { cache: &cache, workers, watch: &watch };
+    if let Some(point) = args.point {
+        let only = only(&campaign, point, &folder, &args.allow_paths)?;
+        return one(&only, &folder, &place, &terminal);
+    }
+    let planned = Planned::of(&campaign, &args.allow_paths)?;
+    for warning in &planned.warnings {
+        Watch::warn(&terminal, warning);
+    }
     if args.plan {
         return plan(args, &folder, &planned, &place);
-    }
-    if let Some(point) = args.point {
-        return one(&planned, point, &folder, &place, &terminal);
     }
     let scheduler = match args.on {
         On::Local => None,
@@ -128,21 +131,27 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     show(args, &folder, &results)
 }
 
-/// A task of a scheduler: its point, and nothing on stdout.
-fn one(
-    planned: &Planned,
+/// The point of that number, counted from 1, in the plan that `folder` holds.
+fn only(
+    campaign: &Campaign,
     point: usize,
     folder: &Folder,
-    place: &Place<'_>,
-    terminal: &Terminal,
-) -> CommandResult {
-    let n = planned.plan.points.len();
+    allow_paths: &[PathBuf],
+) -> Result<Planned, CommandError> {
+    let plan = folder.plan().map_err(of_folder)?;
+    let n = plan.points.len();
     let Some(index) = point.checked_sub(1).filter(|index| *index < n) else {
         return Err(CommandError::bad_input(format!(
             "the plan has the points 1 to {n}, not {point}"
         )));
     };
-    match campaigns::run_one(planned, index, folder, place) {
+    let other = || FolderError::OtherPlan { folder: folder.path().to_owned() };
+    Planned::of_point(campaign, plan, index, allow_paths)?.ok_or_else(|| of_folder(other()))
+}
+
+/// A task of a scheduler: its point, and nothing on stdout.
+fn one(only: &Planned, folder: &Folder, place: &Place<'_>, terminal: &Terminal) -> CommandResult {
+    match campaigns::run_one(only, folder, place) {
         Err(SweepError::Campaign(CampaignError::Interrupted)) => {
             Err(terminal.interrupted("the same command goes on from here"))
         }
@@ -230,23 +239,25 @@ fn plan(args: &Args, folder: &Folder, planned: &Planned, place: &Place<'_>) -> C
             }
         }
     }
-    let rate = match on_grains {
-        None => configs::estimate::RATE_PER_THREAD,
-        Some(index) => {
-            let model = planned.load(index)?.model;
-            let rate = model.grains().map(|grains| place.rate(grains)).transpose();
-            rate.map_err(|error| CommandError::Failed(error.into()))?
-                .unwrap_or(configs::estimate::RATE_PER_THREAD)
-        }
-    };
-    let at_most = work / (rate * place.n_workers() as f64);
+    let workers = place.n_workers() as f64;
+    let pace = on_grains.map(|index| pace(planned, index, place)).transpose()?;
+    let (rate, bed_time) = pace.unwrap_or((configs::estimate::RATE_PER_THREAD, None));
+    let at_most = work / (rate * workers);
+    // Beds are as many as there are workers at a time.
+    let beds_time = bed_time.map(|time| time * (beds.len() as f64 / workers).ceil());
+    let memory = planned.memory(place.n_workers());
     let object = json!({
         "campaign": planned.plan.name,
         "points": points.len(),
         "distinct": hashes.len(),
         "to_run": to_run,
         "beds": beds.len(),
-        "cost": { "workers": place.n_workers(), "at_most_s": at_most.round() },
+        "cost": {
+            "workers": place.n_workers(),
+            "at_most_s": at_most.round(),
+            "beds_s": beds_time.map(f64::round),
+            "memory_bytes": memory,
+        },
     });
     if args.json {
         return output::json_to_stdout(&object);
@@ -260,10 +271,33 @@ fn plan(args: &Args, folder: &Folder, planned: &Planned, place: &Place<'_>) -> C
     );
     let _ = writeln!(
         text,
-        "  at most {at_most:.0} s, {} at a time; beds that are not in the cache come on top",
-        place.n_workers()
+        "  at most {at_most:.0} s, {} at a time, in about {}; beds that are not in the cache come on top{}",
+        place.n_workers(),
+        output::bytes(memory),
+        bed_time.map_or(String::new(), |time| format!(": {time:.1} s each"))
     );
     output::to_stdout(&text)
+}
+
+/// Grain-steps per second of one worker on the bed of the point at `index`, and the time (s) that one
+/// takes to prepare it, if that can be measured.
+fn pace(
+    planned: &Planned,
+    index: usize,
+    place: &Place<'_>,
+) -> Result<(f64, Option<f64>), CommandError> {
+    let model = planned.load(index)?.model;
+    let Some(grains) = model.grains() else {
+        return Ok((configs::estimate::RATE_PER_THREAD, None));
+    };
+    let failed = |error: anyhow::Error| CommandError::Failed(error);
+    let measured = with_threads(1, || Pace::of(grains, place.cache))
+        .map_err(|error| failed(error.into()))?
+        .map_err(|error| failed(error.into()))?;
+    match measured {
+        Some(pace) => Ok((pace.resting_per_s, Some(pace.preparation(grains.n_grains(), 1)))),
+        None => Ok((place.rate(grains).map_err(|error| failed(error.into()))?, None)),
+    }
 }
 
 fn show(args: &Args, folder: &Folder, results: &Results) -> CommandResult {

@@ -17,7 +17,8 @@ pub type Quat = nalgebra::UnitQuaternion<f64>;
 
 /// The rotation by about |`angle`| radians around `angle` (Cayley map: exact to second order,
 /// symmetric in time, and free of functions whose bits depend on the system).
-pub(crate) fn cayley(angle: Vec3) -> Quat {
+#[must_use]
+pub fn cayley(angle: Vec3) -> Quat {
     Quat::new_normalize(nalgebra::Quaternion::from_parts(1.0, angle * 0.5))
 }
 

@@ -4,4 +4,5 @@ pub mod export;
 pub mod lammps;
 pub mod read;
 pub mod recover;
+pub mod run_files;
 pub mod table;

@@ -20,7 +20,7 @@ use mcap::records::Record;
 use fields::{EnergyFields, StateFields};
 use records::Records;
 
-pub use series::{BodyState, BodyStates, EnergyBudgets};
+pub use series::{BodyState, BodyStates, Closing, EnergyBudgets};
 
 /// What is kept of a log; the rest takes no memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

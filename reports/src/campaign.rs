@@ -46,7 +46,7 @@ pub(crate) fn page(results: &Results) -> Result<String, ReportError> {
         true => format!("{points} points, all of them done."),
         false => format!("{} of {points} points so far.", done + failed),
     };
-    let worst = results.outcomes.iter().filter_map(Outcome::headline).map(|one| one.closure);
+    let worst = results.outcomes.iter().filter_map(Outcome::headline).filter_map(|one| one.closure);
     let worst = worst.reduce(f64::max);
     let page = Page {
         title: results.plan.name.clone(),

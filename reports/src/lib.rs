@@ -25,6 +25,7 @@ use std::path::{Path, PathBuf};
 use campaigns::{Folder, FolderError, PLAN, Results};
 use configs::run::{ListSummary, Summary};
 use exchange::read::ReadError;
+use exchange::run_files::{RunFiles, is_log};
 use serde_json::Value;
 use thiserror::Error;
 use validation::picture::PictureError;
@@ -57,6 +58,14 @@ pub enum ReportError {
         /// The folder.
         folder: PathBuf,
     },
+    /// A log that is not beside the summary of its run.
+    #[error("{} is not there, which says what {} came to", summary.display(), log.display())]
+    NoSummary {
+        /// The log.
+        log: PathBuf,
+        /// The summary.
+        summary: PathBuf,
+    },
     /// A file of results that is not what its name says.
     #[error("{file} cannot be understood: {why}")]
     Misunderstood {
@@ -83,12 +92,12 @@ pub enum ReportError {
 pub type Texts = BTreeMap<String, String>;
 
 /// The page of what `folder` holds: a finished run, a list of them, a campaign, however far it has come,
-/// a comparison, a diagnosis or a validation.
+/// a comparison, a diagnosis or a validation. A run may also be named by its log.
 ///
 /// # Errors
 /// If the folder holds none of them, or a file cannot be read or understood.
 pub fn of_folder(folder: &Path) -> Result<String, ReportError> {
-    let summary = folder.join("summary.json");
+    let summary = RunFiles::of(folder).summary;
     if summary.is_file() {
         let text = read(&summary)?;
         let why = |error: serde_json::Error| misunderstood(&summary.display().to_string(), &error);
@@ -100,6 +109,9 @@ pub fn of_folder(folder: &Path) -> Result<String, ReportError> {
                 run::page(&summary, &run::Course::read(folder)?)
             }
         };
+    }
+    if is_log(folder) {
+        return Err(ReportError::NoSummary { log: folder.to_owned(), summary });
     }
     if folder.join(PLAN).is_file() {
         return of_campaign(&Results::read(&Folder::new(folder))?);

@@ -7,6 +7,7 @@ use validation::picture::{Area, Drawn, GREY, Hover, PictureError, colour, letter
 
 use crate::ReportError;
 use crate::figure::figure;
+use crate::numbers::share;
 use crate::page::{Number, Page, Part, Section, Table};
 use crate::run::origin;
 
@@ -32,7 +33,7 @@ pub(crate) fn page(summary: &ListSummary) -> Result<String, ReportError> {
     let caption = "Means over the positions of each speed and angle, with the standard deviation \
                    between them.";
     let stopped = summary.runs.iter().filter(|run| run.stop.stopped).count();
-    let closure = summary.runs.iter().fold(0.0_f64, |most, run| most.max(run.energy.closure));
+    let closure = summary.runs.iter().filter_map(|run| run.energy.closure).fold(0.0, f64::max);
     let n = summary.runs.len();
     let page = Page {
         title: summary.name.clone(),
@@ -88,7 +89,7 @@ fn runs(summary: &ListSummary) -> Vec<Part> {
             run.impact.angle_deg.to_string(),
             format!("{:.2}", 1e3 * run.stop.depth_m),
             crate::numbers::fixed(time, 2),
-            format!("{:.1e}", run.energy.closure),
+            share(run.energy.closure),
         ]);
     }
     let mut parts = vec![Part::Table(table)];

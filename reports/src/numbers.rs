@@ -7,6 +7,11 @@ pub(crate) fn fixed(value: Option<f64>, digits: usize) -> String {
     value.map_or("\u{2013}".to_owned(), |value| format!("{value:.digits$}"))
 }
 
+/// A small share of a whole; a dash where it is not known.
+pub(crate) fn share(value: Option<f64>) -> String {
+    value.map_or("\u{2013}".to_owned(), |value| format!("{value:.1e}"))
+}
+
 /// `value` in three digits and a unit with a prefix: 0.0123 in J is 12.3 mJ.
 pub(crate) fn with_prefix(value: f64, unit: &str) -> String {
     let (factor, prefix) = prefix_of(value.abs());

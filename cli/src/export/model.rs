@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use configs::run::prepare;
-use exchange::lammps::{DATA, Deck, INPUT, LammpsError};
+use exchange::lammps::{DATA, Deck, FACTS, INPUT, LammpsError};
 use serde_json::json;
 
 use crate::common::Common;
@@ -36,12 +36,15 @@ pub(super) fn write(model: &Path, common: &Common) -> CommandResult {
         // Not the paths themselves: one that is not UTF-8 cannot be encoded.
         return output::json_to_stdout(&json!({
             "folder": folder.to_string_lossy(),
-            "files": [INPUT, DATA],
+            "files": [INPUT, DATA, FACTS],
             "grains": bed.resting.grains.len(),
         }));
     }
     let folder = folder.display();
-    output::to_stdout(&format!("{folder}: {INPUT} and {DATA}; run lmp -in {INPUT} there\n"))
+    output::to_stdout(&format!(
+        "{folder}: {INPUT}, {DATA}, {FACTS}\nrun lmp -in {INPUT} there, or mpirun -np N lmp -in {INPUT}, \
+         then: plunge import {folder} -o RUN.mcap\n"
+    ))
 }
 
 fn refused(error: LammpsError) -> CommandError {

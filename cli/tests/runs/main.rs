@@ -21,4 +21,5 @@ mod space;
 mod summary;
 mod sweeps;
 mod threads;
+mod view;
 mod viewers;

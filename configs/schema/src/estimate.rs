@@ -6,16 +6,16 @@ use engine::grains::Space;
 use crate::model::GrainModel;
 use crate::stability;
 
-/// Memory per grain (byte): a sphere has more neighbours than a disc.
+/// Memory per grain (byte): a sphere has more neighbours than a disc (`docs/scale.md`).
 fn bytes_per_grain(space: Space) -> u64 {
     match space {
-        Space::Planar => 2400,
-        Space::Spatial => 3400,
+        Space::Planar => 750,
+        Space::Spatial => 850,
     }
 }
 
 /// Memory that does not depend on the grains (byte).
-const BYTES_FIXED: u64 = 9_000_000;
+const BYTES_FIXED: u64 = 18_000_000;
 /// Speed of the engine on two cores (1/s).
 const GRAIN_STEPS_PER_S: f64 = 2e7;
 /// Speed of the engine on one thread beside another (1/s), where nothing was measured.

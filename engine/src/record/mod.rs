@@ -14,6 +14,7 @@
 pub mod chunk;
 mod error;
 mod file;
+mod imported;
 mod points;
 mod resume;
 mod scene;
@@ -21,6 +22,7 @@ mod schema;
 mod setup;
 #[cfg(test)]
 mod tests;
+mod values;
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -36,7 +38,8 @@ use crate::coarse_graining::FieldPoint;
 use crate::crater::CraterPoint;
 use file::{Cut, Definition, LogFile};
 use scene::Scene;
-use schema::{Fields, Layout};
+use schema::{Fields, Layout, Layouts};
+use values::{encode_loads, encode_state, finite, finite_state};
 
 pub use error::RecordError;
 pub use file::Stamp;
@@ -116,7 +119,7 @@ impl RunLog {
     /// # Errors
     /// A setup that cannot be logged, or the file system's refusal.
     pub fn create(dir: &Path, setup: &LogSetup) -> Result<Self, RecordError> {
-        Self::open(dir, setup, |[_, partial, _]| partial)
+        Self::open(dir, setup, Layouts::of(setup), |[_, partial, _]| partial)
     }
 
     /// Goes on with an interrupted log from the position kept in a checkpoint.
@@ -132,7 +135,7 @@ impl RunLog {
         setup: &LogSetup,
         position: &LogPosition,
     ) -> Result<Self, RecordError> {
-        let mut log = Self::open(dir, setup, |[_, _, new]| new)?;
+        let mut log = Self::open(dir, setup, Layouts::of(setup), |[_, _, new]| new)?;
         let LogPosition { step, run_messages, grain_messages } = *position;
         let copy = |name, file: &mut LogFile, needed| {
             let names = LogFile::names(dir, name);
@@ -227,12 +230,7 @@ impl RunLog {
         let mut fields = Fields::begin(&mut self.buffer, at.step, at.time_s);
         fields.count(contacts);
         fields.number(area);
-        for (force, torque) in forces.iter().zip(torques) {
-            finite(at, || format!("force on {name}"), force.as_slice())?;
-            finite(at, || format!("torque on {name}"), torque.as_slice())?;
-            fields.vector(force);
-            fields.vector(torque);
-        }
+        encode_loads(at, name, &mut fields, forces.iter().zip(torques))?;
         self.run.write(self.ids.loads[body], at.encode()?, &self.buffer)
     }
 
@@ -397,11 +395,10 @@ impl RunLog {
     fn open(
         dir: &Path,
         setup: &LogSetup,
+        Layouts { budget, load, closure_identity }: Layouts,
         working: fn([PathBuf; 3]) -> PathBuf,
     ) -> Result<Self, RecordError> {
-        let budget = Layout::energy_budget(&setup.energy_terms);
         let state = Layout::intruder_state();
-        let load = Layout::intruder_load(&setup.force_origins);
         let (estimate, activity) = (Layout::estimate(), Layout::bed_activity());
         setup.check(&[&budget, &state, &load, &estimate, &activity])?;
 
@@ -409,7 +406,7 @@ impl RunLog {
         let start = |name, cut| {
             let working = working(LogFile::names(dir, name));
             let mut file = LogFile::create(dir, name, &working, cut)?;
-            file.with(|writer| writer.write_metadata(&metadata(setup)))?;
+            file.with(|writer| writer.write_metadata(&metadata(setup, closure_identity.as_ref())))?;
             Ok(file)
         };
         let cut = Cut { every: vec![flush_every, checkpoint_every], chunk_bytes: 1 << 20 };
@@ -481,10 +478,10 @@ impl RunChannels {
 }
 
 /// The metadata record `run`.
-fn metadata(setup: &LogSetup) -> Metadata {
+fn metadata(setup: &LogSetup, closure_identity: Option<&String>) -> Metadata {
     let mut metadata = setup.metadata.clone();
-    let identity = schema::closure_identity(&setup.energy_terms);
-    metadata.insert("closure_identity".to_owned(), identity);
+    let identity = closure_identity.map(|text| ("closure_identity".to_owned(), text.clone()));
+    metadata.extend(identity);
     metadata.insert("arrow_m_per_newton".to_owned(), setup.arrow_m_per_newton.to_string());
     Metadata { name: "run".to_owned(), metadata }
 }
@@ -547,31 +544,6 @@ fn write_frame(
     }
     scene.encode_update(buffer);
     file.write(ids.scene, stamp, buffer)
-}
-
-fn encode_state(at: Stamp, sample: &BodySample, scene: &Scene, buffer: &mut Vec<u8>) {
-    let BodySample { position, velocity, spin, depth_m } = sample;
-    let mut fields = Fields::begin(buffer, at.step, at.time_s);
-    fields.number(*depth_m);
-    fields.number(velocity.norm());
-    fields.vector(&scene.to_log(position));
-    fields.vector(velocity);
-    fields.vector(spin);
-}
-
-fn finite_state(at: Stamp, name: &str, sample: &BodySample) -> Result<(), RecordError> {
-    let BodySample { position, velocity, spin, depth_m } = sample;
-    finite(at, || format!("depth_m of {name}"), &[*depth_m])?;
-    finite(at, || format!("position of {name}"), position.as_slice())?;
-    finite(at, || format!("velocity of {name}"), velocity.as_slice())?;
-    finite(at, || format!("spin of {name}"), spin.as_slice())
-}
-
-fn finite(at: Stamp, what: impl Fn() -> String, values: &[f64]) -> Result<(), RecordError> {
-    match values.iter().all(|value| value.is_finite()) {
-        true => Ok(()),
-        false => Err(RecordError::NonFinite { step: at.step, what: what() }),
-    }
 }
 
 /// Brings renamed files to the disk, where folders can be synced.

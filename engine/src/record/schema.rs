@@ -9,10 +9,11 @@ use prost::encoding::{WireType, double, encode_key, encode_varint, uint32, uint6
 use prost_types::field_descriptor_proto::{Label, Type};
 use prost_types::{DescriptorProto, FieldDescriptorProto, FileDescriptorProto, FileDescriptorSet};
 
+use super::setup::LogSetup;
 use crate::math::Vec3;
 
 /// The closure that the energy terms obey, as text.
-pub(super) fn closure_identity(terms: &[String]) -> String {
+fn closure_identity(terms: &[String]) -> String {
     let mut sum = String::new();
     for term in terms {
         let input = term.starts_with("input_");
@@ -64,13 +65,20 @@ impl Layout {
     }
 
     /// `plunge.EnergyBudget`, one number per term.
-    pub(super) fn energy_budget(terms: &[String]) -> Self {
-        terms.iter().fold(
-            Self::new("plunge.EnergyBudget")
-                .with("unaccounted_J", FieldKind::Number)
-                .with("closure", FieldKind::Number),
-            |layout, term| layout.with(term, FieldKind::Number),
-        )
+    fn energy_budget(terms: &[String]) -> Self {
+        Self::new("plunge.EnergyBudget")
+            .with("unaccounted_J", FieldKind::Number)
+            .with("closure", FieldKind::Number)
+            .with_numbers(terms)
+    }
+
+    /// The same where not all terms are known, so that nothing can be missing of them.
+    fn known_energies(terms: &[String]) -> Self {
+        Self::new("plunge.EnergyBudget").with_numbers(terms)
+    }
+
+    fn with_numbers(self, names: &[String]) -> Self {
+        names.iter().fold(self, |layout, name| layout.with(name, FieldKind::Number))
     }
 
     /// `plunge.IntruderState`.
@@ -84,18 +92,25 @@ impl Layout {
     }
 
     /// `plunge.IntruderLoad`, a force and a torque per origin.
-    pub(super) fn intruder_load(origins: &[String]) -> Self {
-        origins.iter().fold(
-            Self::new("plunge.IntruderLoad")
-                .with("contacts", FieldKind::Count)
-                .with("area_m2", FieldKind::Number),
-            |layout, origin| {
-                let origin = snake_case(origin);
-                layout
-                    .with(&origin, FieldKind::Vector)
-                    .with(&format!("{origin}_torque"), FieldKind::Vector)
-            },
-        )
+    fn intruder_load(origins: &[String]) -> Self {
+        Self::new("plunge.IntruderLoad")
+            .with("contacts", FieldKind::Count)
+            .with("area_m2", FieldKind::Number)
+            .with_loads(origins)
+    }
+
+    /// The same where nothing is known of what touches.
+    fn intruder_forces(origins: &[String]) -> Self {
+        Self::new("plunge.IntruderLoad").with_loads(origins)
+    }
+
+    fn with_loads(self, origins: &[String]) -> Self {
+        origins.iter().fold(self, |layout, origin| {
+            let origin = snake_case(origin);
+            layout
+                .with(&origin, FieldKind::Vector)
+                .with(&format!("{origin}_torque"), FieldKind::Vector)
+        })
     }
 
     /// `plunge.CollisionalEstimate`, of the force of a bed of grains on a body.
@@ -129,6 +144,34 @@ impl Layout {
         let path = format!("plunge/{short}.proto");
         let message = file(&path, short, &self.fields, &["plunge/Vector3.proto"]);
         FileDescriptorSet { file: vec![vector, message] }.encode_to_vec()
+    }
+}
+
+/// The messages that say more of a run of the engine than of one of another program.
+pub(super) struct Layouts {
+    pub(super) budget: Layout,
+    pub(super) load: Layout,
+    /// What the terms of the budget add up to, where they are all there are.
+    pub(super) closure_identity: Option<String>,
+}
+
+impl Layouts {
+    /// Of a run of the engine.
+    pub(super) fn of(setup: &LogSetup) -> Self {
+        Self {
+            budget: Layout::energy_budget(&setup.energy_terms),
+            load: Layout::intruder_load(&setup.force_origins),
+            closure_identity: Some(closure_identity(&setup.energy_terms)),
+        }
+    }
+
+    /// Of a run of another program.
+    pub(super) fn imported(setup: &LogSetup) -> Self {
+        Self {
+            budget: Layout::known_energies(&setup.energy_terms),
+            load: Layout::intruder_forces(&setup.force_origins),
+            closure_identity: None,
+        }
     }
 }
 

@@ -19,9 +19,11 @@ pub(crate) mod whole_file;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use engine::record::{GRAIN_LOG, RUN_LOG};
 use thiserror::Error;
 
 use crate::read::ReadError;
+use crate::run_files::RunFiles;
 
 /// What a run can be exported to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,11 +121,13 @@ pub fn export(run: &Path, format: Format, out: &Path) -> Result<Exported, Export
         Format::Csv | Format::Parquet => false,
         Format::Vtp | Format::LammpsDump | Format::ExtendedXyz => true,
     };
-    let log = if of_grains { "grains.mcap" } else { "run.mcap" };
-    let path = match run.is_dir() {
-        true => run.join(log),
-        false => run.to_owned(),
+    let files = RunFiles::of(run);
+    let (log, path) = match of_grains {
+        true => (GRAIN_LOG, files.grains),
+        false => (RUN_LOG, files.log),
     };
+    // A log of grains may be named itself.
+    let path = if path.is_file() || run.is_dir() { path } else { run.to_owned() };
     if !path.is_file() {
         return Err(ExportError::NoRun { path: run.to_owned(), log });
     }

@@ -48,6 +48,15 @@ pub(super) fn axes(space: Space, vector: Vec3) -> [f64; 3] {
     }
 }
 
+/// The vector whose [`axes`] these are.
+pub(super) fn from_axes(space: Space, [x, y, z]: [f64; 3]) -> Vec3 {
+    match space {
+        // No minus before zero.
+        Space::Planar => Vec3::new(x, 0.0 - z, y),
+        Space::Spatial => Vec3::new(x, y, z),
+    }
+}
+
 /// The text of the data file.
 pub(super) fn text(model: GrainModel<'_>, simulation: &Simulation) -> String {
     let space = model.medium.space;

@@ -1,18 +1,23 @@
 //! An impact on a bed of grains, written for LAMMPS: the way out when a bed outgrows one machine, and
 //! a second opinion on a small one.
 //!
-//! [`Deck::of`] gives two files: [`DATA`] with the grains and the intruder as they stand at first
-//! contact, and [`INPUT`], which runs them under the same law, walls, gravity and step. What LAMMPS cannot
-//! express is refused by name ([`LammpsError::Inexpressible`]) and never left out.
+//! [`Deck::of`] gives three files: [`DATA`] with the grains and the intruder as they stand at first
+//! contact, [`INPUT`], which runs them under the same law, walls, gravity and step, and [`FACTS`], by which
+//! [`import`] makes a log of what LAMMPS writes. What LAMMPS cannot express is refused by name
+//! ([`LammpsError::Inexpressible`]) and never left out.
 //!
 //! Two things differ, and the input says so: a data file holds no contact histories, so every contact
 //! starts without its tangential spring; and where a contact slides, LAMMPS keeps the viscous part of the
 //! tangential force and lets the spring make up the rest, where plunge keeps the spring alone.
 
 mod data;
+mod dump;
+mod facts;
+mod import;
 mod input;
 mod law;
 mod refusal;
+mod samples;
 #[cfg(test)]
 mod tests;
 
@@ -24,11 +29,24 @@ use configs::engine::grain_bed::RestingBed;
 use configs::{BuildError, GrainModel};
 use thiserror::Error;
 
+use facts::Facts;
+
+pub use import::{ImportError, Imported, import};
+
 /// Name of the input script.
 pub const INPUT: &str = "in.impact";
 
 /// Name of the file with grains and intruder.
 pub const DATA: &str = "bed.data";
+
+/// Name of the file with what LAMMPS has no use for and an import has.
+pub const FACTS: &str = "impact.json";
+
+/// Name of the table that LAMMPS writes of the intruder.
+const INTRUDER_TABLE: &str = "intruder.csv";
+
+/// Name of the dump that LAMMPS writes of all atoms.
+const DUMP: &str = "grains.dump";
 
 /// Atom types: grains and the intruder.
 const GRAIN: usize = 1;
@@ -41,6 +59,8 @@ pub struct Deck {
     pub input: String,
     /// Text of [`DATA`].
     pub data: String,
+    /// Text of [`FACTS`].
+    pub facts: String,
 }
 
 /// Why a model cannot be handed to LAMMPS.
@@ -79,13 +99,15 @@ impl Deck {
         let conditions = model.model.conditions();
         let contacts = refusal::checked(model, &conditions)?;
         let simulation = model.simulation(resting, &conditions[0])?;
+        let facts = Facts::of(model, resting, &conditions[0], &simulation);
         Ok(Self {
+            facts: format!("{:#}\n", serde_json::json!(facts)),
             input: input::text(model, &simulation, &contacts),
             data: data::text(model, &simulation),
         })
     }
 
-    /// Writes both files into `folder`, which is made if it is missing.
+    /// Writes its files into `folder`, which is made if it is missing.
     ///
     /// # Errors
     /// If the system refuses.
@@ -95,7 +117,7 @@ impl Deck {
             |source| LammpsError::Io { path, source }
         };
         fs::create_dir_all(folder).map_err(io(folder))?;
-        for (name, text) in [(INPUT, &self.input), (DATA, &self.data)] {
+        for (name, text) in [(INPUT, &self.input), (DATA, &self.data), (FACTS, &self.facts)] {
             let path = folder.join(name);
             fs::write(&path, text).map_err(io(&path))?;
         }

@@ -3,7 +3,7 @@ use std::fs;
 use configs::{LoadOptions, Loaded, Model, ModelSource};
 use tempfile::TempDir;
 
-use super::{DATA, Deck, INPUT, LammpsError};
+use super::{DATA, Deck, FACTS, INPUT, LammpsError};
 
 const LINEAR: &str = "\
 name = \"linear-spring-dashpot\"
@@ -75,7 +75,7 @@ fn numbers(text: &str, start: &str) -> Vec<f64> {
 
 #[test]
 fn a_planar_bed_stands_in_the_plane_of_lammps_with_its_masses_and_its_turns() {
-    let Deck { data, input } = written(2, LINEAR, &["impact.spin = \"3 rad/s\""]);
+    let Deck { data, input, .. } = written(2, LINEAR, &["impact.spin = \"3 rad/s\""]);
     assert!(data.contains("\n4 atoms\n2 atom types\n\n0.0 0.04 xlo xhi\n-0.01 "), "{data}");
     let atoms = section(&data, "Atoms # sphere");
     assert_eq!(atoms.len(), 4);
@@ -98,6 +98,9 @@ fn a_planar_bed_stands_in_the_plane_of_lammps_with_its_masses_and_its_turns() {
         "fix plane all enforce2d",
         "timestep 1e-5",
         "variable steps index 1000",
+        "variable every index 10",
+        "variable frame index 500",
+        "variable wy equal -c_turn[3]",
     ] {
         assert!(input.lines().any(|found| found == line), "no line `{line}` in\n{input}");
     }
@@ -167,11 +170,11 @@ fn what_lammps_cannot_express_is_refused_by_name_and_all_at_once() {
 }
 
 #[test]
-fn both_files_are_written_into_a_new_folder() {
+fn all_files_are_written_into_a_new_folder() {
     let folder = tempfile::tempdir().expect("a folder");
     let into = folder.path().join("deep/er");
     let deck = written(2, LINEAR, &[]);
     deck.write(&into).expect("it can be written");
     let read = |name: &str| fs::read_to_string(into.join(name)).expect("a file");
-    assert_eq!((read(INPUT), read(DATA)), (deck.input, deck.data));
+    assert_eq!((read(INPUT), read(DATA), read(FACTS)), (deck.input, deck.data, deck.facts));
 }

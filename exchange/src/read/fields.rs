@@ -4,7 +4,7 @@ use engine::math::Vec3;
 use prost_reflect::prost::DecodeError;
 use prost_reflect::{DynamicMessage, FieldDescriptor, Kind, MessageDescriptor, Value};
 
-use super::series::{BodyState, EnergyBudgets};
+use super::series::{BodyState, Closing, EnergyBudgets};
 
 /// Where a state message has what we read of it.
 pub(super) struct StateFields {
@@ -42,8 +42,8 @@ impl StateFields {
 pub(super) struct EnergyFields {
     message: MessageDescriptor,
     time: FieldDescriptor,
-    unaccounted: FieldDescriptor,
-    closure: FieldDescriptor,
+    /// What is unaccounted for and the closure, where the terms are all there are.
+    closing: Option<[FieldDescriptor; 2]>,
     terms: Vec<FieldDescriptor>,
 }
 
@@ -51,14 +51,17 @@ impl EnergyFields {
     /// Finds the fields in `message`: every number beside the named ones is a term.
     pub(super) fn of(message: MessageDescriptor) -> Result<Self, String> {
         let time = number(&message, "time_s")?;
-        let unaccounted = number(&message, "unaccounted_J")?;
-        let closure = number(&message, "closure")?;
-        let named = [time.number(), unaccounted.number(), closure.number()];
+        let closing = match message.get_field_by_name("closure") {
+            Some(_) => Some([number(&message, "unaccounted_J")?, number(&message, "closure")?]),
+            None => None,
+        };
+        let named = std::iter::once(&time).chain(closing.iter().flatten());
+        let named: Vec<u32> = named.map(FieldDescriptor::number).collect();
         let terms = message
             .fields()
             .filter(|field| is_number(field) && !named.contains(&field.number()))
             .collect();
-        Ok(Self { message, time, unaccounted, closure, terms })
+        Ok(Self { message, time, closing, terms })
     }
 
     /// A budget of these terms at no time yet.
@@ -67,16 +70,17 @@ impl EnergyFields {
             terms: self.terms.iter().map(|term| term.name().to_owned()).collect(),
             time: Vec::new(),
             values: vec![Vec::new(); self.terms.len()],
-            unaccounted: Vec::new(),
-            closure: Vec::new(),
+            closing: self.closing.as_ref().map(|_| Closing::default()),
         }
     }
 
     pub(super) fn read(&self, data: &[u8], into: &mut EnergyBudgets) -> Result<(), DecodeError> {
         let message = DynamicMessage::decode(self.message.clone(), data)?;
         into.time.push(value(&message, &self.time));
-        into.unaccounted.push(value(&message, &self.unaccounted));
-        into.closure.push(value(&message, &self.closure));
+        if let (Some([unaccounted, closure]), Some(closing)) = (&self.closing, &mut into.closing) {
+            closing.unaccounted.push(value(&message, unaccounted));
+            closing.closure.push(value(&message, closure));
+        }
         for (series, term) in into.values.iter_mut().zip(&self.terms) {
             series.push(value(&message, term));
         }

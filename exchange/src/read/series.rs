@@ -33,9 +33,16 @@ pub struct EnergyBudgets {
     pub time: Vec<f64>,
     /// For each term, its value at each time (J).
     pub values: Vec<Vec<f64>>,
+    /// How well they close; none of an imported run, whose terms are not all there are.
+    pub closing: Option<Closing>,
+}
+
+/// How well a budget closes over the time of a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Closing {
     /// Energy that no term accounts for, at each time (J).
     pub unaccounted: Vec<f64>,
-    /// The largest of it so far over the initial energy of the intruder, at each time.
+    /// The largest of it so far over the initial energy of the intruder, at each time (–).
     pub closure: Vec<f64>,
 }
 

@@ -91,7 +91,8 @@ fn a_finished_log_gives_back_what_was_written() {
     assert_eq!(energy.term("kinetic_intruder_J").unwrap()[25].to_bits(), 25.0_f64.to_bits());
     assert_eq!(energy.term("dissipated_x_J").unwrap(), [2.0; 26]);
     assert_eq!(energy.term("input_x_J"), None);
-    assert_eq!((energy.unaccounted, energy.closure), (vec![-1.0; 26], vec![3.0; 26]));
+    let closing = Closing { unaccounted: vec![-1.0; 26], closure: vec![3.0; 26] };
+    assert_eq!(energy.closing, Some(closing));
     assert_eq!(energy.time.len(), 26);
 }
 

@@ -2,16 +2,14 @@
 
 use std::path::Path;
 
-use exchange::read::{BodyState, BodyStates, EnergyBudgets, Keep, ReadError, read_run};
+use exchange::read::{BodyState, BodyStates, Closing, EnergyBudgets, Keep, ReadError, read_run};
+use exchange::run_files::RunFiles;
 
 use super::sparkline::sparkline;
 use super::thin::places;
 
 /// Most samples of a curve.
 const SAMPLES: usize = 320;
-
-/// The log of a run.
-const LOG: &str = "run.mcap";
 
 /// Where the bodies of a run were and where its energy was, over time.
 #[derive(Clone, Debug)]
@@ -25,12 +23,12 @@ pub struct Course {
 }
 
 impl Course {
-    /// Of the run in `folder`.
+    /// Of `run`, a folder or a log.
     ///
     /// # Errors
     /// If its log cannot be read.
-    pub fn read(folder: &Path) -> Result<Self, ReadError> {
-        let log = read_run(&folder.join(LOG), Keep::StatesAndEnergy)?;
+    pub fn read(run: &Path) -> Result<Self, ReadError> {
+        let log = read_run(&RunFiles::of(run).log, Keep::StatesAndEnergy)?;
         Ok(Self {
             bodies: log.bodies.iter().map(thinned).collect(),
             energy: log.energy.as_ref().map(thinned_budget),
@@ -63,7 +61,9 @@ fn thinned_budget(budget: &EnergyBudgets) -> EnergyBudgets {
         terms: budget.terms.clone(),
         time: of(&budget.time),
         values: budget.values.iter().map(|series| of(series)).collect(),
-        unaccounted: of(&budget.unaccounted),
-        closure: of(&budget.closure),
+        closing: budget.closing.as_ref().map(|closing| Closing {
+            unaccounted: of(&closing.unaccounted),
+            closure: of(&closing.closure),
+        }),
     }
 }

@@ -12,6 +12,10 @@ use crate::numbers::{prefix_of, with_prefix};
 const SIZE: (u32, u32) = (940, 470);
 const LOWER: u32 = 130;
 
+/// What the axis of time says, and how many times along it.
+const TIME: &str = "time (ms)";
+const TIMES: usize = 8;
+
 /// Columns that say their values.
 const COLUMNS: usize = 120;
 
@@ -30,9 +34,15 @@ pub(super) struct Budget {
     layers: Vec<Layer>,
     /// What the impact, the weights and whatever puts energy in have supplied (J), at each time.
     supplied: Vec<f64>,
-    /// What is supplied and in no layer (J), at each time.
-    missing: Vec<f64>,
-    /// What `missing` is counted in (J).
+    /// What is missing; none where the layers are not all there are.
+    missing: Option<Missing>,
+}
+
+/// What is supplied and in no layer.
+struct Missing {
+    /// (J), at each time.
+    values: Vec<f64>,
+    /// What they are counted in (J).
     scale: f64,
 }
 
@@ -62,17 +72,19 @@ impl Budget {
         let whole = most(&supplied);
         layers.retain(|layer| most(&layer.values) > 1e-6 * whole);
         layers.iter_mut().enumerate().for_each(|(at, layer)| layer.colour = colour(at));
-        let scale = match (energy.closure.last(), most(&energy.unaccounted)) {
-            // The closure is the largest of them over the energy at impact.
-            (Some(&closure), most) if closure > 0.0 && most > 0.0 => most / closure,
-            _ => whole,
-        };
+        let missing = energy.closing.as_ref().map(|closing| Missing {
+            values: closing.unaccounted.iter().map(|energy| -energy).collect(),
+            scale: match (closing.closure.last(), most(&closing.unaccounted)) {
+                // The closure is the largest of them over the energy at impact.
+                (Some(&closure), most) if closure > 0.0 && most > 0.0 => most / closure,
+                _ => whole,
+            },
+        });
         (n > 1 && whole > 0.0).then(|| Self {
             time: energy.time.iter().map(|time| 1e3 * time).collect(),
             layers,
             supplied,
-            missing: energy.unaccounted.iter().map(|energy| -energy).collect(),
-            scale,
+            missing,
         })
     }
 }
@@ -125,14 +137,34 @@ pub(super) fn picture(budget: &Budget) -> Result<String, PictureError> {
         .collect();
     svg((SIZE.0, SIZE.1 + legend::height(rows.len())), |area| {
         let (charts, below) = area.split_vertically(SIZE.1);
-        let (stack, rest) = charts.split_vertically(SIZE.1 - LOWER);
-        budget.draw_stack(&stack)?;
-        budget.draw_rest(&rest)?;
+        match &budget.missing {
+            Some(missing) => {
+                let (stack, rest) = charts.split_vertically(SIZE.1 - LOWER);
+                budget.draw_stack(&stack, 0)?;
+                budget.draw_rest(missing, &rest)?;
+            }
+            None => budget.draw_stack(&charts, TIMES)?,
+        }
         legend::draw(&below, &rows)
     })
 }
 
 impl Budget {
+    /// What the picture shows, in words.
+    pub(super) fn caption(&self) -> &'static str {
+        match self.missing {
+            Some(_) => {
+                "What the impact and the weight have supplied (dashed), and what has become of it. What \
+                 the stack misses of the line is not accounted for; below, in parts of the energy at \
+                 impact."
+            }
+            None => {
+                "What the impact and the weight have supplied (dashed), and as much of what has become of \
+                 it as the program tells that made the run."
+            }
+        }
+    }
+
     fn last(&self) -> f64 {
         self.time.last().copied().unwrap_or(0.0).max(1e-9)
     }
@@ -153,7 +185,8 @@ impl Budget {
         self.layers.iter().map(layer).collect()
     }
 
-    fn draw_stack(&self, area: &Area<'_>) -> Drawn {
+    /// With so many `times` along its axis: none where there is another panel below.
+    fn draw_stack(&self, area: &Area<'_>, times: usize) -> Drawn {
         let edges = self.edges();
         let all = || edges.iter().flatten();
         let high = all().fold(0.0_f64, |high, edge| high.max(edge.1));
@@ -163,13 +196,14 @@ impl Budget {
         let up = 1.05 * factor * low..1.05 * factor * high;
         let mut chart = ChartBuilder::on(area)
             .margin(8)
-            .x_label_area_size(8)
+            .x_label_area_size(if times > 0 { 36 } else { 8 })
             .y_label_area_size(66)
             .build_cartesian_2d(0.0..self.last(), up.clone())?;
         chart
             .configure_mesh()
             .disable_x_mesh()
-            .x_labels(0)
+            .x_labels(times)
+            .x_desc(if times > 0 { TIME } else { "" })
             .y_labels(6)
             .label_style(small())
             .y_desc(format!("energy ({prefix}J)"))
@@ -193,8 +227,8 @@ impl Budget {
         Ok(())
     }
 
-    fn draw_rest(&self, area: &Area<'_>) -> Drawn {
-        let shares: Vec<f64> = self.missing.iter().map(|value| value / self.scale).collect();
+    fn draw_rest(&self, missing: &Missing, area: &Area<'_>) -> Drawn {
+        let shares: Vec<f64> = missing.values.iter().map(|value| value / missing.scale).collect();
         let most = shares.iter().fold(1e-15_f64, |most, share| most.max(share.abs()));
         // Labels of such numbers fit no axis as they are.
         let exponent = libm::log10(most).floor();
@@ -208,10 +242,10 @@ impl Budget {
         chart
             .configure_mesh()
             .disable_x_mesh()
-            .x_labels(8)
+            .x_labels(TIMES)
             .y_labels(3)
             .label_style(small())
-            .x_desc("time (ms)")
+            .x_desc(TIME)
             .y_desc(format!("missing (1e{exponent})"))
             .axis_desc_style(letters())
             .light_line_style(WHITE)
@@ -252,7 +286,7 @@ impl Budget {
 
 #[cfg(test)]
 mod tests {
-    use exchange::read::EnergyBudgets;
+    use exchange::read::{Closing, EnergyBudgets};
 
     use super::*;
 
@@ -268,8 +302,7 @@ mod tests {
             .into(),
             time: vec![0.0, 1.0],
             values: vec![vec![1.0, 0.0], vec![0.2, 0.7], vec![0.0, 0.49]],
-            unaccounted: vec![0.0, -0.01],
-            closure: vec![0.0, 0.01],
+            closing: Some(Closing { unaccounted: vec![0.0, -0.01], closure: vec![0.0, 0.01] }),
         };
         Course { bodies: Vec::new(), energy: Some(budget), complete: true }
     }
@@ -280,8 +313,9 @@ mod tests {
         assert_eq!(budget.supplied, [1.0, 0.5]);
         let stacked: f64 = budget.layers.iter().map(|layer| layer.values[1]).sum();
         // Sums of three numbers near one.
-        assert!((budget.supplied[1] - stacked - budget.missing[1]).abs() < 1e-15);
-        assert!((budget.scale - 1.0).abs() < 1e-12, "the energy at impact, by a division");
+        let missing = budget.missing.expect("the terms are all there are");
+        assert!((budget.supplied[1] - stacked - missing.values[1]).abs() < 1e-15);
+        assert!((missing.scale - 1.0).abs() < 1e-12, "the energy at impact, by a division");
     }
 
     #[test]
@@ -292,8 +326,7 @@ mod tests {
             time: vec![0.0],
             layers: vec![layer(&[2.0]), layer(&[-1.0]), layer(&[3.0])],
             supplied: vec![4.0],
-            missing: vec![0.0],
-            scale: 1.0,
+            missing: None,
         };
         let edges: Vec<(f64, f64)> = budget.edges().into_iter().flatten().collect();
         assert_eq!(edges, [(0.0, 2.0), (-1.0, 0.0), (2.0, 5.0)]);

@@ -16,7 +16,7 @@ pub use sparkline::sparkline;
 
 use crate::ReportError;
 use crate::figure::figure;
-use crate::numbers::{fixed, with_prefix};
+use crate::numbers::{fixed, share, with_prefix};
 use crate::page::{Number, Page, Part, Section, Table};
 
 /// The page of the run that `summary` and `course` are of.
@@ -77,7 +77,7 @@ fn headline(summary: &Summary) -> Vec<Number> {
         Number::new("energy at impact", with_prefix(energy.initial, "J"), ""),
         Number::new(
             "closure",
-            format!("{:.1e}", energy.closure),
+            share(energy.closure),
             "largest energy unaccounted for, over that at impact",
         ),
     ]
@@ -110,12 +110,7 @@ fn forces_text(forces: &ForceSummary) -> String {
 fn energy_section(summary: &Summary, course: &Course) -> Result<Vec<Part>, ReportError> {
     let mut parts = Vec::new();
     if let Some(budget) = energy::Budget::of(course) {
-        parts.push(figure(
-            &energy::picture(&budget)?,
-            "What the impact and the weight have supplied (dashed), and what has become of it. What \
-             the stack misses of the line is not accounted for; below, in parts of the energy at \
-             impact.",
-        ));
+        parts.push(figure(&energy::picture(&budget)?, budget.caption()));
     }
     let energy = &summary.energy;
     let mut table = Table::new(&["in the end", "energy", "of that at impact"]);
@@ -134,8 +129,12 @@ fn energy_section(summary: &Summary, course: &Course) -> Result<Vec<Part>, Repor
     if summary.bed.is_some() {
         row("of the grains, more than before", energy.at_end.grains);
     }
-    row("in springs, more than before", energy.at_end.elastic);
-    row("unaccounted for", -energy.unaccounted);
+    if let Some(elastic) = energy.at_end.elastic {
+        row("in springs, more than before", elastic);
+    }
+    if let Some(unaccounted) = energy.unaccounted {
+        row("unaccounted for", -unaccounted);
+    }
     parts.push(Part::Table(table));
     Ok(parts)
 }

@@ -88,9 +88,13 @@ impl Lammps {
             .current_dir(folder)
             .env("OMP_NUM_THREADS", "1")
             .args(["-in", INPUT, "-log", "none"]);
-        for (name, value) in
-            [("warm_up", span.warm_up), ("steps", span.steps), ("every", span.end())]
-        {
+        // Nothing is written while the clock runs.
+        for (name, value) in [
+            ("warm_up", span.warm_up),
+            ("steps", span.steps),
+            ("every", span.end()),
+            ("frame", span.end()),
+        ] {
             command.args(["-var", name]).arg(value.to_string());
         }
         let output = said(&mut command)?;

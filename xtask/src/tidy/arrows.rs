@@ -23,7 +23,7 @@ const ALLOWED: [(&str, &[&str]); 11] = [
 ];
 
 /// Crates of others that are kept behind one of ours (two where a second reads what the first writes).
-const ONLY: [(&str, &[&str]); 36] = [
+const ONLY: [(&str, &[&str]); 38] = [
     ("annotate-snippets", &["configs"]),
     ("anyhow", &["plunge", "xtask"]),
     ("askama", &["reports"]),
@@ -37,6 +37,7 @@ const ONLY: [(&str, &[&str]); 36] = [
     ("comfy-table", &["plunge"]),
     ("exmex", &["contact-laws"]),
     ("foxglove", &["engine"]),
+    ("http-range-header", &["plunge"]),
     ("indicatif", &["plunge"]),
     ("levenberg-marquardt", &["validation"]),
     ("lexopt", &["fuzz", "validation", "xtask"]),
@@ -57,6 +58,7 @@ const ONLY: [(&str, &[&str]); 36] = [
     ("signal-hook", &["plunge"]),
     ("sobol_burley", &["campaigns"]),
     ("statrs", &["validation"]),
+    ("tiny_http", &["plunge"]),
     ("toml", &["configs"]),
     ("toml_edit", &["configs"]),
     ("wide", &["engine"]),

@@ -83,8 +83,8 @@ impl Setting<'_> {
         let cost = CostSummary {
             steps: step,
             dt_s: Some(run.simulation.clock().dt),
-            threads: n_threads(),
-            wall_s: wall,
+            threads: Some(n_threads()),
+            wall_s: Some(wall),
             grain_steps_per_s: Some(if wall > 0.0 { grain_steps / wall } else { 0.0 }),
         };
         let mut summary = Summary::of_grains(

@@ -74,8 +74,8 @@ pub(super) fn run(
     let cost = CostSummary {
         steps: ending.steps,
         dt_s: None,
-        threads: n_threads(),
-        wall_s: clock.elapsed().as_secs_f64(),
+        threads: Some(n_threads()),
+        wall_s: Some(clock.elapsed().as_secs_f64()),
         grain_steps_per_s: None,
     };
     let ended = watched.end(&impact, ending, ledger, given);

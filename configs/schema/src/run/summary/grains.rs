@@ -27,7 +27,7 @@ impl FinalEnergy {
             grains: value("kinetic_grains_translation_J")
                 + value("kinetic_grains_rotation_J")
                 + value("potential_grains_J"),
-            elastic: ledger.sum(|term| term.kind == TermKind::Channel(ChannelKind::Stored)),
+            elastic: Some(ledger.sum(|term| term.kind == TermKind::Channel(ChannelKind::Stored))),
         }
     }
 }
@@ -215,12 +215,12 @@ impl Summary {
                     // Its kinetic energy at the start is the energy of the impact.
                     intruder: end.intruder - (start.intruder - initial),
                     grains: end.grains - start.grains,
-                    elastic: end.elastic - start.elastic,
+                    elastic: end.elastic.zip(start.elastic).map(|(end, start)| end - start),
                 },
                 dissipated: by_channel(ledger, ChannelKind::Dissipated),
                 input: by_channel(ledger, ChannelKind::Input),
-                unaccounted: ledger.balance().unaccounted,
-                closure: simulation.closure(),
+                unaccounted: Some(ledger.balance().unaccounted),
+                closure: Some(simulation.closure()),
             },
             bed: Some(BedSummary {
                 activity: Some(activity),

@@ -82,7 +82,7 @@ impl ListSummary {
                     range_m: each(|run| Some(run.stop.range_m)),
                     stopping_time_s: each(|run| run.stop.stopping_time_s),
                     rest_time_s: each(|run| run.stop.rest_time_s),
-                    closure: each(|run| Some(run.energy.closure)),
+                    closure: each(|run| run.energy.closure),
                 }
             })
             .collect();

@@ -61,7 +61,7 @@ pub struct StopSummary {
 }
 
 /// Where the energy went: `initial` is `final` plus what was dissipated, less what was put in and what
-/// is unaccounted for.
+/// is unaccounted for. What another program does not tell of an imported run is left out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
 pub struct EnergySummary {
@@ -75,9 +75,10 @@ pub struct EnergySummary {
     /// By channel, `snake_case`; left out if no law puts energy in.
     #[serde(rename = "input_J", skip_serializing_if = "BTreeMap::is_empty", default)]
     pub input: BTreeMap<String, f64>,
-    #[serde(rename = "unaccounted_J")]
-    pub unaccounted: f64,
-    pub closure: f64,
+    #[serde(rename = "unaccounted_J", skip_serializing_if = "Option::is_none", default)]
+    pub unaccounted: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub closure: Option<f64>,
 }
 
 /// What is still there at the end. Potential energy and everything of the bed count from the start of
@@ -89,8 +90,8 @@ pub struct FinalEnergy {
     pub intruder: f64,
     #[serde(rename = "grains_J")]
     pub grains: f64,
-    #[serde(rename = "elastic_J")]
-    pub elastic: f64,
+    #[serde(rename = "elastic_J", skip_serializing_if = "Option::is_none", default)]
+    pub elastic: Option<f64>,
 }
 
 /// The bed before the impact.
@@ -131,8 +132,11 @@ pub struct CostSummary {
     pub steps: u64,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub dt_s: Option<f64>,
-    pub threads: usize,
-    pub wall_s: f64,
+    /// Of an imported run, the processes; left out, like the time, if they are not known.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub threads: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub wall_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub grain_steps_per_s: Option<f64>,
 }

@@ -244,13 +244,14 @@ impl Ended {
                 intruder: after - self.lost(TermKind::Potential, None),
                 grains: 0.0,
                 // An empty sum is −0.
-                elastic: 0.0
-                    + ledger.sum(|term| term.kind == TermKind::Channel(ChannelKind::Stored)),
+                elastic: Some(
+                    0.0 + ledger.sum(|term| term.kind == TermKind::Channel(ChannelKind::Stored)),
+                ),
             },
             dissipated: by_channel(ledger, ChannelKind::Dissipated),
             input: by_channel(ledger, ChannelKind::Input),
-            unaccounted: ledger.balance().unaccounted,
-            closure: ledger.closure(scale),
+            unaccounted: Some(ledger.balance().unaccounted),
+            closure: Some(ledger.closure(scale)),
         }
     }
 }

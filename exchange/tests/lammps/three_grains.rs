@@ -1,12 +1,12 @@
-//! A deck under the program that it is for: `PLUNGE_LAMMPS=lmp cargo test -p exchange --test lammps`.
+//! Three grains in a row, hit on the middle one.
 
-use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use configs::{LoadOptions, Loaded, Model, ModelSource};
-use exchange::lammps::{Deck, INPUT};
+use exchange::lammps::Deck;
+
+use crate::program::lammps;
 
 const LINEAR: &str = "\
 name = \"linear-spring-dashpot\"
@@ -79,21 +79,11 @@ fn in_lammps(folder: &Path, loaded: &Loaded) -> [f64; 2] {
     let resting = grains.read_bed().expect("a table");
     let deck = Deck::of(grains, &resting).expect("a model that LAMMPS can express");
     deck.write(folder).expect("it can be written");
-    let mut command = Command::new(lammps());
-    command.current_dir(folder).args(["-in", INPUT, "-log", "none", "-var", "steps"]);
-    let output = command.arg(STEPS.to_string()).output().expect("PLUNGE_LAMMPS names a program");
-    let said = String::from_utf8_lossy(&output.stdout);
+    let said = lammps(folder, 1, STEPS);
     let state = said.lines().rfind(|line| line.starts_with("intruder at the end")).expect(&said);
     let state: Vec<f64> = state.split([',', ' ']).filter_map(|word| word.parse().ok()).collect();
     // Time, position and velocity; up is the last of their components.
     [state[state.len() / 2 + 1], state[state.len() - 1]]
-}
-
-/// The program, so named that it is found from another folder too.
-fn lammps() -> OsString {
-    let named = std::env::var_os("PLUNGE_LAMMPS").expect("PLUNGE_LAMMPS names an lmp");
-    let is_bare = Path::new(&named).file_name() == Some(OsStr::new(&named));
-    if is_bare { named } else { std::path::absolute(&named).expect("a path").into() }
 }
 
 /// The same in plunge.

@@ -1,0 +1,135 @@
+//! `plunge view`: a log over HTTP, asked as a browser asks.
+
+use std::fs;
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::TcpStream;
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+
+use serde_json::Value;
+
+use crate::common::folder;
+
+/// A server that is told to end when this goes.
+struct View {
+    child: Child,
+    port: u16,
+}
+
+/// An answer: status, headers in small letters, body.
+struct Answer {
+    status: u16,
+    head: String,
+    body: Vec<u8>,
+}
+
+impl View {
+    fn of(run: &Path) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_plunge"));
+        command.args(["view", "--json", "--port", "0"]).arg(run);
+        let mut child = command.stdout(Stdio::piped()).spawn().expect("plunge starts");
+        let stdout = child.stdout.take().expect("a pipe");
+        // The object ends with the only line that begins with a closing brace.
+        let mut text = String::new();
+        for line in BufReader::new(stdout).lines() {
+            text.push_str(&line.expect("text"));
+            if text.ends_with('}') && serde_json::from_str::<Value>(&text).is_ok() {
+                break;
+            }
+        }
+        let told: Value = serde_json::from_str(&text).expect("an object");
+        let port = told["port"].as_u64().and_then(|port| u16::try_from(port).ok()).expect("a port");
+        assert_eq!(told["urls"][0], format!("http://127.0.0.1:{port}/run.mcap"));
+        Self { child, port }
+    }
+
+    fn ask(&self, method: &str, path: &str, headers: &str) -> Answer {
+        let mut stream = TcpStream::connect(("127.0.0.1", self.port)).expect("it listens");
+        let host = "Host: 127.0.0.1\r\nOrigin: https://viewer.example\r\nConnection: close\r\n";
+        write!(stream, "{method} {path} HTTP/1.1\r\n{host}{headers}\r\n").expect("it reads");
+        let mut whole = Vec::new();
+        stream.read_to_end(&mut whole).expect("it answers");
+        let end = whole.windows(4).position(|four| four == b"\r\n\r\n").expect("a head");
+        let head = String::from_utf8_lossy(&whole[..end]).to_ascii_lowercase();
+        let status = head.split(' ').nth(1).and_then(|word| word.parse().ok()).expect("a status");
+        Answer { status, head, body: whole[end + 4..].to_vec() }
+    }
+
+    /// Ends it as Ctrl-C does.
+    fn interrupted(mut self) -> ExitStatus {
+        let pid = self.child.id().to_string();
+        let told = Command::new("kill").args(["-INT", &pid]).status().expect("kill");
+        assert!(told.success());
+        self.child.wait().expect("it ends")
+    }
+}
+
+impl Drop for View {
+    fn drop(&mut self) {
+        // Ended already where the test came so far.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// A folder with something of the name of a log, and its bytes.
+fn log() -> (tempfile::TempDir, Vec<u8>) {
+    let here = folder();
+    let bytes: Vec<u8> = (0..100_000_u32).map(|n| (n % 251) as u8).collect();
+    fs::write(here.path().join("run.mcap"), &bytes).expect("a file");
+    (here, bytes)
+}
+
+#[test]
+fn a_log_is_served_whole_and_in_parts_to_pages_from_anywhere() {
+    let (here, bytes) = log();
+    let view = View::of(here.path());
+    let whole = view.ask("GET", "/run.mcap?t=1", "");
+    assert_eq!((whole.status, &whole.body), (200, &bytes));
+    for (range, part, answered) in [
+        ("bytes=0-9", &bytes[..10], "bytes 0-9/100000"),
+        ("bytes=99990-", &bytes[99_990..], "bytes 99990-99999/100000"),
+        ("bytes=-8", &bytes[99_992..], "bytes 99992-99999/100000"),
+        ("bytes=50000-89999", &bytes[50_000..90_000], "bytes 50000-89999/100000"),
+    ] {
+        let answer = view.ask("GET", "/run.mcap", &format!("Range: {range}\r\n"));
+        assert_eq!((answer.status, answer.body.as_slice()), (206, part), "{range}");
+        for line in [
+            format!("content-range: {answered}"),
+            format!("content-length: {}", part.len()),
+            "access-control-allow-origin: *".to_owned(),
+            "accept-ranges: bytes".to_owned(),
+        ] {
+            assert!(answer.head.lines().any(|one| one == line), "no `{line}` in {}", answer.head);
+        }
+        let exposed = answer.head.lines().find(|line| line.contains("expose-headers"));
+        assert!(exposed.is_some_and(|line| line.contains("content-range")), "{}", answer.head);
+    }
+}
+
+#[test]
+fn what_is_not_there_is_refused_and_a_head_has_no_body() {
+    let (here, _) = log();
+    let view = View::of(&here.path().join("run.mcap"));
+    let head = view.ask("HEAD", "/run.mcap", "");
+    assert_eq!((head.status, head.body.len()), (200, 0));
+    assert!(head.head.contains("content-length: 100000"), "{}", head.head);
+    let beyond = view.ask("GET", "/run.mcap", "Range: bytes=100000-\r\n");
+    assert_eq!((beyond.status, beyond.body.len()), (416, 0));
+    assert!(beyond.head.contains("content-range: bytes */100000"), "{}", beyond.head);
+    for path in ["/grains.mcap", "/", "/../run.mcap", "/summary.json"] {
+        assert_eq!(view.ask("GET", path, "").status, 404, "{path}");
+    }
+    assert_eq!(view.ask("POST", "/run.mcap", "Content-Length: 0\r\n").status, 405);
+    let asked = "Access-Control-Request-Method: GET\r\nAccess-Control-Request-Headers: range\r\n";
+    let may = view.ask("OPTIONS", "/run.mcap", asked);
+    assert_eq!(may.status, 204);
+    assert!(may.head.contains("access-control-allow-headers: range"), "{}", may.head);
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_it_well() {
+    let (here, _) = log();
+    assert_eq!(View::of(here.path()).interrupted().code(), Some(0));
+}

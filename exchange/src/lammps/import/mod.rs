@@ -1,0 +1,151 @@
+//! What LAMMPS has written of an impact, as the log of a run.
+
+mod log;
+mod summary;
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use configs::engine::checkpoint::write_whole;
+use configs::engine::record::{GRAIN_LOG, RUN_LOG, RecordError};
+use configs::run::Summary;
+use thiserror::Error;
+
+use super::dump::Dump;
+use super::facts::Facts;
+use super::samples::samples;
+use super::{DUMP, FACTS, INTRUDER_TABLE};
+use crate::run_files::RunFiles;
+
+/// A run that was brought in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Imported {
+    /// What it came to, without what LAMMPS does not tell.
+    pub summary: Summary,
+    /// Where it lies.
+    pub files: RunFiles,
+    /// Samples of the intruder in the log.
+    pub samples: usize,
+    /// Frames of the grains.
+    pub frames: usize,
+}
+
+/// Why a run of LAMMPS is not brought in.
+#[derive(Debug, Error)]
+pub enum ImportError {
+    /// A file is not there.
+    #[error(
+        "{} is not there; import takes the folder that `plunge export MODEL --to lammps` wrote, after \
+         lmp -in in.impact has run in it",
+        path.display()
+    )]
+    Missing {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The system refuses.
+    #[error("cannot {doing} {}: {source}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What was being done.
+        doing: &'static str,
+        /// The system's answer.
+        source: io::Error,
+    },
+    /// A file that does not say what the input asks LAMMPS for.
+    #[error("{}: {why}", path.display())]
+    Misread {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// A frame at a step at which nothing is known of the intruder.
+    #[error(
+        "{DUMP} has a frame at step {step}, of which {INTRUDER_TABLE} says nothing: `frame` has to be a \
+         multiple of `every`"
+    )]
+    Unpaired {
+        /// The step.
+        step: u64,
+    },
+    /// The log cannot be written.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+}
+
+impl ImportError {
+    /// That `doing` to `path` failed; a missing file is told as such.
+    pub(super) fn io(path: &Path, doing: &'static str, source: io::Error) -> Self {
+        let path = path.to_owned();
+        match source.kind() {
+            io::ErrorKind::NotFound => Self::Missing { path },
+            _ => Self::Io { path, doing, source },
+        }
+    }
+}
+
+/// Brings what LAMMPS wrote in `folder` into a log called `log`, with the channels of a run of plunge, its
+/// grains and its summary beside it. What LAMMPS does not tell is not in them: of the energies all but
+/// motion and height, and what touches the intruder. How a body is turned follows from its spins.
+///
+/// # Errors
+/// If a file is missing, unreadable or not what the input asks for, or the log cannot be written.
+pub fn import(folder: &Path, log: &Path) -> Result<Imported, ImportError> {
+    let path = folder.join(FACTS);
+    let facts: Facts = serde_json::from_str(&read(&path)?)
+        .map_err(|error| ImportError::Misread { path, why: error.to_string() })?;
+    let path = folder.join(INTRUDER_TABLE);
+    let samples = samples(&path, &read(&path)?)?;
+    let dump = Dump::open(&folder.join(DUMP), facts.space(), facts.gravity_m_per_s2)?;
+    let files = RunFiles::of(log);
+    let staging = Staging::beside(&files.log)?;
+    let frames = log::write(&facts, &samples, dump, &staging.0)?;
+    let summary = summary::of(&facts, &samples, folder);
+    staging.hand_over(&files, &summary)?;
+    Ok(Imported { summary, files, samples: samples.len(), frames })
+}
+
+fn read(path: &Path) -> Result<String, ImportError> {
+    fs::read_to_string(path).map_err(|source| ImportError::io(path, "read", source))
+}
+
+/// A folder that takes the logs until they are whole, and goes with this.
+struct Staging(PathBuf);
+
+impl Staging {
+    fn beside(log: &Path) -> Result<Self, ImportError> {
+        let mut name = log.file_name().unwrap_or_default().to_owned();
+        name.push(".partial");
+        let folder = log.with_file_name(name);
+        fs::create_dir_all(&folder).map_err(|source| ImportError::Io {
+            path: folder.clone(),
+            doing: "make",
+            source,
+        })?;
+        Ok(Self(folder))
+    }
+
+    /// Gives the files their names, the log last.
+    fn hand_over(self, files: &RunFiles, summary: &Summary) -> Result<(), ImportError> {
+        let text = format!("{:#}\n", serde_json::json!(summary));
+        let refused = |path: &Path| {
+            let path = path.to_owned();
+            move |source| ImportError::Io { path, doing: "write", source }
+        };
+        write_whole(&files.summary, text.as_bytes()).map_err(refused(&files.summary))?;
+        for (name, to) in [(GRAIN_LOG, &files.grains), (RUN_LOG, &files.log)] {
+            fs::rename(self.0.join(name), to).map_err(refused(to))?;
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Staging {
+    fn drop(&mut self) {
+        // What stays behind is called partial, and the next import takes its place.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}

@@ -1,0 +1,92 @@
+//! What a run of LAMMPS came to.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use configs::engine::stopping::Stopping;
+use configs::run::{CostSummary, EnergySummary, FinalEnergy, StopSummary, Summary};
+
+use super::super::facts::Facts;
+use super::super::samples::Sample;
+
+/// What LAMMPS calls its output unless told otherwise.
+const LAMMPS_LOG: &str = "log.lammps";
+
+/// Of `samples`, without what LAMMPS does not tell; what it cost is in the output of LAMMPS, if that is in
+/// `folder`.
+pub(super) fn of(facts: &Facts, samples: &[Sample], folder: &Path) -> Summary {
+    let (first, last) = (&samples[0], &samples[samples.len() - 1]);
+    let output = fs::read_to_string(folder.join(LAMMPS_LOG)).unwrap_or_default();
+    Summary {
+        name: facts.name.clone(),
+        version: facts.plunge_version.clone(),
+        model_hash: facts.model_hash.clone(),
+        medium: "grains".to_owned(),
+        impact: facts.impact.clone(),
+        stop: stop(facts, samples),
+        energy: energy(facts, [first, last]),
+        bed: Some(facts.bed.clone()),
+        forces: None,
+        links: Vec::new(),
+        cost: cost(facts, last.step, &output),
+    }
+}
+
+/// Until the impact is over by the rules of plunge, however long LAMMPS went on.
+fn stop(facts: &Facts, samples: &[Sample]) -> StopSummary {
+    let mut stopping = Stopping::new(facts.followed(&samples[0]));
+    for sample in &samples[1..] {
+        if stopping.is_over() {
+            break;
+        }
+        stopping.observe(sample.time, facts.followed(sample));
+    }
+    StopSummary {
+        stopped: stopping.stopping_time().is_some(),
+        stopping_time_s: stopping.stopping_time(),
+        stopping_time_z_s: stopping.vertical_time(),
+        stopping_time_x_s: stopping.horizontal_time(),
+        rest_time_s: stopping.rest_time(),
+        depth_m: stopping.depth(),
+        range_m: stopping.range(),
+    }
+}
+
+fn energy(facts: &Facts, ends: [&Sample; 2]) -> EnergySummary {
+    let [start, end] = ends.map(|sample| facts.energies(sample));
+    let [_, _, grains_translation, grains_rotation, _, grains_height] =
+        std::array::from_fn::<f64, 6, _>(|term| end[term] - start[term]);
+    EnergySummary {
+        initial: facts.impact_energy,
+        at_end: FinalEnergy {
+            intruder: end[0] + end[1] + end[4] - start[4],
+            grains: grains_translation + grains_rotation + grains_height,
+            elastic: None,
+        },
+        dissipated: BTreeMap::new(),
+        input: BTreeMap::new(),
+        unaccounted: None,
+        closure: None,
+    }
+}
+
+/// From lines like `Loop time of 1.5 on 2 procs for 100 steps with 601 atoms`, one for every `run`.
+fn cost(facts: &Facts, steps: u64, output: &str) -> CostSummary {
+    let loops = output.lines().filter_map(|line| line.strip_prefix("Loop time of "));
+    let runs: Vec<(f64, f64)> = loops
+        .filter_map(|line| {
+            let mut numbers = line.split_whitespace().filter_map(|word| word.parse().ok());
+            Some((numbers.next()?, numbers.next()?))
+        })
+        .collect();
+    let wall = (!runs.is_empty()).then(|| runs.iter().fold(0.0, |sum, (wall, _)| sum + wall));
+    let grain_steps = steps as f64 * facts.bed.grains as f64;
+    CostSummary {
+        steps,
+        dt_s: Some(facts.time_step_s),
+        threads: runs.last().map(|(_, processes)| *processes as usize),
+        wall_s: wall,
+        grain_steps_per_s: wall.filter(|wall| *wall > 0.0).map(|wall| grain_steps / wall),
+    }
+}

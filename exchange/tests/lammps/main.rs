@@ -1,0 +1,5 @@
+//! Decks under the program that they are for: `PLUNGE_LAMMPS=lmp cargo test --workspace --test lammps`.
+
+mod crosscheck;
+mod program;
+mod three_grains;
