@@ -130,7 +130,7 @@ kinetic_grains_translation_J,kinetic_grains_rotation_J,potential_grains_J\n\
             (twice.as_str(), "step 10"),
             (TABLE.split_at(TABLE.len() - 70).0, "fewer than two"),
             ("", "fewer than two"),
-            (&TABLE.replace("1.4e-4", "lost"), "lost"),
+            (&TABLE.replace("1.4e-4", "lost"), "field 12"),
         ] {
             let why = read(text).expect_err(part);
             assert!(why.contains(part), "`{part}` is not in {why}");
