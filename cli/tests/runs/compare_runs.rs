@@ -133,7 +133,7 @@ fn what_does_not_go_together_is_bad_input() {
     let with_model = || compare().arg(&one).arg(&one).arg("--model").arg("poncelet");
     assert!(with_model().fails(2).contains("--model"));
     assert!(compare().arg(&one).arg(&one).set(&["impact.speed=1 m/s"]).fails(2).contains("--set"));
-    assert!(compare().arg(one.join("run.mcap")).arg(&one).fails(2).contains("folder"));
+    assert!(compare().arg(one.join("grains.mcap")).arg(&one).fails(2).contains("grains.mcap"));
     fs::remove_file(one.join("summary.json")).expect("a summary");
     assert!(compare().arg(&one).arg(&one).fails(2).contains("not finished"));
 }

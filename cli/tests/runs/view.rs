@@ -55,10 +55,10 @@ impl View {
         Answer { status, head, body: whole[end + 4..].to_vec() }
     }
 
-    /// Ends it as Ctrl-C does.
-    fn interrupted(mut self) -> ExitStatus {
+    /// Ends it as a system does that shuts down; Ctrl-C may be ignored where tests run in the background.
+    fn told_to_end(mut self) -> ExitStatus {
         let pid = self.child.id().to_string();
-        let told = Command::new("kill").args(["-INT", &pid]).status().expect("kill");
+        let told = Command::new("kill").args(["-TERM", &pid]).status().expect("kill");
         assert!(told.success());
         self.child.wait().expect("it ends")
     }
@@ -129,7 +129,7 @@ fn what_is_not_there_is_refused_and_a_head_has_no_body() {
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_ends_it_well() {
+fn a_signal_ends_it_well() {
     let (here, _) = log();
-    assert_eq!(View::of(here.path()).interrupted().code(), Some(0));
+    assert_eq!(View::of(here.path()).told_to_end().code(), Some(0));
 }

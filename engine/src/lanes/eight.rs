@@ -236,8 +236,8 @@ mod transposition {
             let [a, b, c, d, e, f, g, h] = two.to_array();
             [[a, b, c, d], [e, f, g, h]]
         };
-        let ([r_0, r_4], [r_1, r_5]) = (halves(near(even)), halves(near(odd))).into();
-        let ([r_2, r_6], [r_3, r_7]) = (halves(far(even)), halves(far(odd))).into();
+        let ([r_0, r_4], [r_1, r_5]) = (halves(near(even)), halves(near(odd)));
+        let ([r_2, r_6], [r_3, r_7]) = (halves(far(even)), halves(far(odd)));
         [r_0, r_1, r_2, r_3, r_4, r_5, r_6, r_7]
     }
 }
