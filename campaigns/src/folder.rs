@@ -140,7 +140,7 @@ impl Folder {
     }
 
     /// Leaves the file `name`, whole or not at all.
-    pub(crate) fn write(&self, name: &str, text: &str) -> Result<(), FolderError> {
+    fn write(&self, name: &str, text: &str) -> Result<(), FolderError> {
         write(&self.path.join(name), text)
     }
 

@@ -3,7 +3,7 @@
 //! A [`Plan`] lists every point of a campaign file: a model, what is set in it, and the hash of what
 //! comes out, by which its folder is called. A [`Folder`] keeps the plan, which never changes, and beside
 //! it a folder per point; what is done there has a `done.json`, renamed into place last. [`run`] does what
-//! is not done, so that a campaign that was killed goes on with the same command; a [`Scheduler`] has other
+//! is not done, so that a campaign that was killed goes on with the same command; [`submit`] has other
 //! machines do it. [`Results`] reads what there is, at any time.
 
 mod done;
@@ -22,5 +22,5 @@ pub use plan::{Need, Plan, Planned, Point, split};
 pub use results::{Counts, Outcome, Results};
 pub use run::SweepError;
 pub use run::{run, run_one};
-pub use scheduler::{SCRIPT, Scheduler, SchedulerError, Task};
+pub use scheduler::{SCRIPT, SubmitError, Task, submit};
 pub use table::{FILE as TABLE, Values, Varied, columns, varied};

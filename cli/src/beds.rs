@@ -4,17 +4,18 @@ use std::fmt::Write as _;
 use std::num::NonZero;
 use std::path::PathBuf;
 
+use anyhow::Context as _;
 use configs::engine::units::{self, Dimension};
 use serde_json::{Value, json};
 use validation::beds::{
-    BedDiagnosis, BedError, BedForward, CampaignError, Impacts, Place, Plan, Stand, Wish,
-    bed_forward, compare_jobs, diagnose_bed, unaffordable,
+    BedDiagnosis, BedError, BedForward, CampaignError, Elsewhere, Impacts, Place, Plan, Stand,
+    Wish, bed_forward, compare_jobs, diagnose_bed, unaffordable,
 };
 use validation::bench::Bench;
 use validation::compare::Comparison;
 use validation::where_it_fails::WhereItFails;
 
-use crate::common::cache_folder;
+use crate::common::{On, cache_folder, of_scheduler};
 use crate::compare::{lines, table};
 use crate::control::Terminal;
 use crate::diagnose::as_text;
@@ -40,6 +41,9 @@ pub(crate) struct Beds {
     /// Let this candidate compensate as a parameter of the model: its change is fitted, not ranked.
     #[arg(long = "free", value_name = "CANDIDATE")]
     free: Vec<String>,
+    /// Where impacts are run. A scheduler gets those that are not kept yet, and is waited for.
+    #[arg(long, value_name = "WHERE", default_value = "local")]
+    on: On,
     /// Screen these candidates alone.
     #[arg(long = "candidate", value_name = "CANDIDATE")]
     candidates: Vec<String>,
@@ -58,17 +62,21 @@ pub(crate) struct Workshop<'a> {
     flags: &'a Flags,
     cache: PathBuf,
     terminal: Terminal,
+    elsewhere: Option<Elsewhere>,
 }
 
 impl<'a> Workshop<'a> {
     pub(crate) fn new(beds: &Beds, flags: &'a Flags) -> Result<Self, CommandError> {
         let cache = cache_folder(beds.cache.as_deref());
-        Ok(Self { flags, cache, terminal: Terminal::new(flags.quiet)? })
+        let elsewhere = beds.on.scheduler().map(Elsewhere::by).transpose();
+        let elsewhere = elsewhere.context("cannot find this program")?;
+        Ok(Self { flags, cache, terminal: Terminal::new(flags.quiet)?, elsewhere })
     }
 
     fn place(&self) -> Place<'_> {
         let workers = self.flags.threads.and_then(|n| NonZero::new(usize::from(n)));
-        Place { cache: &self.cache, workers, watch: &self.terminal }
+        let elsewhere = self.elsewhere.as_ref();
+        Place { cache: &self.cache, workers, watch: &self.terminal, elsewhere }
     }
 
     /// What a comparison would run.
@@ -116,6 +124,7 @@ impl<'a> Workshop<'a> {
                 CommandError::bad_input(error)
             }
             BedError::Campaign(CampaignError::Run(error)) => error.into(),
+            BedError::Campaign(CampaignError::Scheduler(error)) => of_scheduler(error),
             BedError::Bench(error) => failed(error, "the bed"),
             other => CommandError::Failed(other.into()),
         }

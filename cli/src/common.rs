@@ -6,6 +6,7 @@ use clap::Args;
 use configs::engine::parallel::with_threads;
 use configs::estimate::{Estimate, MEMORY_SHARE, available_memory_bytes};
 use configs::{LoadOptions, Loaded, Model, ModelSource};
+use schedulers::{Scheduler, SchedulerError};
 
 use crate::output::{self, CommandError};
 
@@ -97,6 +98,38 @@ impl Common {
     ) -> Result<R, CommandError> {
         let threads = self.threads.map_or(0, usize::from);
         with_threads(threads, work).map_err(|error| CommandError::Failed(error.into()))
+    }
+}
+
+/// Where impacts are run.
+#[derive(clap::ValueEnum, Clone, Copy, Debug)]
+pub(crate) enum On {
+    /// On the cores of this machine.
+    Local,
+    /// By SLURM, as job arrays.
+    Slurm,
+    /// By a running HyperQueue.
+    Hyperqueue,
+}
+
+impl On {
+    /// Who runs them, if not this machine.
+    pub(crate) fn scheduler(self) -> Option<Scheduler> {
+        match self {
+            Self::Local => None,
+            Self::Slurm => Some(Scheduler::Slurm),
+            Self::Hyperqueue => Some(Scheduler::HyperQueue),
+        }
+    }
+}
+
+/// A scheduler that is not there is bad input; one that refuses has failed.
+pub(crate) fn of_scheduler(error: SchedulerError) -> CommandError {
+    match error {
+        SchedulerError::Refused { .. } | SchedulerError::Script { .. } => {
+            CommandError::Failed(error.into())
+        }
+        error => CommandError::bad_input(error),
     }
 }
 

@@ -25,6 +25,7 @@ mod recover;
 mod report;
 mod run;
 mod sweep;
+mod task;
 mod view;
 mod workbench;
 
@@ -70,6 +71,9 @@ enum Command {
     Recover(recover::Args),
     /// Serve a log to viewers in a browser, and say how to open it in the others.
     View(view::Args),
+    /// Do one task of a list: what a scheduler calls this program for.
+    #[command(hide = true)]
+    Task(task::Args),
     /// Print what makes a shell complete the arguments.
     Completions(completions::CompletionArgs),
     /// Write manual pages.
@@ -100,6 +104,7 @@ fn main() -> ExitCode {
         Command::Import(args) => import::run(&args),
         Command::Recover(args) => recover::run(&args),
         Command::View(args) => view::run(&args),
+        Command::Task(args) => task::run(&args),
         Command::Completions(args) => completions::completions(&args, Cli::command()),
         Command::Man(args) => completions::man(&args, Cli::command()),
     };

@@ -8,17 +8,17 @@ use std::time::{Duration, Instant};
 use anyhow::Context as _;
 use campaigns::pace::Pace;
 use campaigns::{
-    Counts, Folder, FolderError, Planned, Results, Scheduler, SchedulerError, SweepError, TABLE,
-    Task,
+    Counts, Folder, FolderError, Planned, Results, SubmitError, SweepError, TABLE, Task,
 };
 use configs::campaign::Campaign;
 use configs::engine::parallel::with_threads;
 use configs::estimate::{MEMORY_SHARE, available_memory_bytes};
+use schedulers::Scheduler;
 use serde_json::json;
 use validation::beds::{CampaignError, Impacts, Place, Progress, Watch};
 
 use crate::beds::time;
-use crate::common::cache_folder;
+use crate::common::{On, cache_folder, of_scheduler};
 use crate::control::Terminal;
 use crate::output::{self, CommandError, CommandResult};
 use crate::workbench::write_whole;
@@ -66,17 +66,6 @@ pub(crate) struct Args {
     allow_paths: Vec<PathBuf>,
 }
 
-/// Where points are run.
-#[derive(clap::ValueEnum, Clone, Copy, Debug)]
-enum On {
-    /// On the cores of this machine.
-    Local,
-    /// By SLURM, as job arrays.
-    Slurm,
-    /// By a running HyperQueue.
-    Hyperqueue,
-}
-
 pub(crate) fn run(args: &Args) -> CommandResult {
     let campaign = Campaign::load(&args.campaign, &args.allow_paths)?;
     let default = || Path::new("runs").join(&campaign.name);
@@ -89,7 +78,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let deadline = args.budget.map(|budget| Instant::now() + Duration::from_secs_f64(budget));
     let watch = Budgeted { terminal: &terminal, deadline };
     let workers = args.threads.and_then(|n| NonZero::new(usize::from(n)));
-    let place = Place { cache: &cache, workers, watch: &watch };
+    let place = Place { cache: &cache, workers, watch: &watch, elsewhere: None };
     if let Some(point) = args.point {
         let only = only(&campaign, point, &folder, &args.allow_paths)?;
         return one(&only, &folder, &place, &terminal);
@@ -101,12 +90,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     if args.plan {
         return plan(args, &folder, &planned, &place);
     }
-    let scheduler = match args.on {
-        On::Local => None,
-        On::Slurm => Some(Scheduler::Slurm),
-        On::Hyperqueue => Some(Scheduler::HyperQueue),
-    };
-    if let Some(scheduler) = scheduler {
+    if let Some(scheduler) = args.on.scheduler() {
         return submit(args, &planned, &folder, &cache, scheduler);
     }
     refuse_too_large(&planned, place.n_workers())?;
@@ -173,11 +157,11 @@ fn submit(
         cache: cache.to_owned(),
         allow_paths: args.allow_paths.clone(),
     };
-    let submitted = scheduler.submit(planned, folder, &task).map_err(|error| match error {
-        SchedulerError::Folder(error) => of_folder(error),
-        SchedulerError::Refused { .. } => CommandError::Failed(error.into()),
-        error => CommandError::bad_input(error),
-    })?;
+    let submitted =
+        campaigns::submit(scheduler, planned, folder, &task).map_err(|error| match error {
+            SubmitError::Folder(error) => of_folder(error),
+            SubmitError::Scheduler(error) => of_scheduler(error),
+        })?;
     let Counts { points, done, failed, .. } = Results::read(folder).map_err(of_folder)?.counts();
     if args.json {
         return output::json_to_stdout(&json!({

@@ -5,6 +5,10 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use lexopt::Parser;
+use lexopt::prelude::ValueExt;
+use schedulers::Scheduler;
+
+use crate::beds::{Elsewhere, WORD, work};
 
 /// Status of a command line that is not understood.
 const MISUNDERSTOOD: u8 = 2;
@@ -19,8 +23,43 @@ pub fn conclude<W>(
     parse: impl FnOnce(Parser) -> Result<Option<W>, lexopt::Error>,
     work: impl FnOnce(&W, &mut dyn Write) -> Result<ExitCode, Box<dyn Error>>,
 ) -> ExitCode {
+    if let Some(status) = task() {
+        return status;
+    }
     let streams: [&mut dyn Write; 2] = [&mut io::stdout(), &mut io::stderr()];
     answer(help, parse(Parser::from_env()), work, streams)
+}
+
+/// Who runs impacts after `--on`, if not this process.
+///
+/// # Errors
+/// If the word is not known, or this program cannot be found.
+pub fn on(parser: &mut Parser) -> Result<Option<Elsewhere>, lexopt::Error> {
+    let scheduler = parser.value()?.parse_with(Scheduler::after_on)?;
+    let elsewhere = scheduler.map(Elsewhere::by).transpose();
+    elsewhere.map_err(|error| format!("this program cannot be found: {error}").into())
+}
+
+/// Does the one task that a scheduler called this program for, if one did: the word for it, a list, a cache
+/// and a number. Gives the status to end with.
+#[must_use]
+pub fn task() -> Option<ExitCode> {
+    let mut words = std::env::args_os().skip(1);
+    if words.next()? != WORD {
+        return None;
+    }
+    let (list, cache, number) = (words.next()?, words.next()?, words.next()?);
+    let done = match number.to_str().and_then(|number| number.parse().ok()) {
+        Some(number) => work(list.as_ref(), cache.as_ref(), number).map_err(|e| e.to_string()),
+        None => Err(format!("`{}` is no number of a task", number.display())),
+    };
+    Some(match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("error: {why}");
+            ExitCode::FAILURE
+        }
+    })
 }
 
 fn answer<W>(

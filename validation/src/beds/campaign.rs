@@ -14,11 +14,14 @@ use configs::{BuildError, ConfigError, GrainModel, Model};
 use engine::checkpoint::CheckpointError;
 use engine::error::{StepError, ThreadsError};
 use engine::parallel::with_threads;
+use schedulers::SchedulerError;
 use thiserror::Error;
 
+use super::elsewhere::{Elsewhere, Task};
 use super::job::{Heed, Job};
 use super::rate::{self, Rate};
 use super::record::Record;
+use crate::three_shapes::StudyError;
 
 /// Why a campaign ends early.
 #[derive(Debug, Error)]
@@ -40,6 +43,20 @@ pub enum CampaignError {
     Threads(#[from] ThreadsError),
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+    #[error(transparent)]
+    Scheduler(#[from] SchedulerError),
+    #[error(
+        "{undone} of {of} tasks have left nothing, or not all ended well; what they said is in {}, and the same \
+         command hands over again what is missing",
+        folder.display()
+    )]
+    Tasks { undone: usize, of: usize, folder: PathBuf },
+    #[error("{} has the tasks 1 to {of}, not {number}", list.display())]
+    NoTask { number: usize, of: usize, list: PathBuf },
+    #[error("this task was planned by another version of the program")]
+    OtherProgram,
+    #[error(transparent)]
+    Study(#[from] Box<StudyError>),
     #[error("stopped before the end")]
     Interrupted,
 }
@@ -103,6 +120,8 @@ pub struct Place<'a> {
     pub workers: Option<NonZero<usize>>,
     /// Whoever watches.
     pub watch: &'a dyn Watch,
+    /// Who runs them, if not this process.
+    pub elsewhere: Option<&'a Elsewhere>,
 }
 
 /// What a campaign would have to run.
@@ -160,6 +179,9 @@ impl Impacts for Place<'_> {
                 source,
             })?;
         }
+        if let Some(elsewhere) = self.elsewhere {
+            self.have_done(elsewhere, jobs)?;
+        }
         let keys = jobs.iter().map(Job::key).collect::<Result<Vec<_>, _>>()?;
         let kept: Vec<Option<Record>> = keys.iter().map(|key| Job::kept(self.cache, key)).collect();
         let missing = first_of_each(&keys, |at| kept[at].is_none());
@@ -214,6 +236,25 @@ impl Place<'_> {
     /// If a model is no bed of grains.
     pub fn kept(&self, jobs: &[Job]) -> Result<Vec<Option<Record>>, CampaignError> {
         jobs.iter().map(|job| Ok(Job::kept(self.cache, &job.key()?))).collect()
+    }
+
+    /// Has what is missing of `jobs` done by `elsewhere`. An impact whose steps cannot be trusted has no
+    /// record then either, and is found out about here.
+    fn have_done(&self, elsewhere: &Elsewhere, jobs: &[Job]) -> Result<(), CampaignError> {
+        let keys = jobs.iter().map(Job::key).collect::<Result<Vec<_>, _>>()?;
+        let missing = first_of_each(&keys, |at| Job::kept(self.cache, &keys[at]).is_none());
+        let beds = self.missing_beds(jobs, &missing)?;
+        let tasks: Vec<Task> = beds.iter().map(|&at| Task::bed(&jobs[at])).collect();
+        let files = beds
+            .iter()
+            .map(|&at| jobs[at].bed_key().map(|key| configs::run::bed_file(self.cache, &key)));
+        let files = files.collect::<Result<Vec<_>, _>>()?;
+        let is_there = |at: usize| files[at].is_file();
+        elsewhere.run(Stage::Beds, &tasks, self.cache, self.watch, &is_there)?;
+        let tasks: Vec<Task> =
+            missing.iter().map(|&at| Task::impact(&jobs[at], &keys[at])).collect();
+        let is_there = |at: usize| Job::path(self.cache, &keys[missing[at]]).is_file();
+        elsewhere.run(Stage::Impacts, &tasks, self.cache, self.watch, &is_there)
     }
 
     /// One of the `missing` jobs per bed that is not there yet.

@@ -127,6 +127,6 @@ impl Job {
     }
 }
 
-fn hexadecimal(key: &[u8; 32]) -> String {
+pub(super) fn hexadecimal(key: &[u8; 32]) -> String {
     key.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -11,18 +11,20 @@ use engine::checkpoint::write_whole;
 use lexopt::Parser;
 use lexopt::prelude::{Long, Short, ValueExt};
 use validation::beds::benchmark::{Case, Outcome, all, quick, table};
-use validation::beds::{Place, Unattended, Wish};
-use validation::command::conclude;
+use validation::beds::{Elsewhere, Place, Unattended, Wish};
+use validation::command::{conclude, on};
 
 const HELP: &str = "\
 How often the diagnosis of a bed of grains names what is hidden in it.
 
-Usage: cargo xtask bench beds [--quick] [--draws N] [--minutes N] [--threads N] [--cache DIR] [--out FILE]
+Usage: cargo xtask bench beds [--quick] [--draws N] [--minutes N] [--threads N] [--on WHERE]
+                             [--cache DIR] [--out FILE]
 
   --quick      one listed effect, nothing, and one that is not listed
   --draws N    draws of every case (2)
   --minutes N  impacts of one diagnosis at most, as estimated (5)
   --threads N  impacts at a time (one per core)
+  --on WHERE   where impacts are run: local (default), slurm or hyperqueue, which are waited for
   --cache DIR  where beds and impacts are kept (runs/.cache); those that are there are not run again
   --out FILE   outcomes so far, one JSON object per line (runs/beds-benchmark.jsonl); those that are
                there are not diagnosed again
@@ -34,6 +36,7 @@ struct Wanted {
     cases: Vec<Case>,
     wish: Wish,
     threads: Option<NonZero<usize>>,
+    elsewhere: Option<Elsewhere>,
     cache: PathBuf,
     out: PathBuf,
 }
@@ -49,6 +52,7 @@ fn parse(mut parser: Parser) -> Result<Option<Wanted>, lexopt::Error> {
         cases: Vec::new(),
         wish: Wish::default(),
         threads: None,
+        elsewhere: None,
         cache: "runs/.cache".into(),
         out: "runs/beds-benchmark.jsonl".into(),
     };
@@ -58,6 +62,7 @@ fn parse(mut parser: Parser) -> Result<Option<Wanted>, lexopt::Error> {
             Long("draws") => draws = parser.value()?.parse()?,
             Long("minutes") => minutes = parser.value()?.parse()?,
             Long("threads") => wanted.threads = Some(parser.value()?.parse()?),
+            Long("on") => wanted.elsewhere = on(&mut parser)?,
             Long("cache") => wanted.cache = parser.value()?.into(),
             Long("out") => wanted.out = parser.value()?.into(),
             Short('h') | Long("help") => return Ok(None),
@@ -70,7 +75,12 @@ fn parse(mut parser: Parser) -> Result<Option<Wanted>, lexopt::Error> {
 }
 
 fn bench(wanted: &Wanted, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
-    let place = Place { cache: &wanted.cache, workers: wanted.threads, watch: &Unattended };
+    let place = Place {
+        cache: &wanted.cache,
+        workers: wanted.threads,
+        watch: &Unattended,
+        elsewhere: wanted.elsewhere.as_ref(),
+    };
     let text = fs::read_to_string(&wanted.out).unwrap_or_default();
     let mut known: Vec<Outcome> =
         text.lines().map(serde_json::from_str).collect::<Result<_, _>>()?;

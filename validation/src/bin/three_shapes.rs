@@ -8,16 +8,18 @@ use std::process::ExitCode;
 
 use lexopt::Parser;
 use lexopt::prelude::{Long, Short, ValueExt};
-use validation::command::conclude;
-use validation::three_shapes::{Places, cases, depths, frictions, run, table};
+use validation::beds::{Elsewhere, Unattended};
+use validation::command::{conclude, on};
+use validation::three_shapes::{Places, cases, depths, frictions, have_done, run, table};
 
 const HELP: &str = "\
 Cylinder, hemisphere and cone at equal mass, radius and speed; and the hemisphere without and with friction.
 
-Usage: cargo xtask three-shapes [--seeds N] [--threads N] [--out DIR] [--cache DIR] [--write]
+Usage: cargo xtask three-shapes [--seeds N] [--threads N] [--on WHERE] [--out DIR] [--cache DIR] [--write]
 
   --seeds N    beds per condition (3)
   --threads N  impacts at a time (one per core)
+  --on WHERE   where impacts are run: local (default), slurm or hyperqueue, which are waited for
   --out DIR    where results are kept (runs/three-shapes); those that are there are not run again
   --cache DIR  where prepared beds are kept (runs/.cache)
   --write      the table to docs/three-shapes.md below its mark, the pictures beside it
@@ -31,6 +33,7 @@ const MARK: &str = "<!-- written by cargo xtask three-shapes --write -->";
 struct Wish {
     seeds: u64,
     threads: usize,
+    elsewhere: Option<Elsewhere>,
     places: Places,
     write: bool,
 }
@@ -44,6 +47,7 @@ fn parse(mut parser: Parser) -> Result<Option<Wish>, lexopt::Error> {
     let mut wish = Wish {
         seeds: 3,
         threads: std::thread::available_parallelism().map_or(1, usize::from),
+        elsewhere: None,
         places: Places { out: "runs/three-shapes".into(), cache: "runs/.cache".into() },
         write: false,
     };
@@ -51,6 +55,7 @@ fn parse(mut parser: Parser) -> Result<Option<Wish>, lexopt::Error> {
         match argument {
             Long("seeds") => wish.seeds = parser.value()?.parse()?,
             Long("threads") => wish.threads = parser.value()?.parse()?,
+            Long("on") => wish.elsewhere = on(&mut parser)?,
             Long("out") => wish.places.out = PathBuf::from(parser.value()?),
             Long("cache") => wish.places.cache = PathBuf::from(parser.value()?),
             Long("write") => wish.write = true,
@@ -63,6 +68,9 @@ fn parse(mut parser: Parser) -> Result<Option<Wish>, lexopt::Error> {
 
 fn study(wish: &Wish, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
     let cases = cases(wish.seeds);
+    if let Some(elsewhere) = &wish.elsewhere {
+        have_done(&cases, &wish.places, elsewhere, &Unattended)?;
+    }
     let outcomes = run(&cases, &wish.places, wish.threads, &|case, outcome| {
         eprintln!(
             "{}: {:.1} mm, closure {:.1e}",

@@ -12,17 +12,17 @@ use std::time::{Duration, Instant};
 
 use engine::parallel::with_threads;
 use lexopt::prelude::{Long, Short, ValueExt};
-use validation::beds::{Place, Progress, Stage, Watch};
+use validation::beds::{Elsewhere, Place, Progress, Stage, Watch};
 use validation::published::{
     Effort, Judged, Laboratory, Missing, ROWS, Row, Verdict, markdown, to_json,
 };
-use validation::{CASES, Case, three_shapes};
+use validation::{CASES, Case, command, three_shapes};
 
 const HELP: &str = "\
 The published results, run again and judged.
 
 Usage: cargo xtask validate [--quick | --full] [--so-far] [--only ID[,ID]...]... [--out DIR]
-                            [--cache DIR] [--threads N] [--list] [--case NAME]...
+                            [--cache DIR] [--threads N] [--on WHERE] [--list] [--case NAME]...
 
   --quick      every row at a reduced cost (default): under ten minutes on two cores, if its beds are there
   --full       what the sources ran: hours; impacts that are there are not run again
@@ -31,6 +31,7 @@ Usage: cargo xtask validate [--quick | --full] [--so-far] [--only ID[,ID]...]...
   --out DIR    where validation.json, REPORT.md and figures are written (target/validation)
   --cache DIR  where beds and impacts are kept (else $PLUNGE_CACHE, else runs/.cache)
   --threads N  impacts at a time (one per core)
+  --on WHERE   where impacts are run: local (default), slurm or hyperqueue, which are waited for
   --list       the rows, without running them
   --case NAME  instead, every number of a case with a known answer, as the documents have it; may be
                given several times
@@ -49,11 +50,15 @@ struct Wish {
     out: PathBuf,
     cache: PathBuf,
     threads: Option<NonZero<usize>>,
+    elsewhere: Option<Elsewhere>,
     list: bool,
     cases: Vec<&'static Case>,
 }
 
 fn main() -> ExitCode {
+    if let Some(status) = command::task() {
+        return status;
+    }
     let wish = match parse(lexopt::Parser::from_env()) {
         Ok(Some(wish)) => wish,
         Ok(None) => {
@@ -95,6 +100,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Wish>, lexopt::Error> {
         out: "target/validation".into(),
         cache: cache.into(),
         threads: None,
+        elsewhere: None,
         list: false,
         cases: Vec::new(),
     };
@@ -107,6 +113,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Wish>, lexopt::Error> {
             Long("out") => wish.out = parser.value()?.into(),
             Long("cache") => wish.cache = parser.value()?.into(),
             Long("threads") => wish.threads = Some(parser.value()?.parse()?),
+            Long("on") => wish.elsewhere = command::on(&mut parser)?,
             Long("list") => wish.list = true,
             Long("case") => wish.cases.push(parser.value()?.parse_with(case)?),
             Short('h') | Long("help") => return Ok(None),
@@ -160,7 +167,12 @@ fn validate(wish: &Wish) -> Result<Verdict, Box<dyn Error>> {
         let laboratory = Laboratory {
             effort: wish.effort,
             missing: wish.missing,
-            place: Place { cache: &wish.cache, workers, watch: &teller },
+            place: Place {
+                cache: &wish.cache,
+                workers,
+                watch: &teller,
+                elsewhere: wish.elsewhere.as_ref(),
+            },
             shapes: shapes.clone(),
             sets: "validation/data".into(),
         };

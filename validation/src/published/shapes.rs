@@ -88,6 +88,9 @@ fn run(laboratory: &Laboratory<'_>, cases: Vec<Case>) -> Result<Vec<Impact>, Pub
     let outcomes = match laboratory.missing {
         Missing::LeaveOut => three_shapes::kept(&cases, places)?,
         Missing::Run => {
+            if let Some(elsewhere) = laboratory.place.elsewhere {
+                three_shapes::have_done(&cases, places, elsewhere, laboratory.place.watch)?;
+            }
             let workers = laboratory.place.n_workers();
             let outcomes = three_shapes::run(&cases, places, workers, &|_, _| ())?;
             outcomes.into_iter().map(Some).collect()

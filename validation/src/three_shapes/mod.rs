@@ -23,6 +23,8 @@ use engine::simulation::Simulation;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::beds::{CampaignError, Elsewhere, ModelText, Stage, Task, Watch};
+
 pub use picture::{depths, frictions};
 pub use table::table;
 
@@ -166,6 +168,8 @@ pub enum StudyError {
     Step(#[from] StepError),
     #[error(transparent)]
     Threads(#[from] ThreadsError),
+    #[error(transparent)]
+    Elsewhere(#[from] Box<CampaignError>),
 }
 
 /// Every impact of the study on beds of `seeds` seeds: all shapes at all speeds, then all frictions.
@@ -216,11 +220,7 @@ pub fn run(
     workers: usize,
     done: &(dyn Fn(&Case, &Outcome) + Sync),
 ) -> Result<Vec<Outcome>, StudyError> {
-    fs::create_dir_all(&places.out).map_err(|source| StudyError::Io {
-        action: "make",
-        path: places.out.clone(),
-        source,
-    })?;
+    make(&places.out)?;
     let next = AtomicUsize::new(0);
     let found: Vec<Mutex<Option<Result<Outcome, StudyError>>>> =
         cases.iter().map(|_| Mutex::new(None)).collect();
@@ -230,7 +230,9 @@ pub fn run(
                 loop {
                     let index = next.fetch_add(1, Ordering::Relaxed);
                     let Some(case) = cases.get(index) else { break };
-                    let outcome = kept_or_run(case, places);
+                    let outcome = case.model().map_err(StudyError::from).and_then(|loaded| {
+                        kept_or_run(&loaded.model, &case.path(places), &places.cache)
+                    });
                     if let Ok(outcome) = &outcome {
                         done(case, outcome);
                     }
@@ -259,23 +261,51 @@ fn key(model: &Model) -> String {
     result_key(&model.hash()).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The outcome of `case`: as it was kept, or run now.
-fn kept_or_run(case: &Case, places: &Places) -> Result<Outcome, StudyError> {
-    let Loaded { model, .. } = case.model()?;
-    let path = case.path(places);
-    let key = key(&model);
-    if let Some(outcome) = found(&path, &key) {
+/// The outcome of the impact of `model`: as it was kept in `path`, or run now.
+pub(crate) fn kept_or_run(model: &Model, path: &Path, cache: &Path) -> Result<Outcome, StudyError> {
+    let key = key(model);
+    if let Some(outcome) = found(path, &key) {
         return Ok(outcome);
     }
-    let outcome = Outcome { key, ..with_threads(1, || impact(&model, &places.cache))?? };
+    let outcome = Outcome { key, ..with_threads(1, || impact(model, cache))?? };
     let text = serde_json::to_string(&outcome)
-        .map_err(|source| StudyError::Unwritable { path: path.clone(), source })?;
-    write_whole(&path, text.as_bytes()).map_err(|source| StudyError::Io {
+        .map_err(|source| StudyError::Unwritable { path: path.to_owned(), source })?;
+    write_whole(path, text.as_bytes()).map_err(|source| StudyError::Io {
         action: "write",
-        path,
+        path: path.to_owned(),
         source,
     })?;
     Ok(outcome)
+}
+
+/// Has those of `cases` that are not there run by `elsewhere`; `watch` is told how many are.
+///
+/// # Errors
+/// If they cannot be handed over, or not all end well.
+pub fn have_done(
+    cases: &[Case],
+    places: &Places,
+    elsewhere: &Elsewhere,
+    watch: &dyn Watch,
+) -> Result<(), StudyError> {
+    make(&places.out)?;
+    let out = std::path::absolute(&places.out).unwrap_or_else(|_| places.out.clone());
+    let (mut tasks, mut paths) = (Vec::new(), Vec::new());
+    for (case, outcome) in cases.iter().zip(kept(cases, places)?) {
+        if outcome.is_none() {
+            let outcome = out.join(case.file());
+            let model = ModelText::of(&case.model()?.model);
+            paths.push(outcome.clone());
+            tasks.push(Task::Shape { outcome, model });
+        }
+    }
+    let is_there = |at: usize| paths[at].is_file();
+    Ok(elsewhere.run(Stage::Impacts, &tasks, &places.cache, watch, &is_there).map_err(Box::new)?)
+}
+
+fn make(folder: &Path) -> Result<(), StudyError> {
+    let failed = |source| StudyError::Io { action: "make", path: folder.to_owned(), source };
+    fs::create_dir_all(folder).map_err(failed)
 }
 
 /// The outcome in the file `path`, if it is of `key`. A damaged file, or one of another model or engine, is
@@ -298,7 +328,11 @@ impl Case {
 
     /// Where its outcome is kept.
     fn path(&self, places: &Places) -> PathBuf {
-        places.out.join(format!("{}.json", self.name()))
+        places.out.join(self.file())
+    }
+
+    fn file(&self) -> String {
+        format!("{}.json", self.name())
     }
 
     /// The shipped model with the speed, the seed and the friction of this case.

@@ -56,7 +56,12 @@ fn bits(records: &[Option<Record>]) -> Vec<Record> {
 fn a_campaign_that_was_stopped_goes_on_where_it_was_and_ends_with_the_same_bits() {
     let jobs = jobs();
     let [whole, stopped] = [(); 2].map(|()| tempfile::tempdir().unwrap());
-    let place = |cache, watch, workers| Place { cache, workers: NonZero::new(workers), watch };
+    let place = |cache, watch, workers| Place {
+        cache,
+        workers: NonZero::new(workers),
+        watch,
+        elsewhere: None,
+    };
     let alone = place(whole.path(), &Unattended as &dyn Watch, 1);
     // Four draws are on three beds, the last on the first one again, and the variation too.
     let before = alone.outstanding(&jobs).unwrap();

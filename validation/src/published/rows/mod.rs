@@ -77,7 +77,12 @@ mod tests {
         Laboratory {
             effort: Effort::Quick,
             missing: Missing::Run,
-            place: Place { cache: folder, workers: NonZero::new(workers), watch: &Unattended },
+            place: Place {
+                cache: folder,
+                workers: NonZero::new(workers),
+                watch: &Unattended,
+                elsewhere: None,
+            },
             shapes: Places { out: folder.into(), cache: folder.into() },
             sets: Path::new(env!("CARGO_MANIFEST_DIR")).join("data"),
         }
