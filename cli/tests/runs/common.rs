@@ -37,6 +37,15 @@ pub(crate) fn cache() -> &'static Path {
     })
 }
 
+/// Leaves a program of the text `script` at `path`.
+#[cfg(unix)]
+pub(crate) fn program(path: &Path, script: &str) {
+    use std::os::unix::fs::PermissionsExt as _;
+    fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+    fs::write(path, script).expect("a program");
+    fs::set_permissions(path, fs::Permissions::from_mode(0o755)).expect("a program");
+}
+
 /// A call of the program, not yet made.
 pub(crate) struct Call(Command);
 
@@ -69,6 +78,11 @@ impl Call {
 
     pub(crate) fn arg(mut self, argument: impl AsRef<OsStr>) -> Self {
         self.0.arg(argument);
+        self
+    }
+
+    pub(crate) fn args<S: AsRef<OsStr>>(mut self, arguments: impl IntoIterator<Item = S>) -> Self {
+        self.0.args(arguments);
         self
     }
 

@@ -1,5 +1,5 @@
-//! What `plunge run`, `sweep`, `bed`, `recover`, `compare` of runs and `check` of sets promise, seen from
-//! outside: bytes, folders, exit codes.
+//! What `plunge run`, `sweep`, `bed`, `recover`, `compare` of runs, `--on` and `check` of sets promise, seen
+//! from outside: bytes, folders, exit codes.
 
 mod beds;
 mod check_sets;
@@ -7,6 +7,8 @@ mod common;
 mod compare_runs;
 mod conditions;
 mod csv;
+#[cfg(unix)]
+mod elsewhere;
 mod export;
 mod failures;
 mod faults;

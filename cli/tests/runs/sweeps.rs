@@ -8,6 +8,8 @@ use std::time::{Duration, SystemTime};
 use serde_json::Value;
 use tempfile::TempDir;
 
+#[cfg(unix)]
+use crate::common::program;
 use crate::common::{Call, cache, folder, names, small_model};
 
 /// Impacts on a law: milliseconds each.
@@ -261,12 +263,9 @@ fn ten_thousand_points_are_planned_and_each_is_its_own() {
 /// Leaves a scheduler called `name` in `here` that writes down how it was called; gives its record.
 #[cfg(unix)]
 fn scheduler(here: &Path, name: &str) -> PathBuf {
-    use std::os::unix::fs::PermissionsExt as _;
-    let (program, record) = (here.join("bin").join(name), here.join("calls"));
-    fs::create_dir_all(here.join("bin")).expect("a folder");
+    let record = here.join("calls");
     let text = format!("#!/bin/sh\nprintf '%s\\n' \"$*\" >> '{}'\n", record.display());
-    fs::write(&program, text).expect("a program");
-    fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).expect("a program");
+    program(&here.join("bin").join(name), &text);
     record
 }
 

@@ -1,0 +1,59 @@
+"""A comparison with measurements whose beds and impacts are tasks of a running SLURM: the numbers of this machine alone.
+
+usage: compare_under_slurm.py PLUNGE
+
+The command is killed once while it waits, and goes on by itself.
+"""
+
+import json
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+SET = "cli/tests/runs/two-impacts"
+MODEL = "configs/schema/tests/good/small-2d.toml"
+
+
+def require(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
+def main():
+    plunge = str(Path(sys.argv[1]).resolve())
+    folder = Path("target").resolve() / "ci-compare"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+
+    def command(where):
+        options = ["--cache", str(folder / where), "--out", str(folder / f"out-{where}"), "--on", where]
+        return [plunge, "compare", SET, "--model", MODEL, "--json", "--quiet", *options]
+
+    def impacts(where):
+        return {file.name: file.stat().st_ino for file in (folder / where / "impacts").glob("*.impact")}
+
+    start = time.monotonic()
+    waiting = subprocess.Popen(command("slurm"), stdout=subprocess.DEVNULL)
+    while len(impacts("slurm")) < 2 and waiting.poll() is None:
+        time.sleep(0.1)
+    require(waiting.poll() is None, f"it ended with {waiting.returncode} before it could be killed")
+    waiting.kill()
+    waiting.wait()
+    before = impacts("slurm")
+    told = {where: subprocess.run(command(where), check=True, capture_output=True) for where in ["slurm", "local"]}
+    numbers = {where: json.loads(one.stdout) for where, one in told.items()}
+    for one in numbers.values():
+        one.pop("cost", None)
+    require(numbers["slurm"] == numbers["local"], numbers)
+    after = impacts("slurm")
+    require(after.keys() == impacts("local").keys(), "other impacts were run")
+    require(all(after[name] == file for name, file in before.items()), "an impact was run twice")
+    print(
+        f"slurm: a comparison of {len(after)} impacts, killed with {len(before)} of them done, "
+        f"in {time.monotonic() - start:.0f} s"
+    )
+
+
+main()
