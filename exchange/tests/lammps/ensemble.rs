@@ -36,8 +36,14 @@ struct Depths(Vec<Vec<[f64; 2]>>);
 
 #[test]
 fn mean_depths_of_a_disc_over_ten_beds_agree() {
-    let places = &["7.4 cm", "8 cm", "8.6 cm"];
+    let places = &["7.4 cm", "7.8 cm", "8.2 cm"];
     agree(&Ensemble { model: include_str!("disc.toml"), beds: 10, places });
+}
+
+#[test]
+fn mean_depths_of_a_hemisphere_and_of_its_clump_agree() {
+    let places = &["14 mm", "16 mm", "18 mm"];
+    agree(&Ensemble { model: include_str!("hemisphere.toml"), beds: 4, places });
 }
 
 fn agree(ensemble: &Ensemble) {
