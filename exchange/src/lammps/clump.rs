@@ -1,10 +1,11 @@
 //! A body that is no ball, as the rigid clump of balls by which LAMMPS knows it.
 //!
-//! Balls lie inside the body and touch its surface from there, as large ones as have room: the larger, the smoother
-//! for as far as they let a grain come. What counts is a mean grain: its centre lies on the surface that is
-//! parallel to that of the body, one grain radius outside, and every point there is held by a ball to within
-//! [`TOLERANCE`] of that radius. A finer tolerance is no better one: of balls that are so dense a grain touches
-//! some 2.5 δ/tolerance at the overlap δ, each with the force of a whole contact.
+//! Balls lie inside the body and touch its surface from there, as large ones as have room: the
+//! larger, the smoother for as far as they let a grain come. What counts is a mean grain: its
+//! centre lies on the surface that is parallel to that of the body, one grain radius outside, and
+//! every point there is held by a ball to within [`TOLERANCE`] of that radius. A finer tolerance is
+//! no better one: of balls that are so dense a grain touches some 2.5 δ/tolerance at the overlap δ,
+//! each with the force of a whole contact.
 
 use std::f64::consts::TAU;
 
@@ -58,8 +59,8 @@ pub(super) struct Clump {
 }
 
 impl Clump {
-    /// Of the body of revolution, or planar body, with this `surface`, for grains of the mean radius `grain`
-    /// (m).
+    /// Of the body of revolution, or planar body, with this `surface`, for grains of the mean
+    /// radius `grain` (m).
     pub(super) fn of(surface: &dyn Surface, space: Space, grain: f64) -> Self {
         let mut tolerance = TOLERANCE * grain;
         let balls = loop {
@@ -86,12 +87,13 @@ impl Clump {
 
 /// Distance between places that are looked at (m).
 fn spacing(grain: f64, tolerance: f64) -> f64 {
-    // Where a ball as large as a grain leaves off: at d²/(2 (grain + grain)) = tolerance on a plane.
+    // Where a ball as large as a grain leaves off: at d²/(2 (grain + grain)) = tolerance on a
+    // plane.
     (4.0 * grain * tolerance).sqrt() / LOOKS
 }
 
-/// Balls that hold a grain everywhere to within `tolerance` (m), the largest first; none if they would be too
-/// many.
+/// Balls that hold a grain everywhere to within `tolerance` (m), the largest first; none if they
+/// would be too many.
 fn cover(surface: &dyn Surface, space: Space, grain: f64, tolerance: f64) -> Option<Vec<Ball>> {
     let mut places = Places::around(surface, space, grain, spacing(grain, tolerance));
     let mut balls = Vec::new();
@@ -117,7 +119,8 @@ fn cover(surface: &dyn Surface, space: Space, grain: f64, tolerance: f64) -> Opt
     Some(balls)
 }
 
-/// A ball of `radius` (m) inside the body, as near as may be to a grain at `at`; none if there is no room.
+/// A ball of `radius` (m) inside the body, as near as may be to a grain at `at`; none if there is
+/// no room.
 fn fitted(surface: &dyn Surface, at: Vec3, grain: f64, radius: f64) -> Option<Ball> {
     let touched = surface.closest(at);
     let mut centre = at - touched.normal * (grain + radius);

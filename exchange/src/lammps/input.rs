@@ -92,22 +92,25 @@ fn header(model: GrainModel<'_>, space: Space, intruder: &Intruder) -> String {
 fn about_clump(model: GrainModel<'_>, intruder: &Intruder) -> String {
     let Some(clump) = &intruder.clump else { return String::new() };
     let [least, most] = clump.radii();
+    let springs = match intruder.stiffness.len() {
+        1 => "",
+        _ => {
+            "# R* of a contact is that of a mean grain and the body, by a factor on the springs of each\n\
+             # type of ball.\n"
+        }
+    };
     format!(
-        "# The intruder, a {shape}, is a rigid clump of {n} balls inside it, of {least:.3e} to {most:.3e} m, with the\n\
-         # mass and the inertia of the body ({BODY}). Its surface is not smooth: a mean grain ({grain:.3e} m) comes\n\
-         # nearer by {departure:.2e} m at most, {share:.1} % of its radius. Where a grain lies between balls, each of\n\
-         # them pushes with the springs and the damping of a whole contact, and friction starts anew on each.\n",
+        "# The intruder, a {shape}, is a rigid clump of {n} balls inside it, of {least:.3e} to\n\
+         # {most:.3e} m, with the mass and the inertia of the body ({BODY}). It is not smooth: a mean\n\
+         # grain ({grain:.3e} m) comes nearer by up to {departure:.1e} m, {share:.1} % of its radius. Where\n\
+         # a grain touches several balls, each pushes with the springs and the damping of a whole\n\
+         # contact, and friction starts anew on each.\n{springs}",
         shape = model.model.intruder.shape.name,
         n = clump.balls.len(),
         grain = clump.grain,
         departure = clump.departure,
         share = 100.0 * clump.departure / clump.grain,
-    ) + match intruder.stiffness.len() {
-        1 => "",
-        _ => {
-            "# R* of a contact is that of a mean grain and the body, by a factor on the springs of each type of ball.\n"
-        }
-    }
+    )
 }
 
 /// Balls of a clump do not touch each other, and are looked for as atoms of one size.
@@ -288,8 +291,8 @@ fn number(axis: &str) -> usize {
     }
 }
 
-/// Along `axis` of LAMMPS, of a clump: its centre, its velocity, its force and its torque, by their place among
-/// the numbers of a rigid body.
+/// Along `axis` of LAMMPS, of a clump: its centre, its velocity, its force and its torque, by their
+/// place among the numbers of a rigid body.
 fn of_clump(model: GrainModel<'_>, place: usize, axis: &str) -> String {
     let of_body = |column: usize| format!("f_motion_of_intruder[1][{column}]");
     let value = of_body(3 * place + number(axis));

@@ -79,8 +79,9 @@ fn is_round(model: GrainModel<'_>) -> bool {
     ["disc", "sphere"].contains(&model.model.intruder.shape.name)
 }
 
-/// What the springs of Hertz and Mindlin between `ball` and a grain of radius `grain` (m) have to be
-/// multiplied with, as a power of [`RATIO`]: both go with √R*, and the body is flatter than its balls.
+/// What the springs of Hertz and Mindlin between `ball` and a grain of radius `grain` (m) have to
+/// be multiplied with, as a power of [`RATIO`]: both go with √R*, and the body is flatter than its
+/// balls.
 fn power(ball: &Ball, grain: f64) -> i32 {
     let factor = ((1.0 / grain + 1.0 / ball.radius) / (1.0 / grain + ball.curvature)).sqrt();
     (libm::log(factor) / libm::log(RATIO)).round() as i32

@@ -38,8 +38,8 @@ impl<'a> Law<'a> {
         }
     }
 
-    /// LAMMPS takes its damping ratio β from a restitution e by −ln e = πβ/√(1 − β²), which is that of a law
-    /// that may attract: so it is told the e that has the β of plunge.
+    /// LAMMPS takes its damping ratio β from a restitution e by −ln e = πβ/√(1 − β²), which is that
+    /// of a law that may attract: so it is told the e that has the β of plunge.
     fn hertz_mindlin(params: &'a ParamTable) -> Result<Self, String> {
         let restitution = params.get("restitution");
         let ratio = damping_ratio(restitution);
@@ -57,7 +57,8 @@ impl<'a> Law<'a> {
         matches!(self, Self::HertzMindlin { .. })
     }
 
-    /// The forces, with a factor on the springs of Hertz and Mindlin for each atom type of the intruder.
+    /// The forces, with a factor on the springs of Hertz and Mindlin for each atom type of the
+    /// intruder.
     pub(super) fn contacts(&self, stiffness: &[f64]) -> Contacts {
         match *self {
             Self::Linear(params) => linear(params, stiffness),
@@ -66,7 +67,8 @@ impl<'a> Law<'a> {
     }
 }
 
-/// Forces of the style `granular`, whose words for each partner, with springs so much stiffer, `terms` gives.
+/// Forces of the style `granular`, whose words for each partner, with springs so much stiffer,
+/// `terms` gives.
 fn granular(stiffness: &[f64], terms: impl Fn(Partner, f64) -> String) -> Contacts {
     let mut pair = vec![
         "pair_style granular".to_owned(),
@@ -134,7 +136,8 @@ fn elastic(params: &ParamTable, partner: Partner) -> [f64; 2] {
     [1.0 / (grain[0] + other[0]), 1.0 / (grain[1] + other[1])]
 }
 
-/// `limit_damping` keeps the normal force from attracting. Both damp shear as c_t/c_n = √(k_t/S_n) = 2 √(G*/E*).
+/// `limit_damping` keeps the normal force from attracting. Both damp shear as c_t/c_n = √(k_t/S_n)
+/// = 2 √(G*/E*).
 fn hertz_mindlin(params: &ParamTable, told: f64, stiffness: &[f64]) -> Contacts {
     granular(stiffness, |partner, factor| {
         let [modulus, shear_modulus] = elastic(params, partner);

@@ -10,8 +10,9 @@
 //! starts without its tangential spring; and where a contact slides, LAMMPS keeps the viscous part of the
 //! tangential force and lets the spring make up the rest, where plunge keeps the spring alone.
 //!
-//! An intruder that is no disc or sphere is a rigid clump of balls inside it, with the mass and the inertia of the
-//! body, in a fourth file, [`BODY`]; the input says how far its surface is from that of the body.
+//! An intruder that is no disc or sphere is a rigid clump of balls inside it, with the mass and the
+//! inertia of the body, in a fourth file, [`BODY`]; the input says how far its surface is from that
+//! of the body.
 
 mod clump;
 mod data;

@@ -11,7 +11,8 @@ use super::intruder::body;
 pub(super) fn text(simulation: &Simulation, space: Space) -> String {
     let body = body(simulation);
     let turned = |vector: Vec3| row(axes(space, vector));
-    // The tensor along the axes of LAMMPS: entry ij is the i of what a unit spin about j has of angular momentum.
+    // The tensor along the axes of LAMMPS: entry ij is the i of what a unit spin about j has of
+    // angular momentum.
     let along = |axis: Vec3| {
         let own = body.orientation.inverse_transform_vector(&axis);
         axes(space, body.orientation * body.inertia.component_mul(&own))

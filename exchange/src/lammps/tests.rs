@@ -190,7 +190,8 @@ fn a_clump_has_the_mass_and_the_inertia_of_its_body_and_its_balls_do_not_meet() 
     }
     let body = body.expect("a body");
     let of_body = numbers(&body, "1 0.01 ");
-    // On its side, so that its axis is that of x: m r²/2 about it, m (r²/4 + h²/12) about the others.
+    // On its side, so that its axis is that of x: m r²/2 about it, m (r²/4 + h²/12) about the
+    // others.
     let (about, across) = (1e-2 * 1.25e-5, 1e-2 * (6.25e-6 + 3e-6));
     for (found, wanted) in of_body[5..11].iter().zip([about, across, across, 0.0, 0.0, 0.0]) {
         assert!((found - wanted).abs() < 1e-12 * across, "{body}");

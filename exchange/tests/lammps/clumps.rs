@@ -1,4 +1,5 @@
-//! Intruders that are rigid clumps in LAMMPS: they fall, turn and sink as the bodies that they stand for.
+//! Intruders that are rigid clumps in LAMMPS: they fall, turn and sink as the bodies that they
+//! stand for.
 
 use std::fs;
 use std::path::Path;
@@ -34,9 +35,9 @@ const SHAPES: [&str; 4] = [
     "shape = \"link\"\nlength = \"16 mm\"\ndiameter = \"6 mm\"\nlink_angle = \"0 deg\"",
 ];
 
-/// How far apart velocities may be (m/s) after a grain of a quarter of the mass has been hit at 1 m/s, which takes
-/// 0.3 m/s: balls have another slope than the body, by up to a seventh, and a grain between several of them is
-/// damped by all, as if its restitution were half of what it is.
+/// How far apart velocities may be (m/s) after a grain of a quarter of the mass has been hit at 1
+/// m/s, which takes 0.3 m/s: balls have another slope than the body, by up to a seventh, and a
+/// grain between several of them is damped by all, as if its restitution were half of what it is.
 const APART: f64 = 0.08;
 
 /// Grains far aside of the intruder, so that it meets nothing.
@@ -67,7 +68,8 @@ fn a_clump_over_nothing_falls_by_gravity_and_tumbles_by_the_inertia_of_its_shape
                 theirs.spin,
                 ours.spin
             );
-            // How it is turned follows in an import from spins 0.1 ms apart: 0.03 rad, squared 1e-3, of 1 cm.
+            // How it is turned follows in an import from spins 0.1 ms apart: 0.03 rad, squared
+            // 1e-3, of 1 cm.
             assert!((theirs.depth - ours.depth).abs() < 1e-5, "{dimension} {shape}");
         }
     }
@@ -93,6 +95,21 @@ fn a_clump_hit_off_its_centre_is_slowed_and_turned_as_in_plunge() {
     }
 }
 
+#[test]
+fn a_clump_on_two_ranks_moves_as_on_one() {
+    let grains = ["0.1035,{y}0.03,0.001", "0.03,{y}0.001,0.001"];
+    let spin = "[\"20 rad/s\", \"-300 rad/s\", \"100 rad/s\"]";
+    let ends = [1, 2].map(|ranks| {
+        let folder = tempfile::tempdir().expect("a folder");
+        let loaded = model(folder.path(), 3, HERTZ, SHAPES[1], grains, spin);
+        in_lammps(folder.path(), &loaded, ranks)
+    });
+    let [one, two] = &ends;
+    // Forces on balls are added in another order.
+    assert!((one.velocity - two.velocity).norm() < 1e-9, "{:?} {:?}", one.velocity, two.velocity);
+    assert!((one.spin - two.spin).norm() < 1e-6, "{:?} {:?}", one.spin, two.spin);
+}
+
 /// The intruder at the end of a run.
 struct End {
     /// (m).
@@ -107,16 +124,24 @@ struct End {
 
 /// The intruder after [`STEPS`], in LAMMPS and in plunge.
 fn in_both(folder: &Path, loaded: &Loaded) -> [End; 2] {
+    [in_lammps(folder, loaded, 1), in_plunge(loaded)]
+}
+
+fn in_lammps(folder: &Path, loaded: &Loaded, ranks: usize) -> End {
     let grains = loaded.model.grains().expect("a bed");
     let resting = grains.read_bed().expect("a table");
     let deck = Deck::of(grains, &resting).expect("a model that LAMMPS can express");
     deck.write(folder).expect("it can be written");
-    lammps(folder, 1, STEPS);
+    lammps(folder, ranks, STEPS);
     let imported = import(folder, &folder.join("lmp.mcap")).expect("a run");
     let log = read_run(&imported.files.log, Keep::States).expect("a log");
     let BodyState { depth, position, velocity, .. } = *log.bodies[0].states.last().expect("states");
-    let theirs = End { position, velocity, spin: last_spin(folder), depth };
+    End { position, velocity, spin: last_spin(folder), depth }
+}
 
+fn in_plunge(loaded: &Loaded) -> End {
+    let grains = loaded.model.grains().expect("a bed");
+    let resting = grains.read_bed().expect("a table");
     let mut simulation =
         grains.simulation(&resting, &loaded.model.conditions()[0]).expect("a simulation");
     for _ in 0..STEPS {
@@ -125,10 +150,11 @@ fn in_both(folder: &Path, loaded: &Loaded) -> [End; 2] {
     let (body, surface) = (&simulation.intruder().bodies()[0], simulation.surface());
     let position = body.position - surface * Vec3::z();
     let depth = surface - body.lowest();
-    [theirs, End { position, velocity: body.velocity, spin: body.spin(), depth }]
+    End { position, velocity: body.velocity, spin: body.spin(), depth }
 }
 
-/// The spin (rad/s) in the last line of the table of the intruder; what turns in a plane turns about y.
+/// The spin (rad/s) in the last line of the table of the intruder; what turns in a plane turns
+/// about y.
 fn last_spin(folder: &Path) -> Vec3 {
     let table = fs::read_to_string(folder.join("intruder.csv")).expect("a table");
     let mut lines = table.lines().filter(|line| !line.is_empty());
@@ -143,8 +169,8 @@ fn last_spin(folder: &Path) -> Vec3 {
     Vec3::new(spin("x"), spin("y"), spin("z"))
 }
 
-/// Two `grains` (place and radius) and an intruder that comes down at 10 cm from the left, on the first of them or to
-/// the floor.
+/// Two `grains` (place and radius) and an intruder that comes down at 10 cm from the left, on the
+/// first of them or to the floor.
 fn model(
     folder: &Path,
     dimension: usize,

@@ -14,8 +14,8 @@ const CORNERS: usize = 32;
 /// Thickness of a drawn planar body, in its diameter.
 const THICKNESS: f64 = 0.1;
 
-/// An intruder of this `shape`, or of a chain each of its links, as it is drawn about its centre of mass; `params`
-/// are SI values that fill those of the shape.
+/// An intruder of this `shape`, or of a chain each of its links, as it is drawn about its centre of
+/// mass; `params` are SI values that fill those of the shape.
 #[must_use]
 pub fn shape_of(shape: &ShapeEntry, params: &ParamTable, space: Space) -> LoggedShape {
     match ((shape.build)(params, space).drawing, space) {

@@ -1,4 +1,5 @@
-//! The intruder of a run of LAMMPS: what it looks like, how it is turned, how deep its lowest point is.
+//! The intruder of a run of LAMMPS: what it looks like, how it is turned, how deep its lowest point
+//! is.
 
 use std::path::Path;
 use std::sync::Arc;

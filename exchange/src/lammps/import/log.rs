@@ -20,7 +20,8 @@ const FLUSH_EVERY: u64 = 1000;
 /// A force of this many weights of the intruder is drawn as long as the intruder is wide.
 const WEIGHTS_PER_ARROW: f64 = 10.0;
 
-/// Writes the logs of `path` and of the frames in `dump` into `folder`, and says how many frames there are.
+/// Writes the logs of `path` and of the frames in `dump` into `folder`, and says how many frames
+/// there are.
 pub(super) fn write(
     facts: &Facts,
     faller: &Faller<'_>,

@@ -13,8 +13,8 @@ use super::faller::{Faller, Turned};
 /// What LAMMPS calls its output unless told otherwise.
 const LAMMPS_LOG: &str = "log.lammps";
 
-/// Of the run along `path`, without what LAMMPS does not tell; what it cost is in the output of LAMMPS, if that is in
-/// `folder`.
+/// Of the run along `path`, without what LAMMPS does not tell; what it cost is in the output of
+/// LAMMPS, if that is in `folder`.
 pub(super) fn of(
     facts: &Facts,
     faller: &Faller<'_>,
