@@ -125,7 +125,8 @@ fn files(
     let courses = [Course::read(folders[0]), Course::read(folders[1])];
     let [first, second] = courses.map(|course| course.map_err(CommandError::bad_input));
     let (first, second) = (first?, second?);
-    let picture = reports::run::pair_picture([(&runs[0].name, &first), (&runs[1].name, &second)])
+    let [of_first, of_second] = labels(runs);
+    let picture = reports::run::pair_picture([(&of_first, &first), (&of_second, &second)])
         .map_err(|error| CommandError::Failed(error.into()))?;
     let mut files = vec![
         ("comparison.json".to_owned(), format!("{object:#}\n")),
@@ -138,6 +139,8 @@ fn files(
 /// A run as far as it is compared.
 struct Run {
     name: String,
+    /// The program that made it, if that is another one.
+    simulated_by: Option<String>,
     summary: Summary,
     tracks: Vec<Track>,
     /// Whether the log is whole.
@@ -151,8 +154,23 @@ impl Run {
         let summary = serde_json::from_str(&text).map_err(|error| unreadable(&path, &error))?;
         let log = read_run(&log, Keep::States).map_err(CommandError::bad_input)?;
         let tracks = log.bodies.iter().map(track).collect();
-        Ok(Self { name: run.display().to_string(), summary, tracks, complete: log.complete })
+        Ok(Self {
+            name: run.display().to_string(),
+            simulated_by: log.metadata.get("simulated_by").cloned(),
+            summary,
+            tracks,
+            complete: log.complete,
+        })
     }
+}
+
+/// The names of `runs`, with the programs that made them if one of them is not of ours.
+fn labels(runs: &[Run; 2]) -> [String; 2] {
+    let ours = runs.iter().all(|run| run.simulated_by.is_none());
+    runs.each_ref().map(|run| match &run.simulated_by {
+        _ if ours => run.name.clone(),
+        program => format!("{}, by {}", run.name, program.as_deref().unwrap_or("plunge")),
+    })
 }
 
 fn unreadable(path: &Path, why: &dyn std::fmt::Display) -> CommandError {
@@ -219,6 +237,7 @@ fn as_json(runs: &[Run; 2], paths: &PathDifference, stops: &StopDifference) -> V
         .collect();
     json!({
         "runs": runs.each_ref().map(|run| &run.name),
+        "labels": labels(runs),
         "common": paths.common,
         "rms": paths.rms,
         "largest": paths.largest,
@@ -243,11 +262,11 @@ fn closures(runs: &[Run; 2]) -> [Option<f64>; 2] {
 
 fn as_text(runs: &[Run; 2], paths: &PathDifference, stops: &StopDifference) -> String {
     let mut text = String::new();
-    for (letter, run) in ["A", "B"].iter().zip(runs) {
+    for (letter, (label, run)) in ["A", "B"].iter().zip(labels(runs).iter().zip(runs)) {
         let Summary { name, medium, impact, .. } = &run.summary;
         text.push_str(&format!(
-            "{letter}  {}: {name}, {} m/s at {} deg, {medium}\n",
-            run.name, impact.speed_m_per_s, impact.angle_deg
+            "{letter}  {label}: {name}, {} m/s at {} deg, {medium}\n",
+            impact.speed_m_per_s, impact.angle_deg
         ));
     }
     let common = paths.common;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use configs::run::prepare;
-use exchange::lammps::{DATA, Deck, FACTS, INPUT, LammpsError};
+use exchange::lammps::{Deck, INPUT, LammpsError};
 use serde_json::json;
 
 use crate::common::Common;
@@ -32,18 +32,20 @@ pub(super) fn write(model: &Path, common: &Common) -> CommandResult {
         .clone()
         .unwrap_or_else(|| PathBuf::from("runs").join(format!("{}-lammps", model.run.name)));
     deck.write(&folder).map_err(refused)?;
+    let files: Vec<&str> = deck.files().map(|(name, _)| name).collect();
     if common.json {
         // Not the paths themselves: one that is not UTF-8 cannot be encoded.
         return output::json_to_stdout(&json!({
             "folder": folder.to_string_lossy(),
-            "files": [INPUT, DATA, FACTS],
+            "files": files,
             "grains": bed.resting.grains.len(),
         }));
     }
     let folder = folder.display();
     output::to_stdout(&format!(
-        "{folder}: {INPUT}, {DATA}, {FACTS}\nrun lmp -in {INPUT} there, or mpirun -np N lmp -in {INPUT}, \
-         then: plunge import {folder} -o RUN.mcap\n"
+        "{folder}: {}\nrun lmp -in {INPUT} there, or mpirun -np N lmp -in {INPUT}, \
+         then: plunge import {folder} -o RUN.mcap\n",
+        files.join(", ")
     ))
 }
 

@@ -8,7 +8,8 @@ use configs::engine::grains::Space;
 use configs::engine::math::Vec3;
 use configs::engine::simulation::Simulation;
 
-use super::{GRAIN, INTRUDER};
+use super::GRAIN;
+use super::intruder::{Intruder, body};
 
 /// One sphere or disc as LAMMPS reads it.
 struct Atom {
@@ -29,14 +30,9 @@ impl Atom {
     }
 }
 
-/// The identity of the intruder among the atoms of `simulation`.
+/// The identity of the first atom of the intruder among those of `simulation`.
 pub(super) fn intruder_id(simulation: &Simulation) -> usize {
     simulation.bed().grains.len() + 1
-}
-
-/// The radius of the intruder (m), which is a sphere or a disc.
-pub(super) fn intruder_radius(simulation: &Simulation) -> f64 {
-    simulation.intruder().bodies()[0].surface().bounding_radius()
 }
 
 /// The components of `vector` along the axes of LAMMPS: in a plane, where y of LAMMPS is up, plunge is
@@ -58,16 +54,15 @@ pub(super) fn from_axes(space: Space, [x, y, z]: [f64; 3]) -> Vec3 {
 }
 
 /// The text of the data file.
-pub(super) fn text(model: GrainModel<'_>, simulation: &Simulation) -> String {
+pub(super) fn text(model: GrainModel<'_>, simulation: &Simulation, intruder: &Intruder) -> String {
     let space = model.medium.space;
-    let atoms = atoms(simulation);
-    // Shortest digits that read back to the same number, and no minus before zero.
-    let row = |[x, y, z]: [f64; 3]| format!("{:?} {:?} {:?}", x + 0.0, y + 0.0, z + 0.0);
+    let atoms = atoms(simulation, intruder);
     let mut text = format!(
-        "{}: grains and intruder at first contact, in SI, by plunge {}\n\n{} atoms\n2 atom types\n\n",
+        "{}: grains and intruder at first contact, in SI, by plunge {}\n\n{} atoms\n{} atom types\n\n",
         model.model.run.name,
         env!("CARGO_PKG_VERSION"),
-        atoms.len()
+        atoms.len(),
+        intruder.last_kind()
     );
     for ([low, high], axis) in bounds(model, &atoms).iter().zip(["x", "y", "z"]) {
         let _ = writeln!(text, "{low:?} {high:?} {axis}lo {axis}hi");
@@ -86,7 +81,17 @@ pub(super) fn text(model: GrainModel<'_>, simulation: &Simulation) -> String {
     text
 }
 
-fn atoms(simulation: &Simulation) -> Vec<Atom> {
+/// Three numbers in the shortest digits that read back to the same, and no minus before zero.
+pub(super) fn row([x, y, z]: [f64; 3]) -> String {
+    format!("{:?} {:?} {:?}", x + 0.0, y + 0.0, z + 0.0)
+}
+
+/// Where the centre of mass of the intruder is, inside the container (m).
+pub(super) fn centre_of_intruder(simulation: &Simulation) -> Vec3 {
+    simulation.bed().image_inside(body(simulation).position)
+}
+
+fn atoms(simulation: &Simulation, intruder: &Intruder) -> Vec<Atom> {
     let grains = simulation.bed().grains.iter().map(|grain| Atom {
         id: grain.id as usize + 1,
         kind: GRAIN,
@@ -96,17 +101,22 @@ fn atoms(simulation: &Simulation) -> Vec<Atom> {
         velocity: grain.velocity,
         spin: grain.spin,
     });
-    let body = &simulation.intruder().bodies()[0];
-    let intruder = Atom {
-        id: intruder_id(simulation),
-        kind: INTRUDER,
-        radius: intruder_radius(simulation),
-        mass: body.mass,
-        position: simulation.bed().image_inside(body.position),
-        velocity: body.velocity,
-        spin: body.spin(),
-    };
-    grains.chain([intruder]).collect()
+    let (body, centre) = (body(simulation), centre_of_intruder(simulation));
+    let members = intruder.members(simulation);
+    let share = body.mass / members.len() as f64;
+    let members = (intruder_id(simulation)..).zip(members).map(|(id, member)| {
+        let (arm, spin) = (body.orientation * member.arm, body.spin());
+        Atom {
+            id,
+            kind: member.kind,
+            radius: member.radius,
+            mass: share,
+            position: centre + arm,
+            velocity: body.velocity + spin.cross(&arm),
+            spin,
+        }
+    });
+    grains.chain(members).collect()
 }
 
 /// The box of LAMMPS (m): as wide as the container, and from a grain below the bottom to above everything,

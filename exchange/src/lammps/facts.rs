@@ -1,28 +1,17 @@
 //! What an import needs to know that LAMMPS does not say.
 
+use std::collections::BTreeMap;
+
 use configs::engine::bed::BedReport;
 use configs::engine::grain_bed::RestingBed;
 use configs::engine::grains::Space;
 use configs::engine::math::Vec3;
-use configs::engine::record::BodySample;
 use configs::engine::simulation::Simulation;
-use configs::engine::stopping::Followed;
 use configs::run::{BedSummary, ImpactSummary};
 use configs::{Condition, GrainModel};
 use serde::{Deserialize, Serialize};
 
-use super::data::intruder_radius;
-use super::samples::Sample;
-
-/// The energies that are known of a run of LAMMPS, as plunge calls them.
-pub(super) const ENERGIES: [&str; 6] = [
-    "kinetic_intruder_translation_J",
-    "kinetic_intruder_rotation_J",
-    "kinetic_grains_translation_J",
-    "kinetic_grains_rotation_J",
-    "potential_intruder_J",
-    "potential_grains_J",
-];
+use super::intruder::body;
 
 /// The content of [`FACTS`](super::FACTS): the impact, as plunge would log it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -48,14 +37,19 @@ pub(super) struct Facts {
     pub(super) model: String,
 }
 
-/// The intruder, a disc or a sphere.
+/// The intruder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Intruder {
     pub(super) name: String,
-    pub(super) radius_m: f64,
+    /// The registry's name of it.
+    pub(super) shape: String,
+    /// What the shape takes, in SI.
+    pub(super) parameters: BTreeMap<String, f64>,
     pub(super) mass_kg: f64,
-    /// About its centre; of a disc, about its axis.
-    pub(super) inertia_kg_m2: f64,
+    /// About its principal axes.
+    pub(super) inertia_kg_m2: [f64; 3],
+    /// By which its axis leans from the vertical towards +x at the start.
+    pub(super) attitude_rad: f64,
 }
 
 impl Facts {
@@ -66,7 +60,7 @@ impl Facts {
         simulation: &Simulation,
     ) -> Self {
         let GrainModel { model: whole, medium } = model;
-        let body = &simulation.intruder().bodies()[0];
+        let body = body(simulation);
         Self {
             plunge_version: env!("CARGO_PKG_VERSION").to_owned(),
             name: whole.run.name.clone(),
@@ -86,10 +80,13 @@ impl Facts {
             impact_energy: simulation.impact_energy(),
             intruder: Intruder {
                 name: body.name.clone(),
-                radius_m: intruder_radius(simulation),
+                shape: whole.intruder.shape.name.to_owned(),
+                parameters: (whole.intruder.params.iter())
+                    .map(|(key, value)| (key.to_owned(), value))
+                    .collect(),
                 mass_kg: body.mass,
-                // The axis of a disc is y; a sphere has the same about every axis.
-                inertia_kg_m2: body.inertia.y,
+                inertia_kg_m2: body.inertia.into(),
+                attitude_rad: 2.0 * libm::atan2(body.orientation.j, body.orientation.w),
             },
             bed: BedSummary::new(&BedReport::of(&model.bed(resting)), "export", model),
             model: whole.resolved_toml().to_owned(),
@@ -103,30 +100,5 @@ impl Facts {
     /// Of the intruder (N).
     pub(super) fn weight(&self) -> Vec3 {
         Vec3::new(0.0, 0.0, -self.intruder.mass_kg * self.gravity_m_per_s2)
-    }
-
-    pub(super) fn state(&self, sample: &Sample) -> BodySample {
-        let Sample { position, velocity, spin, .. } = *sample;
-        let depth_m = self.surface_m - (position.z - self.intruder.radius_m);
-        BodySample { position, velocity, spin, depth_m }
-    }
-
-    pub(super) fn followed(&self, sample: &Sample) -> Followed {
-        let Sample { position, velocity, .. } = *sample;
-        Followed { position, velocity, reach: self.intruder.radius_m }
-    }
-
-    /// What is known of the energies, in the order of [`ENERGIES`] (J).
-    pub(super) fn energies(&self, sample: &Sample) -> [f64; 6] {
-        let [translation, rotation, height] = sample.energies;
-        let Intruder { mass_kg: mass, inertia_kg_m2: inertia, .. } = self.intruder;
-        [
-            0.5 * mass * sample.velocity.norm_squared(),
-            0.5 * inertia * sample.spin.norm_squared(),
-            translation,
-            rotation,
-            mass * self.gravity_m_per_s2 * sample.position.z,
-            height,
-        ]
     }
 }

@@ -5,8 +5,9 @@ use configs::engine::simulation::Simulation;
 use configs::{GrainModel, SidesKind};
 
 use super::data::intruder_id;
+use super::intruder::Intruder;
 use super::law::Contacts;
-use super::{DATA, DUMP, INPUT, INTRUDER_TABLE};
+use super::{BODY, DATA, DUMP, INPUT, INTRUDER, INTRUDER_TABLE};
 
 /// How far LAMMPS looks beyond touching grains for neighbours, in mean grain diameters: the fastest of
 /// several tries on beds of discs and of spheres.
@@ -19,7 +20,12 @@ const EVERY: f64 = 1e-4;
 const OF_ATOMS: &str = "id type radius mass x y z vx vy vz fx fy fz";
 
 /// The text of the input script.
-pub(super) fn text(model: GrainModel<'_>, simulation: &Simulation, contacts: &Contacts) -> String {
+pub(super) fn text(
+    model: GrainModel<'_>,
+    simulation: &Simulation,
+    contacts: &Contacts,
+    intruder: &Intruder,
+) -> String {
     let space = model.medium.space;
     let grains = &simulation.bed().grains;
     let mean_diameter = 2.0 * grains.radius.iter().sum::<f64>() / grains.len() as f64;
@@ -31,7 +37,7 @@ pub(super) fn text(model: GrainModel<'_>, simulation: &Simulation, contacts: &Co
         Space::Spatial => (format!("{sides} {sides} fm"), "* * 1", ""),
     };
     let lines = [
-        header(model, space),
+        header(model, space, intruder),
         format!(
             "variable steps index {}\nvariable warm_up index 0\nvariable every index {}\n\
              variable frame index {}\nvariable skin index {:.3e}\n",
@@ -46,21 +52,22 @@ pub(super) fn text(model: GrainModel<'_>, simulation: &Simulation, contacts: &Co
              neighbor ${{skin}} multi\nneigh_modify delay 0 every 1 check yes one 20000 page 400000\n\
              comm_modify mode multi vel yes\n\
              read_data {DATA}\n\
-             group grains type 1\ngroup intruder type 2\n"
+             group grains type 1\ngroup intruder type > 1\n{}",
+            among_balls(intruder)
         ),
         format!("{}\n", contacts.pair.join("\n")),
         format!("timestep {dt:?}\n"),
-        gravity(model.medium.gravity, space),
+        gravity(model.medium.gravity, space, intruder),
         walls(model, space, contacts),
-        integrators(model, space),
-        output(simulation, space),
+        integrators(model, space, intruder),
+        output(model, simulation, intruder),
         "if \"${warm_up} > 0\" then \"run ${warm_up}\"\nrun ${steps}\n".to_owned(),
         report(space),
     ];
     lines.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n")
 }
 
-fn header(model: GrainModel<'_>, space: Space) -> String {
+fn header(model: GrainModel<'_>, space: Space, intruder: &Intruder) -> String {
     let plane = match space {
         Space::Planar => "# x and y are x and z (up) of plunge.\n",
         Space::Spatial => "",
@@ -74,20 +81,65 @@ fn header(model: GrainModel<'_>, space: Space) -> String {
          {plane}\
          # What differs: contacts start without tangential springs; a sliding contact keeps the viscous\n\
          # part of its tangential force; there is no energy ledger; the run ends after `steps`, at rest\n\
-         # or not. LAMMPS does not go on exactly after a restart, nor after a second `run`.\n",
+         # or not. LAMMPS does not go on exactly after a restart, nor after a second `run`.\n{clump}",
+        clump = about_clump(model, intruder),
         name = model.model.run.name,
         version = env!("CARGO_PKG_VERSION"),
     )
 }
 
-fn gravity(gravity: f64, space: Space) -> String {
+/// What a clump keeps of the body, in comments.
+fn about_clump(model: GrainModel<'_>, intruder: &Intruder) -> String {
+    let Some(clump) = &intruder.clump else { return String::new() };
+    let [least, most] = clump.radii();
+    let springs = match intruder.stiffness.len() {
+        1 => "",
+        _ => {
+            "# R* of a contact is that of a mean grain and the body, by a factor on the springs of each\n\
+             # type of ball.\n"
+        }
+    };
+    format!(
+        "# The intruder, a {shape}, is a rigid clump of {n} balls inside it, of {least:.3e} to\n\
+         # {most:.3e} m, with the mass and the inertia of the body ({BODY}). It is not smooth: a mean\n\
+         # grain ({grain:.3e} m) comes nearer by up to {departure:.1e} m, {share:.1} % of its radius. Where\n\
+         # a grain touches several balls, each pushes with the springs and the damping of a whole\n\
+         # contact, and friction starts anew on each.\n{springs}",
+        shape = model.model.intruder.shape.name,
+        n = clump.balls.len(),
+        grain = clump.grain,
+        departure = clump.departure,
+        share = 100.0 * clump.departure / clump.grain,
+    )
+}
+
+/// Balls of a clump do not touch each other, and are looked for as atoms of one size.
+fn among_balls(intruder: &Intruder) -> String {
+    if intruder.clump.is_none() {
+        return String::new();
+    }
+    format!(
+        "neigh_modify exclude group intruder intruder collection/type 2 1 {INTRUDER}*{}\n",
+        intruder.last_kind()
+    )
+}
+
+/// A clump has its weight as a whole.
+fn gravity(gravity: f64, space: Space, intruder: &Intruder) -> String {
+    if gravity <= 0.0 {
+        return String::new();
+    }
     let down = match space {
         Space::Planar => "0 -1 0",
         Space::Spatial => "0 0 -1",
     };
-    match gravity > 0.0 {
-        true => format!("fix gravity all gravity {gravity:?} vector {down}\n"),
-        false => String::new(),
+    let of =
+        |name: &str, group: &str| format!("fix {name} {group} gravity {gravity:?} vector {down}");
+    match &intruder.clump {
+        None => format!("{}\n", of("gravity", "all")),
+        Some(_) => {
+            format!("{}\n{} disable\n", of("gravity", "grains"), of("weight", "intruder"))
+        }
     }
 }
 
@@ -113,16 +165,22 @@ fn walls(model: GrainModel<'_>, space: Space, contacts: &Contacts) -> String {
 }
 
 /// In a plane grains have the moment of inertia of discs, and the intruder that of its shape.
-fn integrators(model: GrainModel<'_>, space: Space) -> String {
-    if space == Space::Spatial {
-        return "fix motion all nve/sphere\n".to_owned();
+fn integrators(model: GrainModel<'_>, space: Space, intruder: &Intruder) -> String {
+    let is_disc = model.model.intruder.shape.name == "disc";
+    let weight = if model.medium.gravity > 0.0 { " gravity weight" } else { "" };
+    let of_intruder = match intruder.clump {
+        None if is_disc => "nve/sphere disc".to_owned(),
+        None => "nve/sphere".to_owned(),
+        Some(_) => format!("rigid single infile {BODY}{weight}"),
+    };
+    let of_intruder = format!("fix motion_of_intruder intruder {of_intruder}\n");
+    match (space, &intruder.clump) {
+        (Space::Spatial, None) => "fix motion all nve/sphere\n".to_owned(),
+        (Space::Spatial, Some(_)) => format!("fix motion grains nve/sphere\n{of_intruder}"),
+        (Space::Planar, _) => {
+            format!("fix motion grains nve/sphere disc\n{of_intruder}fix plane all enforce2d\n")
+        }
     }
-    let of_intruder = if model.model.intruder.shape.name == "disc" { " disc" } else { "" };
-    format!(
-        "fix motion grains nve/sphere disc\n\
-         fix motion_of_intruder intruder nve/sphere{of_intruder}\n\
-         fix plane all enforce2d\n"
-    )
 }
 
 /// The components of position and velocity: their names here, and along which axis of LAMMPS they lie.
@@ -139,14 +197,17 @@ fn every(dt: f64) -> u64 {
 }
 
 /// What LAMMPS writes of the intruder, with the energies that it knows, and of all atoms.
-fn output(simulation: &Simulation, space: Space) -> String {
+fn output(model: GrainModel<'_>, simulation: &Simulation, intruder: &Intruder) -> String {
+    let space = model.medium.space;
     let gravity = simulation.bed().gravity.norm();
     let up = components(space)[components(space).len() - 1].1;
     // LAMMPS takes what turns for a sphere, also where it integrates a disc.
     let inertia = if space == Space::Planar { 1.25 } else { 1.0 };
+    // All balls of a clump turn alike.
+    let reduced = if intruder.clump.is_some() { "ave" } else { "sum" };
     let mut text = format!(
         "compute turning intruder property/atom omegax omegay omegaz tqx tqy tqz\n\
-         compute turn intruder reduce sum {}\n\
+         compute turn intruder reduce {reduced} {}\n\
          compute translation grains ke\n\
          compute sphere_rotation grains erotate/sphere\n\
          variable rotation equal {inertia}*c_sphere_rotation\n\
@@ -155,7 +216,7 @@ fn output(simulation: &Simulation, space: Space) -> String {
          variable time equal step*dt\n",
         (1..=6).map(|column| format!("c_turning[{column}]")).collect::<Vec<_>>().join(" ")
     );
-    let columns = columns(simulation, space);
+    let columns = columns(model, simulation, intruder);
     for Column { variable, formula, .. } in &columns {
         text.push_str(&format!("variable {variable} equal {formula}\n"));
     }
@@ -185,14 +246,16 @@ struct Column {
 }
 
 /// Position, velocity, spin, force and torque of the intruder, along the axes of plunge.
-fn columns(simulation: &Simulation, space: Space) -> Vec<Column> {
-    let id = intruder_id(simulation);
+fn columns(model: GrainModel<'_>, simulation: &Simulation, intruder: &Intruder) -> Vec<Column> {
+    let (space, id) = (model.medium.space, intruder_id(simulation));
+    let is_clump = intruder.clump.is_some();
     let mut columns = Vec::new();
-    for (of, unit) in [("", "m"), ("v", "m_per_s"), ("f", "N")] {
+    for (place, (of, unit)) in [("", "m"), ("v", "m_per_s"), ("f", "N")].into_iter().enumerate() {
         for (name, axis) in components(space) {
             columns.push(Column {
                 variable: format!("{of}{name}"),
                 formula: match of {
+                    _ if is_clump => of_clump(model, place, axis),
                     "" => format!("xcm(intruder,{axis})"),
                     of => format!("{of}{axis}[{id}]"),
                 },
@@ -201,18 +264,45 @@ fn columns(simulation: &Simulation, space: Space) -> Vec<Column> {
         }
     }
     // In a plane what turns from x to z (up) turns about minus y, which is z of LAMMPS.
-    let turns: &[(&str, &str, usize)] = match space {
-        Space::Planar => &[("y", "-", 3)],
-        Space::Spatial => &[("x", "", 1), ("y", "", 2), ("z", "", 3)],
+    let turns: &[(&str, &str, &str)] = match space {
+        Space::Planar => &[("y", "-", "z")],
+        Space::Spatial => &[("x", "", "x"), ("y", "", "y"), ("z", "", "z")],
     };
-    for (of, word, unit, from) in [("w", "spin", "rad_per_s", 0), ("t", "torque", "N_m", 3)] {
-        columns.extend(turns.iter().map(|(axis, sign, column)| Column {
-            variable: format!("{of}{axis}"),
-            formula: format!("{sign}c_turn[{}]", from + column),
-            name: format!("{word}_{axis}_{unit}"),
+    for (of, word, unit) in [("w", "spin", "rad_per_s"), ("t", "torque", "N_m")] {
+        columns.extend(turns.iter().map(|(name, sign, axis)| Column {
+            variable: format!("{of}{name}"),
+            formula: match of {
+                "w" => format!("{sign}c_turn[{}]", number(axis)),
+                _ if is_clump => format!("{sign}{}", of_clump(model, 3, axis)),
+                _ => format!("{sign}c_turn[{}]", 3 + number(axis)),
+            },
+            name: format!("{word}_{name}_{unit}"),
         }));
     }
     columns
+}
+
+/// An axis of LAMMPS as its vectors count them.
+fn number(axis: &str) -> usize {
+    match axis {
+        "x" => 1,
+        "y" => 2,
+        _ => 3,
+    }
+}
+
+/// Along `axis` of LAMMPS, of a clump: its centre, its velocity, its force and its torque, by their
+/// place among the numbers of a rigid body.
+fn of_clump(model: GrainModel<'_>, place: usize, axis: &str) -> String {
+    let of_body = |column: usize| format!("f_motion_of_intruder[1][{column}]");
+    let value = of_body(3 * place + number(axis));
+    let is_periodic = model.medium.container.sides == SidesKind::Periodic
+        && axis != components(model.medium.space)[components(model.medium.space).len() - 1].1;
+    match (place, is_periodic) {
+        // The box has a length along every axis, and the body counts how often it has crossed it.
+        (0, true) => format!("{value}+{}*l{axis}", of_body(12 + number(axis))),
+        _ => value,
+    }
 }
 
 /// Position and velocity, to be filled in by LAMMPS.

@@ -18,27 +18,71 @@ pub(super) struct Contacts {
     pub(super) wall: String,
 }
 
-impl Contacts {
-    /// `law` in the words of LAMMPS; else what it lacks.
-    pub(super) fn of(law: &LawChoice) -> Result<Self, String> {
+/// A contact law that LAMMPS has too.
+pub(super) enum Law<'a> {
+    Linear(&'a ParamTable),
+    HertzMindlin {
+        params: &'a ParamTable,
+        /// The restitution that LAMMPS is told.
+        told: f64,
+    },
+}
+
+impl<'a> Law<'a> {
+    /// `law` as LAMMPS knows it; else what it lacks.
+    pub(super) fn of(law: &'a LawChoice) -> Result<Self, String> {
         match law.entry.name {
-            "linear-spring-dashpot" => Ok(linear(&law.params)),
-            "hertz-mindlin" => hertz_mindlin(&law.params),
+            "linear-spring-dashpot" => Ok(Self::Linear(&law.params)),
+            "hertz-mindlin" => Self::hertz_mindlin(&law.params),
             other => Err(format!("the contact law {other} as plunge has it")),
         }
     }
 
-    /// Forces of the style `granular`, whose words for each partner `terms` gives.
-    fn granular(terms: impl Fn(Partner) -> String) -> Self {
-        let [grain, wall, intruder] = [Partner::Grain, Partner::Wall, Partner::Intruder].map(terms);
-        // Two intruders never meet, but LAMMPS asks for every pair.
-        let pair = [(GRAIN, GRAIN, grain), (GRAIN, INTRUDER, intruder.clone())]
-            .into_iter()
-            .chain([(INTRUDER, INTRUDER, intruder)])
-            .map(|(one, other, terms)| format!("pair_coeff {one} {other} {terms}"));
-        let style = std::iter::once("pair_style granular".to_owned());
-        Self { pair: style.chain(pair).collect(), wall: format!("granular {wall}") }
+    /// LAMMPS takes its damping ratio β from a restitution e by −ln e = πβ/√(1 − β²), which is that
+    /// of a law that may attract: so it is told the e that has the β of plunge.
+    fn hertz_mindlin(params: &'a ParamTable) -> Result<Self, String> {
+        let restitution = params.get("restitution");
+        let ratio = damping_ratio(restitution);
+        if ratio >= 1.0 {
+            let what =
+                format!("damping beyond critical (contact_law.restitution = {restitution:?})");
+            return Err(what);
+        }
+        let told = libm::exp(-PI * ratio / (1.0 - ratio * ratio).sqrt());
+        Ok(Self::HertzMindlin { params, told })
     }
+
+    /// Whether forces depend on the curvature of what touches.
+    pub(super) fn knows_curvature(&self) -> bool {
+        matches!(self, Self::HertzMindlin { .. })
+    }
+
+    /// The forces, with a factor on the springs of Hertz and Mindlin for each atom type of the
+    /// intruder.
+    pub(super) fn contacts(&self, stiffness: &[f64]) -> Contacts {
+        match *self {
+            Self::Linear(params) => linear(params, stiffness),
+            Self::HertzMindlin { params, told } => hertz_mindlin(params, told, stiffness),
+        }
+    }
+}
+
+/// Forces of the style `granular`, whose words for each partner, with springs so much stiffer,
+/// `terms` gives.
+fn granular(stiffness: &[f64], terms: impl Fn(Partner, f64) -> String) -> Contacts {
+    let mut pair = vec![
+        "pair_style granular".to_owned(),
+        format!("pair_coeff {GRAIN} {GRAIN} {}", terms(Partner::Grain, 1.0)),
+    ];
+    for (kind, factor) in (INTRUDER..).zip(stiffness) {
+        let terms = terms(Partner::Intruder, *factor);
+        pair.push(format!("pair_coeff {GRAIN} {kind} {terms}"));
+    }
+    // Two intruders never meet, but LAMMPS asks for every pair.
+    let last = INTRUDER + stiffness.len() - 1;
+    let kinds = if last == INTRUDER { INTRUDER.to_string() } else { format!("{INTRUDER}*{last}") };
+    pair.push(format!("pair_coeff {kinds} {kinds} {}", terms(Partner::Intruder, 1.0)));
+    Contacts { pair, wall: format!("granular {}", terms(Partner::Wall, 1.0)) }
 }
 
 fn friction(params: &ParamTable, partner: Partner) -> f64 {
@@ -50,7 +94,7 @@ fn friction(params: &ParamTable, partner: Partner) -> f64 {
 }
 
 /// LAMMPS scales both damping rates with the reduced mass too, and lets damping attract.
-fn linear(params: &ParamTable) -> Contacts {
+fn linear(params: &ParamTable, stiffness: &[f64]) -> Contacts {
     let [k_n, k_t, rate_n, rate_t] = [
         "normal_stiffness",
         "tangential_stiffness",
@@ -68,7 +112,7 @@ fn linear(params: &ParamTable) -> Contacts {
         let wall = format!("hooke/history {}", terms(Partner::Wall));
         return Contacts { pair: vec![style, "pair_coeff * *".to_owned()], wall };
     }
-    Contacts::granular(|partner| {
+    granular(stiffness, |partner, _| {
         format!(
             "hooke {k_n:?} {rate_n:?} tangential linear_history {k_t:?} {:?} {:?} damping mass_velocity",
             rate_t / rate_n,
@@ -92,25 +136,18 @@ fn elastic(params: &ParamTable, partner: Partner) -> [f64; 2] {
     [1.0 / (grain[0] + other[0]), 1.0 / (grain[1] + other[1])]
 }
 
-/// `limit_damping` keeps the normal force from attracting. LAMMPS takes its damping ratio β from a restitution
-/// e by −ln e = πβ/√(1 − β²), which is that of a law that may attract: so it is told the e that has the β
-/// of plunge. Both damp shear as c_t/c_n = √(k_t/S_n) = 2 √(G*/E*).
-fn hertz_mindlin(params: &ParamTable) -> Result<Contacts, String> {
-    let restitution = params.get("restitution");
-    let ratio = damping_ratio(restitution);
-    if ratio >= 1.0 {
-        return Err(format!("damping beyond critical (contact_law.restitution = {restitution:?})"));
-    }
-    let told = libm::exp(-PI * ratio / (1.0 - ratio * ratio).sqrt());
-    Ok(Contacts::granular(|partner| {
+/// `limit_damping` keeps the normal force from attracting. Both damp shear as c_t/c_n = √(k_t/S_n)
+/// = 2 √(G*/E*).
+fn hertz_mindlin(params: &ParamTable, told: f64, stiffness: &[f64]) -> Contacts {
+    granular(stiffness, |partner, factor| {
         let [modulus, shear_modulus] = elastic(params, partner);
         format!(
             "hertz {k_n:?} {told:?} tangential mindlin {k_t:?} {shear:?} {friction:?} \
              damping coeff_restitution limit_damping",
-            k_n = 4.0 / 3.0 * modulus,
-            k_t = 8.0 * shear_modulus,
+            k_n = 4.0 / 3.0 * factor * modulus,
+            k_t = 8.0 * factor * shear_modulus,
             shear = 2.0 * (shear_modulus / modulus).sqrt() * params.get("tangential_damping"),
             friction = friction(params, partner),
         )
-    }))
+    })
 }

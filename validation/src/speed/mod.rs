@@ -9,6 +9,7 @@ pub mod lammps;
 pub mod plan;
 pub mod problem;
 pub mod report;
+pub mod sharing;
 pub mod spread;
 pub mod trial;
 

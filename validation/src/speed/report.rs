@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::lammps::SETTINGS;
 use super::plan::{Measured, Plan, Results};
+use super::sharing::{Crossover, Sharing};
 use super::spread::Spread;
 use super::trial::Trial;
 
@@ -61,6 +62,12 @@ fn memory_per_further_grain(results: &Results) -> Option<f64> {
     (large.0 > small.0).then(|| (large.1 - small.1) / (large.0 - small.0))
 }
 
+/// What a second core brings in each bed of spheres.
+fn sharing(results: &Results) -> Vec<Sharing> {
+    let spheres = results.measured.iter().filter(|one| one.problem.name.starts_with("3d"));
+    spheres.filter_map(Sharing::of).collect()
+}
+
 /// Everything as one JSON object.
 #[must_use]
 pub fn as_json(plan: &Plan, results: &Results) -> Value {
@@ -86,6 +93,7 @@ pub fn as_json(plan: &Plan, results: &Results) -> Value {
                 "one_core": ratio(by_cpu(&one.one), by_cpu(&one.lammps_one)),
                 "two_cores": ratio(by_wall(&one.two), by_wall(&one.lammps_two)),
             },
+            "second_core": Sharing::of(one),
             "intruder_velocity_apart": one.disagreement(),
             "agrees": one.disagreement().map(|apart| apart <= AGREEMENT),
         })
@@ -101,6 +109,7 @@ pub fn as_json(plan: &Plan, results: &Results) -> Value {
         "growth": growth(results).iter().map(|(grains, factor)| json!({
             "grains": grains, "cpu_per_grain_step_over_smallest": factor,
         })).collect::<Vec<_>>(),
+        "crossover": Crossover::of(&sharing(results)),
         "memory_per_further_grain_bytes": memory_per_further_grain(results),
         "ledger_cost": results.ledger,
         "logging_cost": results.logging,
@@ -167,6 +176,25 @@ pub fn as_markdown(plan: &Plan, results: &Results) -> String {
         let _ = writeln!(
             text,
             "- Growth, CPU time per grain and step over the smallest bed of spheres: {steps}."
+        );
+    }
+    for one in &results.measured {
+        let Some(Sharing { threads: Some(threads), ranks: Some(ranks), .. }) = Sharing::of(one)
+        else {
+            continue;
+        };
+        let [threads, ranks] = [threads, ranks].map(share);
+        let _ = writeln!(
+            text,
+            "- Two cores over twice one, by wall time, {}: {threads} of two threads, {ranks} of two ranks.",
+            one.problem.name
+        );
+    }
+    if let Some(crossover) = Crossover::of(&sharing(results)) {
+        let _ = writeln!(
+            text,
+            "- Two ranks of LAMMPS overtake two threads of plunge in space {}.",
+            crossover.text()
         );
     }
     if let Some(bytes) = memory_per_further_grain(results) {
@@ -261,6 +289,26 @@ mod tests {
         // Three times the grains in nine times the time.
         let growth = json["growth"][1]["cpu_per_grain_step_over_smallest"].as_f64();
         assert!(growth.is_some_and(|factor| (factor - 3.0).abs() < 1e-12), "{json:#}");
+    }
+
+    #[test]
+    fn ranks_beside_threads_are_told_with_what_a_second_core_brings() {
+        let (plan, mut results) = results();
+        let [small, large] = &mut results.measured[..] else { panic!("two beds") };
+        // 1e6 a second on one core; on two 1.5 times that, and of LAMMPS 2e6 and twice that.
+        small.two = vec![trial(1000, 0.1 / 1.5, -1.0)];
+        small.lammps_two = vec![trial(1000, 0.025, -1.0)];
+        large.two = Vec::new();
+        let json = as_json(&plan, &results);
+        let second = &json["problems"][0]["second_core"];
+        for (key, expected) in [("threads", 0.75), ("ranks", 1.0), ("threads_over_ranks", 0.375)] {
+            let found = second[key].as_f64().expect(key);
+            assert!((found - expected).abs() < 1e-12, "{key}: {found}");
+        }
+        assert_eq!(json["crossover"], json!({ "ranks_overtake": "from", "grains": 1000 }));
+        let page = as_markdown(&plan, &results);
+        assert!(page.contains("3d-12k: 75.0 % of two threads, 100.0 % of two ranks"), "{page}");
+        assert!(page.contains("in space from the smallest bed on, of 1000 grains"), "{page}");
     }
 
     #[test]

@@ -4,10 +4,9 @@ use std::f64::consts::TAU;
 
 use engine::grains::Space;
 use engine::math::Vec3;
+use engine::params::ParamTable;
 use engine::record::LoggedShape;
-use intruders::Drawing;
-
-use crate::model::Intruder;
+use intruders::{Drawing, ShapeEntry};
 
 /// Corners of a drawn round section.
 const CORNERS: usize = 32;
@@ -15,9 +14,11 @@ const CORNERS: usize = 32;
 /// Thickness of a drawn planar body, in its diameter.
 const THICKNESS: f64 = 0.1;
 
-/// `intruder`, or of a chain each of its links, as it is drawn about its centre of mass.
-pub(super) fn shape_of(intruder: &Intruder, space: Space) -> LoggedShape {
-    match ((intruder.shape.build)(&intruder.params, space).drawing, space) {
+/// An intruder of this `shape`, or of a chain each of its links, as it is drawn about its centre of
+/// mass; `params` are SI values that fill those of the shape.
+#[must_use]
+pub fn shape_of(shape: &ShapeEntry, params: &ParamTable, space: Space) -> LoggedShape {
+    match ((shape.build)(params, space).drawing, space) {
         (Drawing::Ball(radius), Space::Spatial) => LoggedShape::Sphere { radius },
         (Drawing::Ball(radius), Space::Planar) => {
             LoggedShape::Disc { radius, thickness: THICKNESS * 2.0 * radius }

@@ -233,7 +233,7 @@ impl Setting<'_> {
                 .iter()
                 .map(|body| LoggedBody {
                     name: body.name.clone(),
-                    shape: shape_of(&model.intruder, medium.space),
+                    shape: shape_of(model.intruder.shape, &model.intruder.params, medium.space),
                 })
                 .collect(),
             container: Some((Vec3::zeros(), Vec3::new(width, depth, top))),

@@ -25,6 +25,7 @@ use crate::load::ConfigError;
 use crate::model::{Condition, GrainModel, Medium, Model, ResistiveModel};
 
 pub use bed_cache::{PreparedBed, bed_file, bed_key, prepare};
+pub use drawing::shape_of;
 pub use folder::Existing;
 pub use summary::{
     ActivitySummary, BedSummary, CostSummary, EnergySummary, FinalEnergy, ForceSummary, Group,

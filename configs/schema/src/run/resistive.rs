@@ -149,7 +149,7 @@ fn log_setup(
                     1 => intruder.name.clone(),
                     _ => format!("{}-{}", intruder.name, part + 1),
                 },
-                shape: shape_of(intruder, resistive.medium.space),
+                shape: shape_of(intruder.shape, &intruder.params, resistive.medium.space),
             })
             .collect(),
         container: None,

@@ -2,49 +2,45 @@
 
 use std::path::Path;
 
-use configs::engine::grains::Space;
-use configs::engine::math::{Quat, Vec3, cayley};
+use configs::engine::math::Vec3;
 use configs::engine::record::{
-    BodyFrame, EventLevel, LogAttachment, LogSetup, LoggedBody, LoggedShape, RunLog, Stamp,
+    BodyFrame, EventLevel, LogAttachment, LogSetup, LoggedBody, RunLog, Stamp,
 };
 use configs::engine::stopping::Stopping;
 
 use super::super::dump::Dump;
-use super::super::facts::{ENERGIES, Facts};
+use super::super::facts::Facts;
 use super::super::samples::Sample;
 use super::ImportError;
+use super::faller::{ENERGIES, Faller, Turned};
 
 /// Steps after which a chunk of the log ends.
 const FLUSH_EVERY: u64 = 1000;
 
-/// Thickness of the drawn disc of a planar run, in its diameter.
-const THICKNESS: f64 = 0.1;
-
 /// A force of this many weights of the intruder is drawn as long as the intruder is wide.
 const WEIGHTS_PER_ARROW: f64 = 10.0;
 
-/// Writes the logs of `samples` and of the frames in `dump` into `folder`, and says how many frames there are.
+/// Writes the logs of `path` and of the frames in `dump` into `folder`, and says how many frames
+/// there are.
 pub(super) fn write(
     facts: &Facts,
-    samples: &[Sample],
+    faller: &Faller<'_>,
+    path: &[Turned<'_>],
     mut dump: Dump,
     folder: &Path,
 ) -> Result<usize, ImportError> {
-    let mut log = RunLog::import(folder, &setup(facts))?;
-    let first = samples[0];
+    let mut log = RunLog::import(folder, &setup(facts, faller))?;
+    let first = path[0];
     let (speed, angle) = (facts.impact.speed_m_per_s, facts.impact.angle_deg);
     let opening = format!("impact at {speed} m/s, {angle} deg from the horizontal");
-    log.event(stamp(&first), EventLevel::Info, &opening)?;
-    let mut stopping = Stopping::new(facts.followed(&first));
-    let (mut orientation, mut before) = (Quat::identity(), first);
+    log.event(stamp(first.sample), EventLevel::Info, &opening)?;
+    let mut stopping = Stopping::new(faller.followed(first));
     let (mut next, mut frames) = (dump.next()?, 0);
-    for sample in samples {
+    for turned in path {
+        let Turned { sample, orientation } = *turned;
         let at = stamp(sample);
-        let turn = 0.5 * (before.spin + sample.spin) * (sample.time - before.time);
-        orientation = cayley(turn) * orientation;
-        before = *sample;
-        let state = facts.state(sample);
-        log.known_energies(at, &facts.energies(sample))?;
+        let state = faller.state(*turned);
+        log.known_energies(at, &faller.energies(*turned))?;
         log.body_state(at, 0, &state)?;
         let (contact, weight) = (sample.force - facts.weight(), facts.weight());
         log.body_forces(at, 0, &[(contact, sample.torque), (weight, Vec3::zeros())])?;
@@ -58,7 +54,7 @@ pub(super) fn write(
             next = dump.next()?;
         }
         let was_moving = stopping.stopping_time().is_none();
-        stopping.observe(sample.time, facts.followed(sample));
+        stopping.observe(sample.time, faller.followed(*turned));
         if let (true, Some(time)) = (was_moving, stopping.stopping_time()) {
             let text = format!("stopped after {time:.6} s, {:.6} m deep", stopping.depth());
             log.event(at, EventLevel::Info, &text)?;
@@ -72,14 +68,10 @@ fn stamp(sample: &Sample) -> Stamp {
     Stamp { step: sample.step, time_s: sample.time }
 }
 
-fn setup(facts: &Facts) -> LogSetup {
-    let radius = facts.intruder.radius_m;
+fn setup(facts: &Facts, faller: &Faller<'_>) -> LogSetup {
+    let radius = faller.radius();
     let weight = facts.weight().norm();
     let [width, depth] = facts.container_m;
-    let shape = match facts.space() {
-        Space::Planar => LoggedShape::Disc { radius, thickness: THICKNESS * 2.0 * radius },
-        Space::Spatial => LoggedShape::Sphere { radius },
-    };
     let metadata = [
         ("simulated_by", "LAMMPS".to_owned()),
         ("plunge_version", facts.plunge_version.clone()),
@@ -97,7 +89,7 @@ fn setup(facts: &Facts) -> LogSetup {
         grains: true,
         bed: None,
         surface_z_m: facts.surface_m,
-        bodies: vec![LoggedBody { name: facts.intruder.name.clone(), shape }],
+        bodies: vec![LoggedBody { name: facts.intruder.name.clone(), shape: faller.drawn.clone() }],
         container: Some((Vec3::zeros(), Vec3::new(width, depth, facts.surface_m + 2.0 * radius))),
         energy_terms: ENERGIES.map(str::to_owned).into(),
         force_origins: vec!["contact".to_owned(), "gravity".to_owned()],

@@ -1,5 +1,6 @@
 //! What LAMMPS has written of an impact, as the log of a run.
 
+mod faller;
 mod log;
 mod summary;
 
@@ -17,6 +18,8 @@ use super::facts::Facts;
 use super::samples::samples;
 use super::{DUMP, FACTS, INTRUDER_TABLE};
 use crate::run_files::RunFiles;
+
+use faller::Faller;
 
 /// A run that was brought in.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,14 +99,16 @@ impl ImportError {
 pub fn import(folder: &Path, log: &Path) -> Result<Imported, ImportError> {
     let path = folder.join(FACTS);
     let facts: Facts = serde_json::from_str(&read(&path)?)
-        .map_err(|error| ImportError::Misread { path, why: error.to_string() })?;
+        .map_err(|error| ImportError::Misread { path: path.clone(), why: error.to_string() })?;
+    let faller = Faller::of(&facts, &path)?;
     let path = folder.join(INTRUDER_TABLE);
     let samples = samples(&path, &read(&path)?)?;
     let dump = Dump::open(&folder.join(DUMP), facts.space(), facts.gravity_m_per_s2)?;
     let files = RunFiles::of(log);
     let staging = Staging::beside(&files.log)?;
-    let frames = log::write(&facts, &samples, dump, &staging.0)?;
-    let summary = summary::of(&facts, &samples, folder);
+    let turned = faller.turned(&samples);
+    let frames = log::write(&facts, &faller, &turned, dump, &staging.0)?;
+    let summary = summary::of(&facts, &faller, &turned, folder);
     staging.hand_over(&files, &summary)?;
     Ok(Imported { summary, files, samples: samples.len(), frames })
 }

@@ -8,15 +8,20 @@ use configs::engine::stopping::Stopping;
 use configs::run::{CostSummary, EnergySummary, FinalEnergy, StopSummary, Summary};
 
 use super::super::facts::Facts;
-use super::super::samples::Sample;
+use super::faller::{Faller, Turned};
 
 /// What LAMMPS calls its output unless told otherwise.
 const LAMMPS_LOG: &str = "log.lammps";
 
-/// Of `samples`, without what LAMMPS does not tell; what it cost is in the output of LAMMPS, if that is in
-/// `folder`.
-pub(super) fn of(facts: &Facts, samples: &[Sample], folder: &Path) -> Summary {
-    let (first, last) = (&samples[0], &samples[samples.len() - 1]);
+/// Of the run along `path`, without what LAMMPS does not tell; what it cost is in the output of
+/// LAMMPS, if that is in `folder`.
+pub(super) fn of(
+    facts: &Facts,
+    faller: &Faller<'_>,
+    path: &[Turned<'_>],
+    folder: &Path,
+) -> Summary {
+    let (first, last) = (path[0], path[path.len() - 1]);
     let output = fs::read_to_string(folder.join(LAMMPS_LOG)).unwrap_or_default();
     Summary {
         name: facts.name.clone(),
@@ -24,23 +29,23 @@ pub(super) fn of(facts: &Facts, samples: &[Sample], folder: &Path) -> Summary {
         model_hash: facts.model_hash.clone(),
         medium: "grains".to_owned(),
         impact: facts.impact.clone(),
-        stop: stop(facts, samples),
-        energy: energy(facts, [first, last]),
+        stop: stop(faller, path),
+        energy: energy(facts, [first, last].map(|at| faller.energies(at))),
         bed: Some(facts.bed.clone()),
         forces: None,
         links: Vec::new(),
-        cost: cost(facts, last.step, &output),
+        cost: cost(facts, last.sample.step, &output),
     }
 }
 
 /// Until the impact is over by the rules of plunge, however long LAMMPS went on.
-fn stop(facts: &Facts, samples: &[Sample]) -> StopSummary {
-    let mut stopping = Stopping::new(facts.followed(&samples[0]));
-    for sample in &samples[1..] {
+fn stop(faller: &Faller<'_>, path: &[Turned<'_>]) -> StopSummary {
+    let mut stopping = Stopping::new(faller.followed(path[0]));
+    for at in &path[1..] {
         if stopping.is_over() {
             break;
         }
-        stopping.observe(sample.time, facts.followed(sample));
+        stopping.observe(at.sample.time, faller.followed(*at));
     }
     StopSummary {
         stopped: stopping.stopping_time().is_some(),
@@ -53,8 +58,7 @@ fn stop(facts: &Facts, samples: &[Sample]) -> StopSummary {
     }
 }
 
-fn energy(facts: &Facts, ends: [&Sample; 2]) -> EnergySummary {
-    let [start, end] = ends.map(|sample| facts.energies(sample));
+fn energy(facts: &Facts, [start, end]: [[f64; 6]; 2]) -> EnergySummary {
     let [_, _, grains_translation, grains_rotation, _, grains_height] =
         std::array::from_fn::<f64, 6, _>(|term| end[term] - start[term]);
     EnergySummary {
