@@ -64,6 +64,9 @@ impl Bed {
 /// Time between two samples of a path (s).
 const SAMPLE: f64 = 1e-4;
 
+/// Kinetic energy of an intruder at rest, over that of its impact: 5 % of the speed, squared.
+pub const AT_REST: f64 = 2.5e-3;
+
 /// One impact of the study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
@@ -369,7 +372,11 @@ fn impact(model: &Model, cache: &Path) -> Result<Outcome, StudyError> {
             energies.observe(&simulation);
         }
         let is_calm = simulation.activity().dissipation_time().is_some();
-        if clock.step >= simulation.last_step() || (simulation.is_over() && is_calm) {
+        let moves = |key| simulation.ledger().value(key).unwrap_or(0.0);
+        let left = moves("kinetic_intruder_translation_J") + moves("kinetic_intruder_rotation_J");
+        // Its vertical velocity may pass zero while it still turns.
+        let is_at_rest = simulation.is_over() && left <= AT_REST * simulation.impact_energy();
+        if clock.step >= simulation.last_step() || (is_at_rest && is_calm) {
             break;
         }
         simulation.advance()?;

@@ -1,12 +1,14 @@
 //! E6: how deep cylinder, hemisphere and cone go at equal energy, and the logarithm of it.
 
+use std::collections::BTreeMap;
+
 use crate::published::check::{Band, Check, Estimate};
 use crate::published::laboratory::Laboratory;
 use crate::published::plot::{Panel, Plot, Points};
 use crate::published::regression::{self, Fitted};
 use crate::published::row::{Findings, PublishedError, Row, Table};
 use crate::published::shapes::{self, Impact};
-use crate::three_shapes::{Case, SHAPES};
+use crate::three_shapes::{Case, SHAPES, mean_and_error};
 
 pub(super) static ROW: Row = Row {
     id: "E6",
@@ -20,7 +22,7 @@ pub(super) static ROW: Row = Row {
 };
 
 /// What depths of one shape scatter by from bed to bed, as a share (`docs/three-shapes.md`: the root mean square over
-/// four speeds on three beds each), in the order of the shapes.
+/// four speeds on three beds each), in the order of the shapes: for impacts on one bed, which do not tell.
 const SCATTER: [f64; 3] = [0.103, 0.074, 0.025];
 
 /// Standard errors by which a slope is positive, and which a residual may be above the scatter of beds.
@@ -33,7 +35,7 @@ const GRAVITY: f64 = 9.81;
 fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
     let impacts = shapes::all_shapes(laboratory)?;
     let mut findings = Findings::default();
-    findings.checks.push(order(&impacts));
+    findings.checks.extend(order(&impacts));
     let mut panel = Panel::default();
     let mut table = Table::new(
         "Equation 22 fitted to each shape: z = M/(2χ) ln(1 + 2χK/(M(β − Mg))).",
@@ -47,7 +49,8 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
         panel.points.push(Points { series: at, places });
         let fitted = regression::logarithmic(&energies, &depths);
         findings.checks.extend(over_energy(shapes::name(shape), &energies, &depths));
-        findings.checks.push(logarithm(shapes::name(shape), fitted.as_ref(), &depths, SCATTER[at]));
+        let scatter = from_bed_to_bed(&own).unwrap_or(SCATTER[at]);
+        findings.checks.push(logarithm(shapes::name(shape), fitted.as_ref(), &depths, scatter));
         let Some(fitted) = fitted else { continue };
         let [scale, energy] = [fitted.coefficients[0], fitted.coefficients[1]];
         let chi = MASS / (2.0 * scale);
@@ -113,36 +116,60 @@ fn logarithm(shape: &str, fitted: Option<&Fitted>, depths: &[f64], scatter: f64)
     let left = Estimate::new(100.0 * fitted.residual / mean, 0.0);
     // A residual with so much freedom scatters by 1/√(2n) of itself.
     let allowed = 1.0 + SIGMAS / (2.0 * freedom as f64).sqrt();
-    let reason =
-        "what beds differ by (docs/three-shapes.md), and two standard errors of such a residual";
+    let reason = "what beds differ by at the same energy (of one bed, docs/three-shapes.md), and two standard errors of such a residual";
     Check::at_most(what, published, left, Band { half: 100.0 * scatter * allowed, reason })
         .undecided_if(freedom == 0)
 }
 
-/// Whether the order holds on every bed at every energy.
-fn order(impacts: &[Impact]) -> Check {
-    let depth = |shape: &str, case: &Case| {
-        let same = |(other, _): &&Impact| {
-            other.model == shape
-                && other.seed == case.seed
-                && (other.speed - case.speed).abs() < 1e-9
+/// What depths of one shape differ by from bed to bed at the same energy, as a share of their mean: none where every
+/// energy is there once.
+fn from_bed_to_bed(own: &[&Impact]) -> Option<f64> {
+    let mean = |depths: &[f64]| depths.iter().sum::<f64>() / depths.len() as f64;
+    let mut at_speed = BTreeMap::<u64, Vec<f64>>::new();
+    for (case, one) in own {
+        at_speed.entry(case.speed.to_bits()).or_default().push(shapes::deepest(one));
+    }
+    let freedom: usize = at_speed.values().map(|depths| depths.len() - 1).sum();
+    let squares = at_speed.values().map(|depths| {
+        let mean = mean(depths);
+        depths.iter().map(|depth| (depth - mean) * (depth - mean)).sum::<f64>()
+    });
+    let all: Vec<f64> = at_speed.values().flatten().copied().collect();
+    (freedom > 0).then(|| (squares.sum::<f64>() / freedom as f64).sqrt() / mean(&all))
+}
+
+/// Whether each shape goes deeper than the one before it at equal energy: in the mean over energies, bed by bed, or on
+/// one bed, energy by energy.
+fn order(impacts: &[Impact]) -> [Check; 2] {
+    [[0, 1], [1, 2]].map(|pair| {
+        let [before, after] = pair.map(|at| SHAPES[at]);
+        let depth = |case: &Case| {
+            let same = |(other, _): &&Impact| {
+                other.model == after
+                    && other.seed == case.seed
+                    && (other.speed - case.speed).abs() < 1e-9
+            };
+            impacts.iter().find(same).map(|(_, one)| shapes::deepest(one))
         };
-        impacts.iter().find(same).map(|(_, one)| shapes::deepest(one))
-    };
-    let held: Vec<bool> = shapes::of(impacts, SHAPES[0])
-        .iter()
-        .filter_map(|(case, _)| {
-            let [cylinder, hemisphere, cone] = SHAPES.map(|shape| depth(shape, case));
-            Some(cylinder? < hemisphere? && hemisphere? < cone?)
-        })
-        .collect();
-    let n = held.iter().filter(|held| **held).count();
-    Check::trend(
-        "depth at equal energy",
-        ("cylinder < hemisphere < cone", format!("{n} of {} beds and energies", held.len())),
-        "on every bed at every energy",
-        n == held.len() && n > 0,
-    )
+        let mut on_bed = BTreeMap::<u64, Vec<f64>>::new();
+        for (case, one) in shapes::of(impacts, before) {
+            let deeper = depth(case).map(|depth| 1e3 * (depth - shapes::deepest(one)));
+            on_bed.entry(case.seed).or_default().extend(deeper);
+        }
+        on_bed.retain(|_, deeper| !deeper.is_empty());
+        let means = on_bed.values().map(|deeper| mean_and_error(deeper).0).collect();
+        let single = on_bed.values().next().filter(|_| on_bed.len() == 1).cloned();
+        let values: Vec<f64> = single.unwrap_or(means);
+        let (mean, error) = mean_and_error(&values);
+        let sigmas = regression::student(SIGMAS, values.len().saturating_sub(1));
+        let [before, after] = [before, after].map(shapes::name);
+        Check::positive(
+            format!("{after} deeper than {before} at equal energy (mm)"),
+            "deeper",
+            Estimate::new(mean, error),
+            Band { half: sigmas * error, reason: "two standard errors (Student's t) from bed to bed; on one bed, from energy to energy" },
+        )
+    })
 }
 
 #[cfg(test)]
@@ -171,16 +198,44 @@ mod tests {
         assert_eq!(verdicts(scattered), [Verdict::NotCheckable, Verdict::Fail]);
     }
 
+    /// Impacts at three speeds whose depths (m) grow by a tenth from each to the next, on each of `beds`.
+    fn impacts(beds: &[[f64; 3]]) -> Vec<Impact> {
+        let mut impacts = Vec::new();
+        for (depths, seed) in beds.iter().zip(1..) {
+            for (shape, depth) in SHAPES.into_iter().zip(depths) {
+                for (speed, times) in [(1.0, 1.0), (2.0, 1.1), (3.0, 1.2)] {
+                    let (case, outcome) = shapes::blank(shape, speed);
+                    let outcome =
+                        crate::three_shapes::Outcome { depth_m: times * depth, ..outcome };
+                    impacts.push((Case { seed, ..case }, outcome));
+                }
+            }
+        }
+        impacts
+    }
+
     #[test]
     fn shapes_in_the_published_order_pass_and_two_that_changed_places_fail() {
-        let verdict = |depths: [f64; 3]| {
-            let impacts = SHAPES.into_iter().zip(depths).map(|(shape, depth_m)| {
-                let (case, outcome) = shapes::blank(shape, 1.0);
-                (case, crate::three_shapes::Outcome { depth_m, ..outcome })
-            });
-            order(&impacts.collect::<Vec<_>>()).verdict
+        let verdicts = |beds: &[[f64; 3]]| order(&impacts(beds)).map(|check| check.verdict);
+        let (right, wrong) = ([0.007, 0.012, 0.021], [0.012, 0.007, 0.021]);
+        assert_eq!(verdicts(&[right]), [Verdict::Pass; 2]);
+        assert_eq!(verdicts(&[wrong]), [Verdict::Fail, Verdict::Pass]);
+        let alike = [0.008, 0.012, 0.022];
+        assert_eq!(verdicts(&[right, right, alike]), [Verdict::Pass; 2]);
+        // Beds that do not agree.
+        assert_eq!(verdicts(&[right, wrong, alike]), [Verdict::NotCheckable, Verdict::Pass]);
+    }
+
+    #[test]
+    fn depths_differ_from_bed_to_bed_by_what_they_do_at_the_same_speed() {
+        let own = |beds: &[[f64; 3]]| {
+            let impacts = impacts(beds);
+            from_bed_to_bed(&shapes::of(&impacts, SHAPES[0]))
         };
-        assert_eq!(verdict([0.007, 0.012, 0.021]), Verdict::Pass);
-        assert_eq!(verdict([0.012, 0.007, 0.021]), Verdict::Fail);
+        assert_eq!(own(&[[0.01; 3]]), None);
+        // Two beds apart by 2 %: 0.02/√2 at every speed, weighted by the depths there.
+        let share = own(&[[0.0101; 3], [0.0099; 3]]).expect("two beds");
+        let weight = ((1.0 + 1.21 + 1.44) / 3.0_f64).sqrt() / 1.1;
+        assert!((share - weight * 0.02 / 2.0_f64.sqrt()).abs() < 1e-12, "{share}");
     }
 }

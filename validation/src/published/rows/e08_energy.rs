@@ -6,7 +6,7 @@ use crate::published::plot::{Panel, Plot, Points};
 use crate::published::regression;
 use crate::published::row::{Findings, PublishedError, Row, Table};
 use crate::published::shapes::{self, Impact};
-use crate::three_shapes::Outcome;
+use crate::three_shapes::{self, Outcome};
 
 pub(super) static ROW: Row = Row {
     id: "E8",
@@ -20,9 +20,9 @@ pub(super) static ROW: Row = Row {
 const CLOSURE: Band =
     Band { half: 1e-3, reason: "what the ledger of every shipped model keeps to at its step" };
 
-/// Kinetic energy that is left at the end, as a share of that of the impact: 5 % of the speed, squared.
+/// What is left at the end, as a share of the energy of the impact.
 const AT_REST: Band = Band {
-    half: 2.5e-3,
+    half: three_shapes::AT_REST,
     reason: "rest is 5 % of the impact speed, which squared is what may be left",
 };
 
