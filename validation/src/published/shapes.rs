@@ -119,6 +119,7 @@ pub(crate) fn blank(model: &'static str, speed: f64) -> Impact {
         time_s: Vec::new(),
         down_m_per_s: Vec::new(),
         path_m: Vec::new(),
+        fall_m: 0.0,
         energies: three_shapes::Energies::default(),
     };
     (case, outcome)

@@ -64,9 +64,6 @@ impl Bed {
 /// Time between two samples of a path (s).
 const SAMPLE: f64 = 1e-4;
 
-/// Kinetic energy of an intruder at rest, over that of its impact: 5 % of the speed, squared.
-pub const AT_REST: f64 = 2.5e-3;
-
 /// One impact of the study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
@@ -105,6 +102,9 @@ pub struct Outcome {
     pub down_m_per_s: Vec<f64>,
     /// Depth of the lowest point (m) at these times.
     pub path_m: Vec<f64>,
+    /// How far the centre of mass has come down at the end (m): a body that tilts has it higher above its lowest
+    /// point.
+    pub fall_m: f64,
     /// Energies at these times.
     pub energies: Energies,
 }
@@ -362,6 +362,8 @@ fn impact(model: &Model, cache: &Path) -> Result<Outcome, StudyError> {
     let every = (SAMPLE / simulation.clock().dt).round().max(1.0) as u64;
     let (mut time_s, mut down_m_per_s, mut path_m) = (Vec::new(), Vec::new(), Vec::new());
     let mut energies = Energies::default();
+    let height = |simulation: &Simulation| simulation.intruder().bodies()[0].position.z;
+    let start = height(&simulation);
     loop {
         let clock = simulation.clock();
         if clock.step.is_multiple_of(every) {
@@ -372,11 +374,7 @@ fn impact(model: &Model, cache: &Path) -> Result<Outcome, StudyError> {
             energies.observe(&simulation);
         }
         let is_calm = simulation.activity().dissipation_time().is_some();
-        let moves = |key| simulation.ledger().value(key).unwrap_or(0.0);
-        let left = moves("kinetic_intruder_translation_J") + moves("kinetic_intruder_rotation_J");
-        // Its vertical velocity may pass zero while it still turns.
-        let is_at_rest = simulation.is_over() && left <= AT_REST * simulation.impact_energy();
-        if clock.step >= simulation.last_step() || (is_at_rest && is_calm) {
+        if clock.step >= simulation.last_step() || (simulation.is_over() && is_calm) {
             break;
         }
         simulation.advance()?;
@@ -392,6 +390,7 @@ fn impact(model: &Model, cache: &Path) -> Result<Outcome, StudyError> {
         time_s,
         down_m_per_s,
         path_m,
+        fall_m: start - height(&simulation),
         energies: energies.counted_from_start(simulation.impact_energy()),
     })
 }
@@ -466,6 +465,7 @@ mod tests {
             time_s: vec![0.0],
             down_m_per_s: vec![1.0],
             path_m: vec![0.0],
+            fall_m: 0.0,
             energies: Energies::default(),
         };
         assert_eq!(found(&path, "ab"), None);

@@ -6,7 +6,7 @@ use crate::published::plot::{Panel, Plot, Points};
 use crate::published::regression;
 use crate::published::row::{Findings, PublishedError, Row, Table};
 use crate::published::shapes::{self, Impact};
-use crate::three_shapes::{self, Outcome};
+use crate::three_shapes::Outcome;
 
 pub(super) static ROW: Row = Row {
     id: "E8",
@@ -22,7 +22,7 @@ const CLOSURE: Band =
 
 /// What is left at the end, as a share of the energy of the impact.
 const AT_REST: Band = Band {
-    half: three_shapes::AT_REST,
+    half: 2.5e-3,
     reason: "rest is 5 % of the impact speed, which squared is what may be left",
 };
 
@@ -61,8 +61,7 @@ fn sum(impacts: &[Impact]) -> [Check; 2] {
     let closure = impacts.iter().map(|(_, one)| one.closure).fold(0.0, f64::max);
     let left = impacts.iter().map(|(_, one)| {
         let end = one.energies.intruder_j.last().copied().unwrap_or(f64::NAN);
-        let depth = one.path_m.last().copied().unwrap_or(f64::NAN);
-        (end + MASS * GRAVITY * depth).abs() / one.impact_energy_j
+        (end + MASS * GRAVITY * one.fall_m).abs() / one.impact_energy_j
     });
     let left = left.fold(0.0, f64::max);
     [
@@ -200,7 +199,7 @@ mod tests {
         let verdicts = |closure: f64, end: f64| {
             let (case, outcome) = shapes::blank(HEMISPHERE, 1.0);
             let energies = Energies { intruder_j: vec![1.0, end], ..Energies::default() };
-            let one = Outcome { closure, energies, path_m: vec![0.0, 0.01], ..outcome };
+            let one = Outcome { closure, energies, fall_m: 0.01, ..outcome };
             sum(&[(case, one)]).map(|check| check.verdict)
         };
         assert_eq!(verdicts(1e-4, -MASS * GRAVITY * 0.01), [Verdict::Pass; 2]);
