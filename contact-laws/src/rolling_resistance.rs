@@ -192,6 +192,7 @@ mod tests {
             relative_spin: Vec3::zeros(),
             relative_turn: turn,
             inverse_radius_eff: 1e3,
+            inverse_radius_eff_before: 1e3,
             inverse_mass_eff: 1e4,
             rolling_mobility: 1e9,
         };

@@ -55,6 +55,7 @@ fn episode() -> Vec<Contact> {
                 relative_spin: Vec3::new(20.0, -30.0, 10.0),
                 relative_turn: Vec3::new(2e-4, -3e-4, 1e-4),
                 inverse_radius_eff: 1.0 / 2e-3 + 1.0 / 3e-3,
+                inverse_radius_eff_before: 1.0 / 2e-3 + 1.0 / 3e-3,
                 inverse_mass_eff: 1.0 / 5e-5 + 1.0 / 1e-4,
                 rolling_mobility: 1.0 / 7e-10,
             }
@@ -235,6 +236,7 @@ fn side_by_side<const N: usize>(contacts: [Contact<f64, N>; MOST_LANES]) -> Cont
         relative_spin: vector(|contact| contact.relative_spin),
         relative_turn: vector(|contact| contact.relative_turn),
         inverse_radius_eff: number(|contact| contact.inverse_radius_eff),
+        inverse_radius_eff_before: number(|contact| contact.inverse_radius_eff_before),
         inverse_mass_eff: number(|contact| contact.inverse_mass_eff),
         rolling_mobility: number(|contact| contact.rolling_mobility),
     }
@@ -253,6 +255,7 @@ fn flat(contact: &Contact) -> Contact<f64, 1> {
         relative_spin: first(contact.relative_spin),
         relative_turn: first(contact.relative_turn),
         inverse_radius_eff: contact.inverse_radius_eff,
+        inverse_radius_eff_before: contact.inverse_radius_eff_before,
         inverse_mass_eff: contact.inverse_mass_eff,
         rolling_mobility: contact.rolling_mobility,
     }

@@ -29,6 +29,7 @@ pub mod math;
 mod neighbours;
 pub mod parallel;
 pub mod params;
+mod prefetch;
 mod recessive;
 pub mod record;
 pub mod resistance;

@@ -89,8 +89,6 @@ impl<D: Damping> FromParams for Law<D> {
 engine::record! {
     /// What a contact remembers.
     pub(crate) struct Memory<R, const N: usize> {
-        /// 1/R* at the end of the last step (1/m), 0 if it did not touch.
-        curvature: R,
         /// ξ (m).
         spring: Vector<R, N>,
         /// k_t at the end of the last step (N/m).
@@ -157,14 +155,12 @@ pub(crate) fn act<D: Damping, R: Lanes, const N: usize>(
     // Damping never takes more than the elastic force, also where adhesion would hold the two together.
     let damping = (c_n * contact.overlap_rate).simd_max(-spare.simd_min(elastic));
     energy.normal += R::splat(0.4) * elastic * overlap;
-    let moved =
-        history.curvature.simd_gt(zero) & history.curvature.simd_ne(contact.inverse_radius_eff);
-    if moved.any() {
+    let [now, before] = [contact.inverse_radius_eff, contact.inverse_radius_eff_before];
+    if now.simd_ne(before).any() {
         // Over an edge or along a cone the same overlap holds another energy.
         let half_way = (overlap - half * contact.overlap_step).simd_max(zero);
         let held = |curvature| pair.elastic.energy(curvature, half_way);
-        let gained = held(history.curvature) - held(contact.inverse_radius_eff);
-        energy.stiffness_change += gained.select(moved, zero);
+        energy.stiffness_change += held(before) - held(now);
     }
     energy.normal_damping += half * (history.normal_damping + damping) * contact.overlap_step;
 
@@ -191,7 +187,6 @@ pub(crate) fn act<D: Damping, R: Lanes, const N: usize>(
         half * (history.tangential_damping + viscous).dot(&contact.slip_step);
 
     *history = Memory {
-        curvature: contact.inverse_radius_eff.select(touching, zero),
         spring: vector_where(touching, spring),
         tangential_stiffness: k_t,
         normal_damping: damping,
@@ -256,6 +251,7 @@ pub(crate) mod tests {
             relative_spin: Vec3::zeros(),
             relative_turn: Vec3::zeros(),
             inverse_radius_eff: 1.0 / RADIUS_EFF,
+            inverse_radius_eff_before: 1.0 / RADIUS_EFF,
             inverse_mass_eff: 1e5,
             rolling_mobility: 1e9,
         }

@@ -38,6 +38,7 @@ impl Meeting {
 struct Bodies {
     overlap: f64,
     inverse_radius_eff: f64,
+    inverse_radius_eff_before: f64,
     inverse_mass_eff: f64,
     rolling_mobility: f64,
 }
@@ -59,6 +60,7 @@ fn assemble(now: &Meeting, half: &Meeting, bodies: Bodies, dt: f64) -> Contact {
         relative_spin: now.w_i - now.w_j,
         relative_turn: (half.w_i - half.w_j) * dt,
         inverse_radius_eff: bodies.inverse_radius_eff,
+        inverse_radius_eff_before: bodies.inverse_radius_eff_before,
         inverse_mass_eff: bodies.inverse_mass_eff,
         rolling_mobility: bodies.rolling_mobility,
     }
@@ -66,13 +68,13 @@ fn assemble(now: &Meeting, half: &Meeting, bodies: Bodies, dt: f64) -> Contact {
 
 /// The contact of a grain with a rigid part; `grain` is at the image of its centre that is nearest to the
 /// part, `now` and `half` are the nearest points of the surface to that at the end and in the middle of
-/// the step, body frame.
+/// the step, body frame; `before` is 1/R* (1/m) at the end of the last one, if the two overlapped then.
 #[inline]
 pub(crate) fn with_surface(
     grain: &Motion,
     placement: &Placement,
-    now: &SurfacePoint,
-    half: &SurfacePoint,
+    (now, half): (&SurfacePoint, &SurfacePoint),
+    before: Option<f64>,
     dt: f64,
 ) -> Contact {
     let (position, radius) = (grain.position, grain.radius);
@@ -110,9 +112,11 @@ pub(crate) fn with_surface(
         let mass = 1.0 / placement.inverse_mass;
         1.0 / (placement.inertia + mass / (now.curvature * now.curvature))
     };
+    let inverse_radius_eff = grain.inverse_radius + now.curvature;
     let bodies = Bodies {
         overlap: radius - now.gap,
-        inverse_radius_eff: grain.inverse_radius + now.curvature,
+        inverse_radius_eff,
+        inverse_radius_eff_before: before.unwrap_or(inverse_radius_eff),
         inverse_mass_eff: grain.inverse_mass + placement.inverse_mass,
         rolling_mobility: grain.rolling_mobility + body_mobility,
     };

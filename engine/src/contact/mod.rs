@@ -66,6 +66,9 @@ pub struct Contact<R: Lanes = f64, const N: usize = 3> {
     pub relative_turn: Vector<R, N>,
     /// 1/R* = 1/R_i + 1/R_j (1/m); a flat face has no curvature.
     pub inverse_radius_eff: R,
+    /// The same at the end of the last step, which differs over an edge or along a cone; what it is now if
+    /// the two did not overlap then.
+    pub inverse_radius_eff_before: R,
     /// 1/m* = 1/m_i + 1/m_j (1/kg); a wall has infinite mass.
     pub inverse_mass_eff: R,
     /// 1/I_r = Σ 1/(I + m R²) (1/(kg m²)), I_r the inertia of rolling.

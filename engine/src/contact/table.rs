@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
+use crate::prefetch::fetch;
+
 /// Marks a candidate that remembers nothing, because it does not touch.
 pub(crate) const APART: u32 = u32::MAX;
 
@@ -89,6 +91,20 @@ impl ContactTable {
     /// All histories, record after record.
     pub(crate) fn histories_mut(&mut self) -> &mut [f64] {
         &mut self.histories
+    }
+
+    /// Has the record that begins at `record`, if there is one, brought near.
+    #[inline(always)]
+    pub(crate) fn fetch(&self, record: u32) {
+        if let Some(first) = self.histories.get(record as usize) {
+            fetch(first);
+        }
+    }
+
+    /// The last number of the record that begins at `record`.
+    pub(crate) fn last_of_record(&mut self, record: u32) -> &mut f64 {
+        let len = self.history_len.iter().sum::<usize>();
+        &mut self.histories[record as usize + len - 1]
     }
 
     /// Where the record of `row` begins; a new one, all zero, if it has none.

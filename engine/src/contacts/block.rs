@@ -15,9 +15,13 @@ use crate::contacts::stage::{Batch, ContactStage, Histories, Sweep};
 use crate::dimension::{Dimension, Motion, Quad, Quads};
 use crate::grains::Grains;
 use crate::lanes::{Eight, Lanes, MOST_LANES, Mask, per_lane};
+use crate::prefetch::fetch;
 
 /// Groups of as many contacts as there are lanes that are evaluated together.
 const GROUPS: usize = 16;
+
+/// How many candidates ahead the places of grains are fetched.
+const ROWS_AHEAD: usize = 128;
 
 /// The contacts of the grains of one block.
 pub(super) struct Block {
@@ -178,11 +182,17 @@ impl Block {
         rows: Range<usize>,
         (near, mut found): (&mut [Near], usize),
     ) -> usize {
-        let keys = self.pairs.keys()[rows.clone()].chunks_exact(R::COUNT);
+        let all = self.pairs.keys();
+        let keys = all[rows.clone()].chunks_exact(R::COUNT);
         let records = self.pairs.records()[rows.clone()].chunks_exact(R::COUNT);
         for (row, (keys, records)) in rows.step_by(R::COUNT).zip(keys.zip(records)) {
+            let ahead = row + ROWS_AHEAD;
+            for &[_, j] in all.get(ahead..ahead + R::COUNT).unwrap_or_default() {
+                // SAFETY: tables hold grains of the bed alone, see [`Block::pairs`].
+                fetch(unsafe { grains.place_unchecked(j as usize) });
+            }
             let of_lane = lanes_of::<R, _>(keys);
-            // SAFETY: tables hold grains of the bed alone, see [`Block::pairs`].
+            // SAFETY: as above.
             let place = |side: usize| {
                 per_lane(|lane| unsafe { grains.place_unchecked(of_lane[lane][side] as usize) })
             };
@@ -247,8 +257,11 @@ impl Block {
             for (&row, half) in rows.iter().zip(halves) {
                 let grain = grain(table.keys()[row as usize][0]);
                 let now = &bench.nearest[row as usize];
-                let contact = with_surface(&grain, placement, now, half, dt);
                 let record = table.record(row as usize);
+                let last = table.last_of_record(record);
+                let before = (*last > 0.0).then_some(*last);
+                let contact = with_surface(&grain, placement, (now, half), before, dt);
+                *last = if contact.overlaps() { contact.inverse_radius_eff } else { 0.0 };
                 evaluation.push(D::narrow(&contact), [record; MOST_LANES]);
                 contacts.push((contact, grain));
             }

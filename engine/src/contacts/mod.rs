@@ -43,17 +43,17 @@ impl Contacts {
         (space, n_grains): (Space, usize),
         n_parts: usize,
     ) -> Self {
-        let history_len: Vec<usize> = stages.iter().map(|stage| stage.history_len(space)).collect();
+        let [of_pair, of_surface] = record_lens(&stages, space);
         let n_channels = stages.iter().map(|stage| stage.channels().len()).sum();
         let blocks = (0..n_grains.div_ceil(BLOCK))
             .map(|block| Block {
                 first: block * BLOCK,
-                pairs: ContactTable::new(&history_len),
+                pairs: ContactTable::new(&of_pair),
                 targets: Vec::new(),
                 halo: Vec::new(),
                 loads: Vec::new(),
                 inbox: Vec::new(),
-                surfaces: vec![ContactTable::new(&history_len); n_parts],
+                surfaces: vec![ContactTable::new(&of_surface); n_parts],
                 tally: Tally::new(n_channels, n_parts),
             })
             .collect();
@@ -261,15 +261,15 @@ impl Contacts {
         saved: Vec<SavedBlock>,
         (space, n_grains): (Space, usize),
     ) -> bool {
-        let history_len: Vec<usize> =
-            self.stages.iter().map(|stage| stage.history_len(space)).collect();
+        let [of_pair, of_surface] = record_lens(&self.stages, space);
         let fits = saved.len() == self.blocks.len()
             && saved.iter().zip(&self.blocks).all(|(saved, block)| {
+                let own = || block.first..(block.first + BLOCK).min(n_grains);
+                let surface_fits =
+                    |table: &ContactTable| table.is_consistent(own(), n_grains, &of_surface);
                 saved.surfaces.len() == block.surfaces.len()
-                    && std::iter::once(&saved.pairs).chain(&saved.surfaces).all(|table| {
-                        let own = block.first..(block.first + BLOCK).min(n_grains);
-                        table.is_consistent(own, n_grains, &history_len)
-                    })
+                    && saved.pairs.is_consistent(own(), n_grains, &of_pair)
+                    && saved.surfaces.iter().all(surface_fits)
             });
         if fits {
             for (block, saved) in self.blocks.iter_mut().zip(saved) {
@@ -324,6 +324,14 @@ impl Contacts {
             }
         }
     }
+}
+
+/// How many numbers each stage has in the record of two grains, and in that of a grain and a surface, which
+/// ends with one more: its 1/R* at the end of the last step (1/m), zero if it did not overlap.
+fn record_lens(stages: &[Box<dyn ContactStage>], space: Space) -> [Vec<usize>; 2] {
+    let of_pair: Vec<usize> = stages.iter().map(|stage| stage.history_len(space)).collect();
+    let of_surface = of_pair.iter().copied().chain([1]).collect();
+    [of_pair, of_surface]
 }
 
 /// What contacts do to the grains of one block, grain by grain.

@@ -49,6 +49,7 @@ pub fn restitution(
             relative_spin: Vec3::zeros(),
             relative_turn: Vec3::zeros(),
             inverse_radius_eff: 1.0 / encounter.radius_eff,
+            inverse_radius_eff_before: 1.0 / encounter.radius_eff,
             inverse_mass_eff: 1.0 / encounter.mass_eff,
             rolling_mobility: 1.0 / (encounter.mass_eff * encounter.radius_eff.powi(2)),
         };

@@ -109,14 +109,16 @@ impl<L: ContactLaw> Stage<L> {
     ) -> L::Energy<R> {
         let pair = self.pairs[Partner::Grain.index()];
         let mut booked = L::Energy::<R>::zero();
-        for near in near.chunks_exact(R::COUNT) {
-            let (contact, side) = pairs.meet::<D, R, N>(near);
+        for (group, here) in near.chunks_exact(R::COUNT).enumerate() {
+            let ahead = (group + GROUPS_AHEAD) * R::COUNT;
+            pairs.fetch::<D, N>(near.get(ahead..ahead + R::COUNT).unwrap_or_default());
+            let (contact, side) = pairs.meet::<D, R, N>(here);
             let mut histories = Histories { values: pairs.table.histories_mut(), offset: 0 };
             let mut history = read::<R, L::History<R, N>>(&histories, &side.records);
             let mut response = Response::default();
             L::act(&pair, &contact, pairs.dt, &mut history, &mut response, &mut booked);
             write(&history, &mut histories, &side.records);
-            pairs.settle::<D, R, N>(near, &side, &contact, &response);
+            pairs.settle::<D, R, N>(here, &side, &contact, &response);
         }
         booked
     }
@@ -161,6 +163,9 @@ impl<L: ContactLaw, R: Lanes, const N: usize> Sweep<R, N> for Stage<L> {
         }
     }
 }
+
+/// How many groups of contacts ahead what they need is fetched.
+const GROUPS_AHEAD: usize = 2;
 
 /// Longest record of one stage.
 const MOST_NUMBERS: usize = 16;

@@ -12,6 +12,7 @@ use crate::boundary::Period;
 use crate::contact::{Contact, Response};
 use crate::lanes::{Lanes, MOST_LANES, Vector, per_lane};
 use crate::math::Vec3;
+use crate::prefetch::fetch;
 
 pub(crate) use planar::Planar;
 pub(crate) use spatial::Spatial;
@@ -46,6 +47,9 @@ pub(crate) trait Quads: Copy + Send + Sync {
 
     /// Adds `other`, number by number.
     fn add(&mut self, other: &Self);
+
+    /// Has them brought near.
+    fn fetch(&self);
 }
 
 impl<const LEN: usize> Quads for [Quad; LEN] {
@@ -66,6 +70,12 @@ impl<const LEN: usize> Quads for [Quad; LEN] {
         for (own, part) in self.iter_mut().zip(other) {
             own.add(part);
         }
+    }
+
+    #[inline(always)]
+    fn fetch(&self) {
+        // A line of memory holds two.
+        self.iter().step_by(2).chain(self.last()).for_each(fetch);
     }
 }
 

@@ -115,6 +115,7 @@ impl Dimension<1> for Planar {
         let slip_step =
             d_x * n_z_half - d_z * n_x_half + (turns[0] * arms_half[0] - turns[1] * arms_half[1]);
 
+        let inverse_radius_eff = curvature_i + curvature_j;
         let contact = Contact {
             normal: Vector::from([R::zero()]),
             overlap,
@@ -124,7 +125,8 @@ impl Dimension<1> for Planar {
             slip_step: Vector::from([slip_step]),
             relative_spin: Vector::from([spin_i - spin_j]),
             relative_turn: Vector::from([turns[0] - turns[1]]),
-            inverse_radius_eff: curvature_i + curvature_j,
+            inverse_radius_eff,
+            inverse_radius_eff_before: inverse_radius_eff,
             inverse_mass_eff: inverse_mass_i + inverse_mass_j,
             rolling_mobility: mobility_i + mobility_j,
         };
@@ -175,6 +177,7 @@ impl Dimension<1> for Planar {
             relative_spin: Vector::from([contact.relative_spin.y]),
             relative_turn: Vector::from([contact.relative_turn.y]),
             inverse_radius_eff: contact.inverse_radius_eff,
+            inverse_radius_eff_before: contact.inverse_radius_eff_before,
             inverse_mass_eff: contact.inverse_mass_eff,
             rolling_mobility: contact.rolling_mobility,
         }

@@ -124,6 +124,7 @@ impl Dimension<3> for Spatial {
         // second order in the step, so the projection does.
         let slip_step = slip - normal * slip.dot(&normal);
 
+        let inverse_radius_eff = curvature_i + curvature_j;
         let contact = Contact {
             normal,
             overlap,
@@ -133,7 +134,8 @@ impl Dimension<3> for Spatial {
             slip_step,
             relative_spin: w_i - w_j,
             relative_turn: turn_i - turn_j,
-            inverse_radius_eff: curvature_i + curvature_j,
+            inverse_radius_eff,
+            inverse_radius_eff_before: inverse_radius_eff,
             inverse_mass_eff: inverse_mass_i + inverse_mass_j,
             rolling_mobility: mobility_i + mobility_j,
         };
