@@ -344,9 +344,11 @@ impl Grains {
         self.wrap();
     }
 
-    /// The greatest speed of a grain in the drift that has begun (m/s).
-    pub(crate) fn fastest(&self) -> f64 {
-        (0..self.len()).map(|i| self.motion(i).velocity.norm()).fold(0.0, f64::max)
+    /// The greatest speed of a grain of each block in the drift that has begun (m/s).
+    pub(crate) fn fastest_by_block(&self) -> Vec<f64> {
+        let speed = |i: usize| self.motion(i).velocity.norm();
+        let first = (0..self.len()).step_by(BLOCK);
+        first.map(|i| (i..(i + BLOCK).min(self.len())).map(speed).fold(0.0, f64::max)).collect()
     }
 
     /// Brings back inside, on the other side, what has left through a periodic one.

@@ -4,10 +4,12 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::dimension::{Dimension, Planar, Spatial};
+use crate::boundary::Period;
+use crate::dimension::{Dimension, Planar, Quad, Spatial};
 use crate::grains::{Grains, Space};
 use crate::lanes::{Eight, MOST_LANES, Mask, per_lane};
 use crate::math::Vec3;
+use crate::parallel::BLOCK;
 
 /// Counts down to the next rebuild of a neighbour list: the list holds everything nearer than
 /// `margin`, so it is good until the relative displacement of any two bodies may exceed that.
@@ -37,6 +39,96 @@ impl Freshness {
     /// The list has just been rebuilt.
     pub(crate) fn renew(&mut self) {
         self.left = self.margin;
+    }
+}
+
+/// The same for lists that blocks of grains have of their neighbours, each with a count of its own: where
+/// grains lie still nothing is listed again for the sake of a few that fly.
+///
+/// A block whose grains may have gone half of `margin` is listed again, and so are all blocks that may
+/// hold a neighbour of its grains. Two grains that are in no list were further apart than `margin` when
+/// one of their blocks was last listed for its own sake, or when it was listed as the other's neighbour; each has gone
+/// less than half of that since.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct BlockFreshness {
+    margin: f64,
+    /// How far the grains of each block may still go (m).
+    left: Vec<f64>,
+}
+
+impl BlockFreshness {
+    /// Lists that are stale from the start; `margin` (m).
+    pub(crate) fn stale(margin: f64, n_blocks: usize) -> Self {
+        Self { margin, left: vec![-1.0; n_blocks] }
+    }
+
+    /// The gap (m) up to which the lists have to hold pairs.
+    pub(crate) fn margin(&self) -> f64 {
+        self.margin
+    }
+
+    /// How many blocks there are.
+    pub(crate) fn n_blocks(&self) -> usize {
+        self.left.len()
+    }
+
+    /// Takes note of the greatest displacement (m) of a grain of each block; returns whether some lists
+    /// have to be made again now.
+    pub(crate) fn spend(&mut self, displacements: impl Iterator<Item = f64>) -> bool {
+        let mut is_stale = false;
+        for (left, displacement) in self.left.iter_mut().zip(displacements) {
+            *left -= displacement;
+            is_stale |= *left < 0.0;
+        }
+        is_stale
+    }
+
+    /// Marks the blocks that are about to be listed: those that have spent more than half, so that it is not
+    /// done for one after the other, and what is nearer than `reach` (m) to them, centre to centre.
+    pub(crate) fn renew(&mut self, grains: &Grains, reach: f64, marks: &mut Vec<bool>) {
+        let whole = 0.5 * self.margin;
+        let is_spent = |left: &f64| *left < 0.5 * whole;
+        let n_spent = self.left.iter().filter(|left| is_spent(left)).count();
+        marks.clear();
+        if 4 * n_spent > self.left.len() {
+            marks.resize(self.left.len(), true);
+            self.left.fill(whole);
+            return;
+        }
+        marks.resize(self.left.len(), false);
+        let extents: Vec<Extent> =
+            (0..self.left.len()).map(|block| Extent::of_block(grains, block)).collect();
+        for (spent, left) in extents.iter().zip(&mut self.left).filter(|(_, left)| is_spent(left)) {
+            for (mark, extent) in marks.iter_mut().zip(&extents) {
+                *mark |= extent.is_near(spent, reach, &grains.period);
+            }
+            *left = whole;
+        }
+    }
+}
+
+/// The smallest box that holds the centres of some grains (m).
+#[derive(Clone, Copy, Debug)]
+struct Extent {
+    centre: Vec3,
+    half: Vec3,
+}
+
+impl Extent {
+    /// Around the grains of a block.
+    fn of_block(grains: &Grains, block: usize) -> Self {
+        let first = grains.drifted(block * BLOCK);
+        let others = block * BLOCK + 1..((block + 1) * BLOCK).min(grains.len());
+        let (low, high) = others
+            .map(|i| grains.drifted(i))
+            .fold((first, first), |(low, high), x| (low.inf(&x), high.sup(&x)));
+        Self { centre: 0.5 * (low + high), half: 0.5 * (high - low) }
+    }
+
+    /// Whether a point of one box may be nearer than `reach` (m) to one of the other, or to an image of it.
+    fn is_near(&self, other: &Self, reach: f64, period: &Period) -> bool {
+        let apart = period.shortest(self.centre - other.centre).abs() - self.half - other.half;
+        apart.max() < reach
     }
 }
 
@@ -92,6 +184,8 @@ pub(crate) struct CellGrid {
     /// Where the grains of each cell begin in `members`.
     starts: Vec<u32>,
     members: Vec<u32>,
+    /// Where they are, in the order of `members`.
+    places: Vec<Quad>,
     cell_of: Vec<u32>,
 }
 
@@ -145,9 +239,11 @@ impl CellGrid {
         }
         self.members.clear();
         self.members.resize(grains.len(), 0);
+        self.places.resize(grains.len(), Quad::ZERO);
         for (grain, &cell) in cell_of.iter().enumerate() {
             let next = &mut self.starts[cell as usize + 1];
             self.members[*next as usize] = grain as u32;
+            self.places[*next as usize] = *grains.place(grain);
             *next += 1;
         }
         self.cell_of = cell_of;
@@ -188,6 +284,7 @@ impl CellGrid {
         let from = keys.len();
         let i = i as u32;
         let place = grains.place(i as usize);
+        let here = [place; MOST_LANES];
         let [n_x, n_y, _] = self.axes.map(|axis| axis.n);
         let cell = self.cell(D::position(place));
         let around = |axis: usize| self.axes[axis].around(cell[axis]);
@@ -197,24 +294,22 @@ impl CellGrid {
                 for xs in around(0) {
                     let first = self.starts[row + xs.start] as usize;
                     let last = self.starts[row + xs.end] as usize;
-                    let later = self.members[first..last].iter().filter(|&&j| j > i);
-                    keys.extend(later.map(|&j| [i, j]));
+                    for at in (first..last).step_by(MOST_LANES) {
+                        let n = (last - at).min(MOST_LANES);
+                        let there = per_lane(|lane| &self.places[at + lane.min(n - 1)]);
+                        let near = D::are_near::<Eight>(&here, &there, &grains.period, margin);
+                        let mut near = near.bits() & ((1 << n) - 1);
+                        while near != 0 {
+                            let j = self.members[at + near.trailing_zeros() as usize];
+                            near &= near - 1;
+                            // Without a branch: every other j is below i, nobody knows which.
+                            keys.push([i, j]);
+                            keys.truncate(keys.len() - usize::from(j <= i));
+                        }
+                    }
                 }
             }
         }
-        let mut kept = from;
-        for at in (from..keys.len()).step_by(MOST_LANES) {
-            let n = (keys.len() - at).min(MOST_LANES);
-            let of_lane = per_lane(|lane| keys[at + lane.min(n - 1)]);
-            let places = per_lane(|lane| grains.place(of_lane[lane][1] as usize));
-            let here = [place; MOST_LANES];
-            let near = D::are_near::<Eight>(&here, &places, &grains.period, margin).bits();
-            for (lane, &key) in of_lane[..n].iter().enumerate() {
-                keys[kept] = key;
-                kept += (near >> lane & 1) as usize;
-            }
-        }
-        keys.truncate(kept);
         keys[from..].sort_unstable();
     }
 }

@@ -78,10 +78,16 @@ impl Contacts {
         self.stages.iter().fold(0.0, |reach, stage| reach.max(stage.reach(partner, radius_eff)))
     }
 
-    /// Lists again which grains are nearer to each other than `margin` (m).
-    pub(crate) fn list_pairs(&mut self, grains: &Grains, grid: &CellGrid, margin: f64) {
+    /// Lists again which grains are nearer to each other than `margin` (m), for the blocks with a mark.
+    pub(crate) fn list_pairs(
+        &mut self,
+        grains: &Grains,
+        grid: &CellGrid,
+        margin: f64,
+        marks: &[bool],
+    ) {
         let benches = &self.benches;
-        self.blocks.par_iter_mut().for_each(|block| {
+        marked(&mut self.blocks, marks).for_each(|block| {
             let Bench { keys, merger, .. } = &mut *benches.own();
             keys.clear();
             for i in block.first..(block.first + BLOCK).min(grains.len()) {
@@ -89,14 +95,20 @@ impl Contacts {
             }
             block.pairs.rekey(keys, merger);
         });
-        self.address_loads(grains.len());
+        self.address_loads(grains.len(), marks);
     }
 
-    /// Lists again which grains are nearer to `part` than `margin` (m).
-    pub(crate) fn list_surface(&mut self, grains: &Grains, part: (usize, &Part), margin: f64) {
+    /// Lists again which grains are nearer to `part` than `margin` (m), for the blocks with a mark.
+    pub(crate) fn list_surface(
+        &mut self,
+        grains: &Grains,
+        part: (usize, &Part),
+        margin: f64,
+        marks: &[bool],
+    ) {
         let (index, part) = part;
         let benches = &self.benches;
-        self.blocks.par_iter_mut().for_each(|block| {
+        marked(&mut self.blocks, marks).for_each(|block| {
             let bench = &mut *benches.own();
             let end = (block.first + BLOCK).min(grains.len());
             let here = block.first..end;
@@ -117,9 +129,9 @@ impl Contacts {
     }
 
     /// Says for every pair whose load its second grain has, and for every grain of a halo where the
-    /// block that owns it finds its load.
-    fn address_loads(&mut self, n_grains: usize) {
-        self.blocks.par_iter_mut().for_each(|block| {
+    /// block that owns it finds its load, after the blocks with a mark have been listed.
+    fn address_loads(&mut self, n_grains: usize, marks: &[bool]) {
+        marked(&mut self.blocks, marks).for_each(|block| {
             let own = block.first..(block.first + BLOCK).min(n_grains);
             let is_own = |j: u32| own.contains(&(j as usize));
             let partners = || block.pairs.keys().iter().map(|&[_, j]| j);
@@ -135,8 +147,8 @@ impl Contacts {
                     (own.len() + block.halo.partition_point(|&halo| halo < j)) as u32
                 }
             }));
-            block.inbox.clear();
         });
+        self.blocks.iter_mut().for_each(|block| block.inbox.clear());
         for from in 0..self.blocks.len() {
             let own = (self.blocks[from].first + BLOCK).min(n_grains) - self.blocks[from].first;
             for k in 0..self.blocks[from].halo.len() {
@@ -276,7 +288,7 @@ impl Contacts {
                 block.pairs = saved.pairs;
                 block.surfaces = saved.surfaces;
             }
-            self.address_loads(n_grains);
+            self.address_loads(n_grains, &vec![true; self.blocks.len()]);
         }
         fits
     }
@@ -324,6 +336,15 @@ impl Contacts {
             }
         }
     }
+}
+
+/// The blocks with a mark.
+fn marked<'a>(
+    blocks: &'a mut [Block],
+    marks: &'a [bool],
+) -> impl ParallelIterator<Item = &'a mut Block> {
+    let marked = blocks.par_iter_mut().zip(marks).filter(|(_, mark)| **mark);
+    marked.map(|(block, _)| block)
 }
 
 /// How many numbers each stage has in the record of two grains, and in that of a grain and a surface, which
