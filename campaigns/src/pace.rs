@@ -38,6 +38,10 @@ const OF_FURTHER_THREADS: f64 = 0.75;
 /// Grains from which on a bed is shared among threads to any use.
 const SHARED: u64 = 4000;
 
+/// What a whole bed takes over a column of it, per grain: it is at rest some steps later, and does not fit
+/// into the nearest cache (1.1 to 1.6 in five beds, `docs/scale.md`).
+const WHOLE_OVER_COLUMN: f64 = 1.35;
+
 /// Time for writing the five messages of a step (s): 0.6 million a second.
 const LOG_PER_STEP: f64 = 5.0 / 0.6e6;
 
@@ -120,7 +124,7 @@ impl Pace {
     #[must_use]
     pub fn preparation(&self, grains: u64, threads: usize) -> f64 {
         let work = self.settling_steps as f64 * grains as f64;
-        work / (self.settling_per_s * speed_up(grains, threads))
+        WHOLE_OVER_COLUMN * work / (self.settling_per_s * speed_up(grains, threads))
     }
 
     /// Time (s) for so many `steps` of an impact on it, with its log.
