@@ -8,10 +8,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use configs::engine::body::NoIntruder;
 use configs::engine::checkpoint::write_whole;
 use configs::engine::error::StepError;
 use configs::engine::grains::Space;
-use configs::run::{bed_file, bed_key};
+use configs::engine::world::World;
+use configs::run::{bed_file, bed_key, result_key};
 use configs::{BedSource, BuildError, GrainMedium, GrainModel};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -29,8 +31,8 @@ const MOST: u64 = 5000;
 /// How long a column may take.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Steps of a bed near rest whose time is taken.
-const LAST: usize = 1000;
+/// Steps of a bed at rest whose time is taken.
+const AT_REST: usize = 1000;
 
 /// Share of the pace of a second and every further thread, in a bed that is large enough to be shared.
 const OF_FURTHER_THREADS: f64 = 0.75;
@@ -52,7 +54,7 @@ pub struct Pace {
     pub settling_steps: u64,
     /// Grain-steps per second while it settles.
     pub settling_per_s: f64,
-    /// Grain-steps per second of a bed that is nearly at rest, as it is around an impact.
+    /// Grain-steps per second of a bed at rest under the laws, effects and forces of the run.
     pub resting_per_s: f64,
 }
 
@@ -98,26 +100,27 @@ impl Pace {
     fn measure(column: GrainModel<'_>) -> Result<Option<Self>, PaceError> {
         let Some(mut settling) = column.settling()? else { return Ok(None) };
         let grains = column.n_grains() as f64;
-        let start = Instant::now();
-        let mut times = vec![start];
+        let per_s = |steps: usize, from: Instant| {
+            grains * steps as f64 / from.elapsed().as_secs_f64().max(f64::MIN_POSITIVE)
+        };
+        let (start, mut steps) = (Instant::now(), 0);
         while !settling.is_at_rest() {
             settling.advance()?;
-            let now = Instant::now();
-            if now - start > PATIENCE {
+            steps += 1;
+            if start.elapsed() > PATIENCE {
                 return Ok(None);
             }
-            times.push(now);
         }
-        let (steps, end) = (times.len() - 1, times[times.len() - 1]);
-        let last = steps.min(LAST);
-        let per_s = |steps: usize, from: Instant| {
-            grains * steps as f64 / (end - from).as_secs_f64().max(f64::MIN_POSITIVE)
-        };
-        Ok((steps > 0).then(|| Self {
-            settling_steps: steps as u64,
-            settling_per_s: per_s(steps, start),
-            resting_per_s: per_s(last, times[steps - last]),
-        }))
+        let settling_per_s = per_s(steps, start);
+        let bed = column.bed(&settling.bed().resting());
+        let mut world = World::new(bed, Box::new(NoIntruder), column.time_step()?);
+        let start = Instant::now();
+        for _ in 0..AT_REST {
+            world.advance()?;
+        }
+        let resting_per_s = per_s(AT_REST, start);
+        let settling_steps = steps as u64;
+        Ok((steps > 0).then_some(Self { settling_steps, settling_per_s, resting_per_s }))
     }
 
     /// Time (s) for preparing a bed of so many `grains` on so many `threads`.
@@ -152,9 +155,16 @@ fn speed_up(grains: u64, threads: usize) -> f64 {
 /// In the cache.
 const FOLDER: &str = "paces";
 
+/// Of the bed and of what acts in it: beds settle without the effects of a run.
 fn file_of(model: GrainModel<'_>, folder: &Path) -> PathBuf {
-    let bed = bed_file(folder, &bed_key(model));
-    let name = bed.file_stem().unwrap_or_default().to_owned();
+    let medium = model.medium;
+    let laws = std::iter::once(&medium.contact_law).chain(&medium.effects);
+    let laws = laws.map(|law| (law.entry.name, &law.params));
+    let forces = medium.grain_forces.iter().map(|force| (force.entry.name, &force.params));
+    let at_work: Vec<(&str, Vec<(&str, f64)>)> =
+        laws.chain(forces).map(|(name, params)| (name, params.iter().collect())).collect();
+    let key = result_key(&format!("{:?}\n{at_work:?}", bed_key(model)));
+    let name = bed_file(folder, &key).file_stem().unwrap_or_default().to_owned();
     folder.join(FOLDER).join(name).with_extension("json")
 }
 
