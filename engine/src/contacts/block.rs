@@ -188,11 +188,10 @@ impl Block {
         for (row, (keys, records)) in rows.step_by(R::COUNT).zip(keys.zip(records)) {
             let ahead = row + ROWS_AHEAD;
             for &[_, j] in all.get(ahead..ahead + R::COUNT).unwrap_or_default() {
-                // SAFETY: tables hold grains of the bed alone, see [`Block::pairs`].
-                fetch(unsafe { grains.place_unchecked(j as usize) });
+                fetch(grains.place(j as usize));
             }
             let of_lane = lanes_of::<R, _>(keys);
-            // SAFETY: as above.
+            // SAFETY: tables hold grains of the bed alone, see [`Block::pairs`].
             let place = |side: usize| {
                 per_lane(|lane| unsafe { grains.place_unchecked(of_lane[lane][side] as usize) })
             };

@@ -51,13 +51,13 @@ impl Pairs<'_> {
 
     /// Has brought near what the contacts of `near` need.
     #[inline(always)]
-    #[expect(unsafe_code, reason = "measured: see docs/performance.md")]
     pub(super) fn fetch<D: Dimension<N>, const N: usize>(&self, near: &[Near]) {
         let moves = self.grains.moves::<D, N>();
         for near in near {
             for grain in near.grains {
-                // SAFETY: tables hold grains of the bed alone, and each of them has a motion.
-                unsafe { moves.get_unchecked(grain as usize) }.fetch();
+                if let Some(motion) = moves.get(grain as usize) {
+                    motion.fetch();
+                }
             }
             self.table.fetch(near.record);
         }
