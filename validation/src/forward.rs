@@ -37,6 +37,13 @@ pub trait Forward: Sync {
         let _ = (condition, effects);
         None
     }
+
+    /// How the observables differ from run to run, of a model that has runs of its own to tell it by: one column
+    /// per mode, of one standard deviation. `None` where [`Scatter`] says it.
+    fn modes_of_scatter(&self, condition: usize) -> Option<&DMatrix<f64>> {
+        let _ = condition;
+        None
+    }
 }
 
 /// Where a prediction is asked for.

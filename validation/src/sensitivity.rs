@@ -86,6 +86,7 @@ enum Input {
     Level,
     Along(usize),
     Sideways(usize),
+    Mode,
 }
 
 /// What differs from run to run under one condition, and how the observables follow.
@@ -112,13 +113,16 @@ impl Sensitivity {
         reach: f64,
     ) -> Result<Self, PredictError> {
         let coefficients = forward.n_scattering_coefficients();
+        let mean = point.predict(forward, condition)?;
+        if let Some(modes) = forward.modes_of_scatter(condition) {
+            return Ok(Self::of_modes(modes, mean));
+        }
         let inputs: Vec<Input> = (0..coefficients)
             .map(Input::Coefficient)
             .chain([Input::Speed, Input::Level])
             .chain((0..ALONG).map(Input::Along))
             .chain((0..SIDEWAYS).map(Input::Sideways))
             .collect();
-        let mean = point.predict(forward, condition)?;
         let mut slope = DMatrix::zeros(mean.len(), inputs.len());
         let mut curvature = slope.clone();
         for (column, input) in inputs.iter().enumerate() {
@@ -133,6 +137,15 @@ impl Sensitivity {
         Ok(Self { inputs, mean, slope, curvature })
     }
 
+    /// Of runs that scatter by `modes` around `mean`: the scatter of the path stands for the size of all
+    /// modes, and is that of the greatest of the numbers.
+    fn of_modes(modes: &DMatrix<f64>, mean: DVector<f64>) -> Self {
+        let relative = relative_size(modes, &mean);
+        let inputs = vec![Input::Mode; modes.ncols()];
+        let (slope, curvature) = (modes / relative, DMatrix::zeros(mean.len(), modes.ncols()));
+        Self { inputs, mean, slope, curvature }
+    }
+
     /// Standard deviation of each input.
     #[must_use]
     pub fn spread(&self, spread: &Spread) -> DVector<f64> {
@@ -144,6 +157,7 @@ impl Sensitivity {
                 Input::Level => spread.level,
                 Input::Along(_) => spread.path,
                 Input::Sideways(_) => 0.5 * spread.path,
+                Input::Mode => spread.path,
             }),
         )
     }
@@ -164,6 +178,7 @@ impl Input {
             Self::Level => 2e-4,
             Self::Along(_) => 0.1,
             Self::Sideways(_) => 0.05,
+            Self::Mode => 1.0,
         }
     }
 
@@ -179,6 +194,7 @@ impl Input {
             Self::Level => scatter.level = value,
             Self::Along(index) => scatter.along = only(ALONG, index),
             Self::Sideways(index) => scatter.sideways = only(SIDEWAYS, index),
+            Self::Mode => {}
         }
         scatter
     }
@@ -246,4 +262,10 @@ pub fn bend_response(
         column.copy_from(&((bent - &mean) / STEP));
     }
     Ok(response)
+}
+
+/// Size of `modes` over that of `mean` (–).
+fn relative_size(modes: &DMatrix<f64>, mean: &DVector<f64>) -> f64 {
+    let size = modes.norm() / mean.norm();
+    if size > 0.0 && size.is_finite() { size } else { 1.0 }
 }

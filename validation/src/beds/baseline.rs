@@ -10,6 +10,7 @@ use configs::{LoadOptions, Model, ModelSource, find_shipped};
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
+use super::modes::Modes;
 use super::record::Record;
 use super::stand::Stand;
 use crate::bench::{Bench, BenchError, Fitted};
@@ -59,6 +60,8 @@ pub(super) struct Baseline {
     pub(super) stand_in: StandIn,
     /// The force law, fitted to the runs.
     pub(super) fitted: Fitted,
+    /// How its runs scatter.
+    pub(super) modes: Modes,
     /// Per condition: covariance of the numbers of one run. Empty for those that were not run.
     pub(super) spread: Vec<DMatrix<f64>>,
 }
@@ -93,13 +96,13 @@ impl Baseline {
         let forward = ResistiveForward::new(&law, &set, layouts)?;
         let bench = Bench { set: &set, observed: &observed, forward: &forward };
         let fitted = bench.fit_from(&Point::start(&forward), &Noise::guess(&instrument))?;
+        let modes = Modes::of(&observed);
         let mut spread = vec![DMatrix::zeros(0, 0); observed.conditions.len()];
         for &at in &observed.fit {
-            let sensitivity = bench.sensitivity(&fitted.fit.point, at)?;
-            spread[at] = fitted.noise.covariance(&observed.conditions[at], &sensitivity);
+            spread[at] = modes.covariance(at);
         }
         let point = fitted.fit.point.clone();
-        Ok(Self { observed, stand_in: StandIn { forward, point }, fitted, spread })
+        Ok(Self { observed, stand_in: StandIn { forward, point }, fitted, modes, spread })
     }
 }
 

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
 
 use super::baseline::Baseline;
+use super::response::Response;
 use super::switches::Switch;
 use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
 use crate::held_out::noise_floor;
@@ -29,28 +30,6 @@ const CONSTANT: [&str; 3] = ["rail-friction", "cohesion-dmt", "capillary-bridge"
 
 /// A derivative by an amplitude is taken over this share of the one that is screened.
 const STEP: f64 = 1e-2;
-
-/// How the observables of one condition answer to the amplitude q of a switch: slope q + curvature q².
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Response {
-    pub(super) slope: DVector<f64>,
-    pub(super) curvature: DVector<f64>,
-    /// Covariance of the two, in that of one run.
-    pub(super) variance: [[f64; 2]; 2],
-}
-
-impl Response {
-    /// At the amplitude `q`.
-    pub(super) fn at(&self, q: f64) -> DVector<f64> {
-        q * &self.slope + (q * q) * &self.curvature
-    }
-
-    /// Variance at the amplitude `q`, in that of one run.
-    fn variance_at(&self, q: f64) -> f64 {
-        let [[a, b], [_, c]] = self.variance;
-        q * q * (a + 2.0 * b * q + c * q * q)
-    }
-}
 
 /// A switch, and what was found of it.
 pub(super) struct Screened {
@@ -313,11 +292,15 @@ impl Forward for BedForward {
         if runs == 0 {
             return None;
         }
+        let spread = &self.baseline.spread[condition];
         let of_effects = self.at_work(&[], effects).filter_map(|(switch, q)| {
             let response = self.screened[switch].responses[condition].as_ref()?;
-            Some(response.variance_at(q))
+            Some(response.covariance_at(q, spread))
         });
-        let variance = 1.0 / runs as f64 + of_effects.sum::<f64>();
-        Some(variance * &self.baseline.spread[condition])
+        Some(of_effects.fold(spread / runs as f64, |sum, one| sum + one))
+    }
+
+    fn modes_of_scatter(&self, condition: usize) -> Option<&DMatrix<f64>> {
+        Some(&self.baseline.modes.columns[condition])
     }
 }

@@ -1,10 +1,10 @@
 //! A leading switch alone, at several amplitudes, from the model as it stands.
 
-use nalgebra::{DVector, Matrix2, Vector2};
+use nalgebra::{DMatrix, DVector};
 
-use super::emulator::Response;
 use super::job::Job;
 use super::record::Record;
+use super::response::{BetweenDraws, Line, Response, deviations};
 use super::stand::{Draw, Stand, StandError};
 use super::switches::Switch;
 use crate::measurement::Condition;
@@ -24,7 +24,8 @@ pub(super) struct LineSearch<'a> {
     pub(super) switch: &'static Switch,
     pub(super) amplitudes: Vec<f64>,
     pub(super) conditions: &'a [usize],
-    pub(super) draws: &'a [Draw],
+    /// One list per condition.
+    pub(super) draws: &'a [Vec<Draw>],
 }
 
 /// What a line search holds its runs against.
@@ -34,6 +35,8 @@ pub(super) struct Against<'a> {
     pub(super) baseline: Vec<Vec<Option<&'a Record>>>,
     /// Means of the baseline per condition of the set.
     pub(super) means: Vec<&'a DVector<f64>>,
+    /// Covariance of a run per condition of the set.
+    pub(super) spread: &'a [DMatrix<f64>],
     /// Correlation of runs on one draw.
     pub(super) correlation: f64,
     /// Whether runs are held against the baseline on their own draw.
@@ -46,7 +49,7 @@ impl<'a> LineSearch<'a> {
         switch: &'static Switch,
         guess: f64,
         conditions: &'a [usize],
-        draws: &'a [Draw],
+        draws: &'a [Vec<Draw>],
     ) -> Self {
         let size = guess.abs().max(LEAST * switch.screen);
         let guess = if guess < 0.0 { -size } else { size };
@@ -61,7 +64,7 @@ impl<'a> LineSearch<'a> {
     pub(super) fn once(
         switch: &'static Switch,
         conditions: &'a [usize],
-        draws: &'a [Draw],
+        draws: &'a [Vec<Draw>],
     ) -> Self {
         Self { switch, amplitudes: vec![switch.screen], conditions, draws }
     }
@@ -76,8 +79,8 @@ impl<'a> LineSearch<'a> {
     /// The impacts: condition after condition, draw after draw, amplitude after amplitude.
     pub(super) fn jobs(&self, stand: &Stand<'_>) -> Result<Vec<Job>, StandError> {
         let mut jobs = Vec::new();
-        for &condition in self.conditions {
-            for &draw in self.draws {
+        for (&condition, draws) in self.conditions.iter().zip(self.draws) {
+            for &draw in draws {
                 for &q in &self.amplitudes {
                     let variation = self.switch.change(stand.grains(), q);
                     jobs.push(stand.job(condition, draw, &variation)?);
@@ -94,88 +97,56 @@ impl<'a> LineSearch<'a> {
         records: &[Option<Record>],
         against: &Against<'_>,
     ) -> Vec<Option<Response>> {
-        let mut responses = vec![None; against.layouts.len()];
-        let per_condition = self.draws.len() * self.amplitudes.len();
+        let n_draws = self.draws.first().map_or(0, Vec::len);
+        let per_condition = n_draws * self.amplitudes.len();
+        let mut found = Vec::with_capacity(self.conditions.len());
+        let mut scatter = BetweenDraws::default();
         for (at, &condition) in self.conditions.iter().enumerate() {
             let records = &records[at * per_condition..(at + 1) * per_condition];
             let of_set = (&stand.set.conditions[condition], stand);
-            let found = self.differences((at, condition), of_set, records, against);
-            let baseline = against.baseline[at].len().max(1) as f64;
-            responses[condition] = quadratic(&found, against.noise(baseline));
+            let by_draw = self.differences((at, condition), of_set, records, against);
+            let whole = by_draw.iter().filter(|found| found.len() == self.amplitudes.len());
+            let each: Vec<Line> = whole.filter_map(|found| Line::through(found)).collect();
+            let deviations = deviations(&each);
+            scatter.learn(&deviations, &against.spread[condition]);
+            found.push((at, by_draw.concat(), deviations));
+        }
+        let mut responses = vec![None; against.layouts.len()];
+        for (at, found, deviations) in found {
+            responses[self.conditions[at]] = Line::through(&found).map(|line| {
+                let expected = line.inverse * against.noise(at);
+                let variance = scatter.of_mean(expected, deviations.len());
+                let [slope, curvature] = line.terms;
+                Response { slope, curvature, variance, deviations }
+            });
         }
         responses
     }
 
-    /// Amplitudes and differences from the baseline.
+    /// Amplitudes and differences from the baseline, draw by draw.
     fn differences(
         &self,
         (at, condition): (usize, usize),
         (of_set, stand): (&Condition, &Stand<'_>),
         records: &[Option<Record>],
         against: &Against<'_>,
-    ) -> Vec<(f64, DVector<f64>)> {
+    ) -> Vec<Vec<(f64, DVector<f64>)>> {
         let numbers =
             |record: &Record| record.observables(&against.layouts[condition], of_set, stand.set);
-        let mut found = Vec::new();
-        let n = self.amplitudes.len();
-        for (draw, records) in records.chunks(n).enumerate() {
+        let of_draw = |(draw, records): (usize, &[Option<Record>])| {
             let own = against.baseline[at].get(draw).copied().flatten().filter(|_| against.paired);
             let base = own.map_or_else(|| against.means[condition].clone(), numbers);
             let ended = self.amplitudes.iter().zip(records);
-            found.extend(
-                ended.filter_map(|(&q, record)| Some((q, numbers(record.as_ref()?) - &base))),
-            );
-        }
-        found
+            ended.filter_map(|(&q, record)| Some((q, numbers(record.as_ref()?) - &base))).collect()
+        };
+        records.chunks(self.amplitudes.len()).enumerate().map(of_draw).collect()
     }
 }
 
 impl Against<'_> {
-    /// Variance of a difference, in that of a run, where the baseline has so many runs.
-    fn noise(&self, baseline: f64) -> f64 {
-        if self.paired { 2.0 * (1.0 - self.correlation) } else { 1.0 + 1.0 / baseline }
-    }
-}
-
-/// slope q + curvature q² through `found`, whose differences scatter by `noise` times the covariance of a
-/// run; a straight line where there is one amplitude, none where there is nothing.
-fn quadratic(found: &[(f64, DVector<f64>)], noise: f64) -> Option<Response> {
-    let first = &found.first()?.1;
-    let mut gram = Matrix2::zeros();
-    let (mut once, mut twice) = (DVector::zeros(first.len()), DVector::zeros(first.len()));
-    for (q, difference) in found {
-        let powers = Vector2::new(*q, q * q);
-        gram += powers * powers.transpose();
-        once += *q * difference;
-        twice += (q * q) * difference;
-    }
-    let several = found.iter().any(|(q, _)| q.to_bits() != found[0].0.to_bits());
-    let Some(inverse) = gram.try_inverse().filter(|_| several) else {
-        let square = gram[(0, 0)];
-        let variance = [[noise / square, 0.0], [0.0, 0.0]];
-        return Some(Response { slope: once / square, curvature: first.map(|_| 0.0), variance });
-    };
-    let mix = |row: usize| inverse[(row, 0)] * &once + inverse[(row, 1)] * &twice;
-    let entry = |i, j| noise * inverse[(i, j)];
-    let variance = [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]];
-    Some(Response { slope: mix(0), curvature: mix(1), variance })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_parabola_through_nothing_is_found_and_a_single_amplitude_gives_a_line() {
-        let value = |q: f64| DVector::from_vec(vec![2.0 * q - q * q, -q]);
-        let found: Vec<_> = [0.1, 0.2, 0.3, 0.1].iter().map(|&q| (q, value(q))).collect();
-        let response = quadratic(&found, 1.0).unwrap();
-        // The normal equations of three amplitudes of 0.1 lose four digits.
-        assert!((response.slope - DVector::from_vec(vec![2.0, -1.0])).amax() < 1e-11);
-        assert!((response.curvature - DVector::from_vec(vec![-1.0, 0.0])).amax() < 1e-10);
-        let single = quadratic(&found[..1], 1.0).unwrap();
-        assert!((single.slope[1] + 1.0).abs() < 1e-14 && single.curvature.amax() < 1e-300);
-        assert!((single.variance[0][0] - 100.0).abs() < 1e-11);
-        assert!(quadratic(&[], 1.0).is_none());
+    /// Variance of a difference under the condition at place `at` of the search, in that of a run.
+    fn noise(&self, at: usize) -> f64 {
+        let runs = self.baseline[at].len().max(1) as f64;
+        if self.paired { 2.0 * (1.0 - self.correlation) } else { 1.0 + 1.0 / runs }
     }
 }

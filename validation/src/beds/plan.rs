@@ -59,8 +59,8 @@ pub const SIZES: [Size; 4] = [
     },
     Size {
         name: "standard",
-        conditions: 4,
-        draws: 8,
+        conditions: 6,
+        draws: 6,
         repeats: 2,
         line_draws: 4,
         confirm_conditions: 3,
@@ -133,13 +133,13 @@ pub struct PlannedStage {
     pub seconds: f64,
 }
 
-/// Draws of the stages.
+/// Draws of the stages, condition by condition.
 pub(super) struct Draws {
     /// Of the model as it stands, of the screening and of line searches: what is held against each other
     /// lies on the same beds.
-    pub(super) fit: Vec<Draw>,
+    pub(super) fit: Vec<Vec<Draw>>,
     /// Of the confirmation: on fresh beds.
-    pub(super) confirm: Vec<Draw>,
+    pub(super) confirm: Vec<Vec<Draw>>,
 }
 
 impl Plan {
@@ -228,7 +228,7 @@ impl Plan {
         let Size { line_draws, confirm_draws, .. } = self.size;
         let lines = SEARCHES * LEADERS * line_search::AMPLITUDES * line_draws * self.fit.len();
         let confirm = 2 * self.confirm.len() * confirm_draws;
-        let beds = if confirm > 0 { stand.n_beds(confirm_draws) } else { 0 };
+        let beds = if confirm > 0 { stand.n_beds(confirm_draws, self.confirm.len()) } else { 0 };
         Ok(vec![
             stage("scatter of beds", &baseline)?,
             stage("correlation of pairs", &again)?,
@@ -283,19 +283,20 @@ impl Plan {
 
     pub(super) fn draws(&self, stand: &Stand<'_>) -> Draws {
         let Size { draws, confirm_draws, .. } = self.size;
-        let behind = stand.n_beds(draws);
-        Draws { fit: stand.draws(0, draws), confirm: stand.draws(behind, confirm_draws) }
+        let behind = stand.n_beds(draws, self.fit.len());
+        Draws {
+            fit: stand.draws(0, draws, self.fit.len()),
+            confirm: stand.draws(behind, confirm_draws, self.confirm.len()),
+        }
     }
 
     /// The model as it stands: condition after condition, draw after draw.
     pub(super) fn baseline_jobs(
         &self,
         stand: &Stand<'_>,
-        draws: &[Draw],
+        draws: &[Vec<Draw>],
     ) -> Result<Vec<Job>, BedError> {
-        let plain = Variation::default();
-        let all = self.fit.iter().flat_map(|&at| draws.iter().map(move |&draw| (at, draw)));
-        Ok(all.map(|(at, draw)| stand.job(at, draw, &plain)).collect::<Result<_, _>>()?)
+        Ok(stand.jobs(&self.fit, draws, &Variation::default())?)
     }
 
     /// The middle one of the conditions that are fitted to, as a place in [`Plan::fit`].
@@ -308,19 +309,17 @@ impl Plan {
     pub(super) fn rerun_jobs(
         &self,
         stand: &Stand<'_>,
-        draws: &[Draw],
+        draws: &[Vec<Draw>],
     ) -> Result<Vec<Job>, BedError> {
         const LITTLE: f64 = 0.02;
         let known = ["restitution", "grain-friction"];
         let switch = SWITCHES
             .iter()
             .find(|one| known.contains(&one.id) && one.lacks(stand.grains()).is_none());
-        let (Some(switch), Some(&middle)) = (switch, self.fit.get(self.middle())) else {
-            return Ok(Vec::new());
-        };
+        let middle = self.middle()..(self.middle() + 1).min(self.fit.len());
+        let Some(switch) = switch else { return Ok(Vec::new()) };
         let change = switch.change(stand.grains(), LITTLE);
-        let jobs = draws.iter().map(|&draw| stand.job(middle, draw, &change));
-        Ok(jobs.collect::<Result<_, _>>()?)
+        Ok(stand.jobs(&self.fit[middle.clone()], &draws[middle], &change)?)
     }
 
     pub(super) fn screening(&self, stand: &Stand<'_>) -> Screening {
@@ -329,7 +328,7 @@ impl Plan {
             if candidates.is_empty() { Vec::new() } else { [&free[..], candidates].concat() };
         let switches = switches(stand, &only);
         let draws = self.draws(stand).fit;
-        Screening::new(switches, self.fit.clone(), self.size.repeats, &draws)
+        Screening::new(switches, self.fit.clone(), self.size.repeats, draws)
     }
 }
 
@@ -338,7 +337,7 @@ impl Plan {
 fn switches(stand: &Stand<'_>, only: &[String]) -> Vec<&'static Switch> {
     let wanted = |one: &&Switch| only.is_empty() || only.iter().any(|id| id == one.id);
     let of_model = |one: &&Switch| one.lacks(stand.grains()).is_none();
-    let first = stand.draws(0, 1);
+    let first = stand.draws(0, 1, 1).concat();
     let is_sound = |one: &&Switch| {
         let change = one.change(stand.grains(), one.screen);
         first.iter().all(|&draw| stand.job(0, draw, &change).is_ok())

@@ -116,7 +116,7 @@ impl Recorder {
 impl Record {
     /// Depth and range (m) at `time` (s): before contact those of the free fall under `condition`,
     /// behind the end the last ones.
-    fn at(&self, time: f64, condition: &Condition, gravity: f64) -> (f64, f64) {
+    pub(super) fn at(&self, time: f64, condition: &Condition, gravity: f64) -> (f64, f64) {
         if time < 0.0 {
             let (sine, cosine) = libm::sincos(condition.angle_deg.to_radians());
             let down = condition.speed * sine * time + 0.5 * gravity * time * time;

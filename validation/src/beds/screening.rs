@@ -3,9 +3,10 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::design::folded;
-use super::emulator::{Response, Screened};
+use super::emulator::Screened;
 use super::job::Job;
 use super::record::Record;
+use super::response::Response;
 use super::stand::{Draw, Stand, StandError};
 use super::switches::Switch;
 use super::variation::Variation;
@@ -22,8 +23,10 @@ const SEEN: f64 = 2.0;
 pub(super) struct Screening {
     pub(super) switches: Vec<&'static Switch>,
     pub(super) conditions: Vec<usize>,
-    /// Which switches are on, and the draw, of every setting.
-    settings: Vec<(Vec<bool>, Draw)>,
+    /// One list per condition.
+    draws: Vec<Vec<Draw>>,
+    /// Which switches are on, and the number of the draw, of every setting.
+    settings: Vec<(Vec<bool>, usize)>,
 }
 
 impl Screening {
@@ -32,15 +35,16 @@ impl Screening {
         switches: Vec<&'static Switch>,
         conditions: Vec<usize>,
         repeats: usize,
-        draws: &[Draw],
+        draws: Vec<Vec<Draw>>,
     ) -> Self {
+        let n_draws = draws.first().map_or(1, Vec::len);
         let rows = folded(switches.len());
         let all: Vec<Vec<bool>> = (0..repeats).flat_map(|_| rows.clone()).collect();
         let runs_per_draw = 2 * PAIRS_PER_DRAW;
         let settings = all.into_iter().enumerate();
-        let draw = |at: usize| draws[(at / runs_per_draw) % draws.len()];
+        let draw = |at: usize| (at / runs_per_draw) % n_draws;
         let settings = settings.map(|(at, row)| (row, draw(at))).collect();
-        Self { switches, conditions, settings }
+        Self { switches, conditions, draws, settings }
     }
 
     /// How many impacts that is.
@@ -52,13 +56,13 @@ impl Screening {
     pub(super) fn jobs(&self, stand: &Stand<'_>) -> Result<Vec<Job>, StandError> {
         let model = stand.grains();
         let mut jobs = Vec::with_capacity(self.n_runs());
-        for &condition in &self.conditions {
+        for (&condition, draws) in self.conditions.iter().zip(&self.draws) {
             for (row, draw) in &self.settings {
                 let on = self.switches.iter().zip(row).filter(|(_, on)| **on);
                 let variation = on.fold(Variation::default(), |all, (switch, _)| {
                     all.and(switch.change(model, switch.screen))
                 });
-                jobs.push(stand.job(condition, *draw, &variation)?);
+                jobs.push(stand.job(condition, draws[*draw], &variation)?);
             }
         }
         Ok(jobs)
@@ -93,7 +97,8 @@ impl Screening {
                 let own = own / (switch.screen * switch.screen);
                 let curvature = slope.map(|_| 0.0);
                 let variance = [[own, 0.0], [0.0, 0.0]];
-                responses[condition] = Some(Response { slope, curvature, variance });
+                let deviations = Vec::new();
+                responses[condition] = Some(Response { slope, curvature, variance, deviations });
             }
             screened(switch, responses, (spread, self.n_runs()))
         });
@@ -108,16 +113,14 @@ impl Screening {
         (condition, layout): (usize, &Layout),
         records: &[Option<Record>],
     ) -> Option<MainEffects> {
-        let mut draws: Vec<Draw> = self.settings.iter().map(|(_, draw)| *draw).collect();
-        draws.sort_by_key(|draw| (draw.seed, draw.place));
-        draws.dedup();
-        let columns = self.switches.len() + draws.len();
+        let draws = 1 + self.settings.iter().map(|(_, draw)| *draw).max()?;
+        let columns = self.switches.len() + draws;
         let (mut rows, mut found) = (Vec::new(), Vec::new());
         for ((on, draw), record) in self.settings.iter().zip(records) {
             let Some(record) = record else { continue };
-            let level = |other: &Draw| if other == draw { 1.0 } else { 0.0 };
+            let level = |other: usize| if other == *draw { 1.0 } else { 0.0 };
             let on = on.iter().map(|&on| if on { 1.0 } else { 0.0 });
-            rows.push(DVector::from_iterator(columns, on.chain(draws.iter().map(level))));
+            rows.push(DVector::from_iterator(columns, on.chain((0..draws).map(level))));
             let condition = &stand.set.conditions[condition];
             found.push(record.observables(layout, condition, stand.set));
         }
@@ -139,10 +142,11 @@ pub(super) fn screened(
 ) -> Screened {
     let (mut signal, mut freedom) = (0.0, 0.0_f64);
     for (response, spread) in responses.iter().zip(spread) {
-        let Some(Response { slope, variance, .. }) = response else { continue };
-        if let Some(factor) = Cholesky::new(variance[0][0] * spread) {
-            signal += slope.dot(&factor.solve(slope));
-            freedom += slope.len() as f64;
+        let Some(response) = response else { continue };
+        if let Some(factor) = Cholesky::new(response.covariance_at(switch.screen, spread)) {
+            let change = response.at(switch.screen);
+            signal += change.dot(&factor.solve(&change));
+            freedom += change.len() as f64;
         }
     }
     let clear = (signal - freedom) / (2.0 * freedom).sqrt().max(1.0);

@@ -18,8 +18,8 @@ use crate::measurement::{Condition, Geometry, MeasurementSet};
 /// Most impacts on one bed, side by side.
 const MOST_PLACES: usize = 4;
 
-/// Fewest beds of several draws.
-const LEAST_BEDS: usize = 3;
+/// Most beds per draw of a condition: what settles is then no more work than what falls on it.
+const MOST_BEDS: usize = 2;
 
 /// Least distance of two of them, in diameters of the intruder: beyond it they move other grains.
 const APART: f64 = 2.0;
@@ -135,23 +135,23 @@ impl<'a> Stand<'a> {
         self.n_places
     }
 
-    /// `n` draws on the beds from number `first` on: each bed once, then each a second time at another
-    /// place, and so on. Places of one bed have in common what beds differ by as a whole, so that three
-    /// beds are taken at least.
+    /// `n` draws for each of so many `conditions`, on the beds from number `first` on. Those of one
+    /// condition are on beds of their own, each. Conditions share beds, not places, as long as there are any
+    /// that are fresh: what falls on the same grains misses by the same.
     #[must_use]
-    pub fn draws(&self, first: usize, n: usize) -> Vec<Draw> {
-        let beds = self.n_beds(n);
+    pub fn draws(&self, first: usize, n: usize, conditions: usize) -> Vec<Vec<Draw>> {
+        let beds = self.n_beds(n, conditions);
         let draw = |at: usize| Draw {
             seed: self.model.run.seed + (first + at % beds) as u64,
-            place: at / beds,
+            place: (at / beds) % self.n_places,
         };
-        (0..n).map(draw).collect()
+        (0..conditions).map(|one| (one * n..(one + 1) * n).map(draw).collect()).collect()
     }
 
-    /// How many beds `n` draws are on.
+    /// How many beds `n` draws for each of so many `conditions` are on.
     #[must_use]
-    pub fn n_beds(&self, n: usize) -> usize {
-        n.div_ceil(self.n_places).max(n.min(LEAST_BEDS))
+    pub fn n_beds(&self, n: usize, conditions: usize) -> usize {
+        (n * conditions).div_ceil(self.n_places).clamp(n, MOST_BEDS * n)
     }
 
     /// The impact of condition `condition` of the set at `draw`, with `variation`.
@@ -180,6 +180,22 @@ impl<'a> Stand<'a> {
                 .map_err(|source| StandError::Config { condition: of_condition.id.clone(), source })
         };
         Ok(Job { model: load(during)?, bed: load(before)?, expected: self.expected[condition] })
+    }
+
+    /// The impacts under `conditions`, each on its own of `draws`, with `variation`: condition after
+    /// condition, draw after draw.
+    ///
+    /// # Errors
+    /// If one is no model.
+    pub fn jobs(
+        &self,
+        conditions: &[usize],
+        draws: &[Vec<Draw>],
+        variation: &Variation,
+    ) -> Result<Vec<Job>, StandError> {
+        let each = conditions.iter().zip(draws);
+        let all = each.flat_map(|(&at, draws)| draws.iter().map(move |&draw| (at, draw)));
+        all.map(|(at, draw)| self.job(at, draw, variation)).collect()
     }
 
     /// The model with `variation`, complete and in SI.

@@ -7,11 +7,12 @@ use thiserror::Error;
 use super::baseline::{Baseline, BaselineError};
 use super::campaign::{CampaignError, Impacts};
 use super::confirmation::Confirmation;
-use super::emulator::{BedForward, Response, Screened};
+use super::emulator::{BedForward, Screened};
 use super::job::Job;
 use super::line_search::{Against, LineSearch};
 use super::plan::{LEADERS, Plan, SEARCHES};
 use super::record::Record;
+use super::response::Response;
 use super::screening::screened;
 use super::stand::{Draw, Stand, StandError};
 use super::switches::Switch;
@@ -31,7 +32,7 @@ const PAIRED: f64 = 0.5;
 
 /// Where they correlate more than this, effects are screened one at a time: what each does alone is worth
 /// more than what half of the runs of a design would save.
-const ALONE: f64 = 0.8;
+const ALONE: f64 = 0.5;
 
 /// Draws of a comparison.
 pub const COMPARED: usize = 6;
@@ -103,10 +104,20 @@ pub fn bed_forward(
 /// # Errors
 /// If a condition is no model.
 pub fn compare_jobs(stand: &Stand<'_>, observed: &Observed) -> Result<Vec<Job>, BedError> {
-    let conditions = observed.fit.iter().chain(&observed.holdout);
-    let (draws, plain) = (stand.draws(0, COMPARED), Variation::default());
-    let all = conditions.flat_map(|&at| draws.iter().map(move |&draw| (at, draw)));
-    Ok(all.map(|(at, draw)| stand.job(at, draw, &plain)).collect::<Result<_, _>>()?)
+    let conditions = [&observed.fit[..], &observed.holdout].concat();
+    let draws = stand.draws(0, COMPARED, conditions.len());
+    Ok(stand.jobs(&conditions, &draws, &Variation::default())?)
+}
+
+/// Impacts of the model as it stands, which others are held against.
+#[derive(Clone, Copy)]
+struct Standing<'a> {
+    /// One list per condition.
+    draws: &'a [Vec<Draw>],
+    /// Likewise; none where one did not end.
+    runs: &'a [Vec<Option<Record>>],
+    /// Of two runs on one draw.
+    correlation: f64,
 }
 
 /// A diagnosis under way.
@@ -148,7 +159,7 @@ impl Work<'_> {
         let jobs = self.plan.baseline_jobs(self.stand, &draws.fit)?;
         let records = self.run(&jobs)?;
         let runs: Vec<Vec<Option<Record>>> =
-            records.chunks(draws.fit.len()).map(<[_]>::to_vec).collect();
+            records.chunks(self.plan.size.draws).map(<[_]>::to_vec).collect();
         let correlation = self.correlation(&draws.fit, &runs)?;
         let mut by_condition = vec![Vec::new(); self.layouts.len()];
         for (&condition, runs) in self.plan.fit.iter().zip(&runs) {
@@ -158,9 +169,9 @@ impl Work<'_> {
 
         let screening = self.plan.screening(self.stand);
         let paired = correlation.unwrap_or(0.0).clamp(0.0, 0.9);
+        let standing = Standing { draws: &draws.fit, runs: &runs, correlation: paired };
         let screened = if paired > ALONE {
-            let known = (&draws.fit[..], &runs[..], paired);
-            self.one_at_a_time(&screening.switches, &baseline, known)?
+            self.one_at_a_time(&screening.switches, &baseline, standing)?
         } else {
             let records = self.run(&screening.jobs(self.stand)?)?;
             let scatter = (paired, &baseline.spread[..]);
@@ -178,7 +189,7 @@ impl Work<'_> {
             }
             for (at, guess) in leaders {
                 searched.push(at);
-                self.refine(&mut forward, (at, guess), (&draws.fit, &runs), paired)?;
+                self.refine(&mut forward, (at, guess), standing)?;
             }
             diagnosis = self.judge(&forward)?;
         }
@@ -203,7 +214,7 @@ impl Work<'_> {
     /// parameter changes the scatter. None from fewer than three pairs.
     fn correlation(
         &mut self,
-        draws: &[Draw],
+        draws: &[Vec<Draw>],
         runs: &[Vec<Option<Record>>],
     ) -> Result<Option<f64>, BedError> {
         let again = self.plan.rerun_jobs(self.stand, draws)?;
@@ -231,13 +242,11 @@ impl Work<'_> {
         &mut self,
         forward: &mut BedForward,
         (at, guess): (usize, f64),
-        (draws, runs): (&[Draw], &[Vec<Option<Record>>]),
-        correlation: f64,
+        standing: Standing<'_>,
     ) -> Result<(), BedError> {
-        let draws = &draws[..self.plan.size.line_draws.min(draws.len())];
-        let fit = self.plan.fit.clone();
-        let search = LineSearch::around(forward.screened()[at].switch, guess, &fit, draws);
-        let Some(responses) = self.search(&search, forward.baseline(), (runs, correlation))? else {
+        let (draws, fit) = (self.searched(standing.draws), self.plan.fit.clone());
+        let search = LineSearch::around(forward.screened()[at].switch, guess, &fit, &draws);
+        let Some(responses) = self.search(&search, forward.baseline(), standing)? else {
             return Ok(());
         };
         let tried = search.tried();
@@ -245,20 +254,25 @@ impl Work<'_> {
         Ok(())
     }
 
+    /// Those of `draws` that a switch alone is tried on.
+    fn searched(&self, draws: &[Vec<Draw>]) -> Vec<Vec<Draw>> {
+        let most = self.plan.size.line_draws;
+        draws.iter().map(|draws| draws[..most.min(draws.len())].to_vec()).collect()
+    }
+
     /// What every switch does alone, at the amplitude that is screened.
     fn one_at_a_time(
         &mut self,
         switches: &[&'static Switch],
         baseline: &Baseline,
-        (draws, runs, correlation): (&[Draw], &[Vec<Option<Record>>], f64),
+        standing: Standing<'_>,
     ) -> Result<Vec<Screened>, BedError> {
-        let draws = &draws[..self.plan.size.line_draws.min(draws.len())];
-        let fit = self.plan.fit.clone();
+        let (draws, fit) = (self.searched(standing.draws), self.plan.fit.clone());
         let mut all = Vec::with_capacity(switches.len());
-        let runs_of_all = switches.len() * draws.len() * fit.len();
+        let runs_of_all = switches.len() * draws.iter().map(Vec::len).sum::<usize>();
         for &switch in switches {
-            let search = LineSearch::once(switch, &fit, draws);
-            let found = self.search(&search, baseline, (runs, correlation))?;
+            let search = LineSearch::once(switch, &fit, &draws);
+            let found = self.search(&search, baseline, standing)?;
             let responses = found.unwrap_or_else(|| vec![None; self.layouts.len()]);
             all.push(screened(switch, responses, (&baseline.spread, runs_of_all)));
         }
@@ -271,11 +285,11 @@ impl Work<'_> {
         &mut self,
         search: &LineSearch<'_>,
         baseline: &Baseline,
-        (runs, correlation): (&[Vec<Option<Record>>], f64),
+        Standing { runs, correlation, .. }: Standing<'_>,
     ) -> Result<Option<Vec<Option<Response>>>, BedError> {
         let Ok(jobs) = search.jobs(self.stand) else { return Ok(None) };
         let records = self.run(&jobs)?;
-        let n = search.draws.len();
+        let n = search.draws.first().map_or(0, Vec::len);
         let against = Against {
             layouts: &self.layouts,
             baseline: runs
@@ -283,6 +297,7 @@ impl Work<'_> {
                 .map(|runs| runs[..n].iter().map(Option::as_ref).collect())
                 .collect(),
             means: baseline.observed.conditions.iter().map(|one| &one.mean).collect(),
+            spread: &baseline.spread,
             correlation,
             paired: correlation > PAIRED,
         };
@@ -293,7 +308,7 @@ impl Work<'_> {
         &mut self,
         forward: &BedForward,
         diagnosis: &Diagnosis,
-        draws: &[Draw],
+        draws: &[Vec<Draw>],
         measured: &Observed,
     ) -> Result<Option<Confirmation>, BedError> {
         let named =
@@ -307,9 +322,9 @@ impl Work<'_> {
         let conditions = self.plan.confirm.clone();
         let mut records = Vec::with_capacity(2);
         for variation in [Variation::default(), change] {
-            let all = conditions.iter().flat_map(|&at| draws.iter().map(move |&draw| (at, draw)));
-            let jobs = all.map(|(at, draw)| self.stand.job(at, draw, &variation));
-            let Ok(jobs) = jobs.collect::<Result<Vec<_>, _>>() else { return Ok(None) };
+            let Ok(jobs) = self.stand.jobs(&conditions, draws, &variation) else {
+                return Ok(None);
+            };
             records.push(self.run(&jobs)?);
         }
         let runs = (conditions.as_slice(), [&records[0][..], &records[1][..]]);
@@ -448,8 +463,9 @@ impl BedDiagnosis {
 
     fn seeds(&self, stand: &Stand<'_>) -> Value {
         let draws = self.plan.draws(stand);
-        let of = |draws: &[Draw]| {
-            let mut seeds: Vec<u64> = draws.iter().map(|draw| draw.seed).collect();
+        let of = |draws: &[Vec<Draw>]| {
+            let mut seeds: Vec<u64> = draws.iter().flatten().map(|draw| draw.seed).collect();
+            seeds.sort_unstable();
             seeds.dedup();
             seeds
         };

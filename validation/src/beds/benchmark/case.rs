@@ -10,7 +10,7 @@ use crate::observed::Observed;
 use crate::verdict::{Diagnosis, Verdict};
 
 /// Runs of every condition.
-const REPEATS: usize = 5;
+const REPEATS: usize = 10;
 
 /// Factor on the mass of every grain: an effect that no switch has.
 const HEAVIER: f64 = 1.4;

@@ -5,7 +5,7 @@ use engine::bed::random;
 use rand::Rng;
 
 use crate::beds::record::Record;
-use crate::beds::{BedError, Draw, Impacts, Stand, Variation};
+use crate::beds::{BedError, Impacts, Stand, Variation};
 use crate::measurement::{
     Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
     Role, Run, StatedError, StopDefinition,
@@ -15,7 +15,7 @@ use crate::measurement::{
 const MODEL: &str = include_str!("model.toml");
 
 /// Seeds of the beds that are measured: none of a diagnosis.
-const SEEDS: u64 = 1_000_000;
+const SEEDS: usize = 1_000_000;
 
 /// Frames of the camera per second (1/s).
 const RATE: f64 = 500.0;
@@ -26,7 +26,10 @@ const CAMERA: f64 = 1e-4;
 /// Speeds (m/s) that are fitted to, and those that are held out.
 const SPEEDS: ([f64; 3], [f64; 2]) = ([0.5, 1.0, 1.5], [0.75, 1.25]);
 
-/// Frames behind the stop that a camera still takes.
+/// Frames before contact that a camera takes: a constant force is seen in them, and no grain.
+const FLIGHT: usize = 10;
+
+/// Frames behind the stop that it still takes.
 const STILL: usize = 5;
 
 /// The analyst's model, with its beds of the seeds from `seed` on.
@@ -106,35 +109,34 @@ pub fn measure(
     (repeats, seed): (usize, u64),
     place: &dyn Impacts,
 ) -> Result<MeasurementSet, BedError> {
-    let first = SEEDS * (1 + seed);
-    // Every repeat has a bed of its own.
-    let spot = |at: usize| at % stand.n_places();
-    let draws: Vec<Draw> =
-        (0..repeats).map(|at| Draw { seed: first + at as u64, place: spot(at) }).collect();
-    let conditions = 0..stand.set.conditions.len();
-    let all = conditions.flat_map(|at| draws.iter().map(move |&draw| (at, draw)));
-    let all: Vec<(usize, Draw)> = all.collect();
-    let jobs = all.iter().map(|&(at, draw)| stand.job(at, draw, hidden));
-    let jobs = jobs.collect::<Result<Vec<_>, _>>()?;
-    let records = place.run(&jobs)?;
+    let conditions: Vec<usize> = (0..stand.set.conditions.len()).collect();
+    let draws = stand.draws(SEEDS * (1 + seed as usize), repeats, conditions.len());
+    let records = place.run(&stand.jobs(&conditions, &draws, hidden)?)?;
     let mut set = stand.set.clone();
-    for (number, ((at, _), record)) in all.iter().zip(&records).enumerate() {
+    for (number, record) in records.iter().enumerate() {
+        let condition = number / repeats;
         if let Some(record) = record {
-            set.runs.push(run(record, (*at, number), seed));
+            let seen = seen(record, (condition, stand.set), (number, seed));
+            set.runs.push(seen);
         }
     }
     Ok(set)
 }
 
 /// A run as a camera sees it.
-fn run(record: &Record, (condition, number): (usize, usize), seed: u64) -> Run {
+fn seen(
+    record: &Record,
+    (condition, set): (usize, &MeasurementSet),
+    (number, seed): (usize, u64),
+) -> Run {
     let mut random = random(seed, &format!("camera {number}"));
     let end = record.stopping_time.unwrap_or(record.end);
-    let frames = (end * RATE).ceil() as usize + STILL;
-    let times: Vec<f64> = (0..frames).map(|k| k as f64 / RATE).collect();
-    let path = record.path(&times);
+    let frames = FLIGHT + (end * RATE).ceil() as usize + STILL;
+    let times: Vec<f64> = (0..frames).map(|frame| (frame as f64 - FLIGHT as f64) / RATE).collect();
+    let of_set = &set.conditions[condition];
+    let path = times.iter().map(|&time| record.at(time, of_set, set.bed.gravity));
     let deepest = record.deepest + CAMERA * normal(&mut random);
-    let seen = times.iter().zip(&path).map(|(&t, &(z, x))| Frame {
+    let seen = times.iter().zip(path).map(|(&t, (z, x))| Frame {
         t,
         z: z + CAMERA * normal(&mut random),
         x: x + CAMERA * normal(&mut random),
