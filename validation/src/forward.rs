@@ -38,6 +38,11 @@ pub trait Forward: Sync {
         None
     }
 
+    /// Effects whose χ² falls by less than this behind the best are not told apart.
+    fn separation(&self) -> f64 {
+        SEPARATE
+    }
+
     /// How the observables differ from run to run, of a model that has runs of its own to tell it by: one column
     /// per mode, of one standard deviation. `None` where [`Scatter`] says it.
     fn modes_of_scatter(&self, condition: usize) -> Option<&DMatrix<f64>> {
@@ -45,6 +50,9 @@ pub trait Forward: Sync {
         None
     }
 }
+
+/// Odds of 20 to 1, in χ²: enough where a model says exactly what an effect does.
+pub(crate) const SEPARATE: f64 = 6.0;
 
 /// Where a prediction is asked for.
 #[derive(Clone, Copy, Debug)]

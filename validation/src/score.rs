@@ -2,13 +2,10 @@
 
 use crate::bench::{Bench, Fitted};
 use crate::chord::extend;
-use crate::forward::{Candidate, PredictError};
+use crate::forward::{Forward, PredictError};
 use crate::sensitivity::Point;
 use crate::signature::{Signature, collinearity, signature, variance_along};
 use crate::significance::NullScores;
-
-/// Effects whose χ² falls by less than this behind the best are not told apart: odds 20 to 1.
-pub(crate) const SEPARATE: f64 = 6.0;
 
 /// How many of the best are refitted with derivatives of their own.
 const POLISHED: usize = 3;
@@ -99,12 +96,13 @@ impl Ranking {
 
     /// Places of the effects that cannot be told from the best, itself included: by the numbers, or
     /// because the data lack what would tell them apart.
-    pub(crate) fn not_separable(&self, candidates: &[Candidate]) -> Vec<usize> {
+    pub(crate) fn not_separable(&self, forward: &dyn Forward) -> Vec<usize> {
+        let candidates = forward.candidates();
         let Some(best) = self.scores.first() else { return Vec::new() };
         let twins = &candidates[best.candidate()].unresolved;
         let confused = |place: usize| {
             twins.contains(&candidates[self.scores[place].candidate()].id)
-                || best.delta - self.scores[place].delta < SEPARATE
+                || best.delta - self.scores[place].delta < forward.separation()
                 || self.null.beats(self.rows[0], self.rows[place], best.strength) < CONFUSED
         };
         (0..self.scores.len()).filter(|&place| place == 0 || confused(place)).collect()

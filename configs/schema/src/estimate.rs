@@ -6,16 +6,17 @@ use engine::grains::Space;
 use crate::model::GrainModel;
 use crate::stability;
 
-/// Memory per grain (byte): a sphere has more neighbours than a disc (`docs/scale.md`).
+/// Memory per grain (byte), where a run has most: as it takes over a bed that has settled. A sphere has more
+/// neighbours than a disc (`docs/scale.md`).
 fn bytes_per_grain(space: Space) -> u64 {
     match space {
-        Space::Planar => 750,
-        Space::Spatial => 850,
+        Space::Planar => 1150,
+        Space::Spatial => 2000,
     }
 }
 
 /// Memory that does not depend on the grains (byte).
-const BYTES_FIXED: u64 = 18_000_000;
+const BYTES_FIXED: u64 = 16_000_000;
 /// Speed of the engine on two cores (1/s).
 const GRAIN_STEPS_PER_S: f64 = 2e7;
 /// Speed of the engine on one thread beside another (1/s), where nothing was measured.

@@ -300,6 +300,11 @@ impl Forward for BedForward {
         Some(of_effects.fold(spread / runs as f64, |sum, one| sum + one))
     }
 
+    /// Odds of 100 to 1: what an effect does is known from a few runs.
+    fn separation(&self) -> f64 {
+        9.2
+    }
+
     fn modes_of_scatter(&self, condition: usize) -> Option<&DMatrix<f64>> {
         Some(&self.baseline.modes.columns[condition])
     }

@@ -21,8 +21,9 @@ const PER_MODE: usize = 3;
 /// steps of the integration.
 const LEAST: f64 = 1e-3;
 
-/// Least share of the scatter of a number that the others do not tell.
-const OWN_SHARE: f64 = 0.05;
+/// Least share of the scatter of a number that the others do not tell: correlations that come of some forty
+/// deviations are known to a tenth, and what they seem to tell beyond that, they do not.
+const OWN_SHARE: f64 = 0.12;
 
 /// The scatter of runs, condition by condition; empty for those that were not run.
 pub(super) struct Modes {
@@ -144,13 +145,14 @@ mod tests {
             for row in 0..3 {
                 let squares = (0..runs).map(|run| condition.deviation(run)[row].powi(2));
                 let seen = squares.sum::<f64>() / (runs - 1) as f64;
-                // Three modes of three numbers leave nothing; the least own share adds a four hundredth.
-                assert!((covariance[(row, row)] / seen - 1.0).abs() < 5e-3, "{row}: {covariance}");
+                // Three modes of three numbers leave nothing but the least own share.
+                let more = covariance[(row, row)] / seen - 1.0;
+                assert!((more - OWN_SHARE * OWN_SHARE).abs() < 5e-3, "{row}: {covariance}");
             }
             let correlation = |a: usize, b: usize| {
                 covariance[(a, b)] / (covariance[(a, a)] * covariance[(b, b)]).sqrt()
             };
-            assert!(correlation(1, 2) < -0.99, "{covariance}");
+            assert!(correlation(1, 2) < -0.97, "{covariance}");
             // Of 80 pairs, a correlation of nothing scatters by 0.11.
             assert!(correlation(0, 1).abs() < 0.3, "{covariance}");
         }

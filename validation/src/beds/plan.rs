@@ -61,10 +61,10 @@ pub const SIZES: [Size; 4] = [
         name: "standard",
         conditions: 6,
         draws: 6,
-        repeats: 2,
-        line_draws: 4,
+        repeats: 1,
+        line_draws: 3,
         confirm_conditions: 3,
-        confirm_draws: 8,
+        confirm_draws: 6,
     },
     Size {
         name: "thorough",

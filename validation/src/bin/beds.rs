@@ -22,7 +22,7 @@ Usage: cargo xtask bench beds [--quick] [--draws N] [--minutes N] [--threads N] 
 
   --quick      one listed effect, nothing, and one that is not listed
   --draws N    draws of every case (2)
-  --minutes N  impacts of one diagnosis at most, as estimated (5)
+  --minutes N  impacts of one diagnosis at most, as estimated (as long as the largest plan takes)
   --threads N  impacts at a time (one per core)
   --on WHERE   where impacts are run: local (default), slurm or hyperqueue, which are waited for
   --cache DIR  where beds and impacts are kept (runs/.cache); those that are there are not run again
@@ -47,7 +47,7 @@ fn main() -> ExitCode {
 
 /// `None` for help.
 fn parse(mut parser: Parser) -> Result<Option<Wanted>, lexopt::Error> {
-    let (mut draws, mut minutes, mut few) = (2, 5.0, false);
+    let (mut draws, mut minutes, mut few) = (2, f64::INFINITY, false);
     let mut wanted = Wanted {
         cases: Vec::new(),
         wish: Wish::default(),

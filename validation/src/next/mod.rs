@@ -16,11 +16,10 @@ use serde_json::{Value, json};
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::bench::Bench;
-use crate::forward::Forward;
+use crate::forward::{Forward, SEPARATE};
 use crate::measurement::{Condition, MeasurementSet};
 use crate::observable::Layout;
 use crate::rounding::rounded;
-use crate::score::SEPARATE;
 use crate::verdict::{Diagnosis, Verdict};
 use foreseen::Foreseen;
 use rival::Rival;

@@ -4,8 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::bench::Bench;
 use crate::fit::value_mut;
-use crate::forward::{Forward, PredictError};
-use crate::score::SEPARATE;
+use crate::forward::{Forward, PredictError, SEPARATE};
 use crate::sensitivity::Point;
 use crate::weights::Weight;
 

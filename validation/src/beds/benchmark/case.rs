@@ -70,22 +70,29 @@ pub fn quick() -> Vec<Case> {
     hidden.map(|hidden| Case { hidden, seed: 0 }).to_vec()
 }
 
-/// Every switch that moves a disc, at two strengths, nothing, and what is not listed; `draws` of each.
+/// Six switches at two strengths, nothing, and what is not listed; `draws` of each.
 #[must_use]
 pub fn all(draws: u64) -> Vec<Case> {
-    let switches = [
-        ("rolling-resistance", 0.1),
-        ("rolling-resistance", 0.3),
-        ("cohesion-dmt", 5.0),
-        ("cohesion-dmt", 15.0),
-        ("grain-friction", 1.0),
-        ("grain-friction", 2.5),
-        ("packing", 0.7),
-        ("packing", 1.0),
+    use Hidden::{Nothing, Switch, Unlisted};
+    let hidden = [
+        Switch("rolling-resistance", 0.1),
+        Switch("rolling-resistance", 0.3),
+        Switch("cohesion-dmt", 5.0),
+        Switch("cohesion-dmt", 15.0),
+        Switch("grain-friction", 1.0),
+        Switch("grain-friction", 2.5),
+        Switch("packing", 0.7),
+        Switch("packing", 1.0),
+        Nothing,
+        Nothing,
+        Nothing,
+        Unlisted,
+        Unlisted,
+        Switch("pore-air", 5.0),
+        Switch("pore-air", 15.0),
+        Switch("side-wall", 0.1),
+        Switch("side-wall", 0.3),
     ];
-    let listed = switches.map(|(id, q)| Hidden::Switch(id, q));
-    let hidden: Vec<Hidden> =
-        listed.into_iter().chain([Hidden::Nothing; 3]).chain([Hidden::Unlisted; 2]).collect();
     let each = hidden.iter().enumerate();
     // Repeated entries of the list are other draws too.
     let seeds = |at: usize| (0..draws).map(move |draw| 100 * at as u64 + draw);
