@@ -2,6 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
+use super::baseline::Baseline;
 use super::design::folded;
 use super::emulator::Screened;
 use super::job::Job;
@@ -11,6 +12,7 @@ use super::stand::{Draw, Stand, StandError};
 use super::switches::Switch;
 use super::variation::Variation;
 use crate::observable::Layout;
+use crate::projection::Basis;
 
 /// Runs and their mirrors on one draw of a bed: so many pairs that the draw cancels from every main effect
 /// without a bed of its own for each.
@@ -69,13 +71,13 @@ impl Screening {
     }
 
     /// What the `records` of the impacts say of every switch; `paired` is the correlation of runs on one
-    /// draw, `spread` the covariance of a run per condition.
+    /// draw, `baseline` the model as it stands.
     pub(super) fn signatures(
         &self,
         stand: &Stand<'_>,
         layouts: &[Layout],
         records: &[Option<Record>],
-        (paired, spread): (f64, &[DMatrix<f64>]),
+        (paired, baseline): (f64, &Baseline),
     ) -> Vec<Screened> {
         let n = self.settings.len();
         let effects: Vec<Option<MainEffects>> = self
@@ -100,7 +102,7 @@ impl Screening {
                 let deviations = Vec::new();
                 responses[condition] = Some(Response { slope, curvature, variance, deviations });
             }
-            screened(switch, responses, (spread, self.n_runs()))
+            screened(switch, responses, (baseline, self.n_runs()))
         });
         screened.collect()
     }
@@ -133,20 +135,29 @@ impl Screening {
     }
 }
 
-/// `switch` with its `responses`, found by so many `runs` that scatter by `spread`; it cannot be tested where
-/// all conditions together do not show it.
+/// `switch` with its `responses`, found by so many `runs` beside `baseline`; it cannot be tested where all
+/// conditions together do not show it, along the modes in which runs scatter: what an effect does that is worth
+/// a look is as smooth as they are, and among all numbers it would be lost.
 pub(super) fn screened(
     switch: &'static Switch,
     responses: Vec<Option<Response>>,
-    (spread, runs): (&[DMatrix<f64>], usize),
+    (baseline, runs): (&Baseline, usize),
 ) -> Screened {
     let (mut signal, mut freedom) = (0.0, 0.0_f64);
-    for (response, spread) in responses.iter().zip(spread) {
+    let known = baseline.spread.iter().zip(&baseline.modes.columns);
+    for (response, (spread, modes)) in responses.iter().zip(known) {
         let Some(response) = response else { continue };
         if let Some(factor) = Cholesky::new(response.covariance_at(switch.screen, spread)) {
-            let change = response.at(switch.screen);
-            signal += change.dot(&factor.solve(&change));
-            freedom += change.len() as f64;
+            let white = |mut of: DMatrix<f64>| {
+                // The diagonal of a Cholesky factor is positive, so there is a solution.
+                factor.l_dirty().solve_lower_triangular_mut(&mut of);
+                of
+            };
+            let modes = Basis::of(&white(modes.clone()));
+            let change = white(DMatrix::from_columns(&[response.at(switch.screen)]));
+            let change = change.column(0).into_owned();
+            signal += change.norm_squared() - modes.rest(&change).norm_squared();
+            freedom += modes.len() as f64;
         }
     }
     let clear = (signal - freedom) / (2.0 * freedom).sqrt().max(1.0);

@@ -174,8 +174,7 @@ impl Work<'_> {
             self.one_at_a_time(&screening.switches, &baseline, standing)?
         } else {
             let records = self.run(&screening.jobs(self.stand)?)?;
-            let scatter = (paired, &baseline.spread[..]);
-            screening.signatures(self.stand, &self.layouts, &records, scatter)
+            screening.signatures(self.stand, &self.layouts, &records, (paired, &baseline))
         };
         let mut forward = BedForward::new(baseline, screened, &self.plan.wish.free);
 
@@ -274,7 +273,7 @@ impl Work<'_> {
             let search = LineSearch::once(switch, &fit, &draws);
             let found = self.search(&search, baseline, standing)?;
             let responses = found.unwrap_or_else(|| vec![None; self.layouts.len()]);
-            all.push(screened(switch, responses, (&baseline.spread, runs_of_all)));
+            all.push(screened(switch, responses, (baseline, runs_of_all)));
         }
         Ok(all)
     }
