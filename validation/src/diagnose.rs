@@ -115,7 +115,7 @@ impl Judge<'_> {
                 );
                 return self.refuse((p_lof, p_leader), hint);
             }
-            let verdict = match self.ranking.not_separable(self.bench.forward).len() {
+            let verdict = match self.ranking.not_separable(self.bench, &self.weighed).len() {
                 1 => Verdict::Supported,
                 _ => Verdict::NotSeparable,
             };
@@ -152,7 +152,7 @@ impl Judge<'_> {
     ) -> Result<Diagnosis, BenchError> {
         let Self { bench, ranking, .. } = self;
         let leaders: Vec<String> = ranking
-            .not_separable(bench.forward)
+            .not_separable(bench, &self.weighed)
             .into_iter()
             .map(|place| self.name(ranking.scores[place].candidate()))
             .collect();

@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, Fitted};
 use crate::chord::extend;
-use crate::forward::{Forward, PredictError};
+use crate::forward::PredictError;
 use crate::sensitivity::Point;
 use crate::signature::{Signature, collinearity, signature, variance_along};
 use crate::significance::NullScores;
@@ -50,6 +50,8 @@ pub(crate) struct Ranking {
     /// Places in `scores` by rows of the null scores.
     rows: Vec<usize>,
     null: NullScores,
+    /// Variance that falls of χ² are measured in.
+    scale: f64,
     /// Candidates with which the model cannot be integrated, and why.
     pub(crate) failed: Vec<(usize, PredictError)>,
 }
@@ -83,7 +85,7 @@ impl Ranking {
         let mut scores: Vec<Option<Score>> = scores.into_iter().map(Some).collect();
         let scores: Vec<Score> = rows.iter().filter_map(|&row| scores[row].take()).collect();
         let p = scores.first().map_or(1.0, |best| null.family_wise_p(best.delta));
-        Self { scores, p, rows, null, failed }
+        Self { scores, p, rows, null, scale, failed }
     }
 
     /// Takes the best out, since the model cannot be integrated around its fit.
@@ -96,16 +98,39 @@ impl Ranking {
 
     /// Places of the effects that cannot be told from the best, itself included: by the numbers, or
     /// because the data lack what would tell them apart.
-    pub(crate) fn not_separable(&self, forward: &dyn Forward) -> Vec<usize> {
-        let candidates = forward.candidates();
+    pub(crate) fn not_separable(&self, bench: &Bench<'_>, weighed: &Fitted) -> Vec<usize> {
+        let candidates = bench.forward.candidates();
         let Some(best) = self.scores.first() else { return Vec::new() };
         let twins = &candidates[best.candidate()].unresolved;
         let confused = |place: usize| {
             twins.contains(&candidates[self.scores[place].candidate()].id)
-                || best.delta - self.scores[place].delta < forward.separation()
+                || self.lead(bench, weighed, place) < bench.forward.separation()
                 || self.null.beats(self.rows[0], self.rows[place], best.strength) < CONFUSED
         };
         (0..self.scores.len()).filter(|&place| place == 0 || confused(place)).collect()
+    }
+}
+
+impl Ranking {
+    /// By how much less χ² falls with the effect at `place` than with the best. Where what effects do is known
+    /// from runs of a model, each alone, under weights that have the uncertainty of both: that of the best alone
+    /// would be held against the other.
+    fn lead(&self, bench: &Bench<'_>, weighed: &Fitted, place: usize) -> f64 {
+        let (best, other) = (&self.scores[0], &self.scores[place]);
+        let lead = best.delta - other.delta;
+        let knows = |&at: &usize| bench.forward.own_covariance(at, &[]).is_some();
+        if place == 0 || !bench.observed.fit.iter().any(knows) {
+            return lead;
+        }
+        let mut both = best.point.clone();
+        both.effects.extend(other.point.effects.iter().copied());
+        let weights = bench.weights(&both, &weighed.noise, &bench.observed.fit);
+        let Ok(weights) = weights else { return lead };
+        let chi2 = |score: &Score| bench.data(&weights).fit(&score.point).map(|fit| fit.chi2);
+        match (chi2(best), chi2(other)) {
+            (Ok(best), Ok(other)) => lead.min((other - best) / self.scale),
+            _ => lead,
+        }
     }
 }
 

@@ -181,8 +181,7 @@ impl Work<'_> {
         let mut diagnosis = self.judge(&forward)?;
         let mut searched: Vec<usize> = Vec::new();
         for _ in 0..SEARCHES {
-            let mut leaders = leaders(&diagnosis, &forward);
-            leaders.retain(|(at, _)| !searched.contains(at));
+            let leaders = leaders(&diagnosis, &forward, &searched);
             if leaders.is_empty() {
                 break;
             }
@@ -369,20 +368,21 @@ pub fn unaffordable(plan: &Plan) -> Diagnosis {
     Diagnosis::cannot_tell(Vec::new(), why)
 }
 
-/// The switches to be searched, with the guess of each: those that the first diagnosis names or cannot
-/// tell from what it names; none where it names nothing.
-fn leaders(diagnosis: &Diagnosis, forward: &BedForward) -> Vec<(usize, f64)> {
+/// The switches to be searched that were not yet, with the guess of each: the first two, and what cannot be told
+/// from the first, which may be for want of a search; none where nothing is named.
+fn leaders(diagnosis: &Diagnosis, forward: &BedForward, searched: &[usize]) -> Vec<(usize, f64)> {
     if matches!(diagnosis.verdict, Verdict::NothingDetected | Verdict::CannotTell) {
         return Vec::new();
     }
     let candidates = Forward::candidates(forward);
-    diagnosis
-        .ranking
-        .iter()
-        .filter_map(|effect| {
+    let ranked = diagnosis.ranking.iter().enumerate();
+    ranked
+        .filter(|(rank, effect)| *rank < LEADERS || diagnosis.leaders.contains(&effect.id))
+        .filter_map(|(_, effect)| {
             let index = candidates.iter().position(|one| one.id == effect.id)?;
             Some((forward.switch(index)?, effect.q?))
         })
+        .filter(|(at, _)| !searched.contains(at))
         .take(LEADERS)
         .collect()
 }
