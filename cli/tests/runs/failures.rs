@@ -17,7 +17,7 @@ fn a_trillion_grains_are_refused_at_once_with_the_bytes_they_need() {
         let message = call.set(&["bed.grains.0.count=1000000000000"]).fails(2);
         assert!(start.elapsed() < Duration::from_secs(1), "{command}: {:?}", start.elapsed());
         assert!(
-            message.contains("1000000000048 grains need about") && message.contains(" TB, "),
+            message.contains("1000000000048 grains need about") && message.contains(" PB, "),
             "{message}"
         );
         assert!(message.contains("free") && message.contains("--force"), "{message}");
