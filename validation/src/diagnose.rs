@@ -56,7 +56,8 @@ pub fn diagnose(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
     let Some(leader) = lead(bench, &mut ranking, &weighed)? else {
         return Ok(cannot_tell(bench, "no effect can be tested with these data".to_owned()));
     };
-    Judge { bench, seed, baseline, weighed, ranking, leader }.verdict()
+    let alike = ranking.not_separable(bench, &weighed);
+    Judge { bench, seed, baseline, weighed, ranking, alike, leader }.verdict()
 }
 
 /// The model with the best effect under its own noise; effects around whose fit the model cannot be
@@ -84,6 +85,8 @@ struct Judge<'a> {
     /// The model as it is, under the noise of the best model.
     weighed: Fitted,
     ranking: Ranking,
+    /// Places of what is not told from the best, itself included.
+    alike: Vec<usize>,
     /// The model with the best effect, under its own noise.
     leader: Fitted,
 }
@@ -115,7 +118,7 @@ impl Judge<'_> {
                 );
                 return self.refuse((p_lof, p_leader), hint);
             }
-            let verdict = match self.ranking.not_separable(self.bench, &self.weighed).len() {
+            let verdict = match self.alike.len() {
                 1 => Verdict::Supported,
                 _ => Verdict::NotSeparable,
             };
@@ -151,11 +154,8 @@ impl Judge<'_> {
         hint: String,
     ) -> Result<Diagnosis, BenchError> {
         let Self { bench, ranking, .. } = self;
-        let leaders: Vec<String> = ranking
-            .not_separable(bench, &self.weighed)
-            .into_iter()
-            .map(|place| self.name(ranking.scores[place].candidate()))
-            .collect();
+        let leaders: Vec<String> =
+            self.alike.iter().map(|&place| self.name(ranking.scores[place].candidate())).collect();
         let not_separable = match verdict {
             Verdict::NotSeparable => leaders.clone(),
             _ => Vec::new(),

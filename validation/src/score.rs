@@ -102,35 +102,28 @@ impl Ranking {
         let candidates = bench.forward.candidates();
         let Some(best) = self.scores.first() else { return Vec::new() };
         let twins = &candidates[best.candidate()].unresolved;
+        let least = bench.forward.separation();
         let confused = |place: usize| {
-            twins.contains(&candidates[self.scores[place].candidate()].id)
-                || self.lead(bench, weighed, place) < bench.forward.separation()
+            let other = &self.scores[place];
+            twins.contains(&candidates[other.candidate()].id)
+                || best.delta - other.delta < least
                 || self.null.beats(self.rows[0], self.rows[place], best.strength) < CONFUSED
+                || self.lead_under_both(bench, weighed, other).is_some_and(|lead| lead < least)
         };
         (0..self.scores.len()).filter(|&place| place == 0 || confused(place)).collect()
     }
-}
 
-impl Ranking {
-    /// By how much less χ² falls with the effect at `place` than with the best. Where what effects do is known
-    /// from runs of a model, each alone, under weights that have the uncertainty of both: that of the best alone
-    /// would be held against the other.
-    fn lead(&self, bench: &Bench<'_>, weighed: &Fitted, place: usize) -> f64 {
-        let (best, other) = (&self.scores[0], &self.scores[place]);
-        let lead = best.delta - other.delta;
-        let knows = |&at: &usize| bench.forward.own_covariance(at, &[]).is_some();
-        if place == 0 || !bench.observed.fit.iter().any(knows) {
-            return lead;
-        }
+    /// By how much less χ² falls with `other` than with the best, under weights that have the uncertainty of what
+    /// either does: that of the best alone would be held against the other. `None` where a model says exactly
+    /// what effects do, or cannot be integrated.
+    fn lead_under_both(&self, bench: &Bench<'_>, weighed: &Fitted, other: &Score) -> Option<f64> {
+        let (best, fit) = (&self.scores[0], &bench.observed.fit);
+        bench.forward.own_covariance(*fit.first()?, &[])?;
         let mut both = best.point.clone();
         both.effects.extend(other.point.effects.iter().copied());
-        let weights = bench.weights(&both, &weighed.noise, &bench.observed.fit);
-        let Ok(weights) = weights else { return lead };
-        let chi2 = |score: &Score| bench.data(&weights).fit(&score.point).map(|fit| fit.chi2);
-        match (chi2(best), chi2(other)) {
-            (Ok(best), Ok(other)) => lead.min((other - best) / self.scale),
-            _ => lead,
-        }
+        let weights = bench.weights(&both, &weighed.noise, fit).ok()?;
+        let chi2 = |score: &Score| Some(bench.data(&weights).fit(&score.point).ok()?.chi2);
+        Some((chi2(other)? - chi2(best)?) / self.scale)
     }
 }
 

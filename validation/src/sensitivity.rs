@@ -86,7 +86,6 @@ enum Input {
     Level,
     Along(usize),
     Sideways(usize),
-    Mode,
 }
 
 /// What differs from run to run under one condition, and how the observables follow.
@@ -137,11 +136,12 @@ impl Sensitivity {
         Ok(Self { inputs, mean, slope, curvature })
     }
 
-    /// Of runs that scatter by `modes` around `mean`: the scatter of the path stands for the size of all
-    /// modes, and is that of the greatest of the numbers.
+    /// Of runs that scatter by `modes` around `mean`, in place of forces along the path: their scatter is the size of
+    /// all modes, in that of the numbers.
     fn of_modes(modes: &DMatrix<f64>, mean: DVector<f64>) -> Self {
-        let relative = relative_size(modes, &mean);
-        let inputs = vec![Input::Mode; modes.ncols()];
+        let size = modes.norm() / mean.norm();
+        let relative = if size > 0.0 && size.is_finite() { size } else { 1.0 };
+        let inputs = (0..modes.ncols()).map(Input::Along).collect();
         let (slope, curvature) = (modes / relative, DMatrix::zeros(mean.len(), modes.ncols()));
         Self { inputs, mean, slope, curvature }
     }
@@ -157,7 +157,6 @@ impl Sensitivity {
                 Input::Level => spread.level,
                 Input::Along(_) => spread.path,
                 Input::Sideways(_) => 0.5 * spread.path,
-                Input::Mode => spread.path,
             }),
         )
     }
@@ -178,7 +177,6 @@ impl Input {
             Self::Level => 2e-4,
             Self::Along(_) => 0.1,
             Self::Sideways(_) => 0.05,
-            Self::Mode => 1.0,
         }
     }
 
@@ -194,7 +192,6 @@ impl Input {
             Self::Level => scatter.level = value,
             Self::Along(index) => scatter.along = only(ALONG, index),
             Self::Sideways(index) => scatter.sideways = only(SIDEWAYS, index),
-            Self::Mode => {}
         }
         scatter
     }
@@ -262,10 +259,4 @@ pub fn bend_response(
         column.copy_from(&((bent - &mean) / STEP));
     }
     Ok(response)
-}
-
-/// Size of `modes` over that of `mean` (–).
-fn relative_size(modes: &DMatrix<f64>, mean: &DVector<f64>) -> f64 {
-    let size = modes.norm() / mean.norm();
-    if size > 0.0 && size.is_finite() { size } else { 1.0 }
 }

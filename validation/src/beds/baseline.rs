@@ -3,8 +3,7 @@
 //!
 //! The force law (two terms, see `configs/two-term-vector.toml`) stands in where only small changes are
 //! asked for: how observables answer to a force around a depth, to another impact speed, to the friction of
-//! a rail. So the scatter of beds is learned by the same likelihood as that of measurements
-//! ([`crate::noise`]), from a handful of runs.
+//! a rail. How runs scatter is learned from the runs themselves (`modes`).
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
 use nalgebra::{DMatrix, DVector};

@@ -368,21 +368,22 @@ pub fn unaffordable(plan: &Plan) -> Diagnosis {
     Diagnosis::cannot_tell(Vec::new(), why)
 }
 
-/// The switches to be searched that were not yet, with the guess of each: the first two, and what cannot be told
-/// from the first, which may be for want of a search; none where nothing is named.
+/// The switches to be searched that were not yet, with the guess of each: the first two, whatever of the apparatus
+/// leads them, and what cannot be told from the leader, which may be for want of a search; none where nothing
+/// is named.
 fn leaders(diagnosis: &Diagnosis, forward: &BedForward, searched: &[usize]) -> Vec<(usize, f64)> {
     if matches!(diagnosis.verdict, Verdict::NothingDetected | Verdict::CannotTell) {
         return Vec::new();
     }
     let candidates = Forward::candidates(forward);
-    let ranked = diagnosis.ranking.iter().enumerate();
-    ranked
-        .filter(|(rank, effect)| *rank < LEADERS || diagnosis.leaders.contains(&effect.id))
-        .filter_map(|(_, effect)| {
-            let index = candidates.iter().position(|one| one.id == effect.id)?;
-            Some((forward.switch(index)?, effect.q?))
-        })
-        .filter(|(at, _)| !searched.contains(at))
+    let switches = diagnosis.ranking.iter().filter_map(|effect| {
+        let index = candidates.iter().position(|one| one.id == effect.id)?;
+        Some((forward.switch(index)?, effect.q?, diagnosis.leaders.contains(&effect.id)))
+    });
+    switches
+        .enumerate()
+        .filter(|(rank, (at, _, leads))| (*rank < LEADERS || *leads) && !searched.contains(at))
+        .map(|(_, (at, guess, _))| (at, guess))
         .take(LEADERS)
         .collect()
 }
