@@ -261,7 +261,9 @@ fn what_cannot_be_compared_is_answered_with_what_could_be() {
     assert!(grains.contains("a bed in 2d, and the set is one in 3d"), "{grains}");
     let args = ["diagnose", text(&set), "--model", "vertical-2d", "--plan", "--quiet"];
     let typo = message(&[&args[..], &["--candidate", "roling"]].concat());
-    assert!(typo.contains("rolling-resistance"), "{typo}");
+    assert!(typo.contains("rolling-resistance") && typo.contains("rail-friction"), "{typo}");
+    let free = message(&[&args[..], &["--free", "tilt"]].concat());
+    assert!(free.contains("no candidate `tilt`"), "an apparatus is no parameter of a bed: {free}");
     let typo = message(&["add", "two-term-vector", "jansen", "q=1", "-o", "new.toml"]);
     assert!(typo.contains("did you mean `janssen`?"), "{typo}");
     assert!(!here.join("new.toml").exists());

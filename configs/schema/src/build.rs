@@ -1,6 +1,6 @@
 //! From a model to a bed and a simulation.
 
-use engine::bed::{GrainKind, Settling, SizeDistribution, fill, random};
+use engine::bed::{GrainKind, Settling, SizeDistribution, fill, inflate, random};
 use engine::boundary::{Bottom, Container, Sides};
 use engine::grain_bed::{GrainBed, RestingBed};
 use engine::grain_force::GrainForce;
@@ -128,7 +128,11 @@ impl GrainModel<'_> {
         // Layers that absorb would hold the falling grains up for seconds.
         let container = self.medium.container.without_layers();
         let space = self.medium.space;
-        let grains = fill(&kinds, (space, &container), self.model.run.seed);
+        let (place, seed) = ((space, &container), self.model.run.seed);
+        let grains = match settle.inflated_to {
+            Some(fraction) => inflate(&kinds, place, fraction, seed),
+            None => fill(&kinds, place, seed),
+        };
         let stages = self.preparation_stages(settle);
         let settling =
             Settling::new(&grains, (space, container), self.gravity(), stages, steps.settling)

@@ -120,6 +120,14 @@ pub(crate) const PREPARATION_FRICTION: ParamSpec = required(
     "the friction of grains while settling, in place of the law's",
 );
 
+pub(crate) const INFLATED_TO: ParamSpec = required(
+    "inflated_to",
+    NUMBER,
+    Range { min: 0.0, max: 1.0, includes_min: false },
+    Range::closed(0.3, 0.82),
+    "the packing fraction up to which grains grow in place before they fall",
+);
+
 pub(crate) const TARGET_PACKING_FRACTION: ParamSpec = required(
     "target_packing_fraction",
     NUMBER,

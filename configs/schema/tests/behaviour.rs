@@ -95,6 +95,7 @@ fn the_bed_key_changes_with_the_bed_alone() {
         "medium.gravity=1.62 m/s^2",
         "container.width=1 m",
         "bed.grains.1.count=2401",
+        "bed.inflated_to=0.8",
         "bed.preparation_friction=0.1",
         "contact_law.friction=0.3",
         "contact_law.normal_stiffness=4000 N/m",
@@ -119,6 +120,17 @@ fn the_last_set_and_the_seed_option_win() {
 fn equal_spellings_of_a_quantity_give_the_same_model() {
     let spelt = good(&["intruder.diameter=44.6 mm", "intruder.mass=0.0322 kg"]);
     assert_eq!(spelt.hash(), good(&[]).hash());
+}
+
+#[test]
+fn grains_are_grown_as_far_as_the_model_says_and_rain_in_where_it_does_not() {
+    let inflated = |model: &Model| match &model.grains().expect("a bed of grains").medium.bed.source
+    {
+        BedSource::Settle(settle) => settle.inflated_to,
+        BedSource::Csv(_) => None,
+    };
+    assert_eq!(inflated(&good(&[])), None);
+    assert_eq!(inflated(&good(&["bed.inflated_to=0.8"])), Some(0.8));
 }
 
 #[test]

@@ -23,7 +23,7 @@ pub struct GrainKind {
 
 /// Share of the area or volume that grains fill when they are placed at random, well below the one
 /// at which no further grain finds a place: 0.547 for equal discs, 0.38 for equal spheres.
-fn fill_fraction(space: Space) -> f64 {
+pub(super) fn fill_fraction(space: Space) -> f64 {
     match space {
         Space::Planar => 0.5,
         Space::Spatial => 0.3,
@@ -39,11 +39,8 @@ pub fn fill(kinds: &[GrainKind], (space, container): (Space, &Container), seed: 
     let largest = kinds.iter().fold(0.0_f64, |largest, kind| largest.max(kind.radius));
     let height = fill_height(kinds, space, container);
     let mut free = FreeSpace::new(space, container, height, 2.0 * largest);
-    // Large grains first: later they would find no place.
-    let mut kinds = kinds.to_vec();
-    kinds.sort_by(|a, b| b.radius.total_cmp(&a.radius));
     let mut grains = Vec::new();
-    for kind in kinds {
+    for kind in large_first(kinds) {
         for _ in 0..kind.count {
             let mut tries = 0;
             let position = loop {
@@ -82,8 +79,15 @@ pub fn fill(kinds: &[GrainKind], (space, container): (Space, &Container), seed: 
     grains
 }
 
+/// The kinds in the order in which they are placed: small grains first would leave large ones no place.
+pub(super) fn large_first(kinds: &[GrainKind]) -> Vec<GrainKind> {
+    let mut kinds = kinds.to_vec();
+    kinds.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+    kinds
+}
+
 /// How high (m) the grains reach when they are placed.
-fn fill_height(kinds: &[GrainKind], space: Space, container: &Container) -> f64 {
+pub(super) fn fill_height(kinds: &[GrainKind], space: Space, container: &Container) -> f64 {
     let content = |kind: &GrainKind| {
         let squares = kind.count as f64 * kind.radius * kind.radius;
         match space {
@@ -96,7 +100,7 @@ fn fill_height(kinds: &[GrainKind], space: Space, container: &Container) -> f64 
 }
 
 /// Which grains have been placed where, in square (cubic) cells as wide as the largest grain.
-struct FreeSpace {
+pub(super) struct FreeSpace {
     height: f64,
     cell: f64,
     x: CellAxis,
@@ -106,7 +110,8 @@ struct FreeSpace {
 }
 
 impl FreeSpace {
-    fn new(space: Space, container: &Container, height: f64, cell: f64) -> Self {
+    /// Of `container`, filled up to `height` (m); no grain is wider than `cell` (m).
+    pub(super) fn new(space: Space, container: &Container, height: f64, cell: f64) -> Self {
         let (extents, period) = (container.extents(), container.period(space));
         let axis = |axis: usize| CellAxis::new(0.0, extents[axis], cell, period.length(axis));
         let y = match space {
@@ -129,23 +134,28 @@ impl FreeSpace {
     }
 
     fn fits(&self, place: Vec3, radius: f64, grains: &[Grain]) -> bool {
-        let layer = (place.z / self.cell) as usize;
-        let n_z = self.cells.len() / (self.x.n * self.y.n);
-        let near = |axis: &CellAxis, at: f64| axis.around(axis.cell(at)).into_iter().flatten();
-        (layer.saturating_sub(1)..=(layer + 1).min(n_z - 1)).all(|z| {
-            near(&self.y, place.y).all(|y| {
-                near(&self.x, place.x).all(|x| {
-                    self.cells[(z * self.y.n + y) * self.x.n + x].iter().all(|&other| {
-                        let Grain { position, radius: other, .. } = &grains[other];
-                        let near = other + radius;
-                        self.period.shortest(position - place).norm_squared() > near * near
-                    })
-                })
-            })
+        self.near(place).all(|other| {
+            let Grain { position, radius: other, .. } = &grains[other];
+            let near = other + radius;
+            self.period.shortest(position - place).norm_squared() > near * near
         })
     }
 
-    fn take(&mut self, place: Vec3, grain: usize) {
+    /// The grains in the cells around `place`.
+    pub(super) fn near(&self, place: Vec3) -> impl Iterator<Item = usize> + '_ {
+        let layer = (place.z / self.cell) as usize;
+        let n_z = self.cells.len() / (self.x.n * self.y.n);
+        let around = |axis: &CellAxis, at: f64| axis.around(axis.cell(at)).into_iter().flatten();
+        let columns = move |y: usize| around(&self.x, place.x).map(move |x| y * self.x.n + x);
+        let layers = layer.saturating_sub(1)..(layer + 2).min(n_z);
+        let bases = layers.flat_map(move |z| {
+            let rows = around(&self.y, place.y).map(move |y| z * self.y.n + y);
+            rows.flat_map(columns)
+        });
+        bases.flat_map(|cell| self.cells[cell].iter().copied())
+    }
+
+    pub(super) fn take(&mut self, place: Vec3, grain: usize) {
         let (x, y) = (self.x.cell(place.x), self.y.cell(place.y));
         let z = (place.z / self.cell) as usize;
         self.cells[(z * self.y.n + y) * self.x.n + x].push(grain);

@@ -1,7 +1,8 @@
-//! How a bed is made: grains at random without overlap, settled under gravity until at rest; and
+//! How a bed is made: grains at random without overlap, grown in place or not, settled under gravity until at rest; and
 //! what can be said of a bed that is.
 
 mod fill;
+mod inflate;
 mod report;
 mod rest;
 mod settling;
@@ -12,6 +13,7 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
 pub use fill::{GrainKind, fill};
+pub use inflate::{inflate, inflation_range};
 pub use report::BedReport;
 pub use settling::{SavedSettling, Settling};
 pub use sizes::SizeDistribution;

@@ -120,6 +120,31 @@ impl Container {
         }
     }
 
+    /// The nearest place to `place` at which the sides hold a circle (disc, sphere) of `radius` (m), and its
+    /// image inside of sides that repeat; as high as it was.
+    #[must_use]
+    pub(crate) fn nearest_within(&self, space: Space, place: Vec3, radius: f64) -> Vec3 {
+        if self.sides == Sides::Periodic {
+            return self.period(space).inside(place);
+        }
+        let within = |at: f64, length: f64| at.min(length - radius).max(radius);
+        match (self.base, space) {
+            (
+                Base::Rectangle { width: length, .. } | Base::Circle { diameter: length },
+                Space::Planar,
+            ) => Vec3::new(within(place.x, length), place.y, place.z),
+            (Base::Rectangle { width, depth }, Space::Spatial) => {
+                Vec3::new(within(place.x, width), within(place.y, depth), place.z)
+            }
+            (Base::Circle { diameter }, Space::Spatial) => {
+                let axis = Vec3::new(0.5 * diameter, 0.5 * diameter, place.z);
+                let (from_axis, most) = (place - axis, 0.5 * diameter - radius);
+                let distance = from_axis.norm();
+                if distance > most { axis + from_axis * (most / distance) } else { place }
+            }
+        }
+    }
+
     /// How the sides repeat.
     #[must_use]
     pub fn period(&self, space: Space) -> Period {

@@ -12,11 +12,6 @@ use crate::held_out::noise_floor;
 use crate::measurement::MeasurementSet;
 use crate::rounding::rounded;
 
-/// Candidates of force laws that act on an intruder in a bed of grains as well, or on how it is seen; the
-/// others are what grains do.
-const OF_THE_APPARATUS: [&str; 5] =
-    ["rail-friction", "air-drag", "tilt", "camera-scale", "depth-zero"];
-
 /// So many times the amplitude that was screened, what was found there is extrapolated: far enough for a
 /// search to begin with.
 const SCREENED: f64 = 4.0;
@@ -65,17 +60,20 @@ pub struct BedForward {
 
 impl BedForward {
     /// Of `baseline`; switches of `screened` whose id is in `free` are parameters of the model, the
-    /// others candidates beside what the apparatus may do.
-    pub(super) fn new(baseline: Baseline, screened: Vec<Screened>, free: &[String]) -> Self {
+    /// others candidates beside those of `apparatus`.
+    pub(super) fn new(
+        baseline: Baseline,
+        screened: Vec<Screened>,
+        free: &[String],
+        apparatus: &[&str],
+    ) -> Self {
         let is_free = |one: &Screened| free.iter().any(|id| id == one.switch.id);
         let (parameters, others): (Vec<usize>, Vec<usize>) =
             (0..screened.len()).partition(|&at| is_free(&screened[at]));
         let mut sources: Vec<Source> = others.into_iter().map(Source::Switch).collect();
-        if !screened.is_empty() {
-            let of_law = baseline.stand_in.forward.candidates().iter().enumerate();
-            let apparatus = of_law.filter(|(_, one)| OF_THE_APPARATUS.contains(&one.id.as_str()));
-            sources.extend(apparatus.map(|(at, _)| Source::Apparatus(at)));
-        }
+        let of_law = baseline.stand_in.forward.candidates().iter().enumerate();
+        let named = of_law.filter(|(_, one)| apparatus.contains(&one.id.as_str()));
+        sources.extend(named.map(|(at, _)| Source::Apparatus(at)));
         let layouts = baseline.observed.conditions.iter().map(|one| &one.layout);
         let flight = layouts.flat_map(|layout| &layout.times).any(|time| *time < 0.0);
         let mut forward = Self {

@@ -6,7 +6,7 @@ use super::campaign::{Impacts, Outstanding};
 use super::job::Job;
 use super::screening::Screening;
 use super::stand::{Draw, Stand};
-use super::switches::{SWITCHES, Switch};
+use super::switches::{OF_THE_APPARATUS, SWITCHES, Switch};
 use super::variation::Variation;
 use super::workflow::BedError;
 use super::{line_search, rate};
@@ -91,8 +91,25 @@ pub struct Wish {
     /// Switches that are parameters of the model: they compensate what they can before any effect is
     /// ranked.
     pub free: Vec<String>,
-    /// Switches that are candidates, the free ones aside; all of them if there are none.
+    /// Candidates, the free ones aside: switches, and what the apparatus may do; if there are none, all that
+    /// measurements may have.
     pub candidates: Vec<String>,
+}
+
+impl Wish {
+    /// Whether `switch` is wanted, as a parameter or as a candidate.
+    fn takes(&self, switch: &Switch) -> bool {
+        let names = |ids: &[String]| ids.iter().any(|id| id == switch.id);
+        let by_default = self.candidates.is_empty() && switch.of_measurements;
+        by_default || names(&self.candidates) || names(&self.free)
+    }
+
+    /// What the apparatus may do that is a candidate.
+    pub(super) fn apparatus(&self) -> Vec<&'static str> {
+        let is_wanted =
+            |id: &&str| self.candidates.is_empty() || self.candidates.iter().any(|one| one == id);
+        OF_THE_APPARATUS.into_iter().filter(is_wanted).collect()
+    }
 }
 
 /// What is run, stage by stage.
@@ -154,11 +171,11 @@ impl Plan {
         place: &dyn Impacts,
         wish: &Wish,
     ) -> Result<Self, BedError> {
-        let listed = switches(stand, &[]);
-        for id in wish.free.iter().chain(&wish.candidates) {
-            if listed.iter().all(|one| one.id != *id) {
-                let known = listed.iter().map(|one| one.id).collect();
-                return Err(BedError::UnknownCandidate { id: id.clone(), known });
+        let switches: Vec<&str> = switches(stand).map(|one| one.id).collect();
+        let candidates = [&switches[..], &OF_THE_APPARATUS].concat();
+        for (ids, known) in [(&wish.free, &switches), (&wish.candidates, &candidates)] {
+            if let Some(id) = ids.iter().find(|id| !known.contains(&id.as_str())) {
+                return Err(BedError::UnknownCandidate { id: id.clone(), known: known.clone() });
             }
         }
         let rate = place.rate(stand.grains())?;
@@ -323,26 +340,20 @@ impl Plan {
     }
 
     pub(super) fn screening(&self, stand: &Stand<'_>) -> Screening {
-        let Wish { free, candidates, .. } = &self.wish;
-        let only =
-            if candidates.is_empty() { Vec::new() } else { [&free[..], candidates].concat() };
-        let switches = switches(stand, &only);
+        let switches = switches(stand).filter(|one| self.wish.takes(one)).collect();
         let draws = self.draws(stand).fit;
         Screening::new(switches, self.fit.clone(), self.size.repeats, draws)
     }
 }
 
-/// The switches of the model of `stand`: those that are named in `only`, all of them if there are none. One
-/// with which the step of the model would be too long is none.
-fn switches(stand: &Stand<'_>, only: &[String]) -> Vec<&'static Switch> {
-    let wanted = |one: &&Switch| only.is_empty() || only.iter().any(|id| id == one.id);
-    let of_model = |one: &&Switch| one.lacks(stand.grains()).is_none();
+/// The switches of the model of `stand`. One with which the step of the model would be too long is none.
+fn switches<'a>(stand: &'a Stand<'_>) -> impl Iterator<Item = &'static Switch> + use<'a> {
     let first = stand.draws(0, 1, 1).concat();
-    let is_sound = |one: &&Switch| {
+    let is_sound = move |one: &&Switch| {
         let change = one.change(stand.grains(), one.screen);
         first.iter().all(|&draw| stand.job(0, draw, &change).is_ok())
     };
-    SWITCHES.iter().filter(of_model).filter(wanted).filter(is_sound).collect()
+    SWITCHES.iter().filter(|one| one.lacks(stand.grains()).is_none()).filter(is_sound)
 }
 
 /// `count` of `all`, evenly spaced, first and last among them; the middle where one is wanted.

@@ -4,6 +4,7 @@
 use std::f64::consts::{FRAC_PI_6, PI, TAU};
 
 use configs::{BedSource, GrainModel};
+use engine::bed::inflation_range;
 use engine::grains::Space;
 
 use super::variation::Variation;
@@ -21,6 +22,8 @@ pub struct Switch {
     pub range: (f64, f64),
     /// What it takes to tell it from its twins.
     pub separable_from: &'static str,
+    /// Whether measurements may have it; what only another simulation can have is a candidate where it is named.
+    pub of_measurements: bool,
     /// Why it is no candidate for a model, if it is none.
     lacks: fn(GrainModel<'_>) -> Option<&'static str>,
     /// The model with it.
@@ -41,8 +44,14 @@ pub static SWITCHES: &[Switch] = &[
     PORE_AIR,
     SIDE_WALL,
     PACKING,
+    INFLATED,
     POLYDISPERSITY,
 ];
+
+/// Candidates of force laws that act on an intruder in a bed of grains as well, or on how it is seen; the
+/// others are what grains do.
+pub(super) const OF_THE_APPARATUS: [&str; 5] =
+    ["rail-friction", "air-drag", "tilt", "camera-scale", "depth-zero"];
 
 /// Volume of a bridge, in that of a grain: a bed that is wet by about a per cent.
 const WET: f64 = 0.01;
@@ -53,6 +62,7 @@ const ROLLING_RESISTANCE: Switch = Switch {
     screen: 0.1,
     range: (0.0, 0.5),
     separable_from: "from grain-friction: several angles, or bed and impact by different friction",
+    of_measurements: true,
     lacks: |model| has(model, "rolling-resistance"),
     change: |_, q| effect("rolling-resistance", &[("rolling_friction", number(q))]),
 };
@@ -63,6 +73,7 @@ const TWISTING_RESISTANCE: Switch = Switch {
     screen: 0.1,
     range: (0.0, 1.0),
     separable_from: "from rolling-resistance: hardly by depths and times",
+    of_measurements: true,
     lacks: |model| match model.medium.space {
         Space::Planar => Some("discs in a plane do not twist against each other"),
         Space::Spatial => has(model, "twisting-resistance"),
@@ -76,6 +87,7 @@ const COHESION_DMT: Switch = Switch {
     screen: 5.0,
     range: (0.0, 100.0),
     separable_from: "from capillary-bridge: grains that are pulled apart; from friction: slow impacts",
+    of_measurements: true,
     lacks: |model| has(model, "cohesion-dmt").or_else(|| weightless(model)),
     change: |model, q| {
         let MeanGrain { radius, weight, .. } = MeanGrain::of(model);
@@ -91,6 +103,7 @@ const CAPILLARY_BRIDGE: Switch = Switch {
     screen: 5.0,
     range: (0.0, 100.0),
     separable_from: "from cohesion-dmt: grains that are pulled apart; from friction: slow impacts",
+    of_measurements: true,
     lacks: |model| has(model, "capillary-bridge").or_else(|| weightless(model)),
     change: |model, q| {
         let MeanGrain { radius, weight, volume } = MeanGrain::of(model);
@@ -108,6 +121,7 @@ const GRAIN_FRICTION: Switch = Switch {
     screen: 0.5,
     range: (-1.0, 4.0),
     separable_from: "from rolling-resistance: several angles",
+    of_measurements: true,
     lacks: |model| without(model, "friction"),
     change: |model, q| scaled(model, "friction", q),
 };
@@ -118,6 +132,7 @@ const INTRUDER_FRICTION: Switch = Switch {
     screen: 0.5,
     range: (-1.0, 4.0),
     separable_from: "from grain-friction: spin, or oblique impacts",
+    of_measurements: true,
     lacks: |model| without(model, "intruder_friction"),
     change: |model, q| scaled(model, "intruder_friction", q),
 };
@@ -128,6 +143,7 @@ const WALL_FRICTION: Switch = Switch {
     screen: 0.5,
     range: (-1.0, 4.0),
     separable_from: "from grain-friction: containers of two widths",
+    of_measurements: true,
     lacks: |model| without(model, "wall_friction"),
     change: |model, q| scaled(model, "wall_friction", q),
 };
@@ -138,6 +154,7 @@ const RESTITUTION: Switch = Switch {
     screen: 0.5,
     range: (-0.9, 4.0),
     separable_from: "from velocity-restitution: a wide range of speeds",
+    of_measurements: true,
     lacks: |model| match damping(model) {
         Some(_) => None,
         None => Some("the contact law has no damping to change"),
@@ -158,6 +175,7 @@ const VELOCITY_RESTITUTION: Switch = Switch {
     screen: 5.0,
     range: (0.0, 100.0),
     separable_from: "from restitution: a wide range of speeds",
+    of_measurements: true,
     lacks: |model| {
         let elastic = model.medium.contact_law.params.iter().any(|(key, _)| key == "young_modulus");
         let law = model.medium.contact_law.entry.name;
@@ -176,6 +194,7 @@ const PORE_AIR: Switch = Switch {
     screen: 5.0,
     range: (0.0, 200.0),
     separable_from: "from restitution: a wide range of speeds; from air-drag: flight before contact",
+    of_measurements: true,
     lacks: |model| has(model, "pore-air"),
     change: |_, q| effect("pore-air", &[("drag_rate", quantity(q, "1/s"))]),
 };
@@ -186,6 +205,7 @@ const SIDE_WALL: Switch = Switch {
     screen: 0.1,
     range: (0.0, 1.0),
     separable_from: "from grain-friction: slow impacts, or plates of another roughness",
+    of_measurements: true,
     lacks: |model| match model.medium.space {
         Space::Spatial => Some("spheres are not held between two plates"),
         Space::Planar => has(model, "side-wall").or_else(|| weightless(model)),
@@ -199,6 +219,7 @@ const PACKING: Switch = Switch {
     screen: 0.7,
     range: (-2.0, 1.0),
     separable_from: "from grain-friction: a bed that is weighed",
+    of_measurements: true,
     lacks: |model| match preparation_friction(model) {
         Some(friction) if friction > 0.0 => None,
         Some(_) => Some("the bed settles without friction, as dense as it can be"),
@@ -210,12 +231,32 @@ const PACKING: Switch = Switch {
     },
 };
 
+const INFLATED: Switch = Switch {
+    id: "inflated",
+    amplitude: "packing fraction gained by growing grains in place before they fall",
+    screen: 0.28,
+    range: (0.0, 0.3),
+    separable_from: "from packing: a bed whose fabric is seen, or that is weighed",
+    of_measurements: false,
+    lacks: |model| match &model.medium.bed.source {
+        BedSource::Csv(_) => Some("the bed is given"),
+        BedSource::Settle(settle) => {
+            settle.inflated_to.is_some().then_some("the bed of the model is inflated already")
+        }
+    },
+    change: |model, q| match q > 0.0 {
+        true => before("bed.inflated_to", number(inflation_range(model.medium.space).0 + q)),
+        false => Variation::default(),
+    },
+};
+
 const POLYDISPERSITY: Switch = Switch {
     id: "polydispersity",
     amplitude: "standard deviation of the logarithm of diameters",
     screen: 0.15,
     range: (0.0, 0.3),
     separable_from: "from packing: a bed that is weighed",
+    of_measurements: true,
     lacks: |model| match &model.medium.bed.source {
         BedSource::Csv(_) => Some("the bed is given"),
         BedSource::Settle(settle) => {

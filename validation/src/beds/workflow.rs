@@ -96,7 +96,7 @@ pub fn bed_forward(
         by_condition[condition] = runs.iter().flatten().cloned().collect();
     }
     let baseline = Baseline::of(stand, &observed.layouts(), &by_condition)?;
-    Ok(BedForward::new(baseline, Vec::new(), &[]))
+    Ok(BedForward::new(baseline, Vec::new(), &[], &[]))
 }
 
 /// What [`bed_forward`] would run.
@@ -176,7 +176,8 @@ impl Work<'_> {
             let records = self.run(&screening.jobs(self.stand)?)?;
             screening.signatures(self.stand, &self.layouts, &records, (paired, &baseline))
         };
-        let mut forward = BedForward::new(baseline, screened, &self.plan.wish.free);
+        let wish = &self.plan.wish;
+        let mut forward = BedForward::new(baseline, screened, &wish.free, &wish.apparatus());
 
         let mut diagnosis = self.judge(&forward)?;
         let mut searched: Vec<usize> = Vec::new();

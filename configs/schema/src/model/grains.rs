@@ -176,6 +176,8 @@ pub enum BedSource {
 pub struct Settle {
     /// The kinds of grains.
     pub grains: Vec<GrainKind>,
+    /// Packing fraction up to which grains grow in place before they fall; they rain where it is `None`.
+    pub inflated_to: Option<f64>,
     /// Friction while settling, in place of the law's; `None` when the law has no friction at all.
     pub preparation_friction: Option<f64>,
     /// Step while settling.

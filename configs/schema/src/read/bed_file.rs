@@ -25,7 +25,9 @@ pub(crate) fn csv_bed(
     folder: &DataFolder<'_>,
 ) -> Option<CsvBed> {
     let mut settles = false;
-    for key in ["preparation_friction", "preparation_time_step", "grains", "effect"] {
+    let of_preparation =
+        ["inflated_to", "preparation_friction", "preparation_time_step", "grains", "effect"];
+    for key in of_preparation {
         if table.has(key) {
             table.reader.report(
                 Diagnostic::error(format!("`{key}` is for a bed that settles"))
