@@ -225,7 +225,9 @@ impl Impacts for Place<'_> {
         let beds = self.missing_beds(jobs, &missing)?;
         let impacts: f64 = missing.iter().map(|&at| jobs[at].work()).sum();
         let settling: f64 = beds.iter().map(|&at| rate::SETTLING * jobs[at].work()).sum();
-        Ok(Outstanding { impacts: missing.len(), beds: beds.len(), work: impacts + settling })
+        // The sum of nothing is −0.
+        let work = 0.0 + impacts + settling;
+        Ok(Outstanding { impacts: missing.len(), beds: beds.len(), work })
     }
 }
 
