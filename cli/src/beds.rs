@@ -44,7 +44,7 @@ pub(crate) struct Beds {
     /// Where impacts are run. A scheduler gets those that are not kept yet, and is waited for.
     #[arg(long, value_name = "WHERE", default_value = "local")]
     on: On,
-    /// Hold these candidates alone against the measurements, what the apparatus may do among them or not.
+    /// Hold these candidates alone against the measurements; what the apparatus may do is left out unless it is named.
     #[arg(long = "candidate", value_name = "CANDIDATE")]
     candidates: Vec<String>,
 }

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use engine::bed::inflation_range;
+use engine::grains::Space;
 use engine::params::{Default, ParamSpec, Range};
 use engine::units::Dimension;
 
@@ -120,13 +122,16 @@ pub(crate) const PREPARATION_FRICTION: ParamSpec = required(
     "the friction of grains while settling, in place of the law's",
 );
 
-pub(crate) const INFLATED_TO: ParamSpec = required(
-    "inflated_to",
-    NUMBER,
-    Range { min: 0.0, max: 1.0, includes_min: false },
-    Range::closed(0.3, 0.82),
-    "the packing fraction up to which grains grow in place before they fall",
-);
+pub(crate) fn inflated_to(space: Space) -> ParamSpec {
+    let (min, max) = inflation_range(space);
+    required(
+        "inflated_to",
+        NUMBER,
+        Range { min, max, includes_min: false },
+        Range::closed(min, max),
+        "the packing fraction up to which grains grow in place before they fall",
+    )
+}
 
 pub(crate) const TARGET_PACKING_FRACTION: ParamSpec = required(
     "target_packing_fraction",

@@ -97,18 +97,23 @@ pub struct Wish {
 }
 
 impl Wish {
+    /// Whether `id` is a candidate; `by_default` where none is named.
+    fn considers(&self, id: &str, by_default: bool) -> bool {
+        match self.candidates.is_empty() {
+            true => by_default,
+            false => self.candidates.iter().any(|one| one == id),
+        }
+    }
+
     /// Whether `switch` is wanted, as a parameter or as a candidate.
     fn takes(&self, switch: &Switch) -> bool {
-        let names = |ids: &[String]| ids.iter().any(|id| id == switch.id);
-        let by_default = self.candidates.is_empty() && switch.of_measurements;
-        by_default || names(&self.candidates) || names(&self.free)
+        self.considers(switch.id, switch.of_measurements)
+            || self.free.iter().any(|id| id == switch.id)
     }
 
     /// What the apparatus may do that is a candidate.
     pub(super) fn apparatus(&self) -> Vec<&'static str> {
-        let is_wanted =
-            |id: &&str| self.candidates.is_empty() || self.candidates.iter().any(|one| one == id);
-        OF_THE_APPARATUS.into_iter().filter(is_wanted).collect()
+        OF_THE_APPARATUS.into_iter().filter(|id| self.considers(id, true)).collect()
     }
 }
 

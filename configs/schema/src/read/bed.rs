@@ -1,6 +1,5 @@
 //! `[bed]` and its `[[bed.grains]]`.
 
-use engine::bed::inflation_range;
 use engine::grains::Space;
 use engine::params::{Default as ParamDefault, ParamSpec};
 
@@ -45,7 +44,7 @@ fn settle(
     (space, law): (Space, Option<&LawChoice>),
     places: &mut Places,
 ) -> Option<Settle> {
-    let inflated_to = inflated_to(table, space);
+    let inflated_to = table.optional_number(&specs::inflated_to(space));
     let friction = preparation_friction(table, law);
     let step = time_step(table, &specs::PREPARATION_TIME_STEP, Some("auto"));
     places.preparation_time_step = table.span_of("preparation_time_step");
@@ -73,29 +72,11 @@ fn settle(
     }
     Some(Settle {
         grains,
-        inflated_to: inflated_to?,
+        inflated_to: inflated_to?.map(|found| found.value),
         preparation_friction: friction?,
         preparation_time_step: step?,
         effects: effects?,
     })
-}
-
-/// The outer `None` is an error that was reported.
-fn inflated_to(table: &TableReader<'_>, space: Space) -> Option<Option<f64>> {
-    let Some(found) = table.optional_number(&specs::INFLATED_TO)? else { return Some(None) };
-    let (least, most) = inflation_range(space);
-    if found.value > least && found.value <= most {
-        return Some(Some(found.value));
-    }
-    table.reader.report(
-        Diagnostic::error(format!("grains cannot be grown to a packing fraction of {}", found.value))
-            .at(table.span_of("inflated_to"), "`inflated_to`")
-            .help(format!(
-                "write more than {least}, which grains at random places fill, and at most {most}, a little below \
-                 where they jam; or leave it out: grains rain in"
-            )),
-    );
-    None
 }
 
 /// The given one, else the law's; the outer `None` is an error that was reported.
