@@ -14,6 +14,9 @@ use tempfile::TempDir;
 /// Longest wait for something that takes far less than a second.
 const PATIENCE: Duration = Duration::from_secs(60);
 
+/// Runs begun at most to end one of them on its way.
+const RUNS_TO_CATCH: usize = 20;
+
 /// A model of 300 grains that runs in a fraction of a second.
 pub(crate) fn small_model() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/schema/tests/good/small-2d.toml")
@@ -190,6 +193,34 @@ pub(crate) fn assert_same_run(a: &Path, b: &Path) {
         assert!(read(a) == read(b), "{name} differs");
     }
     assert_eq!(without_cost(summary(a)), without_cost(summary(b)));
+}
+
+/// Sends the signal of that name to a program.
+pub(crate) fn signal(child: &Child, name: &str) {
+    let kill = format!("kill -s {name} {}", child.id());
+    assert!(Command::new("sh").args(["-c", &kill]).status().expect("a shell").success());
+}
+
+/// Ends `run` by `signals` once `file` is there, and asserts that it obeys within 2 s. On a busy
+/// machine a run may be done before the signals come: then it is begun anew.
+pub(crate) fn ended_on_the_way(run: impl Fn() -> Call, file: &Path, signals: &[&str]) -> Ended {
+    for _ in 0..RUNS_TO_CATCH {
+        let mut child = run().arg("--force").start();
+        let start = Instant::now();
+        while !file.exists() && child.try_wait().expect("its state").is_none() {
+            assert!(start.elapsed() < PATIENCE, "{} never comes", file.display());
+            sleep(Duration::from_millis(1));
+        }
+        let sent = Instant::now();
+        // Until it is waited for, its number is its own, whether it has ended or not.
+        signals.iter().for_each(|name| signal(&child, name));
+        let ended = Ended::of(child);
+        assert!(sent.elapsed() < Duration::from_secs(2));
+        if ended.code != Some(0) {
+            return ended;
+        }
+    }
+    panic!("{RUNS_TO_CATCH} runs were done before a signal came");
 }
 
 /// Waits until `path` is there.

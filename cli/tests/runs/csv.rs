@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::common::{
-    Call, Ended, assert_same_run, folder, names, small_model, wait_for, without_cost,
+    Call, assert_same_run, ended_on_the_way, folder, names, small_model, without_cost,
 };
 
 /// Writes a model whose bed is a table of two rows of grains, and gives its path.
@@ -62,10 +62,7 @@ fn a_folder_with_its_table_runs_again_in_place() {
     assert_same_run(&out, &other);
     // To resume there once emptied the table that was copied onto itself.
     let call = || Call::run_model(&own, &out).set(&["run.checkpoint_every=100"]);
-    let mut child = call().arg("--force").start();
-    wait_for(&out.join("checkpoint"));
-    child.kill().expect("it can be killed");
-    assert_eq!(Ended::of(child).code, None);
+    ended_on_the_way(call, &out.join("checkpoint"), &["KILL"]);
     call().arg("--resume").done();
     assert_eq!(fs::read(out.join("grains.csv")).ok(), fs::read(other.join("grains.csv")).ok());
 }

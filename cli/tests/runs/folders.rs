@@ -3,7 +3,9 @@
 use std::fs::{self, File};
 use std::path::Path;
 
-use crate::common::{Call, assert_same_run, cache, folder, names, small_model, summary, wait_for};
+use crate::common::{
+    Call, assert_same_run, cache, ended_on_the_way, folder, names, small_model, summary, wait_for,
+};
 
 const SHORT: [&str; 1] = ["run.duration=2 ms"];
 
@@ -55,10 +57,7 @@ fn a_finished_run_of_the_same_inputs_is_reported_as_it_is() {
 fn an_unfinished_run_needs_resume_and_says_so() {
     let out = folder();
     let long = || Call::run(out.path()).set(&["run.checkpoint_every=100"]);
-    let mut child = long().start();
-    wait_for(&out.path().join("checkpoint"));
-    child.kill().expect("it can be killed");
-    child.wait().expect("it ends");
+    ended_on_the_way(long, &out.path().join("checkpoint"), &["KILL"]);
     let message = long().fails(2);
     assert!(message.contains("unfinished") && message.contains("--resume"), "{message}");
     assert!(message.contains("--force"), "{message}");

@@ -2,14 +2,15 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command};
 use std::sync::OnceLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-use crate::common::{Call, Ended, assert_same_run, folder, names, small_model, wait_for};
+use crate::common::{
+    Call, Ended, assert_same_run, ended_on_the_way, folder, names, signal, small_model, wait_for,
+};
 
 /// A run that flushes and checkpoints all the time.
 const BUSY: [&str; 3] = ["run.duration=60 ms", "run.checkpoint_every=200", "log.flush_every=100"];
@@ -33,17 +34,10 @@ fn undisturbed() -> (&'static Path, Duration) {
     (out.path(), *took)
 }
 
-fn signal(child: &Child, name: &str) {
-    let kill = format!("kill -s {name} {}", child.id());
-    assert!(Command::new("sh").args(["-c", &kill]).status().expect("a shell").success());
-}
-
 /// Leaves in `out` a busy run ended by SIGTERM after its first checkpoints.
 fn interrupted(out: &Path) {
-    let child = busy(out).start();
-    wait_for(&out.join("checkpoint.prev"));
-    signal(&child, "TERM");
-    assert_eq!(Ended::of(child).code, Some(143));
+    let ended = ended_on_the_way(|| busy(out), &out.join("checkpoint.prev"), &["TERM"]);
+    assert_eq!(ended.code, Some(143));
 }
 
 /// Resumes and compares with the undisturbed run; gives what was said on the way.
@@ -95,12 +89,8 @@ fn sigterm_ends_with_143_within_2_s_and_sigint_with_130() {
         }
         let code = 128 + number;
         let out = folder();
-        let child = busy(out.path()).start();
-        wait_for(&out.path().join("checkpoint"));
-        let start = Instant::now();
-        signal(&child, name);
-        let ended = Ended::of(child);
-        assert!(start.elapsed() < Duration::from_secs(2));
+        let checkpoint = out.path().join("checkpoint");
+        let ended = ended_on_the_way(|| busy(out.path()), &checkpoint, &[name]);
         assert_eq!(ended.code, Some(code));
         assert_eq!(ended.stdout, "");
         assert!(ended.stderr.contains("--resume"), "{}", ended.stderr);
@@ -111,11 +101,9 @@ fn sigterm_ends_with_143_within_2_s_and_sigint_with_130() {
 #[test]
 fn a_second_signal_ends_the_program_at_once_and_it_can_be_resumed() {
     let out = folder();
-    let child = busy(out.path()).start();
-    wait_for(&out.path().join("checkpoint"));
-    signal(&child, "TERM");
-    signal(&child, "TERM");
-    assert_eq!(Ended::of(child).code, Some(143));
+    let checkpoint = out.path().join("checkpoint");
+    let ended = ended_on_the_way(|| busy(out.path()), &checkpoint, &["TERM", "TERM"]);
+    assert_eq!(ended.code, Some(143));
     resumes_to_the_same_bytes(out.path());
 }
 
@@ -143,10 +131,9 @@ fn a_file_that_cannot_grow_ends_the_run_with_a_message_and_it_can_be_resumed() {
 #[test]
 fn a_checkpoint_of_1_thread_goes_on_with_8() {
     let out = folder();
-    let child = busy(out.path()).arg("--threads").arg("1").start();
-    wait_for(&out.path().join("checkpoint"));
-    signal(&child, "TERM");
-    assert_eq!(Ended::of(child).code, Some(143));
+    let one = || busy(out.path()).arg("--threads").arg("1");
+    let ended = ended_on_the_way(one, &out.path().join("checkpoint"), &["TERM"]);
+    assert_eq!(ended.code, Some(143));
     busy(out.path()).arg("--resume").arg("--threads").arg("8").done();
     assert_same_run(out.path(), undisturbed().0);
 }

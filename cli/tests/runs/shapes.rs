@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::common::{Call, assert_same_run, folder, wait_for};
+use crate::common::{Call, assert_same_run, ended_on_the_way, folder};
 use crate::log::Log;
 
 fn model(name: &str) -> PathBuf {
@@ -58,10 +58,7 @@ fn a_chain_interrupted_and_resumed_ends_at_the_same_bytes() {
     };
     run("whole").done();
     let (whole, cut) = (parent.path().join("whole"), parent.path().join("cut"));
-    let mut child = run("cut").start();
-    wait_for(&cut.join("checkpoint.prev"));
-    child.kill().expect("it can be killed");
-    child.wait().expect("it has ended");
+    ended_on_the_way(|| run("cut"), &cut.join("checkpoint.prev"), &["KILL"]);
     run("cut").arg("--resume").done();
     assert_same_run(&cut, &whole);
 }

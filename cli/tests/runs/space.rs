@@ -4,9 +4,8 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
-use crate::common::{Call, Ended, assert_same_run, folder, wait_for};
+use crate::common::{Call, assert_same_run, ended_on_the_way, folder};
 
 /// What all models here have: Hertz contacts with cohesion, rolling and twisting, layers that absorb.
 const BED: &str = r#"
@@ -126,12 +125,10 @@ fn a_run_in_space_ended_on_the_way_is_resumed_to_the_same_bytes() {
         let model = model(folder.path(), sides, intruder);
         let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
         Call::run_model(&model, &whole).done();
-        let child = Call::run_model(&model, &parts).start();
-        wait_for(&parts.join("checkpoint.prev"));
-        let kill = format!("kill -s TERM {}", child.id());
-        assert!(Command::new("sh").args(["-c", &kill]).status().expect("a shell").success());
-        assert_eq!(Ended::of(child).code, Some(143), "it was still running");
-        Call::run_model(&model, &parts).arg("--resume").done();
+        let run = || Call::run_model(&model, &parts);
+        let ended = ended_on_the_way(run, &parts.join("checkpoint.prev"), &["TERM"]);
+        assert_eq!(ended.code, Some(143));
+        run().arg("--resume").done();
         assert_same_run(&parts, &whole);
     }
 }
