@@ -153,6 +153,14 @@ impl GrainBed {
         Self { forces: forces.into_iter().collect(), ..self }
     }
 
+    /// The same bed with grains whose moment of inertia is `coefficient` m r²: 0.4 in a plane for discs that turn
+    /// as spheres do.
+    #[must_use]
+    pub fn with_grain_inertia(mut self, coefficient: f64) -> Self {
+        self.grains.set_inertia(coefficient);
+        self
+    }
+
     /// The container.
     #[must_use]
     pub fn container(&self) -> &Container {

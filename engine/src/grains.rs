@@ -29,14 +29,19 @@ impl Space {
         }
     }
 
-    /// Moment of inertia (kg m²) of a grain: a disc's ½ m r² or a sphere's ⅖ m r².
+    /// Moment of inertia of a grain over m r²: ½ of a disc, ⅖ of a sphere.
     #[must_use]
-    pub fn grain_inertia(self, mass: f64, radius: f64) -> f64 {
-        let factor = match self {
+    pub fn inertia_coefficient(self) -> f64 {
+        match self {
             Self::Planar => 0.5,
             Self::Spatial => 0.4,
-        };
-        factor * mass * radius * radius
+        }
+    }
+
+    /// Moment of inertia (kg m²) of a grain.
+    #[must_use]
+    pub fn grain_inertia(self, mass: f64, radius: f64) -> f64 {
+        self.inertia_coefficient() * mass * radius * radius
     }
 
     /// Cross-section of a sphere (m²), or the diameter of a disc (m).
@@ -252,6 +257,17 @@ impl Grains {
     #[inline]
     pub(crate) fn apart(&self, i: usize, j: usize) -> Vec3 {
         self.period.shortest(self.drifted(i) - self.drifted(j))
+    }
+
+    /// Gives every grain the moment of inertia `coefficient` m r².
+    pub(crate) fn set_inertia(&mut self, coefficient: f64) {
+        for i in 0..self.len() {
+            let (mass, radius) = (self.mass[i], self.radius[i]);
+            self.inertia[i] = coefficient * mass * radius * radius;
+            self.inverse_inertia[i] = 1.0 / self.inertia[i];
+            let rolling_mobility = 1.0 / (self.inertia[i] + mass * radius * radius);
+            self.set_motion(i, &Motion { rolling_mobility, ..self.motion(i) });
+        }
     }
 
     /// How many there are.

@@ -34,7 +34,7 @@ fn block(slope: f64) -> World {
     let cos = 1.0 / (1.0 + slope * slope).sqrt();
     let gravity = Vec3::new(slope * cos, 0.0, -cos) * GRAVITY;
     let laws = (vec![S1.stage(), rolling(4.0 * S1.friction, 0.3)], S1.normal_stiffness);
-    on_floor(Space::Planar, SMALL, (Vec3::zeros(), Vec3::zeros()), gravity, laws, DT)
+    on_floor((Space::Planar, 0.5), SMALL, (Vec3::zeros(), Vec3::zeros()), gravity, laws, DT)
 }
 
 fn velocity(world: &World) -> f64 {

@@ -45,7 +45,14 @@ fn roll(name: &str, space: Space, resistance: Resistance) -> Outcome {
     let lever = SMALL.radius - 0.5 * overlap;
     let start = (Vec3::x() * SPEED, Vec3::y() * (SPEED / lever));
     let laws = (vec![S1.stage(), resistance()], S1.normal_stiffness);
-    let mut world = on_floor(space, SMALL, start, -Vec3::z() * GRAVITY, laws, DT);
+    let mut world = on_floor(
+        (space, space.inertia_coefficient()),
+        SMALL,
+        start,
+        -Vec3::z() * GRAVITY,
+        laws,
+        DT,
+    );
     let from = world.bed().grains.position(0).x;
     // A couple that cannot turn the rotation round leaves a creep that dies away.
     while world.bed().grains.velocity(0).x > 1e-6 * SPEED {

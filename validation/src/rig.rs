@@ -148,11 +148,11 @@ pub fn free(grains: &[Grain], stages: Vec<Box<dyn ContactStage>>, dt: f64) -> Wo
     World::new(bed, Box::new(NoIntruder), dt)
 }
 
-/// One grain at rest on the floor, in equilibrium with the part of `gravity` (m/s²) along z, in a
-/// room so wide that it may move for metres; then given `velocity` and `spin`.
+/// One grain with the moment of inertia `inertia` m r² at rest on the floor, in equilibrium with the part of
+/// `gravity` (m/s²) along z, in a room so wide that it may move for metres; then given `velocity` and `spin`.
 #[must_use]
 pub fn on_floor(
-    space: Space,
+    (space, inertia): (Space, f64),
     size: Size,
     (velocity, spin): (Vec3, Vec3),
     gravity: Vec3,
@@ -164,7 +164,7 @@ pub fn on_floor(
     let position = if space == Space::Planar { Vec3::new(8.0, 0.0, position.z) } else { position };
     let grain = Grain { spin, ..size.grain(position, velocity) };
     let container = Container::walled_box(16.0, 16.0);
-    let bed = bed((space, container), gravity, &[grain], stages, 0);
+    let bed = bed((space, container), gravity, &[grain], stages, 0).with_grain_inertia(inertia);
     World::new(bed, Box::new(NoIntruder), dt)
 }
 

@@ -67,7 +67,8 @@ impl Resolved {
                 "[run]" => |key| key == "seed",
                 "[contact_law]" => |key| !key.starts_with("intruder_"),
                 "[bed]" => |key| key != "file",
-                "[medium]" | "[container]" | "[[bed.grains]]" | "[[bed.effect]]" => |_| true,
+                "[medium]" => |key| key != "grain_inertia",
+                "[container]" | "[[bed.grains]]" | "[[bed.effect]]" => |_| true,
                 _ => continue,
             };
             section.write(keep, &mut out);

@@ -89,6 +89,14 @@ pub(crate) const GRAVITY: ParamSpec = required(
     "the magnitude of gravity, downward",
 );
 
+pub(crate) const GRAIN_INERTIA: ParamSpec = required(
+    "grain_inertia",
+    NUMBER,
+    Range { min: 0.0, max: 1.0, includes_min: false },
+    Range::closed(0.3, 0.7),
+    "the moment of inertia of a grain during the impact, over m r²",
+);
+
 pub(crate) const WIDTH: ParamSpec =
     required("width", LENGTH, POSITIVE, Range::closed(1e-3, 100.0), "the inner width of the box");
 

@@ -134,6 +134,19 @@ fn grains_are_grown_as_far_as_the_model_says_and_rain_in_where_it_does_not() {
 }
 
 #[test]
+fn grains_turn_as_the_model_says_and_their_bed_is_the_one_that_it_would_be_without() {
+    let inertia = |model: &Model| model.grains().expect("a bed of grains").medium.grain_inertia;
+    let (plain, other) = (good(&[]), good(&["medium.grain_inertia=0.4"]));
+    assert_eq!((inertia(&plain), inertia(&other)), (None, Some(0.4)));
+    assert_eq!(bed_key(&plain), bed_key(&other));
+    assert_ne!(plain.hash(), other.hash());
+    for impossible in ["0", "-0.4", "1.5"] {
+        let message = refusal(&[&format!("medium.grain_inertia={impossible}")]);
+        assert!(message.contains("grain_inertia"), "{message}");
+    }
+}
+
+#[test]
 fn preparation_friction_is_that_of_the_law_unless_given() {
     let friction = |model: &Model| match &model.grains().expect("a bed of grains").medium.bed.source
     {

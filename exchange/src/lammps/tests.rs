@@ -158,6 +158,7 @@ fn what_lammps_cannot_express_is_refused_by_name_and_all_at_once() {
         (viscous.as_str(), &[][..], "hertz-mindlin-viscous"),
         (HERTZ, &["contact_law.restitution = 0.1"], "beyond critical"),
         (HERTZ, &["container.bottom = \"absorbing\""], "absorbing bottom"),
+        (HERTZ, &["medium.grain_inertia = 0.5"], "a moment of inertia of 0.5 m r²"),
         (
             HERTZ,
             &[

@@ -46,6 +46,7 @@ pub static SWITCHES: &[Switch] = &[
     PACKING,
     INFLATED,
     POLYDISPERSITY,
+    GRAIN_INERTIA,
 ];
 
 /// Candidates of force laws that act on an intruder in a bed of grains as well, or on how it is seen; the
@@ -270,6 +271,21 @@ const POLYDISPERSITY: Switch = Switch {
     change: |model, q| match q > 0.0 {
         true => before("bed.grains", spread(model, q)),
         false => Variation::default(),
+    },
+};
+
+const GRAIN_INERTIA: Switch = Switch {
+    id: "grain-inertia",
+    amplitude: "relative change of the moment of inertia of grains; - 0.2 has discs turn as spheres do",
+    screen: 0.4,
+    range: (-0.9, 1.0),
+    separable_from: "from rolling-resistance: hardly by depths and times",
+    of_measurements: false,
+    lacks: |model| {
+        model.medium.grain_inertia.map(|_| "the model says what the moment of inertia of grains is")
+    },
+    change: |model, q| {
+        during("medium.grain_inertia", number(model.medium.space.inertia_coefficient() * (1.0 + q)))
     },
 };
 

@@ -162,7 +162,8 @@ impl GrainChecks<'_> {
         }
         for (name, diameter, mass, places) in bodies {
             let inputs = [("diameter", places.diameter), ("mass", places.mass)];
-            let inertia = medium.space.grain_inertia(mass, 0.5 * diameter);
+            let coefficient = medium.grain_inertia.unwrap_or(medium.space.inertia_coefficient());
+            let inertia = 0.25 * coefficient * mass * diameter * diameter;
             self.common.derived(&format!("the moment of inertia of the {name}"), inertia, inputs);
             self.common.derived(&format!("the mass of the {name}"), mass, inputs);
             if medium.gravity > 0.0 {

@@ -21,6 +21,8 @@ pub struct GrainMedium {
     pub space: Space,
     /// Magnitude of gravity, downward (m/s²).
     pub gravity: f64,
+    /// Moment of inertia of a grain over m r² during the impact; that of discs or spheres where it is `None`.
+    pub grain_inertia: Option<f64>,
     /// `[container]`.
     pub container: Container,
     /// `[bed]`.

@@ -39,7 +39,7 @@ pub(super) fn model(
     let energy = energy(tables.energy);
     let medium = medium(tables.medium, places);
     // What follows is read as for a plane where the dimension is missing, which has been said.
-    let space = medium.map_or(Space::Planar, |(space, _)| space);
+    let space = medium.map_or(Space::Planar, |(space, ..)| space);
     let container = container(root.table("container", Some(CONTAINER_EXAMPLE)), space, places);
     let contact_law = laws::contact_law(root.table("contact_law", Some(LAW_EXAMPLE)), places);
     let bed = bed(
@@ -67,6 +67,7 @@ pub(super) fn model(
         medium: Medium::Grains(Box::new(GrainMedium {
             space: medium?.0,
             gravity: medium?.1,
+            grain_inertia: medium?.2,
             container: container?,
             bed: bed?,
             contact_law: contact_law?,
@@ -126,19 +127,21 @@ fn log(table: TableReader<'_>) -> Option<(LogSettings, GrainLog)> {
     Some((settings, GrainLog { flush_every: flush_every?.value, grains: grains?, fields_at }))
 }
 
-/// `[medium]`: discs or spheres, and the magnitude of gravity (m/s²).
-fn medium(table: TableReader<'_>, places: &mut Places) -> Option<(Space, f64)> {
+/// `[medium]`: discs or spheres, the magnitude of gravity (m/s²), and what grains resist turning with, over
+/// m r², if the file says so.
+fn medium(table: TableReader<'_>, places: &mut Places) -> Option<(Space, f64, Option<f64>)> {
     let kind = table.choice("kind", KINDS, &[], "the kind of medium");
     let dimension = table.integer("dimension", None, 2..=3, "the number of space dimensions");
     let gravity = table.number(&specs::GRAVITY);
     places.gravity = table.span_of("gravity");
+    let inertia = table.optional_number(&specs::GRAIN_INERTIA);
     table.finish();
     kind?;
     let space = match dimension?.value {
         2 => Space::Planar,
         _ => Space::Spatial,
     };
-    Some((space, gravity?.value))
+    Some((space, gravity?.value, inertia?.map(|found| found.value)))
 }
 
 /// A fixed step or `"auto"`.
