@@ -12,6 +12,7 @@ use crate::force_error::ForceErrors;
 use crate::forward::Forward;
 use crate::held_out::HeldOut;
 use crate::lack_of_fit::lack_of_fit;
+use crate::marginal::marginals;
 use crate::noise::NoiseSource;
 use crate::pair::{Pair, best_pair};
 use crate::rounding::rounded;
@@ -46,17 +47,22 @@ pub fn diagnose(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
         .filter(|&index| bench.forward.candidates()[index].not_testable.is_none())
         .collect();
     let mut weighed = baseline.clone();
-    let mut ranking = Ranking::of(bench, &weighed, &candidates, seed);
+    let marginals = marginals(bench, &baseline, &candidates)?;
+    let rank = |weighed: &Fitted| match &marginals {
+        Some(marginals) => Ranking::by_likelihood(bench, weighed, marginals, seed),
+        None => Ranking::of(bench, weighed, &candidates, seed),
+    };
+    let mut ranking = rank(&weighed);
     for _ in 1..ROUNDS {
         let Some(leader) = lead(bench, &mut ranking, &weighed)? else { break };
         let fit = bench.data(&leader.weights).fit(&baseline.fit.point)?;
         weighed = Fitted { fit, ..leader };
-        ranking = Ranking::of(bench, &weighed, &candidates, seed);
+        ranking = rank(&weighed);
     }
     let Some(leader) = lead(bench, &mut ranking, &weighed)? else {
         return Ok(cannot_tell(bench, "no effect can be tested with these data".to_owned()));
     };
-    let alike = ranking.not_separable(bench, &weighed);
+    let alike = ranking.not_separable(bench);
     Judge { bench, seed, baseline, weighed, ranking, alike, leader }.verdict()
 }
 
@@ -160,18 +166,11 @@ impl Judge<'_> {
             Verdict::NotSeparable => leaders.clone(),
             _ => Vec::new(),
         };
-        let remaining = match verdict {
-            Verdict::NoneOfTheCandidates => ForceErrors::of(bench, &self.baseline, self.seed)?,
-            _ => ForceErrors::of(bench, proposed, self.seed)?,
+        let left_by = match verdict {
+            Verdict::NoneOfTheCandidates => &self.baseline,
+            _ => proposed,
         };
-        let depends_on = match verdict {
-            Verdict::NoneOfTheCandidates | Verdict::Pair => remaining.depends_on(),
-            _ => remaining.drifts(),
-        };
-        let suggestion = match verdict {
-            Verdict::NoneOfTheCandidates => suggestion(bench.set, &remaining),
-            _ => None,
-        };
+        let unexplained = unexplained(bench, verdict, left_by, (hint, self.seed))?;
         let before = if proposed.fit.point.effects.is_empty() { proposed } else { &self.weighed };
         let amplitudes: Vec<Amplitude> = proposed
             .fit
@@ -202,7 +201,7 @@ impl Judge<'_> {
             p_lof_with,
             noise: proposed.noise.to_json(&bench.set.instrument),
             holdout: Some(held_out),
-            unexplained: Unexplained { depends_on, hint, suggestion },
+            unexplained,
             next: Vec::new(),
             parameters: parameters(bench.forward, &proposed.fit),
             amplitudes,
@@ -215,6 +214,54 @@ impl Judge<'_> {
     fn name(&self, candidate: usize) -> String {
         self.bench.forward.candidates()[candidate].id.clone()
     }
+}
+
+/// Takes back what `diagnosis` names, since `why`: what is left is whether the model as it is explains the data.
+///
+/// # Errors
+/// If the model fails.
+pub(crate) fn withdraw(
+    bench: &Bench<'_>,
+    diagnosis: Diagnosis,
+    why: String,
+    seed: u64,
+) -> Result<Diagnosis, BenchError> {
+    let Some(baseline) = &diagnosis.baseline else { return Ok(diagnosis) };
+    let verdict = match adequate(diagnosis.p_lof) {
+        true => Verdict::NothingDetected,
+        false => Verdict::NoneOfTheCandidates,
+    };
+    Ok(Diagnosis {
+        verdict,
+        unexplained: unexplained(bench, verdict, baseline, (why, seed))?,
+        effects: Vec::new(),
+        not_separable: Vec::new(),
+        amplitudes: Vec::new(),
+        amplitude_correlation: None,
+        parameters: parameters(bench.forward, &baseline.fit),
+        noise: baseline.noise.to_json(&bench.set.instrument),
+        proposed: Some(baseline.clone()),
+        ..diagnosis
+    })
+}
+
+/// What `fitted`, which is what `verdict` says, leaves over, and what to try where nothing listed helps.
+fn unexplained(
+    bench: &Bench<'_>,
+    verdict: Verdict,
+    fitted: &Fitted,
+    (hint, seed): (String, u64),
+) -> Result<Unexplained, BenchError> {
+    let remaining = ForceErrors::of(bench, fitted, seed)?;
+    let depends_on = match verdict {
+        Verdict::NoneOfTheCandidates | Verdict::Pair => remaining.depends_on(),
+        _ => remaining.drifts(),
+    };
+    let suggestion = match verdict {
+        Verdict::NoneOfTheCandidates => suggestion(bench.set, &remaining),
+        _ => None,
+    };
+    Ok(Unexplained { depends_on, hint, suggestion })
 }
 
 /// Whether a model leaves no lack of fit; one that leaves nothing to judge by is not adequate.

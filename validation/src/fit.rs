@@ -85,18 +85,37 @@ impl Data<'_> {
     /// If the model cannot be integrated at the start or at the end.
     pub fn fit(&self, start: &Point) -> Result<Fit, PredictError> {
         let scales = self.scales(start);
+        let free = vec![false; scales.len()];
+        self.fit_but(start, &scales, free)
+    }
+
+    /// Fits the parameters of `start`, from there; the amplitudes of its effects are as they are.
+    ///
+    /// # Errors
+    /// If the model cannot be integrated at the start or at the end.
+    pub(crate) fn fit_parameters(&self, start: &Point) -> Result<Fit, PredictError> {
+        let scales = self.scales(start);
+        let held = (0..scales.len()).map(|at| at >= start.parameters.len()).collect();
+        self.fit_but(start, &scales, held)
+    }
+
+    /// Fits what is not `held`.
+    fn fit_but(
+        &self,
+        start: &Point,
+        scales: &[Scale],
+        mut held: Vec<bool>,
+    ) -> Result<Fit, PredictError> {
         self.residual(start)?;
         let mut point = start.clone();
-        let mut held = vec![false; scales.len()];
         while held.contains(&false) {
-            let unknowns = unknowns(&point, &scales);
+            let unknowns = unknowns(&point, scales);
             let best = RefCell::new((f64::INFINITY, unknowns.clone()));
-            let search =
-                Search { data: self, scales: &scales, held: &held, like: start, unknowns, best };
+            let search = Search { data: self, scales, held: &held, like: start, unknowns, best };
             let solver = LevenbergMarquardt::new().with_ftol(TOLERANCE).with_xtol(TOLERANCE);
             // The best that was tried, since the search may end where the model cannot be integrated.
             let (_, unknowns) = solver.minimize(search).0.best.into_inner();
-            point = point_of(&unknowns, &scales, start);
+            point = point_of(&unknowns, scales, start);
             let mut outside = false;
             for (at, scale) in scales.iter().enumerate() {
                 let beyond = !held[at] && !scale.contains(unknowns[at]);
@@ -107,7 +126,7 @@ impl Data<'_> {
                 break;
             }
         }
-        self.result(point, &scales, &held)
+        self.result(point, scales, &held)
     }
 
     /// Whitened measured less predicted at `point`, condition after condition.

@@ -44,8 +44,9 @@ pub trait Forward: Sync {
     }
 
     /// How the observables differ from run to run, of a model that has runs of its own to tell it by: one column
-    /// per mode, of one standard deviation. `None` where [`Scatter`] says it.
-    fn modes_of_scatter(&self, condition: usize) -> Option<&DMatrix<f64>> {
+    /// per independent way, of one standard deviation where runs scatter by as much as they are, so that a
+    /// relative scatter multiplies them. `None` where [`Scatter`] says it.
+    fn ways_of_scatter(&self, condition: usize) -> Option<&DMatrix<f64>> {
         let _ = condition;
         None
     }
@@ -123,6 +124,16 @@ pub struct Scatter {
     pub bend: [f64; 2],
     /// Depth of the last node (m); beyond it the last value holds.
     pub reach: f64,
+}
+
+impl Scatter {
+    /// Whether this is the run of the mean bed.
+    #[must_use]
+    pub fn is_still(&self) -> bool {
+        let Self { coefficients, speed, level, along, sideways, .. } = self;
+        let lists = coefficients.iter().chain(along).chain(sideways);
+        lists.chain([speed, level]).all(|value| *value == 0.0)
+    }
 }
 
 /// Why a model could not predict.

@@ -38,6 +38,7 @@ pub mod force_error;
 pub mod forward;
 pub mod held_out;
 pub mod lack_of_fit;
+mod marginal;
 pub mod measurement;
 pub mod next;
 pub mod noise;

@@ -91,6 +91,13 @@ impl Observed {
         observed
     }
 
+    /// With at most so many `frames` of every condition, evenly spaced, first and last among them.
+    #[must_use]
+    pub fn thinned(&self, frames: usize) -> Self {
+        let conditions = self.conditions.iter().map(|condition| condition.thinned(frames));
+        Self { conditions: conditions.collect(), ..self.clone() }
+    }
+
     /// Whether any condition that may be fitted to was repeated.
     #[must_use]
     pub fn has_repeats(&self) -> bool {
@@ -197,6 +204,29 @@ impl ObservedCondition {
             runs: vectors,
             order,
             mean,
+        }
+    }
+
+    fn thinned(&self, frames: usize) -> Self {
+        let all = self.layout.times.len();
+        let times = thinned(0..all, frames);
+        let tracks = if self.layout.along_x { 2 * all } else { all };
+        let of_frames = (0..tracks)
+            .step_by(all.max(1))
+            .flat_map(|track| times.iter().map(move |time| track + time));
+        let kept: Vec<usize> = of_frames.chain(tracks..self.layout.len()).collect();
+        let pick = |numbers: &DVector<f64>| numbers.select_rows(&kept);
+        Self {
+            layout: Layout {
+                times: times.iter().map(|&time| self.layout.times[time]).collect(),
+                ..self.layout.clone()
+            },
+            runs: self.runs.iter().map(pick).collect(),
+            order: self.order.clone(),
+            mean: pick(&self.mean),
+            reading: pick(&self.reading),
+            stated: kept.iter().map(|&row| self.stated[row]).collect(),
+            reach: self.reach,
         }
     }
 
@@ -353,6 +383,27 @@ mod tests {
         // One smoothing window of seven frames at 500 Hz wide.
         assert!((times[times.len() - 1] - 0.15).abs() < 0.008, "{times:?}");
         assert!(!observed.conditions[0].layout.along_x);
+    }
+
+    #[test]
+    fn a_thinned_condition_has_the_same_numbers_at_the_times_it_keeps() {
+        let mut run = trajectory_run(0, |t| (t - t * t, 0.5 * t));
+        run.final_z = Some(0.04);
+        let set = set(Kind::Trajectory, vec![condition(1.0, 60.0)], vec![run.clone(), run]);
+        let whole = Observed::of(&set);
+        let (all, few) = (&whole.conditions[0], &whole.thinned(5).conditions[0]);
+        let n = all.layout.times.len();
+        assert_eq!((few.layout.times.len(), few.mean.len(), few.stated.len()), (5, 11, 11));
+        assert_eq!(few.layout.times[0].to_bits(), all.layout.times[0].to_bits());
+        assert_eq!(few.layout.times[4].to_bits(), all.layout.times[n - 1].to_bits());
+        for (at, time) in few.layout.times.iter().enumerate() {
+            let before =
+                all.layout.times.iter().position(|one| one.to_bits() == time.to_bits()).unwrap();
+            assert_eq!(few.mean[at].to_bits(), all.mean[before].to_bits());
+            assert_eq!(few.runs[1][5 + at].to_bits(), all.runs[1][n + before].to_bits());
+        }
+        assert!((few.mean[10] - 0.04).abs() < 1e-15);
+        assert_eq!(*all, whole.thinned(n).conditions[0]);
     }
 
     #[test]

@@ -3,9 +3,10 @@
 use crate::bench::{Bench, Fitted};
 use crate::chord::extend;
 use crate::forward::PredictError;
+use crate::marginal::Marginals;
 use crate::sensitivity::Point;
 use crate::signature::{Signature, collinearity, signature, variance_along};
-use crate::significance::NullScores;
+use crate::significance::{NullScores, leads_again};
 
 /// How many of the best are refitted with derivatives of their own.
 const POLISHED: usize = 3;
@@ -21,7 +22,7 @@ pub(crate) struct Score {
     pub(crate) point: Point,
     /// Standard error of its amplitude, enlarged as the fall of χ² is reduced; 0 at a bound.
     pub(crate) standard_error: f64,
-    /// Fall of χ², over the variance that the repeats show along the signature of the best effect, where
+    /// Fall of χ², or of twice the negative logarithm of a likelihood, over the variance that the repeats show along the signature of the best effect, where
     /// that is larger than one.
     pub(crate) delta: f64,
     /// Amplitude in standard errors.
@@ -50,42 +51,86 @@ pub(crate) struct Ranking {
     /// Places in `scores` by rows of the null scores.
     rows: Vec<usize>,
     null: NullScores,
-    /// Variance that falls of χ² are measured in.
-    scale: f64,
     /// Candidates with which the model cannot be integrated, and why.
     pub(crate) failed: Vec<(usize, PredictError)>,
 }
 
 impl Ranking {
     /// Adds each of `candidates` (indices) to `fitted` and refits, under its weights.
-    ///
-    /// All falls of χ² are measured in the variance that the repeats show along the signature of the
-    /// best: each in its own would rank by how well that variance happens to be known.
     pub(crate) fn of(bench: &Bench<'_>, fitted: &Fitted, candidates: &[usize], seed: u64) -> Self {
         let (signatures, failed) = signatures(bench, fitted, candidates);
-        let null = NullScores::new(collinearity(&signatures), seed);
         let mut scores: Vec<Score> =
             signatures.into_iter().map(|signature| refit(bench, fitted, signature)).collect();
-        let mut rows = best_first(&scores);
-        for &row in rows.iter().take(POLISHED) {
+        for row in best_first(&scores).into_iter().take(POLISHED) {
             if scores[row].delta > 0.0 {
                 polish(bench, fitted, &mut scores[row]);
             }
         }
-        rows.sort_by(|&a, &b| scores[b].delta.total_cmp(&scores[a].delta));
+        let mut ranking = Self::ranked(bench, fitted, scores, failed, seed);
+        for (score, &row) in ranking.scores.iter_mut().zip(&ranking.rows) {
+            score.ranked_first = ranking.null.ranked_first(row, score.strength);
+        }
+        ranking
+    }
+
+    /// Of the `marginals` of candidates, which have weights of their own; those of `fitted` say how alike the
+    /// candidates are.
+    pub(crate) fn by_likelihood(
+        bench: &Bench<'_>,
+        fitted: &Fitted,
+        marginals: &Marginals,
+        seed: u64,
+    ) -> Self {
+        let mut failed = marginals.failed.clone();
+        let mut scores = Vec::with_capacity(marginals.best.len());
+        for marginal in &marginals.best {
+            match signature(bench, fitted, marginal.candidate) {
+                Ok(signature) => scores.extend(signature.map(|signature| Score {
+                    delta: marginal.fall,
+                    point: marginal.point.clone(),
+                    standard_error: marginal.standard_error,
+                    signature,
+                    strength: 0.0,
+                    ranked_first: 0.0,
+                })),
+                Err(why) => failed.push((marginal.candidate, why)),
+            }
+        }
+        let mut ranking = Self::ranked(bench, fitted, scores, failed, seed);
+        // How alike effects are under one covariance says too little of those that have each their own.
+        let falls: Vec<f64> = ranking.scores.iter().map(|score| score.delta).collect();
+        for (place, score) in ranking.scores.iter_mut().enumerate() {
+            let rival =
+                if place == 0 { falls.get(1).copied().unwrap_or(0.0) } else { falls[place] };
+            score.ranked_first = leads_again(falls[0] - rival);
+        }
+        ranking
+    }
+
+    /// All falls of χ² are measured in the variance that the repeats show along the signature of the
+    /// best: each in its own would rank by how well that variance happens to be known.
+    fn ranked(
+        bench: &Bench<'_>,
+        fitted: &Fitted,
+        mut scores: Vec<Score>,
+        failed: Vec<(usize, PredictError)>,
+        seed: u64,
+    ) -> Self {
+        let signatures: Vec<&Signature> = scores.iter().map(|score| &score.signature).collect();
+        let null = NullScores::new(collinearity(&signatures), seed);
+        let rows = best_first(&scores);
         let scale = rows.first().map_or(1.0, |&best| {
             variance_along(bench, fitted, &scores[best].signature.unit).max(1.0)
         });
-        for (row, score) in scores.iter_mut().enumerate() {
+        for score in &mut scores {
             score.delta /= scale;
             score.standard_error *= scale.sqrt();
             score.strength = score.amplitude().abs() * score.signature.norm / scale.sqrt();
-            score.ranked_first = null.ranked_first(row, score.strength);
         }
         let mut scores: Vec<Option<Score>> = scores.into_iter().map(Some).collect();
         let scores: Vec<Score> = rows.iter().filter_map(|&row| scores[row].take()).collect();
         let p = scores.first().map_or(1.0, |best| null.family_wise_p(best.delta));
-        Self { scores, p, rows, null, scale, failed }
+        Self { scores, p, rows, null, failed }
     }
 
     /// Takes the best out, since the model cannot be integrated around its fit.
@@ -98,7 +143,7 @@ impl Ranking {
 
     /// Places of the effects that cannot be told from the best, itself included: by the numbers, or
     /// because the data lack what would tell them apart.
-    pub(crate) fn not_separable(&self, bench: &Bench<'_>, weighed: &Fitted) -> Vec<usize> {
+    pub(crate) fn not_separable(&self, bench: &Bench<'_>) -> Vec<usize> {
         let candidates = bench.forward.candidates();
         let Some(best) = self.scores.first() else { return Vec::new() };
         let twins = &candidates[best.candidate()].unresolved;
@@ -108,22 +153,8 @@ impl Ranking {
             twins.contains(&candidates[other.candidate()].id)
                 || best.delta - other.delta < least
                 || self.null.beats(self.rows[0], self.rows[place], best.strength) < CONFUSED
-                || self.lead_under_both(bench, weighed, other).is_some_and(|lead| lead < least)
         };
         (0..self.scores.len()).filter(|&place| place == 0 || confused(place)).collect()
-    }
-
-    /// By how much less χ² falls with `other` than with the best, under weights that have the uncertainty of what
-    /// either does: that of the best alone would be held against the other. `None` where a model says exactly
-    /// what effects do, or cannot be integrated.
-    fn lead_under_both(&self, bench: &Bench<'_>, weighed: &Fitted, other: &Score) -> Option<f64> {
-        let (best, fit) = (&self.scores[0], &bench.observed.fit);
-        bench.forward.own_covariance(*fit.first()?, &[])?;
-        let mut both = best.point.clone();
-        both.effects.extend(other.point.effects.iter().copied());
-        let weights = bench.weights(&both, &weighed.noise, fit).ok()?;
-        let chi2 = |score: &Score| Some(bench.data(&weights).fit(&score.point).ok()?.chi2);
-        Some((chi2(other)? - chi2(best)?) / self.scale)
     }
 }
 
@@ -141,7 +172,8 @@ pub(crate) fn by_chance(
         return 1.0;
     };
     let scale = variance_along(bench, fitted, &own.unit).max(1.0);
-    NullScores::new(collinearity(&signatures), seed).family_wise_p(fall / scale)
+    let all: Vec<&Signature> = signatures.iter().collect();
+    NullScores::new(collinearity(&all), seed).family_wise_p(fall / scale)
 }
 
 /// The signatures that exist, and the candidates whose failed.

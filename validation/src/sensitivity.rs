@@ -113,8 +113,8 @@ impl Sensitivity {
     ) -> Result<Self, PredictError> {
         let coefficients = forward.n_scattering_coefficients();
         let mean = point.predict(forward, condition)?;
-        if let Some(modes) = forward.modes_of_scatter(condition) {
-            return Ok(Self::of_modes(modes, mean));
+        if let Some(ways) = forward.ways_of_scatter(condition) {
+            return Ok(Self::of_ways(ways, mean));
         }
         let inputs: Vec<Input> = (0..coefficients)
             .map(Input::Coefficient)
@@ -136,14 +136,11 @@ impl Sensitivity {
         Ok(Self { inputs, mean, slope, curvature })
     }
 
-    /// Of runs that scatter by `modes` around `mean`, in place of forces along the path: their scatter is the size of
-    /// all modes, in that of the numbers.
-    fn of_modes(modes: &DMatrix<f64>, mean: DVector<f64>) -> Self {
-        let size = modes.norm() / mean.norm();
-        let relative = if size > 0.0 && size.is_finite() { size } else { 1.0 };
-        let inputs = (0..modes.ncols()).map(Input::Along).collect();
-        let (slope, curvature) = (modes / relative, DMatrix::zeros(mean.len(), modes.ncols()));
-        Self { inputs, mean, slope, curvature }
+    /// Of runs that differ from `mean` in `ways`, in place of forces along the path.
+    fn of_ways(ways: &DMatrix<f64>, mean: DVector<f64>) -> Self {
+        let inputs = (0..ways.ncols()).map(Input::Along).collect();
+        let curvature = DMatrix::zeros(mean.len(), ways.ncols());
+        Self { inputs, mean, slope: ways.clone(), curvature }
     }
 
     /// Standard deviation of each input.

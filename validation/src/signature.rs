@@ -76,7 +76,7 @@ fn derivative(
 }
 
 /// Cosines between signatures.
-pub(crate) fn collinearity(signatures: &[Signature]) -> DMatrix<f64> {
+pub(crate) fn collinearity(signatures: &[&Signature]) -> DMatrix<f64> {
     let n = signatures.len();
     DMatrix::from_fn(
         n,

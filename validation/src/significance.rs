@@ -61,6 +61,12 @@ impl NullScores {
     }
 }
 
+/// Probability that an effect whose likelihood is ahead of another's by `lead` (in twice its logarithm) would be
+/// ahead of it again, if it is there as fitted: the lead is normal, and its variance four times its mean.
+pub(crate) fn leads_again(lead: f64) -> f64 {
+    phi(0.5 * lead.max(0.0).sqrt())
+}
+
 /// The normal distribution function.
 fn phi(x: f64) -> f64 {
     0.5 * libm::erfc(-x / std::f64::consts::SQRT_2)
@@ -82,6 +88,23 @@ mod tests {
         // Twins are one effect.
         let p = pair(1.0).family_wise_p(6.635);
         assert!((p - 0.01).abs() < 0.003, "{p}");
+    }
+
+    #[test]
+    fn a_likelihood_leads_again_as_often_as_it_does_in_draws() {
+        let mut random = stream(1, Purpose::Family, 0);
+        for lead in [0.5, 4.0, 9.2] {
+            // Two effects √lead apart, in one direction of many; the first is there.
+            let apart: f64 = f64::sqrt(lead);
+            let draws = 20_000;
+            let leads = (0..draws).filter(|_| {
+                let x = normal(&mut random);
+                (x - apart).powi(2) > x * x
+            });
+            let drawn = leads.count() as f64 / f64::from(draws);
+            // Three standard errors of a half.
+            assert!((drawn - leads_again(lead)).abs() < 0.011, "{lead}: {drawn}");
+        }
     }
 
     #[test]

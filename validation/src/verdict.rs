@@ -98,7 +98,8 @@ pub struct RankedEffect {
     pub se: Option<f64>,
     /// Unit of the amplitude; 1 where it has none.
     pub unit: String,
-    /// Fall of χ² by adding it.
+    /// Fall of χ² by adding it; of twice the negative logarithm of the likelihood, where what effects do is known from
+    /// a few runs.
     #[serde(serialize_with = "six_digits_or_null")]
     pub delta: Option<f64>,
     /// Probability that it would be ranked first, were it there with this amplitude.

@@ -3,7 +3,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::forward::{Forward, PredictError};
-use crate::noise::Noise;
+use crate::noise::{Noise, log_determinant};
 use crate::observed::ObservedCondition;
 use crate::sensitivity::{Point, Sensitivity};
 
@@ -62,6 +62,12 @@ impl Weight {
     pub fn standard_errors(&self) -> DVector<f64> {
         let factor = self.factor.l();
         DVector::from_iterator(factor.nrows(), factor.row_iter().map(|row| row.norm()))
+    }
+
+    /// Logarithm of the determinant of the covariance of the mean.
+    #[must_use]
+    pub fn log_determinant(&self) -> f64 {
+        log_determinant(&self.factor)
     }
 
     /// What the mean of runs is expected to be at `point`.

@@ -61,6 +61,8 @@ pub(super) struct Baseline {
     pub(super) fitted: Fitted,
     /// How its runs scatter.
     pub(super) modes: Modes,
+    /// Per condition: every way in which they do, in units of the scatter of all runs relative to their means.
+    pub(super) ways: Vec<DMatrix<f64>>,
     /// Per condition: covariance of the numbers of one run. Empty for those that were not run.
     pub(super) spread: Vec<DMatrix<f64>>,
 }
@@ -97,11 +99,16 @@ impl Baseline {
         let fitted = bench.fit_from(&Point::start(&forward), &Noise::guess(&instrument))?;
         let modes = Modes::of(&observed);
         let mut spread = vec![DMatrix::zeros(0, 0); observed.conditions.len()];
+        let (mut scatter, mut whole) = (0.0, 0.0);
         for &at in &observed.fit {
             spread[at] = modes.covariance(at);
+            scatter += spread[at].trace();
+            whole += observed.conditions[at].mean.norm_squared();
         }
+        let relative = (scatter / whole).sqrt();
+        let ways = (0..spread.len()).map(|at| modes.ways(at) / relative).collect();
         let point = fitted.fit.point.clone();
-        Ok(Self { observed, stand_in: StandIn { forward, point }, fitted, modes, spread })
+        Ok(Self { observed, stand_in: StandIn { forward, point }, fitted, modes, ways, spread })
     }
 }
 
@@ -150,7 +157,7 @@ impl StandIn {
         if effects.iter().any(|(_, q)| *q != 0.0) {
             response += predict(effects, &still)? - &base;
         }
-        if !is_still(scatter) {
+        if !scatter.is_still() {
             response += 0.5 * (predict(&[], scatter)? - predict(&[], &opposite(scatter))?);
         }
         Ok(response)
@@ -159,12 +166,6 @@ impl StandIn {
     pub(super) fn n_scattering(&self) -> usize {
         self.forward.n_scattering_coefficients()
     }
-}
-
-fn is_still(scatter: &Scatter) -> bool {
-    let Scatter { coefficients, speed, level, along, sideways, .. } = scatter;
-    let lists = coefficients.iter().chain(along).chain(sideways);
-    lists.chain([speed, level]).all(|value| *value == 0.0)
 }
 
 fn opposite(scatter: &Scatter) -> Scatter {

@@ -277,7 +277,11 @@ impl Forward for BedForward {
         if observed.runs.is_empty() {
             return Err(missing());
         }
-        let mut predicted = &observed.mean + self.respond(condition, at.effects, at.scatter)?;
+        let mut predicted = observed.mean.clone();
+        let of_law = |&(index, q): &(usize, f64)| q != 0.0 && self.switch(index).is_none();
+        if !at.scatter.is_still() || at.effects.iter().any(of_law) {
+            predicted += self.respond(condition, at.effects, at.scatter)?;
+        }
         for (switch, q) in self.at_work(at.parameters, at.effects).filter(|(_, q)| *q != 0.0) {
             let response = self.screened[switch].responses[condition].as_ref();
             predicted += response.ok_or_else(missing)?.at(q);
@@ -303,7 +307,7 @@ impl Forward for BedForward {
         9.2
     }
 
-    fn modes_of_scatter(&self, condition: usize) -> Option<&DMatrix<f64>> {
-        Some(&self.baseline.modes.columns[condition])
+    fn ways_of_scatter(&self, condition: usize) -> Option<&DMatrix<f64>> {
+        Some(&self.baseline.ways[condition])
     }
 }

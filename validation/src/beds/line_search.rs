@@ -39,8 +39,6 @@ pub(super) struct Against<'a> {
     pub(super) spread: &'a [DMatrix<f64>],
     /// Correlation of runs on one draw.
     pub(super) correlation: f64,
-    /// Whether runs are held against the baseline on their own draw.
-    pub(super) paired: bool,
 }
 
 impl<'a> LineSearch<'a> {
@@ -90,13 +88,27 @@ impl<'a> LineSearch<'a> {
         Ok(jobs)
     }
 
-    /// The response of every condition of the set, by least squares in q and q².
+    /// The response of every condition of the set, by least squares in q and q²: held against the baseline on the
+    /// same draw, or against its mean, whichever makes draws agree better. Another friction leaves a bed what
+    /// it is; another preparation makes another one of the same seed.
     pub(super) fn responses(
         &self,
         stand: &Stand<'_>,
         records: &[Option<Record>],
         against: &Against<'_>,
     ) -> Vec<Option<Response>> {
+        let [on_draws, on_means] =
+            [true, false].map(|paired| self.held_against(stand, records, (against, paired)));
+        if on_draws.1 < on_means.1 { on_draws.0 } else { on_means.0 }
+    }
+
+    /// The response of every condition, and how much the largest amplitude scatters, in the variance of a run.
+    fn held_against(
+        &self,
+        stand: &Stand<'_>,
+        records: &[Option<Record>],
+        (against, paired): (&Against<'_>, bool),
+    ) -> (Vec<Option<Response>>, f64) {
         let n_draws = self.draws.first().map_or(0, Vec::len);
         let per_condition = n_draws * self.amplitudes.len();
         let mut found = Vec::with_capacity(self.conditions.len());
@@ -104,7 +116,7 @@ impl<'a> LineSearch<'a> {
         for (at, &condition) in self.conditions.iter().enumerate() {
             let records = &records[at * per_condition..(at + 1) * per_condition];
             let of_set = (&stand.set.conditions[condition], stand);
-            let by_draw = self.differences((at, condition), of_set, records, against);
+            let by_draw = self.differences((at, condition), of_set, records, (against, paired));
             let whole = by_draw.iter().filter(|found| found.len() == self.amplitudes.len());
             let each: Vec<Line> = whole.filter_map(|found| Line::through(found)).collect();
             let deviations = deviations(&each);
@@ -112,15 +124,20 @@ impl<'a> LineSearch<'a> {
             found.push((at, by_draw.concat(), deviations));
         }
         let mut responses = vec![None; against.layouts.len()];
+        let (least, most) = self.tried();
+        let largest = if most > -least { most } else { least };
+        let mut whole = 0.0;
         for (at, found, deviations) in found {
             responses[self.conditions[at]] = Line::through(&found).map(|line| {
-                let expected = line.inverse * against.noise(at);
+                let expected = line.inverse * against.noise(at, paired);
                 let variance = scatter.of_mean(expected, deviations.len());
                 let [slope, curvature] = line.terms;
-                Response { slope, curvature, variance, deviations }
+                let response = Response { slope, curvature, variance, deviations };
+                whole += response.variance_at(largest);
+                response
             });
         }
-        responses
+        (responses, whole)
     }
 
     /// Amplitudes and differences from the baseline, draw by draw.
@@ -129,12 +146,12 @@ impl<'a> LineSearch<'a> {
         (at, condition): (usize, usize),
         (of_set, stand): (&Condition, &Stand<'_>),
         records: &[Option<Record>],
-        against: &Against<'_>,
+        (against, paired): (&Against<'_>, bool),
     ) -> Vec<Vec<(f64, DVector<f64>)>> {
         let numbers =
             |record: &Record| record.observables(&against.layouts[condition], of_set, stand.set);
         let of_draw = |(draw, records): (usize, &[Option<Record>])| {
-            let own = against.baseline[at].get(draw).copied().flatten().filter(|_| against.paired);
+            let own = against.baseline[at].get(draw).copied().flatten().filter(|_| paired);
             let base = own.map_or_else(|| against.means[condition].clone(), numbers);
             let ended = self.amplitudes.iter().zip(records);
             ended.filter_map(|(&q, record)| Some((q, numbers(record.as_ref()?) - &base))).collect()
@@ -144,9 +161,73 @@ impl<'a> LineSearch<'a> {
 }
 
 impl Against<'_> {
-    /// Variance of a difference under the condition at place `at` of the search, in that of a run.
-    fn noise(&self, at: usize) -> f64 {
+    /// Variance of a difference from the run on the same draw, or else from the mean of all, under the condition
+    /// at place `at` of the search, in that of a run.
+    fn noise(&self, at: usize, paired: bool) -> f64 {
         let runs = self.baseline[at].len().max(1) as f64;
-        if self.paired { 2.0 * (1.0 - self.correlation) } else { 1.0 + 1.0 / runs }
+        if paired { 2.0 * (1.0 - self.correlation) } else { 1.0 + 1.0 / runs }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::beds::SWITCHES;
+    use crate::beds::benchmark::{campaign, model};
+
+    /// Depths (mm) of the model as it stands, on four beds.
+    const BEDS: [f64; 4] = [29.0, 31.0, 29.0, 31.0];
+
+    fn record(depth_mm: f64) -> Record {
+        Record {
+            interval: 1e-3,
+            depth: vec![0.0],
+            range: vec![0.0],
+            stopping_time: None,
+            slow_time: None,
+            deepest: 1e-3 * depth_mm,
+            reached: 0.0,
+            end: 0.1,
+            impact_energy: 1.0,
+            closure: 0.0,
+            ledger: Vec::new(),
+            grains: 1,
+            steps: 1,
+            wall: 0.0,
+        }
+    }
+
+    /// The response at the amplitude that is screened (mm), and its variance in that of a run, where the switch
+    /// makes depths `with` (mm) of [`BEDS`].
+    fn found(with: [f64; 4]) -> (f64, f64) {
+        let model = model(1).unwrap();
+        let set = campaign(&model);
+        let stand = Stand::new(&model, &set).unwrap();
+        let layouts =
+            vec![Layout { final_z: true, ..Layout::default() }; stand.set.conditions.len()];
+        let (conditions, draws) = ([0], stand.draws(0, BEDS.len(), 1));
+        let search = LineSearch::once(&SWITCHES[0], &conditions, &draws);
+        let (baseline, mean) = (BEDS.map(record), DVector::from_element(1, 0.030));
+        let against = Against {
+            layouts: &layouts,
+            baseline: vec![baseline.iter().map(Some).collect()],
+            means: vec![&mean; layouts.len()],
+            spread: &vec![DMatrix::from_element(1, 1, 1e-6); layouts.len()],
+            correlation: 0.8,
+        };
+        let responses = search.responses(&stand, &with.map(|depth| Some(record(depth))), &against);
+        let response = responses[0].as_ref().unwrap();
+        let q = SWITCHES[0].screen;
+        (1e3 * response.at(q)[0], response.variance_at(q))
+    }
+
+    #[test]
+    fn runs_on_the_same_beds_are_held_against_each_other_and_runs_on_others_against_the_mean() {
+        let (size, variance) = found([34.0, 36.0, 34.0, 36.0]);
+        assert!((size - 5.0).abs() < 1e-9 && variance < 1e-12, "{size} {variance}");
+        // Depths of 36, 34, 34 and 36 mm: a variance of 4/3 mm², of the mean of four of 1/3. Differences from the
+        // runs of the same number would have twice that.
+        let (size, variance) = found([36.0, 34.0, 34.0, 36.0]);
+        assert!((size - 5.0).abs() < 1e-9 && (variance - 1.0 / 3.0).abs() < 1e-9, "{variance}");
     }
 }

@@ -22,8 +22,8 @@ const PER_MODE: usize = 3;
 const LEAST: f64 = 1e-3;
 
 /// Least share of the scatter of a number that the others do not tell: correlations that come of some forty
-/// deviations are known to a tenth, and what they seem to tell beyond that, they do not.
-const OWN_SHARE: f64 = 0.12;
+/// deviations are known to a fifth, and what they seem to tell beyond that, they do not.
+const OWN_SHARE: f64 = 0.2;
 
 /// The scatter of runs, condition by condition; empty for those that were not run.
 pub(super) struct Modes {
@@ -59,11 +59,20 @@ impl Modes {
         Self { columns, rest }
     }
 
+    /// One column per independent way in which runs under `condition` differ, of one standard deviation: the
+    /// modes, then what is left of every number.
+    pub(super) fn ways(&self, condition: usize) -> DMatrix<f64> {
+        let (columns, rest) = (&self.columns[condition], &self.rest[condition]);
+        let modes = columns.ncols();
+        let mut all = columns.clone().resize_horizontally(modes + rest.len(), 0.0);
+        all.columns_mut(modes, rest.len()).set_diagonal(rest);
+        all
+    }
+
     /// Covariance of the numbers of one run under `condition`.
     pub(super) fn covariance(&self, condition: usize) -> DMatrix<f64> {
-        let columns = &self.columns[condition];
-        let rest = self.rest[condition].map(|sd| sd * sd);
-        columns * columns.transpose() + DMatrix::from_diagonal(&rest)
+        let ways = self.ways(condition);
+        &ways * ways.transpose()
     }
 }
 
@@ -152,7 +161,7 @@ mod tests {
             let correlation = |a: usize, b: usize| {
                 covariance[(a, b)] / (covariance[(a, a)] * covariance[(b, b)]).sqrt()
             };
-            assert!(correlation(1, 2) < -0.97, "{covariance}");
+            assert!(correlation(1, 2) < -1.0 + OWN_SHARE * OWN_SHARE, "{covariance}");
             // Of 80 pairs, a correlation of nothing scatters by 0.11.
             assert!(correlation(0, 1).abs() < 0.3, "{covariance}");
         }

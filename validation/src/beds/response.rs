@@ -19,11 +19,16 @@ impl Response {
         q * &self.slope + (q * q) * &self.curvature
     }
 
+    /// Variance at the amplitude `q`, in that of one run.
+    pub(super) fn variance_at(&self, q: f64) -> f64 {
+        let [[a, b], [_, c]] = self.variance;
+        q * q * (a + 2.0 * b * q + c * q * q)
+    }
+
     /// Covariance at the amplitude `q`, where runs scatter by `spread`: half as if responses differed in what
     /// runs differ in, half as those few that were seen did, which alone would leave most directions out.
     pub(super) fn covariance_at(&self, q: f64, spread: &DMatrix<f64>) -> DMatrix<f64> {
-        let [[a, b], [_, c]] = self.variance;
-        let like_runs = (q * q * (a + 2.0 * b * q + c * q * q)) * spread;
+        let like_runs = self.variance_at(q) * spread;
         let n = self.deviations.len() as f64;
         if n < 2.0 {
             return like_runs;

@@ -19,20 +19,25 @@ use super::switches::Switch;
 use super::variation::Variation;
 use crate::bench::{Bench, BenchError};
 use crate::compare::parameters;
-use crate::diagnose::diagnose;
+use crate::diagnose::{diagnose, withdraw};
 use crate::forward::Forward;
+use crate::held_out::HeldOut;
 use crate::observable::Layout;
 use crate::observed::Observed;
 use crate::rounding::rounded;
 use crate::sensitivity::Point;
 use crate::verdict::{Diagnosis, Strength, Verdict};
 
-/// Runs on one draw that correlate more than this are held against each other.
-const PAIRED: f64 = 0.5;
-
 /// Where they correlate more than this, effects are screened one at a time: what each does alone is worth
 /// more than what half of the runs of a design would save.
 const ALONE: f64 = 0.5;
+
+/// Most frames of a condition that a diagnosis looks at: of neighbours in time a few dozen runs cannot tell
+/// what one says beside the other, and a covariance that seems to would veto what is true.
+const FRAMES: usize = 12;
+
+/// An error on fresh beds up to so many times its noise is noise.
+const WITHIN: f64 = 1.3;
 
 /// Draws of a comparison.
 pub const COMPARED: usize = 6;
@@ -144,13 +149,14 @@ pub fn diagnose_bed(
     plan: Plan,
     seed: u64,
 ) -> Result<BedDiagnosis, BedError> {
+    let measured = measured.thinned(FRAMES);
     let mut observed = measured.clone();
     observed.fit = plan.fit.clone();
     // What is held out is judged by impacts, and not by what is made of others.
     observed.holdout = Vec::new();
     let layouts = measured.layouts();
     let work = Work { stand, place, plan, layouts, observed, seed, impacts: 0 };
-    work.diagnose(measured)
+    work.diagnose(&measured)
 }
 
 impl Work<'_> {
@@ -193,7 +199,12 @@ impl Work<'_> {
             diagnosis = self.judge(&forward)?;
         }
         let confirmation = self.confirm(&forward, &diagnosis, &draws.confirm, measured)?;
+        let mut diagnosis = match &confirmation {
+            Some(confirmation) => self.held_against(diagnosis, &forward, confirmation)?,
+            None => diagnosis,
+        };
         self.weigh(&mut diagnosis, confirmation.as_ref());
+        let confirmation = confirmation.filter(|_| !diagnosis.amplitudes.is_empty());
         let Self { observed, plan, impacts, .. } = self;
         Ok(BedDiagnosis { diagnosis, forward, observed, confirmation, correlation, plan, impacts })
     }
@@ -298,7 +309,6 @@ impl Work<'_> {
             means: baseline.observed.conditions.iter().map(|one| &one.mean).collect(),
             spread: &baseline.spread,
             correlation,
-            paired: correlation > PAIRED,
         };
         Ok(Some(search.responses(self.stand, &records, &against)))
     }
@@ -330,19 +340,44 @@ impl Work<'_> {
         Ok(Some(Confirmation::of(self.stand, measured, (forward, point), runs)?))
     }
 
-    /// Has the verdict rest on what was confirmed.
-    fn weigh(&self, diagnosis: &mut Diagnosis, confirmation: Option<&Confirmation>) {
-        let mut confirmed = self.plan.supports;
-        if let Some(confirmation) = confirmation {
-            confirmed &= confirmation.held_out.after < confirmation.held_out.before;
-            if !confirmed && self.plan.supports {
-                diagnosis.unexplained.hint =
-                    "impacts with it, on fresh beds, are no nearer to what was held out".to_owned();
-            }
-            if self.plan.held_out || diagnosis.holdout.is_none() {
-                diagnosis.holdout = Some(confirmation.held_out.clone());
-            }
+    /// Has the verdict rest on what was confirmed: what has its impacts miss fresh beds by more than without it, and
+    /// by more than noise, is not named.
+    fn held_against(
+        &self,
+        mut diagnosis: Diagnosis,
+        forward: &BedForward,
+        Confirmation { held_out, .. }: &Confirmation,
+    ) -> Result<Diagnosis, BedError> {
+        let HeldOut { before, after, noise_floor, .. } = *held_out;
+        let no_nearer = after >= before;
+        if self.plan.held_out || diagnosis.holdout.is_none() {
+            diagnosis.holdout = Some(held_out.clone());
         }
+        if !self.plan.supports || !no_nearer {
+            return Ok(diagnosis);
+        }
+        if after <= WITHIN * noise_floor {
+            diagnosis.unexplained.hint =
+                "impacts with it, on fresh beds, are no nearer to what was held out".to_owned();
+            return Ok(diagnosis);
+        }
+        let why = format!(
+            "{} would explain what was fitted to, but impacts with it, on fresh beds, miss what was held out by \
+             {:.2} times the noise, and without it by {:.2}",
+            diagnosis.leaders.join(" or "),
+            after / noise_floor,
+            before / noise_floor,
+        );
+        diagnosis.holdout =
+            Some(HeldOut { after: before, log_density_gain: 0.0, ..held_out.clone() });
+        let bench = Bench { set: self.stand.set, observed: &self.observed, forward };
+        Ok(withdraw(&bench, diagnosis, why, self.seed)?)
+    }
+
+    /// How much the verdict weighs.
+    fn weigh(&self, diagnosis: &mut Diagnosis, confirmation: Option<&Confirmation>) {
+        let nearer = |one: &Confirmation| one.held_out.after < one.held_out.before;
+        let confirmed = self.plan.supports && confirmation.is_none_or(nearer);
         if !confirmed {
             diagnosis.strength = Strength::Suggested;
         }
@@ -369,9 +404,9 @@ pub fn unaffordable(plan: &Plan) -> Diagnosis {
     Diagnosis::cannot_tell(Vec::new(), why)
 }
 
-/// The switches to be searched that were not yet, with the guess of each: the first two, whatever of the apparatus
-/// leads them, and what cannot be told from the leader, which may be for want of a search; none where nothing
-/// is named.
+/// The switches to be searched that were not yet, with the guess of each: the first two of the first few, whatever
+/// of the apparatus leads them, and of what cannot be told from the leader. A screening sees an effect beside all
+/// others, so who is behind may be so for want of a search. None where nothing is named.
 fn leaders(diagnosis: &Diagnosis, forward: &BedForward, searched: &[usize]) -> Vec<(usize, f64)> {
     if matches!(diagnosis.verdict, Verdict::NothingDetected | Verdict::CannotTell) {
         return Vec::new();
@@ -383,7 +418,9 @@ fn leaders(diagnosis: &Diagnosis, forward: &BedForward, searched: &[usize]) -> V
     });
     switches
         .enumerate()
-        .filter(|(rank, (at, _, leads))| (*rank < LEADERS || *leads) && !searched.contains(at))
+        .filter(|(rank, (at, _, leads))| {
+            (*rank < SEARCHES * LEADERS || *leads) && !searched.contains(at)
+        })
         .map(|(_, (at, guess, _))| (at, guess))
         .take(LEADERS)
         .collect()

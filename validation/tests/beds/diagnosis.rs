@@ -7,7 +7,7 @@ use crate::imitation::Imitation;
 
 /// On beds that scatter by 5 %, and runs on one bed by `runs`.
 fn outcome(hidden: Hidden, runs: f64) -> Outcome {
-    let impacts = Imitation { beds: 0.05, runs };
+    let impacts = Imitation { beds: 0.05, runs, fades: false };
     Case { hidden, seed: 0 }.run(&impacts, &Wish::default()).unwrap()
 }
 
@@ -29,8 +29,17 @@ fn what_is_hidden_is_named_and_the_error_falls_on_fresh_beds() {
 }
 
 #[test]
+fn what_has_impacts_on_fresh_beds_miss_by_more_than_without_it_is_not_named() {
+    let impacts = Imitation { beds: 0.05, runs: 0.02, fades: true };
+    let case = Case { hidden: Hidden::Switch("rolling-resistance", 0.2), seed: 0 };
+    let one = case.run(&impacts, &Wish::default()).unwrap();
+    assert!(one.first, "{one:?}");
+    assert_eq!((one.verdict.as_str(), one.named.len()), ("none-of-the-candidates", 0), "{one:?}");
+}
+
+#[test]
 fn a_budget_that_pays_for_nothing_is_said_to_be_too_small() {
-    let impacts = Imitation { beds: 0.05, runs: 0.02 };
+    let impacts = Imitation { beds: 0.05, runs: 0.02, fades: false };
     let wish = Wish { budget: Some(1e-3), ..Wish::default() };
     let case = Case { hidden: Hidden::Nothing, seed: 0 };
     let one = case.run(&impacts, &wish).unwrap();

@@ -9,6 +9,9 @@ use validation::beds::{CampaignError, Impacts, Job, Outstanding, Record};
 /// Step of its integration (s).
 const STEP: f64 = 5e-5;
 
+/// Seeds of beds that are measured begin here.
+const MEASURED: u64 = 1_000_000;
+
 /// Steps between samples.
 const EVERY: usize = 10;
 
@@ -18,6 +21,8 @@ pub(crate) struct Imitation {
     pub(crate) beds: f64,
     /// Of runs on one bed.
     pub(crate) runs: f64,
+    /// Whether what is measured at held-out speeds lacks the rolling resistance that it has at others.
+    pub(crate) fades: bool,
 }
 
 /// Inertial drag (kg/m), friction per depth (N/m), constant resistance (N).
@@ -36,16 +41,19 @@ impl Imitation {
         };
         let number =
             |key: &str, value: f64| of_impact.medium.contact_law.params.get(key) / value - 1.0;
-        let rolling = effect("rolling-resistance", "rolling_friction");
+        let held_out = [0.75, 1.25].contains(&job.model.impact.speed);
+        let faded = self.fades && held_out && job.bed.run.seed >= MEASURED;
+        let rolling = if faded { 0.0 } else { effect("rolling-resistance", "rolling_friction") };
         let cohesion = effect("cohesion-dmt", "work_of_adhesion");
         let wet = effect("capillary-bridge", "surface_tension");
         let (rough, damped) = (number("friction", 0.3), number("normal_damping_rate", 1.5e3));
         let dense = 1.0 - preparation_friction(job.bed.grains().expect("a bed")) / 0.3;
         let mass = heavier(of_impact);
-        let x = of_impact.medium.start.x.unwrap_or(0.0);
+        // Another preparation is another bed, of the same seed or not.
+        let (x, bed) = (of_impact.medium.start.x.unwrap_or(0.0), job.bed.hash());
         let [a, b, c, d] = [
-            self.normal(job.bed.run.seed, &format!("drag {x}")) * self.beds,
-            self.normal(job.bed.run.seed, &format!("friction {x}")) * self.beds,
+            self.normal(job.bed.run.seed, &format!("drag {x} {bed}")) * self.beds,
+            self.normal(job.bed.run.seed, &format!("friction {x} {bed}")) * self.beds,
             self.normal(job.bed.run.seed, &format!("drag {}", job.model.hash())) * self.runs,
             self.normal(job.bed.run.seed, &format!("friction {}", job.model.hash())) * self.runs,
         ];
