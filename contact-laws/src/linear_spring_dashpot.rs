@@ -1,7 +1,7 @@
 //! Linear spring–dashpot with a tangential spring and a Coulomb limit.
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
-use engine::lanes::{Lanes, Vector, select_vector, vector_where};
+use engine::lanes::{Lanes, Vector, select_vector, shortened, vector_where};
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
@@ -112,10 +112,7 @@ impl ContactLaw for LinearSpringDashpot {
         let stretched = before + contact.slip_step;
         let viscous = contact.slip_velocity * (mass * R::splat(pair.tangential_damping_rate));
         let trial = -(stretched * k_t + viscous);
-        let trial_2 = trial.dot(&trial);
-        let slides = trial_2.simd_gt(limit * limit);
-        let cut = (limit / trial_2.simd_sqrt()).select(slides, R::one());
-        let force = trial * cut;
+        let (force, slides) = shortened(trial, limit);
         let cut_back = force * -R::splat(pair.tangential_compliance);
         let spring = select_vector(slides, cut_back, stretched);
         let viscous = vector_where(!slides, viscous);

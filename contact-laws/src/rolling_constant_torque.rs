@@ -1,7 +1,7 @@
 //! Rolling resistance as a constant torque.
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
-use engine::lanes::{Lanes, Vector, vector_where};
+use engine::lanes::{Lanes, Vector, length, vector_where};
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
@@ -58,7 +58,7 @@ impl ContactLaw for RollingConstantTorque {
         energy: &mut R,
     ) {
         let spin = contact.across(contact.relative_spin);
-        let speed = spin.dot(&spin).simd_sqrt();
+        let speed = length(spin);
         let pressed = (response.normal_force + response.adhesive_force).simd_max(R::zero());
         let limit = R::splat(pair.rolling_friction) * contact.radius_eff() * pressed;
         let stopping = speed / (R::splat(FREE_OVER_ROLLING * dt) * contact.rolling_mobility);

@@ -1,7 +1,7 @@
 //! Rolling resistance as an elastic–plastic spring with a dashpot.
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
-use engine::lanes::{Lanes, Vector, select_vector, vector_where};
+use engine::lanes::{Lanes, Vector, length, select_vector, shortened, vector_where};
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
@@ -95,15 +95,13 @@ impl ContactLaw for RollingResistance {
         let turned = contact.across(contact.relative_turn);
         let before = contact.turn(history.angle);
         let wound = before + turned;
-        let spring = wound.dot(&wound).simd_sqrt() * k_r;
+        let spring = length(wound) * k_r;
         let yields = spring.simd_gt(limit);
         let angle = select_vector(yields, wound * (limit / spring), wound);
         let plastic = half * k_r * (before + angle).dot(&(wound - angle));
         energy.dissipated += plastic.select(yields, zero);
         let trial = -(wound * k_r + contact.across(contact.relative_spin) * c_r);
-        let size = trial.dot(&trial).simd_sqrt();
-        let cut = (limit / size).select(size.simd_gt(limit), R::one());
-        let couple = select_vector(yields, angle * -k_r, trial * cut);
+        let couple = select_vector(yields, angle * -k_r, shortened(trial, limit).0);
         let viscous = -couple - angle * k_r;
         energy.dissipated += half * (history.stiffness - k_r) * before.dot(&wound);
         energy.stored += half * k_r * angle.dot(&angle);

@@ -128,7 +128,9 @@ fn initial_energy_is_final_and_dissipated_less_unaccounted_to_round_off() {
         let bound = 40.0 * f64::EPSILON * (0.017 * 9.81 * 0.04 + initial);
         assert!((sum - initial).abs() <= bound, "{sum} is not {initial} by {}", sum - initial);
         assert!(lost.iter().all(|value| *value >= 0.0), "{energy}");
-        assert!(unaccounted.abs() <= closure * initial && closure < 1e-2);
+        // What is missing at the end may be the most that ever was: a quotient times its divisor.
+        let most = closure * initial * (1.0 + 2.0 * f64::EPSILON);
+        assert!(unaccounted.abs() <= most && closure < 1e-2, "{energy}");
     }
 }
 

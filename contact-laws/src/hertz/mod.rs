@@ -5,7 +5,7 @@ pub(crate) mod params;
 mod restitution;
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
-use engine::lanes::{Lanes, Mask, Vector, select_vector, vector_where};
+use engine::lanes::{Lanes, Mask, Vector, select_vector, shortened, vector_where};
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::ParamTable;
 
@@ -170,10 +170,7 @@ pub(crate) fn act<D: Damping, R: Lanes, const N: usize>(
     let viscous = contact.slip_velocity * c_t;
     let trial = -(stretched * k_t + viscous);
     let limit = R::splat(pair.friction) * (spare + damping);
-    let trial_2 = trial.dot(&trial);
-    let slides = trial_2.simd_gt(limit * limit);
-    let cut = (limit / trial_2.simd_sqrt()).select(slides, R::one());
-    let force = trial * cut;
+    let (force, slides) = shortened(trial, limit);
     // A contact that attraction holds open has no spring that could come back.
     let cut_back = vector_where(touching, force * (-R::one() / k_t));
     let spring = select_vector(slides, cut_back, stretched);

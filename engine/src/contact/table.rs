@@ -13,6 +13,20 @@ pub(crate) const APART: u32 = u32::MAX;
 /// as much each time, as vectors do, would cost a large bed more memory than its contacts.
 const MORE_RECORDS: usize = 32;
 
+/// A grain and a partner that it may touch. One line of memory holds four: what the search for contacts and
+/// their evaluation want to know of them lies together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Candidate {
+    /// The grain i and the partner j.
+    pub(crate) key: [u32; 2],
+    /// Where its record begins, or [`APART`].
+    pub(crate) record: u32,
+    /// Whose load the partner has, if it is a grain: counted in grains of the block, then of its halo. It
+    /// follows from the keys, and is not stored.
+    #[serde(skip)]
+    pub(crate) target: u32,
+}
+
 /// Candidate contacts sorted by key, with the history of those that touch.
 ///
 /// About half of the candidates touch; only they have a record in the histories. A rebuild of the
@@ -20,9 +34,7 @@ const MORE_RECORDS: usize = 32;
 /// in their order, in which they are read. No order depends on anything but the keys.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactTable {
-    keys: Vec<[u32; 2]>,
-    /// Per candidate: where its record begins, or [`APART`].
-    records: Vec<u32>,
+    candidates: Vec<Candidate>,
     histories: Vec<f64>,
     /// Records that nobody uses.
     free: Vec<u32>,
@@ -33,7 +45,7 @@ pub struct ContactTable {
 /// Room to merge two lists of candidates in.
 #[derive(Debug, Default)]
 pub struct Merger {
-    records: Vec<u32>,
+    candidates: Vec<Candidate>,
     histories: Vec<f64>,
 }
 
@@ -45,26 +57,47 @@ impl ContactTable {
     }
 
     /// The candidates: (grain i, partner j), ascending.
-    #[must_use]
-    pub fn keys(&self) -> &[[u32; 2]] {
-        &self.keys
+    pub fn keys(&self) -> impl ExactSizeIterator<Item = [u32; 2]> + '_ {
+        self.candidates.iter().map(|candidate| candidate.key)
     }
 
-    /// Per candidate: where its record begins, or [`APART`].
-    pub(crate) fn records(&self) -> &[u32] {
-        &self.records
+    /// The same, with what else is known of them.
+    pub(crate) fn candidates(&self) -> &[Candidate] {
+        &self.candidates
+    }
+
+    /// The same, for whoever says whose loads the partners have.
+    pub(crate) fn candidates_mut(&mut self) -> &mut [Candidate] {
+        &mut self.candidates
+    }
+
+    /// One of [`Self::candidates`], without a look at whether there is such a row.
+    ///
+    /// # Safety
+    /// `row` is below their number.
+    #[inline(always)]
+    #[expect(unsafe_code, reason = "measured: see docs/performance.md")]
+    pub(crate) unsafe fn candidate_unchecked(&self, row: u32) -> &Candidate {
+        debug_assert!((row as usize) < self.candidates.len());
+        // SAFETY: the caller's.
+        unsafe { self.candidates.get_unchecked(row as usize) }
+    }
+
+    /// The row of the candidate with this key.
+    pub(crate) fn row_of(&self, key: [u32; 2]) -> Option<usize> {
+        self.candidates.binary_search_by_key(&key, |candidate| candidate.key).ok()
     }
 
     /// Whether the contact of `row` was touching when last evaluated.
     #[must_use]
     pub fn is_touching(&self, row: usize) -> bool {
-        self.records[row] != APART
+        self.candidates[row].record != APART
     }
 
     /// How many contacts touch.
     #[must_use]
     pub fn n_touching(&self) -> usize {
-        self.records.iter().filter(|&&record| record != APART).count()
+        self.candidates.iter().filter(|candidate| candidate.record != APART).count()
     }
 
     /// Length of one row of each stage's history.
@@ -79,7 +112,7 @@ impl ContactTable {
         if !self.is_touching(row) {
             return &[];
         }
-        let from = self.records[row] as usize + self.offset(stage);
+        let from = self.candidates[row].record as usize + self.offset(stage);
         &self.histories[from..][..self.history_len[stage]]
     }
 
@@ -110,7 +143,7 @@ impl ContactTable {
     /// Where the record of `row` begins; a new one, all zero, if it has none.
     #[inline]
     pub(crate) fn record(&mut self, row: usize) -> u32 {
-        let record = self.records[row];
+        let record = self.candidates[row].record;
         if record != APART {
             return record;
         }
@@ -125,13 +158,13 @@ impl ContactTable {
             self.histories.resize(new_end, 0.0);
             end as u32
         });
-        self.records[row] = record;
+        self.candidates[row].record = record;
         record
     }
 
     /// The contact of `row` has opened: its record is forgotten.
     pub(crate) fn open(&mut self, row: usize) {
-        let record = std::mem::replace(&mut self.records[row], APART);
+        let record = std::mem::replace(&mut self.candidates[row].record, APART);
         if record != APART {
             let len = self.history_len.iter().sum::<usize>();
             self.histories[record as usize..][..len].fill(0.0);
@@ -148,27 +181,25 @@ impl ContactTable {
     /// Replaces the candidates by `keys` (ascending); a contact in both lists keeps its history.
     pub(crate) fn rekey(&mut self, keys: &[[u32; 2]], merger: &mut Merger) {
         debug_assert!(keys.is_sorted());
-        let Merger { records, histories } = merger;
-        records.clear();
-        records.resize(keys.len(), APART);
+        let Merger { candidates, histories } = merger;
+        candidates.clear();
+        candidates.extend(keys.iter().map(|&key| Candidate { key, record: APART, target: 0 }));
         let mut to = 0;
-        for row in 0..self.keys.len() {
-            let (key, record) = (self.keys[row], self.records[row]);
-            while to < keys.len() && keys[to] < key {
+        for old in &self.candidates {
+            while to < keys.len() && keys[to] < old.key {
                 to += 1;
             }
-            if to < keys.len() && keys[to] == key {
-                records[to] = record;
+            if to < keys.len() && keys[to] == old.key {
+                candidates[to].record = old.record;
             }
         }
         histories.clear();
         let len = self.history_len.iter().sum::<usize>().max(1);
-        for record in records.iter_mut().filter(|record| **record != APART) {
+        for Candidate { record, .. } in candidates.iter_mut().filter(|new| new.record != APART) {
             let from = std::mem::replace(record, histories.len() as u32) as usize;
             histories.extend_from_slice(&self.histories[from..from + len]);
         }
-        replace(&mut self.keys, keys);
-        replace(&mut self.records, records);
+        replace(&mut self.candidates, candidates);
         replace(&mut self.histories, histories);
         self.free.clear();
     }
@@ -186,16 +217,13 @@ impl ContactTable {
         let fits = |&record: &u32| {
             (record as usize).is_multiple_of(len) && record as usize + len <= self.histories.len()
         };
-        let touching = || self.records.iter().filter(|&&record| record != APART);
-        let mut used: Vec<u32> = touching().chain(&self.free).copied().collect();
+        let records = self.candidates.iter().map(|candidate| candidate.record);
+        let touching = records.filter(|&record| record != APART);
+        let mut used: Vec<u32> = touching.chain(self.free.iter().copied()).collect();
         used.sort_unstable();
         self.history_len == history_len
-            && self.records.len() == self.keys.len()
-            && self.keys.is_sorted()
-            && self
-                .keys
-                .iter()
-                .all(|&[i, j]| own.contains(&(i as usize)) && (j as usize) < n_grains)
+            && self.keys().is_sorted()
+            && self.keys().all(|[i, j]| own.contains(&(i as usize)) && (j as usize) < n_grains)
             && used.iter().all(fits)
             && used.windows(2).all(|pair| pair[0] < pair[1])
             && self.histories.iter().all(|value| value.is_finite())

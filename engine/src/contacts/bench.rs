@@ -2,7 +2,6 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::pairs::Near;
 use crate::contact::table::Merger;
 use crate::math::Vec3;
 use crate::surface::SurfacePoint;
@@ -31,7 +30,7 @@ pub(super) struct Bench {
     pub(super) nearest: Vec<SurfacePoint>,
     pub(super) nearest_half: Vec<SurfacePoint>,
     /// At least as long as there are candidates; how many of them are near is known anew in each step.
-    pub(super) near: Vec<Near>,
+    pub(super) near: Vec<u32>,
     pub(super) near_rows: Vec<u32>,
     pub(super) keys: Vec<[u32; 2]>,
     pub(super) merger: Merger,

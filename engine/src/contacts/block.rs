@@ -5,7 +5,7 @@ use std::ops::Range;
 use arrayvec::ArrayVec;
 
 use super::bench::Bench;
-use super::pairs::{Near, Pairs, Side, lanes_of};
+use super::pairs::{Pairs, Side, lanes_of};
 use super::tally::Tally;
 use crate::body::Part;
 use crate::contact::geometry::{loads_on_grain_and_part, with_surface};
@@ -29,8 +29,6 @@ pub(super) struct Block {
     pub(super) first: usize,
     /// Its keys are grains of the bed: whoever lists or restores them sees to that.
     pub(super) pairs: ContactTable,
-    /// Per pair: whose load the second grain has, counted in grains of the block and then of the halo.
-    pub(super) targets: Vec<u32>,
     /// Grains of other blocks that are listed in pairs of this one, ascending.
     pub(super) halo: Vec<u32>,
     /// What contacts do to the grains of the block, then to those of the halo.
@@ -104,7 +102,7 @@ where
     fn of_pairs<D: Dimension<N>>(
         pairs: &mut Pairs<'_>,
         stages: &[Box<dyn ContactStage>],
-        near: &[Near],
+        near: &[u32],
     ) {
         let mut evaluation = Self::new();
         let mut sides = ArrayVec::<Side<R>, GROUPS>::new();
@@ -141,7 +139,6 @@ impl Block {
             grains,
             first: self.first as u32,
             near,
-            targets: &self.targets,
             table: &mut self.pairs,
             loads: &mut self.loads,
             tally: &mut self.tally,
@@ -158,16 +155,16 @@ impl Block {
         Evaluation::<f64, N>::of_pairs::<D>(&mut pairs, stages, rest);
     }
 
-    /// Writes which candidates overlap, or did a step ago, and returns how many.
+    /// Writes the rows of candidates that overlap, or did a step ago, and returns how many.
     fn find_near<D: Dimension<N>, const N: usize>(
         &self,
         grains: &Grains,
-        near: &mut Vec<Near>,
+        near: &mut Vec<u32>,
     ) -> usize {
-        let n_rows = self.pairs.keys().len();
+        let n_rows = self.pairs.candidates().len();
         let in_lanes = n_rows - n_rows % Eight::COUNT;
         if near.len() < n_rows {
-            near.resize(n_rows, Near::default());
+            near.resize(n_rows, 0);
         }
         let found = self.find_near_in::<D, Eight, N>(grains, 0..in_lanes, (near, 0));
         self.find_near_in::<D, f64, N>(grains, in_lanes..n_rows, (near, found))
@@ -180,29 +177,27 @@ impl Block {
         &self,
         grains: &Grains,
         rows: Range<usize>,
-        (near, mut found): (&mut [Near], usize),
+        (near, mut found): (&mut [u32], usize),
     ) -> usize {
-        let all = self.pairs.keys();
-        let keys = all[rows.clone()].chunks_exact(R::COUNT);
-        let records = self.pairs.records()[rows.clone()].chunks_exact(R::COUNT);
-        for (row, (keys, records)) in rows.step_by(R::COUNT).zip(keys.zip(records)) {
+        let all = self.pairs.candidates();
+        let candidates = all[rows.clone()].chunks_exact(R::COUNT);
+        for (row, candidates) in rows.step_by(R::COUNT).zip(candidates) {
             let ahead = row + ROWS_AHEAD;
-            for &[_, j] in all.get(ahead..ahead + R::COUNT).unwrap_or_default() {
-                fetch(grains.place(j as usize));
+            for candidate in all.get(ahead..ahead + R::COUNT).unwrap_or_default() {
+                fetch(grains.place(candidate.key[1] as usize));
             }
-            let of_lane = lanes_of::<R, _>(keys);
+            let of_lane = lanes_of::<R, _>(candidates);
             // SAFETY: tables hold grains of the bed alone, see [`Block::pairs`].
             let place = |side: usize| {
-                per_lane(|lane| unsafe { grains.place_unchecked(of_lane[lane][side] as usize) })
+                per_lane(|lane| unsafe { grains.place_unchecked(of_lane[lane].key[side] as usize) })
             };
             let [i, j] = [place(0), place(1)];
             let overlap = D::are_near::<R>(&i, &j, &grains.period, 0.0).bits();
-            let kept = overlap | R::differ(records, APART);
+            let kept = overlap | R::differ(&per_lane(|lane| of_lane[lane].record), APART);
             // Without a branch: about half of the candidates touch, and which ones cannot be foreseen.
             for lane in 0..R::COUNT {
                 // SAFETY: not more are found than there are rows, see above.
-                *unsafe { near.get_unchecked_mut(found) } =
-                    Near { grains: keys[lane], row: (row + lane) as u32, record: records[lane] };
+                *unsafe { near.get_unchecked_mut(found) } = (row + lane) as u32;
                 found += (kept >> lane & 1) as usize;
             }
         }
@@ -222,7 +217,7 @@ impl Block {
     {
         let (index, part) = part;
         let table = &mut self.surfaces[index];
-        if table.keys().is_empty() {
+        if table.candidates().is_empty() {
             return;
         }
         let placement = &part.placement;
@@ -232,13 +227,11 @@ impl Block {
             Motion { position, ..motion }
         };
         bench.points.clear();
-        bench
-            .points
-            .extend(table.keys().iter().map(|&[i, _]| placement.to_body(grain(i).position)));
+        bench.points.extend(table.keys().map(|[i, _]| placement.to_body(grain(i).position)));
         part.surface.closest_many(&bench.points, &mut bench.nearest);
         bench.near_rows.clear();
         bench.points_half.clear();
-        for (row, (&[i, _], nearest)) in table.keys().iter().zip(&bench.nearest).enumerate() {
+        for (row, ([i, _], nearest)) in table.keys().zip(&bench.nearest).enumerate() {
             let grain = grain(i);
             if nearest.gap < grain.radius || table.is_touching(row) {
                 bench.near_rows.push(row as u32);
@@ -254,7 +247,7 @@ impl Block {
             let mut evaluation = Evaluation::<f64, N>::new();
             let mut contacts = ArrayVec::<(Contact, Motion), GROUPS>::new();
             for (&row, half) in rows.iter().zip(halves) {
-                let grain = grain(table.keys()[row as usize][0]);
+                let grain = grain(table.candidates()[row as usize].key[0]);
                 let now = &bench.nearest[row as usize];
                 let record = table.record(row as usize);
                 let last = table.last_of_record(record);
@@ -272,7 +265,7 @@ impl Block {
                 let apart = grain.position - placement.position;
                 let (on_grain, on_part) =
                     loads_on_grain_and_part(contact, &response, grain.radius, apart);
-                let i = table.keys()[row][0];
+                let i = table.candidates()[row].key[0];
                 let loads = D::Load::each_mut(&mut self.loads);
                 D::add_load(&on_grain, &mut loads[i as usize - self.first]);
                 if !(evaluation.contacts[k].overlaps() | evaluation.responses[k].holds) {

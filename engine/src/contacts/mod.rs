@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::body::Part;
 use crate::contact::Partner;
-use crate::contact::table::ContactTable;
+use crate::contact::table::{Candidate, ContactTable};
 use crate::contacts::stage::{ContactStage, Sweep};
 use crate::dimension::{Dimension, Planar, Quad, Quads, Spatial};
 use crate::grains::{Grains, Space};
@@ -49,7 +49,6 @@ impl Contacts {
             .map(|block| Block {
                 first: block * BLOCK,
                 pairs: ContactTable::new(&of_pair),
-                targets: Vec::new(),
                 halo: Vec::new(),
                 loads: Vec::new(),
                 inbox: Vec::new(),
@@ -134,19 +133,17 @@ impl Contacts {
         marked(&mut self.blocks, marks).for_each(|block| {
             let own = block.first..(block.first + BLOCK).min(n_grains);
             let is_own = |j: u32| own.contains(&(j as usize));
-            let partners = || block.pairs.keys().iter().map(|&[_, j]| j);
             block.halo.clear();
-            block.halo.extend(partners().filter(|&j| !is_own(j)));
+            block.halo.extend(block.pairs.keys().map(|[_, j]| j).filter(|&j| !is_own(j)));
             block.halo.sort_unstable();
             block.halo.dedup();
-            block.targets.clear();
-            block.targets.extend(partners().map(|j| {
-                if is_own(j) {
-                    j - own.start as u32
+            for Candidate { key: [_, j], target, .. } in block.pairs.candidates_mut() {
+                *target = if is_own(*j) {
+                    *j - own.start as u32
                 } else {
-                    (own.len() + block.halo.partition_point(|&halo| halo < j)) as u32
-                }
-            }));
+                    (own.len() + block.halo.partition_point(|halo| halo < j)) as u32
+                };
+            }
         });
         self.blocks.iter_mut().for_each(|block| block.inbox.clear());
         for from in 0..self.blocks.len() {
@@ -181,7 +178,8 @@ impl Contacts {
         dyn ContactStage: Sweep<f64, N> + Sweep<Eight, N>,
     {
         let (stages, benches) = (&self.stages[..], &self.benches);
-        self.blocks.par_iter_mut().for_each(|block| {
+        // Each block by itself: blocks differ, and half of them in one piece keeps a thread waiting.
+        self.blocks.par_iter_mut().with_max_len(1).for_each(|block| {
             let bench = &mut *benches.own();
             let own = (block.first + BLOCK).min(grains.len()) - block.first;
             block.loads.resize((own + block.halo.len()) * D::Load::LEN, Quad::ZERO);
@@ -233,7 +231,7 @@ impl Contacts {
     pub(crate) fn touching_pairs(&self) -> Vec<[usize; 2]> {
         let mut touching = Vec::new();
         for Block { pairs, .. } in &self.blocks {
-            for (row, &[i, j]) in pairs.keys().iter().enumerate() {
+            for (row, [i, j]) in pairs.keys().enumerate() {
                 if pairs.is_touching(row) {
                     touching.push([i as usize, j as usize]);
                 }
@@ -249,7 +247,7 @@ impl Contacts {
             (lying[i], lying[j]) = (true, true);
         }
         for table in self.blocks.iter().flat_map(|block| &block.surfaces[..n_walls]) {
-            for (row, &[i, _]) in table.keys().iter().enumerate() {
+            for (row, [i, _]) in table.keys().enumerate() {
                 lying[i as usize] |= table.is_touching(row);
             }
         }
@@ -300,7 +298,7 @@ impl Contacts {
             let tables =
                 std::iter::once((None, &block.pairs)).chain((0..).map(Some).zip(&block.surfaces));
             for (part, table) in tables {
-                for (row, &key) in table.keys().iter().enumerate() {
+                for (row, key) in table.keys().enumerate() {
                     if table.is_touching(row) {
                         let stages = 0..self.stages.len();
                         let history = stages.map(|stage| table.history(stage, row).to_vec());
@@ -327,7 +325,7 @@ impl Contacts {
                 Some(part) => block.surfaces.get_mut(part),
             });
             let Some(table) = table else { continue };
-            let Ok(row) = table.keys().binary_search(&memory.key) else { continue };
+            let Some(row) = table.row_of(memory.key) else { continue };
             for (stage, source) in sources.iter().enumerate() {
                 let values = source.and_then(|source| memory.history.get(source));
                 if let Some(values) = values.filter(|v| v.len() == table.history_len()[stage]) {

@@ -1,32 +1,19 @@
 //! The contacts between grains of one block, on their way to the laws and back.
 
 use super::tally::Tally;
-use crate::contact::table::{APART, ContactTable};
+use crate::contact::table::{APART, Candidate, ContactTable};
 use crate::contact::{Contact, Response};
 use crate::dimension::{Dimension, Frame, Quad, Quads};
 use crate::grains::{Grains, Space};
 use crate::lanes::{Lanes, MOST_LANES, Mask, per_lane};
 
-/// Two grains that overlap, or did a step ago.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Near {
-    /// The grains.
-    pub(crate) grains: [u32; 2],
-    /// Where the contact stands in the table.
-    pub(crate) row: u32,
-    /// Where its record begins, or [`APART`].
-    pub(crate) record: u32,
-}
-
-/// All of them in a block, and what they act on.
+/// The contacts of a block, and what they act on.
 pub struct Pairs<'a> {
     pub(super) grains: &'a Grains,
     /// The first grain of the block.
     pub(super) first: u32,
-    /// Of listed pairs alone: grains of the bed, and rows of the table.
-    pub(super) near: &'a [Near],
-    /// Per row of the table: whose load the second grain has, an index to the loads of the block.
-    pub(super) targets: &'a [u32],
+    /// The rows of candidates that overlap, or did a step ago: rows of the table, no others.
+    pub(super) near: &'a [u32],
     pub(super) table: &'a mut ContactTable,
     pub(super) loads: &'a mut [Quad],
     pub(super) tally: &'a mut Tally,
@@ -51,15 +38,17 @@ impl Pairs<'_> {
 
     /// Has brought near what the contacts of `near` need.
     #[inline(always)]
-    pub(super) fn fetch<D: Dimension<N>, const N: usize>(&self, near: &[Near]) {
+    #[expect(unsafe_code, reason = "measured: see docs/performance.md")]
+    pub(super) fn fetch<D: Dimension<N>, const N: usize>(&self, near: &[u32]) {
         let moves = self.grains.moves::<D, N>();
-        for near in near {
-            for grain in near.grains {
-                if let Some(motion) = moves.get(grain as usize) {
-                    motion.fetch();
-                }
+        for &row in near {
+            // SAFETY: see [`Pairs::near`].
+            let Candidate { key, record, .. } = *unsafe { self.table.candidate_unchecked(row) };
+            for grain in key {
+                // SAFETY: tables hold grains of the bed alone, and every grain has a motion.
+                unsafe { moves.get_unchecked(grain as usize) }.fetch();
             }
-            self.table.fetch(near.record);
+            self.table.fetch(record);
         }
     }
 
@@ -68,19 +57,21 @@ impl Pairs<'_> {
     #[expect(unsafe_code, reason = "measured: see docs/performance.md")]
     pub(super) fn meet<D: Dimension<N>, R: Lanes, const N: usize>(
         &mut self,
-        near: &[Near],
+        near: &[u32],
     ) -> (Contact<R, N>, Side<R>) {
         let near = lanes_of::<R, _>(near);
-        let mut records = per_lane(|lane| near[lane].record);
+        // SAFETY: see [`Pairs::near`].
+        let candidates = per_lane(|lane| unsafe { *self.table.candidate_unchecked(near[lane]) });
+        let mut records = per_lane(|lane| candidates[lane].record);
         if records.contains(&APART) {
-            records = per_lane(|lane| self.table.record(near[lane].row as usize));
+            records = per_lane(|lane| self.table.record(near[lane] as usize));
         }
         let targets = per_lane(|lane| {
-            let Near { grains, row, .. } = near[lane];
-            [grains[0] - self.first, self.targets[row as usize]]
+            let Candidate { key, target, .. } = candidates[lane];
+            [key[0] - self.first, target]
         });
         let moves = self.grains.moves::<D, N>();
-        let grain = |side: usize, lane: usize| near[lane].grains[side] as usize;
+        let grain = |side: usize, lane: usize| candidates[lane].key[side] as usize;
         // SAFETY: tables hold grains of the bed alone, see [`Pairs::near`].
         let place = |side: usize| {
             per_lane(|lane| unsafe { self.grains.place_unchecked(grain(side, lane)) })
@@ -100,7 +91,7 @@ impl Pairs<'_> {
     #[expect(unsafe_code, reason = "measured: see docs/performance.md")]
     pub(super) fn settle<D: Dimension<N>, R: Lanes, const N: usize>(
         &mut self,
-        near: &[Near],
+        near: &[u32],
         side: &Side<R>,
         contact: &Contact<R, N>,
         response: &Response<R, N>,
@@ -108,12 +99,13 @@ impl Pairs<'_> {
         let loads = D::Load::each_mut(self.loads);
         // SAFETY: targets count the grains of the block and its halo, whose loads these are.
         unsafe { D::scatter(&side.frame, response, &side.targets, loads) };
-        let grain = |lane: usize| near[lane].grains[0];
+        let table = &*self.table;
+        let grain = |lane: usize| table.candidates()[near[lane] as usize].key[0];
         self.tally.note_overlap(contact.overlap, side.frame.curvature, grain);
         let touching = (contact.overlaps() | response.holds).bits();
         if touching.trailing_ones() < R::COUNT as u32 {
             for lane in (0..R::COUNT).filter(|lane| touching >> lane & 1 == 0) {
-                self.table.open(near[lane].row as usize);
+                self.table.open(near[lane] as usize);
             }
         }
     }

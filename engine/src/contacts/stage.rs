@@ -1,6 +1,6 @@
 //! Lowers a contact law to a loop over many contacts: chosen by name once per run, inlined inside.
 
-use super::pairs::{Near, Pairs};
+use super::pairs::Pairs;
 pub use super::rebound::restitution;
 use crate::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use crate::dimension::{Dimension, Planar, Spatial};
@@ -105,7 +105,7 @@ impl<L: ContactLaw> Stage<L> {
     fn act_alone<D: Dimension<N>, R: Lanes, const N: usize>(
         &self,
         pairs: &mut Pairs<'_>,
-        near: &[Near],
+        near: &[u32],
     ) -> L::Energy<R> {
         let pair = self.pairs[Partner::Grain.index()];
         let mut booked = L::Energy::<R>::zero();
@@ -175,14 +175,32 @@ const fn room(numbers: usize) -> usize {
     if numbers % 4 == 3 { numbers + 1 } else { numbers }
 }
 
+/// Where among `n` values the rows of `room` numbers begin that lie `offset` into `records`.
+///
+/// # Panics
+/// If one of them does not lie within: one look for all of them, where eight cost a tenth of the loop.
+#[inline(always)]
+fn rows_within(
+    n: usize,
+    offset: usize,
+    records: &[u32; MOST_LANES],
+    room: usize,
+) -> [usize; MOST_LANES] {
+    let last = records.iter().fold(0, |last, &record| record.max(last));
+    assert!(last as usize + offset + room <= n, "a record outside of the histories");
+    per_lane(|lane| records[lane] as usize + offset)
+}
+
 /// The records that begin at `records`, one in each lane.
 #[inline(always)]
+#[expect(unsafe_code, reason = "measured: see docs/performance.md")]
 fn read<R: Lanes, H: Record<R>>(histories: &Histories<'_>, records: &[u32; MOST_LANES]) -> H {
     const { assert!(H::LEN <= MOST_NUMBERS) }
-    let rows: [&[f64]; MOST_LANES] = per_lane(|lane| {
-        let from = records[lane] as usize + histories.offset;
-        &histories.values[from..][..room(H::LEN)]
-    });
+    let values = &*histories.values;
+    let begins = rows_within(values.len(), histories.offset, records, room(H::LEN));
+    // SAFETY: they have just been seen to lie within.
+    let rows: [&[f64]; MOST_LANES] =
+        per_lane(|lane| unsafe { values.get_unchecked(begins[lane]..begins[lane] + room(H::LEN)) });
     let mut numbers = [R::zero(); MOST_NUMBERS];
     let whole = room(H::LEN) / 4 * 4;
     for at in (0..whole).step_by(4) {
@@ -202,6 +220,7 @@ fn read<R: Lanes, H: Record<R>>(histories: &Histories<'_>, records: &[u32; MOST_
 
 /// Puts each lane of `history` back where [`read`] took it from.
 #[inline(always)]
+#[expect(unsafe_code, reason = "measured: see docs/performance.md")]
 fn write<R: Lanes, H: Record<R>>(
     history: &H,
     histories: &mut Histories<'_>,
@@ -218,9 +237,11 @@ fn write<R: Lanes, H: Record<R>>(
     for (quad, at) in quads.iter_mut().zip((0..whole).step_by(4)) {
         *quad = R::rows([0, 1, 2, 3].map(|k| numbers[at + k]));
     }
+    let values = &mut *histories.values;
+    let begins = rows_within(values.len(), histories.offset, records, room(H::LEN));
     for lane in 0..R::COUNT {
-        let from = records[lane] as usize + histories.offset;
-        let row = &mut histories.values[from..][..room(H::LEN)];
+        // SAFETY: as in `read`.
+        let row = unsafe { values.get_unchecked_mut(begins[lane]..begins[lane] + room(H::LEN)) };
         for (quad, at) in quads.iter().zip((0..whole).step_by(4)) {
             row[at..at + 4].copy_from_slice(&quad[lane]);
         }

@@ -234,6 +234,29 @@ pub fn select_vector<R: Lanes, const N: usize>(
     vector_of(|at| one[at].select(mask, other[at]))
 }
 
+/// The length of `vector`; that of a single component takes no root.
+#[inline(always)]
+pub fn length<R: Lanes, const N: usize>(vector: Vector<R, N>) -> R {
+    if N == 1 { vector[0].simd_abs() } else { vector.dot(&vector).simd_sqrt() }
+}
+
+/// `vector`, shortened to `limit` (not negative) where it is longer, and where that is.
+#[inline(always)]
+pub fn shortened<R: Lanes, const N: usize>(
+    vector: Vector<R, N>,
+    limit: R,
+) -> (Vector<R, N>, R::Mask) {
+    if N == 1 {
+        let is_longer = vector[0].simd_abs().simd_gt(limit);
+        let cut = |at: usize| limit.simd_copysign(vector[at]).select(is_longer, vector[at]);
+        (vector_of(cut), is_longer)
+    } else {
+        let square = vector.dot(&vector);
+        let is_longer = square.simd_gt(limit * limit);
+        (vector * (limit / square.simd_sqrt()).select(is_longer, R::one()), is_longer)
+    }
+}
+
 /// Something made of numbers in a fixed order: what a law remembers or books. [`crate::record!`] makes
 /// one of a struct.
 pub trait Record<R: Lanes>: Copy {
