@@ -353,3 +353,21 @@ macro_rules! record {
         }
     };
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_component_is_shortened_as_the_same_vector_in_space() {
+        for number in [-3.0, -0.5, 0.0, 0.5, 1.0, 3.0] {
+            let in_plane = Vector::from([number]);
+            let in_space = Vector::from([0.0, number, 0.0]);
+            let (cut, is_cut) = shortened::<f64, 1>(in_plane, 1.0);
+            let (cut_in_space, is_cut_in_space) = shortened::<f64, 3>(in_space, 1.0);
+            assert_eq!((cut.x, is_cut), (cut_in_space.y, is_cut_in_space));
+            assert_eq!(cut.x.to_bits(), f64::clamp(number, -1.0, 1.0).to_bits());
+            assert_eq!(length::<f64, 1>(in_plane).to_bits(), length::<f64, 3>(in_space).to_bits());
+        }
+    }
+}
