@@ -117,21 +117,19 @@ impl Grains {
     /// Grains in the given order.
     #[must_use]
     pub fn new(space: Space, list: &[Grain]) -> Self {
-        let inertia = |grain: &Grain| space.grain_inertia(grain.mass, grain.radius);
         let mut grains = Self {
             space,
             id: list.iter().map(|grain| grain.id).collect(),
             radius: list.iter().map(|grain| grain.radius).collect(),
             mass: list.iter().map(|grain| grain.mass).collect(),
-            inertia: list.iter().map(inertia).collect(),
-            inverse_inertia: list.iter().map(|grain| 1.0 / inertia(grain)).collect(),
+            inertia: vec![0.0; list.len()],
+            inverse_inertia: vec![0.0; list.len()],
             places: vec![Quad::ZERO; list.len()],
             motions: vec![Quad::ZERO; list.len() * quads(space)],
             ahead: 0.0,
             period: Period::NONE,
         };
         for (i, grain) in list.iter().enumerate() {
-            let rolling = inertia(grain) + grain.mass * grain.radius * grain.radius;
             grains.set_motion(
                 i,
                 &Motion {
@@ -143,10 +141,11 @@ impl Grains {
                     radius: grain.radius,
                     inverse_radius: 1.0 / grain.radius,
                     inverse_mass: 1.0 / grain.mass,
-                    rolling_mobility: 1.0 / rolling,
+                    rolling_mobility: 0.0,
                 },
             );
         }
+        grains.set_inertia(space.inertia_coefficient());
         grains
     }
 

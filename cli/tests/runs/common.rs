@@ -206,11 +206,7 @@ pub(crate) fn signal(child: &Child, name: &str) {
 pub(crate) fn ended_on_the_way(run: impl Fn() -> Call, file: &Path, signals: &[&str]) -> Ended {
     for _ in 0..RUNS_TO_CATCH {
         let mut child = run().arg("--force").start();
-        let start = Instant::now();
-        while !file.exists() && child.try_wait().expect("its state").is_none() {
-            assert!(start.elapsed() < PATIENCE, "{} never comes", file.display());
-            sleep(Duration::from_millis(1));
-        }
+        wait_for_unless(file, || child.try_wait().expect("its state").is_some());
         let sent = Instant::now();
         // Until it is waited for, its number is its own, whether it has ended or not.
         signals.iter().for_each(|name| signal(&child, name));
@@ -225,8 +221,13 @@ pub(crate) fn ended_on_the_way(run: impl Fn() -> Call, file: &Path, signals: &[&
 
 /// Waits until `path` is there.
 pub(crate) fn wait_for(path: &Path) {
+    wait_for_unless(path, || false);
+}
+
+/// Waits until `path` is there, or `is_over`.
+fn wait_for_unless(path: &Path, mut is_over: impl FnMut() -> bool) {
     let start = Instant::now();
-    while !path.exists() {
+    while !path.exists() && !is_over() {
         assert!(start.elapsed() < PATIENCE, "{} never comes", path.display());
         sleep(Duration::from_millis(1));
     }

@@ -62,7 +62,8 @@ fn a_folder_with_its_table_runs_again_in_place() {
     assert_same_run(&out, &other);
     // To resume there once emptied the table that was copied onto itself.
     let call = || Call::run_model(&own, &out).set(&["run.checkpoint_every=100"]);
-    ended_on_the_way(call, &out.join("checkpoint"), &["KILL"]);
+    let ended = ended_on_the_way(call, &out.join("checkpoint"), &["KILL"]);
+    assert_eq!(ended.code, None, "a signal ended it");
     call().arg("--resume").done();
     assert_eq!(fs::read(out.join("grains.csv")).ok(), fs::read(other.join("grains.csv")).ok());
 }

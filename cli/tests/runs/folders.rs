@@ -57,7 +57,8 @@ fn a_finished_run_of_the_same_inputs_is_reported_as_it_is() {
 fn an_unfinished_run_needs_resume_and_says_so() {
     let out = folder();
     let long = || Call::run(out.path()).set(&["run.checkpoint_every=100"]);
-    ended_on_the_way(long, &out.path().join("checkpoint"), &["KILL"]);
+    let ended = ended_on_the_way(long, &out.path().join("checkpoint"), &["KILL"]);
+    assert_eq!(ended.code, None, "a signal ended it");
     let message = long().fails(2);
     assert!(message.contains("unfinished") && message.contains("--resume"), "{message}");
     assert!(message.contains("--force"), "{message}");

@@ -58,7 +58,8 @@ fn a_chain_interrupted_and_resumed_ends_at_the_same_bytes() {
     };
     run("whole").done();
     let (whole, cut) = (parent.path().join("whole"), parent.path().join("cut"));
-    ended_on_the_way(|| run("cut"), &cut.join("checkpoint.prev"), &["KILL"]);
+    let ended = ended_on_the_way(|| run("cut"), &cut.join("checkpoint.prev"), &["KILL"]);
+    assert_eq!(ended.code, None, "a signal ended it");
     run("cut").arg("--resume").done();
     assert_same_run(&cut, &whole);
 }

@@ -193,18 +193,9 @@ impl GrainModel<'_> {
     #[must_use]
     pub fn bed(&self, resting: &RestingBed) -> GrainBed {
         let forces = self.medium.grain_forces.iter();
-        let bed = GrainBed::new(
-            resting,
-            self.container(),
-            self.gravity(),
-            self.stages(),
-            self.n_bodies(),
-        )
-        .with_forces(forces.map(GrainForceChoice::build));
-        match self.medium.grain_inertia {
-            Some(coefficient) => bed.with_grain_inertia(coefficient),
-            None => bed,
-        }
+        GrainBed::new(resting, self.container(), self.gravity(), self.stages(), self.n_bodies())
+            .with_forces(forces.map(GrainForceChoice::build))
+            .with_grain_inertia(self.medium.inertia_coefficient())
     }
 
     /// The impact `condition` on the bed `resting`.

@@ -16,10 +16,10 @@ pub(super) fn checked<'a>(
     if conditions.len() != 1 {
         refused.push(format!("a list of {} impacts in one input", conditions.len()));
     }
-    let own = medium.space.inertia_coefficient();
-    if let Some(other) = medium.grain_inertia.filter(|inertia| inertia.to_bits() != own.to_bits()) {
+    let inertia = medium.inertia_coefficient();
+    if inertia.to_bits() != medium.space.inertia_coefficient().to_bits() {
         refused.push(format!(
-            "grains with a moment of inertia of {other} m r² (medium.grain_inertia)"
+            "grains with a moment of inertia of {inertia} m r² (medium.grain_inertia)"
         ));
     }
     if container.shape == ContainerShape::Cylinder {

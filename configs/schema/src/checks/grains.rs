@@ -162,8 +162,7 @@ impl GrainChecks<'_> {
         }
         for (name, diameter, mass, places) in bodies {
             let inputs = [("diameter", places.diameter), ("mass", places.mass)];
-            let coefficient = medium.grain_inertia.unwrap_or(medium.space.inertia_coefficient());
-            let inertia = 0.25 * coefficient * mass * diameter * diameter;
+            let inertia = 0.25 * medium.inertia_coefficient() * mass * diameter * diameter;
             self.common.derived(&format!("the moment of inertia of the {name}"), inertia, inputs);
             self.common.derived(&format!("the mass of the {name}"), mass, inputs);
             if medium.gravity > 0.0 {

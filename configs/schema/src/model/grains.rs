@@ -41,6 +41,14 @@ pub struct GrainMedium {
     pub log: GrainLog,
 }
 
+impl GrainMedium {
+    /// Moment of inertia of a grain over m r² during the impact.
+    #[must_use]
+    pub fn inertia_coefficient(&self) -> f64 {
+        self.grain_inertia.unwrap_or(self.space.inertia_coefficient())
+    }
+}
+
 /// Where impacts on a bed of grains start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StartPositions {
