@@ -4,6 +4,7 @@ mod adhesion;
 mod capillary_bridge;
 mod cohesion_dmt;
 mod cohesion_jkr;
+mod damped;
 pub mod formula;
 mod grain_force;
 mod hertz;

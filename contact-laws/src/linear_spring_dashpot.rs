@@ -1,11 +1,12 @@
 //! Linear spring–dashpot with a tangential spring and a Coulomb limit.
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
-use engine::lanes::{Lanes, Vector, select_vector, shortened, vector_where};
+use engine::lanes::{Coarse, Lanes, Vector, select_vector, shortened, vector_where};
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
+use crate::damped::Damped;
 use crate::registry::{ActsOn, FromParams, LawEntry};
 
 /// Linear springs along the normal and in the contact plane, damping scaled with the reduced mass,
@@ -49,10 +50,7 @@ engine::record! {
     pub(crate) struct Memory<R, const N: usize> {
         /// ξ (m).
         spring: Vector<R, N>,
-        /// Damping force at the end of the last step (N).
-        normal_damping: R,
-        /// Viscous resistance at the end of the last step (N).
-        tangential_damping: Vector<R, N>,
+        damping: Coarse<Damped<R, N>>,
     }
 }
 
@@ -104,7 +102,8 @@ impl ContactLaw for LinearSpringDashpot {
         let damping = mass * R::splat(pair.normal_damping_rate) * contact.overlap_rate;
         let normal_force = k_n * overlap + damping;
         energy.normal += half * k_n * overlap * overlap;
-        energy.normal_damping += half * (history.normal_damping + damping) * contact.overlap_step;
+        let Coarse(damped) = history.damping;
+        energy.normal_damping += half * (damped.normal + damping) * contact.overlap_step;
 
         let pressed = response.normal_force + normal_force + response.adhesive_force;
         let limit = R::splat(pair.friction) * pressed.simd_abs();
@@ -118,10 +117,10 @@ impl ContactLaw for LinearSpringDashpot {
         let viscous = vector_where(!slides, viscous);
         energy.sliding += half * k_t * (before + spring).dot(&(stretched - spring));
         energy.tangential += half * k_t * spring.dot(&spring);
-        energy.tangential_damping +=
-            half * (history.tangential_damping + viscous).dot(&contact.slip_step);
+        energy.tangential_damping += half * (damped.tangential + viscous).dot(&contact.slip_step);
 
-        *history = Memory { spring, normal_damping: damping, tangential_damping: viscous };
+        let damping = Coarse(Damped { normal: damping, tangential: viscous });
+        *history = Memory { spring, damping };
         response.normal_force += normal_force;
         response.normal_stiffness += k_n;
         response.tangential_force += force;
@@ -305,7 +304,7 @@ mod tests {
         assert!(close(response.tangential_force.x, -FRICTION * response.normal_force));
         assert!(close(history.spring.x, -response.tangential_force.x / STIFFNESS));
         assert!(close(energy.tangential_damping, 0.0));
-        assert!(close(history.tangential_damping.norm(), 0.0));
+        assert!(close(history.damping.0.tangential.norm(), 0.0));
     }
 
     #[test]

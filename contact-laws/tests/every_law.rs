@@ -3,7 +3,7 @@
 use contact_laws::{ActsOn, LAWS, LawEntry};
 use engine::contact::{Contact, Encounter, Partner, Response, Slot};
 use engine::grains::Space;
-use engine::lanes::{Eight, Lanes, MOST_LANES, Vector, vector_of};
+use engine::lanes::{COARSE_ERROR, Eight, Lanes, MOST_LANES, Vector, vector_of};
 use engine::math::{Quat, Vec3};
 use engine::params::{Default as Given, ParamTable};
 use engine::stage::{Batch, Histories};
@@ -122,10 +122,14 @@ fn before_the_law(law: &dyn ContactStage, contact: &Contact) -> Response {
 
 /// Round-off of some tens of operations, of the largest value of the episode.
 fn assert_close(values: impl Iterator<Item = (f64, f64)>, what: &str) {
+    assert_within(1e-13, values, what);
+}
+
+fn assert_within(share: f64, values: impl Iterator<Item = (f64, f64)>, what: &str) {
     let values: Vec<(f64, f64)> = values.collect();
     let scale = values.iter().fold(0.0_f64, |scale, (a, b)| scale.max(a.abs()).max(b.abs()));
     for (a, b) in values {
-        assert!((a - b).abs() <= 1e-13 * scale, "{what}: {a:e} against {b:e}");
+        assert!((a - b).abs() <= share * scale, "{what}: {a:e} against {b:e}");
     }
 }
 
@@ -198,7 +202,8 @@ fn every_registered_law_is_unchanged_by_a_rotation_of_the_world() {
             entry.name,
         );
         assert_close(both().flat_map(|(a, b)| vectors(turn * a.couple, b.couple)), entry.name);
-        assert_close(energy.into_iter().zip(other_energy), entry.name);
+        // Components that damping had a step ago are rounded, each by itself, and turned they are others.
+        assert_within(COARSE_ERROR, energy.into_iter().zip(other_energy), entry.name);
     }
 }
 

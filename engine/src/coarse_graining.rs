@@ -72,7 +72,7 @@ pub fn fields(grains: &Grains, plane: &Plane) -> Vec<FieldPoint> {
         }
         let reach = (c * c - off_plane * off_plane).sqrt();
         let (mass, velocity) = (grains.mass[i], grains.velocity(i));
-        let volume = grains.space.grain_content(2.0 * grains.radius[i]);
+        let volume = grains.space.grain_content(2.0 * grains.radius(i));
         for row in near(position.z - plane.z.start, reach, spacing, n_z) {
             for column in near(position.x - plane.x.start, reach, spacing, n_x) {
                 let weight =

@@ -24,7 +24,7 @@ pub struct CraterPoint {
 /// own extent are left out.
 #[must_use]
 pub fn crater(grains: &Grains, lies: &[bool], (x, y): (f64, f64)) -> Vec<CraterPoint> {
-    let mean_diameter = 2.0 * grains.radius.iter().sum::<f64>() / grains.len() as f64;
+    let mean_diameter = grains.mean_diameter();
     let columns = Columns::of(grains, lies, mean_diameter / COLUMNS_PER_DIAMETER);
     let is_planar = grains.space == Space::Planar;
     let extent = columns.room_around(x, y, is_planar);
@@ -71,8 +71,8 @@ impl Columns {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for i in here() {
             for axis in 0..2 {
-                low[axis] = low[axis].min(grains.position(i)[axis] - grains.radius[i]);
-                high[axis] = high[axis].max(grains.position(i)[axis] + grains.radius[i]);
+                low[axis] = low[axis].min(grains.position(i)[axis] - grains.radius(i));
+                high[axis] = high[axis].max(grains.position(i)[axis] + grains.radius(i));
             }
         }
         if grains.space == Space::Planar {
@@ -81,7 +81,7 @@ impl Columns {
         let n = [0, 1].map(|axis| ((high[axis] - low[axis]) / spacing).round().max(0.0) as usize);
         let mut columns = Self { low, high, spacing, n, top: vec![f64::NEG_INFINITY; n[0] * n[1]] };
         for i in here() {
-            columns.cover(grains.position(i), grains.radius[i]);
+            columns.cover(grains.position(i), grains.radius(i));
         }
         columns
     }

@@ -77,7 +77,7 @@ impl RestingBed {
     /// A bed that nobody has touched yet: grains without contact histories, put in spatial order.
     #[must_use]
     pub fn without_history(space: Space, grains: &[Grain]) -> Self {
-        let order = spatial_order(&Grains::new(space, grains));
+        let order = spatial_order(space, grains);
         let grains = order.into_iter().map(|i| grains[i]).collect();
         Self { space, grains, stages: Vec::new(), memories: Vec::new() }
     }
@@ -87,10 +87,7 @@ impl RestingBed {
     /// Whether it has `n` grains, all of them finite and of some size, for a bed read from a file.
     #[must_use]
     pub fn is_sound(&self, n: u64) -> bool {
-        n > 0
-            && self.grains.len() as u64 == n
-            && Grains::new(self.space, &self.grains).is_consistent(self.grains.len())
-            && self.grains.iter().all(|grain| grain.radius > 0.0 && grain.mass > 0.0)
+        n > 0 && self.grains.len() as u64 == n && self.grains.iter().all(Grain::is_sound)
     }
 }
 
@@ -118,7 +115,7 @@ impl GrainBed {
             .into_iter()
             .map(|surface| Part { surface, placement: Placement::fixed(), partner: Partner::Wall })
             .collect();
-        let mean_diameter = 2.0 * grains.radius.iter().sum::<f64>() / grains.len() as f64;
+        let mean_diameter = grains.mean_diameter();
         let n_parts = walls.len() + n_intruder_parts;
         let n_blocks = grains.len().div_ceil(BLOCK);
         let contacts = Contacts::new(stages, (grains.space, grains.len()), n_parts);
@@ -209,10 +206,11 @@ impl GrainBed {
     /// and their overlap (m).
     #[must_use]
     pub fn pair_deeper_than(&self, limit: f64) -> Option<([u32; 2], f64)> {
-        let Grains { radius, id, .. } = &self.grains;
+        let (grains, id) = (&self.grains, &self.grains.id);
         self.contacts.listed_pairs().find_map(|[i, j]| {
-            let overlap = radius[i] + radius[j] - self.grains.apart(i, j).norm();
-            (overlap > limit * radius[i].min(radius[j])).then(|| {
+            let radii = [i, j].map(|grain| grains.radius(grain));
+            let overlap = radii[0] + radii[1] - grains.apart(i, j).norm();
+            (overlap > limit * radii[0].min(radii[1])).then(|| {
                 let (a, b) = (id[i].min(id[j]), id[i].max(id[j]));
                 ([a, b], overlap)
             })
@@ -255,7 +253,7 @@ impl GrainBed {
             .map(|part| part.placement.max_speed(part.surface.bounding_radius()))
             .fold(fastest, |approach, speed| approach.max(fastest + speed));
         if self.intruder_list.spend(approach * dt) {
-            let largest = self.grains.radius.iter().fold(0.0_f64, |largest, &r| largest.max(r));
+            let largest = self.grains.radii().fold(0.0, f64::max);
             let reach = self.contacts.reach(Partner::Intruder, largest);
             let margin = self.intruder_list.margin() + reach;
             self.marks.clear();
@@ -269,7 +267,7 @@ impl GrainBed {
     }
 
     fn list_pairs_and_walls(&mut self) {
-        let largest = self.grains.radius.iter().fold(0.0_f64, |largest, &r| largest.max(r));
+        let largest = self.grains.radii().fold(0.0, f64::max);
         let margin = self.pair_lists.margin() + self.contacts.reach(Partner::Grain, 0.5 * largest);
         let wall_margin = self.pair_lists.margin() + self.contacts.reach(Partner::Wall, largest);
         let reach = 2.0 * largest + margin;
@@ -313,6 +311,7 @@ impl GrainBed {
             period: self.grains.period,
             absorber: self.absorber.as_ref(),
             forces: &self.forces,
+            inertia_coefficient: self.grains.inertia_coefficient(),
             stride: *stride,
         };
         self.grains.par_blocks::<D, N>().zip(&mut self.sums_of_grains).for_each(|(block, sums)| {
@@ -581,7 +580,7 @@ mod tests {
             let n = bed.grains.len();
             for i in 0..n {
                 for j in i + 1..n {
-                    let reach = bed.grains.radius[i] + bed.grains.radius[j];
+                    let reach = bed.grains.radius(i) + bed.grains.radius(j);
                     if bed.grains.apart(i, j).norm_squared() < reach * reach {
                         met += 1;
                         assert!(listed.contains(&[i, j]));

@@ -33,6 +33,8 @@ pub(crate) struct GrainPass<'a> {
     pub(crate) period: Period,
     pub(crate) absorber: Option<&'a Absorber>,
     pub(crate) forces: &'a GrainForces,
+    /// Moment of inertia of a grain over m r² (–).
+    pub(crate) inertia_coefficient: f64,
     pub(crate) stride: Stride,
 }
 
@@ -62,10 +64,9 @@ impl GrainPass<'_> {
         let mut sums = SumsOfGrains::default();
         let liftable = 2.0 * MOVING_LIFT * self.gravity.norm();
         let moved = block.places.iter_mut().zip(D::Moves::each_mut(block.motions));
-        let bodies = block.mass.iter().zip(block.inertia).zip(block.inverse_inertia);
-        for (k, ((place, motion), ((&mass, &inertia), &inverse_inertia))) in
-            moved.zip(bodies).enumerate()
-        {
+        let coefficient = self.inertia_coefficient;
+        let bodies = block.mass.iter().zip(block.inverse_inertia);
+        for (k, ((place, motion), (&mass, &inverse_inertia))) in moved.zip(bodies).enumerate() {
             let grain = D::unpack(place, motion);
             let weight = self.gravity * mass;
             let mut load = loads.of::<D, N>(k);
@@ -76,6 +77,7 @@ impl GrainPass<'_> {
             let squares = D::kick_drift(place, motion, &load, &self.stride, inverse_inertia);
             D::wrap(place, &self.period);
             let translation = 0.5 * mass * squares.speed;
+            let inertia = coefficient * mass * grain.radius * grain.radius;
             let rotation = 0.5 * inertia * squares.spin;
             sums.translation += translation;
             sums.rotation += rotation;

@@ -22,7 +22,7 @@ pub fn height_in_touch(
     let reach = surface.bounding_radius();
     let images = grains.positions().map(|at| grains.period.image_near(at, Vec3::new(x, y, at.z)));
     let below: Vec<(Vec3, f64)> = images
-        .zip(grains.radius.iter().copied())
+        .zip(grains.radii())
         .filter(|(position, radius)| {
             let apart = Vec3::new(position.x - x, position.y - y, 0.0);
             apart.norm() < reach + radius

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::boundary::Period;
 use crate::dimension::{Dimension, Planar, Quad, Spatial};
-use crate::grains::{Grains, Space};
+use crate::grains::{Grain, Grains, Space};
 use crate::lanes::{Eight, MOST_LANES, Mask, per_lane};
 use crate::math::Vec3;
 use crate::parallel::BLOCK;
@@ -184,9 +184,6 @@ pub(crate) struct CellGrid {
     /// Where the grains of each cell begin in `members`.
     starts: Vec<u32>,
     members: Vec<u32>,
-    /// Where they are, in the order of `members`.
-    places: Vec<Quad>,
-    cell_of: Vec<u32>,
 }
 
 impl CellGrid {
@@ -219,34 +216,30 @@ impl CellGrid {
             width *= 1.5;
         }
 
-        let n = self.axes.map(|axis| axis.n);
-        let mut cell_of = std::mem::take(&mut self.cell_of);
-        cell_of.clear();
-        cell_of.extend(positions().map(|position| {
-            let [x, y, z] = self.cell(position);
-            ((z * n[1] + y) * n[0] + x) as u32
-        }));
+        let axes = self.axes;
+        let n = axes.map(|axis| axis.n);
+        let cell_of = |position: Vec3| {
+            let [x, y, z] = cell(&axes, position);
+            (z * n[1] + y) * n[0] + x
+        };
         // Two places behind its cell, a count becomes the place that is filled next, and so in the
         // end the start of the cell after.
         let n_cells = n.iter().product::<usize>();
         self.starts.clear();
         self.starts.resize(n_cells + 2, 0);
-        for &cell in &cell_of {
-            self.starts[cell as usize + 2] += 1;
+        for cell in positions().map(cell_of) {
+            self.starts[cell + 2] += 1;
         }
         for cell in 2..n_cells + 2 {
             self.starts[cell] += self.starts[cell - 1];
         }
         self.members.clear();
         self.members.resize(grains.len(), 0);
-        self.places.resize(grains.len(), Quad::ZERO);
-        for (grain, &cell) in cell_of.iter().enumerate() {
-            let next = &mut self.starts[cell as usize + 1];
+        for (grain, cell) in positions().map(cell_of).enumerate() {
+            let next = &mut self.starts[cell + 1];
             self.members[*next as usize] = grain as u32;
-            self.places[*next as usize] = *grains.place(grain);
             *next += 1;
         }
-        self.cell_of = cell_of;
     }
 
     /// How many cells there are along each axis.
@@ -255,82 +248,117 @@ impl CellGrid {
         self.axes.map(|axis| axis.n)
     }
 
-    fn cell(&self, position: Vec3) -> [usize; 3] {
-        [0, 1, 2].map(|axis| self.axes[axis].cell(position[axis]))
-    }
-
-    /// Appends to `keys` every pair (i, j) with j > i whose gap is below `margin` (m), j ascending.
+    /// Appends to `keys` every pair (i, j) of the grains `own` with j > i whose gap is below `margin` (m), in
+    /// ascending order.
     pub(crate) fn pairs_of(
         &self,
         grains: &Grains,
-        i: usize,
+        own: Range<usize>,
         margin: f64,
+        neighbourhood: &mut Neighbourhood,
         keys: &mut Vec<[u32; 2]>,
     ) {
         match grains.space {
-            Space::Planar => self.pairs_in::<Planar, 1>(grains, i, margin, keys),
-            Space::Spatial => self.pairs_in::<Spatial, 3>(grains, i, margin, keys),
+            Space::Planar => self.pairs_in::<Planar, 1>(grains, own, margin, neighbourhood, keys),
+            Space::Spatial => self.pairs_in::<Spatial, 3>(grains, own, margin, neighbourhood, keys),
         }
     }
 
-    #[inline(always)]
     fn pairs_in<D: Dimension<N>, const N: usize>(
         &self,
         grains: &Grains,
-        i: usize,
+        own: Range<usize>,
         margin: f64,
+        neighbourhood: &mut Neighbourhood,
         keys: &mut Vec<[u32; 2]>,
     ) {
-        let from = keys.len();
-        let i = i as u32;
-        let place = grains.place(i as usize);
-        let here = [place; MOST_LANES];
+        let (first, mut gathered) = (own.start as u32, None);
+        for i in own {
+            // Grains that follow each other in memory often share a cell.
+            let cell = cell(&self.axes, D::position(grains.place(i)));
+            if gathered != Some(cell) {
+                self.gather(grains, cell, first, neighbourhood);
+                gathered = Some(cell);
+            }
+            let from = keys.len();
+            let here = [grains.place(i); MOST_LANES];
+            let i = i as u32;
+            let Neighbourhood { members, places } = &*neighbourhood;
+            for (members, places) in members.chunks(MOST_LANES).zip(places.chunks(MOST_LANES)) {
+                let n = members.len();
+                let there = per_lane(|lane| &places[lane.min(n - 1)]);
+                let near = D::are_near::<Eight>(&here, &there, &grains.period, margin);
+                let mut near = near.bits() & ((1 << n) - 1);
+                while near != 0 {
+                    let j = members[near.trailing_zeros() as usize];
+                    near &= near - 1;
+                    // Without a branch: every other j is below i, nobody knows which.
+                    keys.push([i, j]);
+                    keys.truncate(keys.len() - usize::from(j <= i));
+                }
+            }
+            keys[from..].sort_unstable();
+        }
+    }
+
+    /// Puts side by side what lies in `cell` and in those next to it, from grain `first` on.
+    fn gather(
+        &self,
+        grains: &Grains,
+        cell: [usize; 3],
+        first: u32,
+        neighbourhood: &mut Neighbourhood,
+    ) {
+        let Neighbourhood { members, places } = neighbourhood;
+        members.clear();
         let [n_x, n_y, _] = self.axes.map(|axis| axis.n);
-        let cell = self.cell(D::position(place));
         let around = |axis: usize| self.axes[axis].around(cell[axis]);
         for z in around(2).into_iter().flatten() {
             for y in around(1).into_iter().flatten() {
                 let row = (z * n_y + y) * n_x;
                 for xs in around(0) {
-                    let first = self.starts[row + xs.start] as usize;
-                    let last = self.starts[row + xs.end] as usize;
-                    for at in (first..last).step_by(MOST_LANES) {
-                        let n = (last - at).min(MOST_LANES);
-                        let there = per_lane(|lane| &self.places[at + lane.min(n - 1)]);
-                        let near = D::are_near::<Eight>(&here, &there, &grains.period, margin);
-                        let mut near = near.bits() & ((1 << n) - 1);
-                        while near != 0 {
-                            let j = self.members[at + near.trailing_zeros() as usize];
-                            near &= near - 1;
-                            // Without a branch: every other j is below i, nobody knows which.
-                            keys.push([i, j]);
-                            keys.truncate(keys.len() - usize::from(j <= i));
-                        }
-                    }
+                    let [from, to] = [xs.start, xs.end].map(|x| self.starts[row + x] as usize);
+                    members
+                        .extend(self.members[from..to].iter().filter(|member| **member >= first));
                 }
             }
         }
-        keys[from..].sort_unstable();
+        places.clear();
+        places.extend(members.iter().map(|&member| *grains.place(member as usize)));
     }
+}
+
+/// The cell of `position` (m) along each of `axes`.
+fn cell(axes: &[CellAxis; 3], position: Vec3) -> [usize; 3] {
+    [0, 1, 2].map(|axis| axes[axis].cell(position[axis]))
+}
+
+/// The grains that lie in a cell and in those next to it.
+#[derive(Debug, Default)]
+pub(crate) struct Neighbourhood {
+    members: Vec<u32>,
+    /// Where they are, side by side.
+    places: Vec<Quad>,
 }
 
 /// Order of grains in which neighbours in space are near in memory: by cell along a Morton curve,
 /// then by identity.
-pub(crate) fn spatial_order(grains: &Grains) -> Vec<usize> {
-    let low = grains.positions().fold(grains.position(0), |low, x| low.inf(&x));
-    let width = 2.0 * grains.radius.iter().fold(0.0_f64, |largest, &radius| largest.max(radius));
-    let axes: &[usize] = match grains.space {
+pub(crate) fn spatial_order(space: Space, grains: &[Grain]) -> Vec<usize> {
+    let low =
+        grains.iter().fold(Vec3::repeat(f64::INFINITY), |low, grain| low.inf(&grain.position));
+    let width = 2.0 * grains.iter().fold(0.0, |largest: f64, grain| largest.max(grain.radius));
+    let axes: &[usize] = match space {
         Space::Planar => &[0, 2],
         Space::Spatial => &[0, 1, 2],
     };
     let curve = |i: usize| {
-        let offset = (grains.position(i) - low) / width;
+        let offset = (grains[i].position - low) / width;
         axes.iter().enumerate().fold(0, |key, (shift, &axis)| {
             key | interleave(offset[axis] as u32, axes.len()) << shift
         })
     };
     let mut order: Vec<usize> = (0..grains.len()).collect();
-    order.sort_by_cached_key(|&i| (curve(i), grains.id[i]));
+    order.sort_by_cached_key(|&i| (curve(i), grains[i].id));
     order
 }
 
@@ -376,7 +404,7 @@ mod tests {
 
     fn all_pairs(grains: &Grains) -> Vec<[u32; 2]> {
         let near = |i: usize, j: usize| {
-            let reach = grains.radius[i] + grains.radius[j] + MARGIN;
+            let reach = grains.radius(i) + grains.radius(j) + MARGIN;
             (grains.position(i) - grains.position(j)).norm_squared() < reach * reach
         };
         let n = grains.len();
@@ -392,9 +420,8 @@ mod tests {
                 let mut grid = CellGrid::default();
                 grid.fill(&grains, 0.02 + MARGIN);
                 let mut found = Vec::new();
-                for i in 0..grains.len() {
-                    grid.pairs_of(&grains, i, MARGIN, &mut found);
-                }
+                let mut neighbourhood = Neighbourhood::default();
+                grid.pairs_of(&grains, 0..grains.len(), MARGIN, &mut neighbourhood, &mut found);
                 assert!(found.len() > 20, "{} pairs are few", found.len());
                 assert!(found == all_pairs(&grains), "{space:?}, ratio {ratio}");
             }

@@ -5,13 +5,14 @@ pub(crate) mod params;
 mod restitution;
 
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
-use engine::lanes::{Lanes, Mask, Vector, select_vector, shortened, vector_where};
+use engine::lanes::{Coarse, Lanes, Mask, Vector, select_vector, shortened, vector_where};
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::ParamTable;
 
 pub(crate) use constants::Elastic;
 pub use restitution::damping_ratio;
 
+use crate::damped::Damped;
 use crate::registry::FromParams;
 
 /// How a law damps.
@@ -93,10 +94,7 @@ engine::record! {
         spring: Vector<R, N>,
         /// k_t at the end of the last step (N/m).
         tangential_stiffness: R,
-        /// Damping force at the end of the last step (N).
-        normal_damping: R,
-        /// Viscous resistance at the end of the last step (N).
-        tangential_damping: Vector<R, N>,
+        damping: Coarse<Damped<R, N>>,
     }
 }
 
@@ -144,6 +142,7 @@ pub(crate) fn act<D: Damping, R: Lanes, const N: usize>(
     energy: &mut Energy<R>,
 ) {
     let (zero, half) = (R::zero(), R::splat(0.5));
+    let Coarse(damped) = history.damping;
     let touching = contact.overlaps();
     let overlap = contact.overlap.simd_max(zero);
     let a = (overlap / contact.inverse_radius_eff).simd_sqrt();
@@ -162,7 +161,7 @@ pub(crate) fn act<D: Damping, R: Lanes, const N: usize>(
         let held = |curvature| pair.elastic.energy(curvature, half_way);
         energy.stiffness_change += held(before) - held(now);
     }
-    energy.normal_damping += half * (history.normal_damping + damping) * contact.overlap_step;
+    energy.normal_damping += half * (damped.normal + damping) * contact.overlap_step;
 
     let k_t = pair.elastic.tangential_stiffness(a);
     let before = contact.turn(history.spring);
@@ -180,14 +179,12 @@ pub(crate) fn act<D: Damping, R: Lanes, const N: usize>(
     energy.sliding += (half * pull.dot(&(stretched - spring))).select(touching, softening);
     energy.stiffness_change += softening.select(touching, zero);
     energy.tangential += half * k_t * spring.dot(&spring);
-    energy.tangential_damping +=
-        half * (history.tangential_damping + viscous).dot(&contact.slip_step);
+    energy.tangential_damping += half * (damped.tangential + viscous).dot(&contact.slip_step);
 
     *history = Memory {
         spring: vector_where(touching, spring),
         tangential_stiffness: k_t,
-        normal_damping: damping,
-        tangential_damping: viscous,
+        damping: Coarse(Damped { normal: damping, tangential: viscous }),
     };
     response.normal_force += elastic + damping;
     response.normal_stiffness += pair.elastic.normal_stiffness(a);

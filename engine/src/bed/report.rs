@@ -34,7 +34,7 @@ impl BedReport {
     pub fn of(bed: &GrainBed) -> Self {
         let grains = &bed.grains;
         let container = bed.container();
-        let mean_diameter = 2.0 * grains.radius.iter().sum::<f64>() / grains.len() as f64;
+        let mean_diameter = grains.mean_diameter();
         let spacing = spacing(grains.space) * mean_diameter;
         let height = Columns::over(grains.space, container, 0.0, spacing).mean_height(grains);
         let margin = INSIDE * mean_diameter;
@@ -59,11 +59,11 @@ impl BedReport {
 
 /// Area (m²) or volume (m³) of all grains.
 fn content(grains: &Grains) -> f64 {
-    let one = |r: &f64| match grains.space {
+    let one = |r: f64| match grains.space {
         Space::Planar => PI * r * r,
         Space::Spatial => 4.0 / 3.0 * PI * r * r * r,
     };
-    grains.radius.iter().map(one).sum()
+    grains.radii().map(one).sum()
 }
 
 /// Distance of sampled columns, in mean grain diameters: a plane has room for finer ones.
@@ -184,7 +184,7 @@ impl Columns {
     /// Calls `chord(column, height of its middle, half its length)` for every column that cuts a
     /// grain, and every grain it cuts.
     fn for_each_chord(&self, grains: &Grains, mut chord: impl FnMut(usize, f64, f64)) {
-        for (position, &radius) in grains.positions().zip(&grains.radius) {
+        for (position, radius) in grains.positions().zip(grains.radii()) {
             for y in self.images(1, position.y, radius).into_iter().flatten() {
                 self.y.for_each_chord(y, radius, |row, radius| {
                     for x in self.images(0, position.x, radius).into_iter().flatten() {

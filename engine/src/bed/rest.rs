@@ -27,12 +27,11 @@ pub(super) struct Scales {
 impl Scales {
     /// Those of `bed`.
     pub(super) fn of(bed: &GrainBed) -> Self {
-        let Grains { mass, radius, .. } = &bed.grains;
-        let n = bed.grains.len() as f64;
-        let diameter = 2.0 * radius.iter().sum::<f64>() / n;
+        let grains = &bed.grains;
+        let diameter = grains.mean_diameter();
         let gravity = bed.gravity.norm();
         Self {
-            weight: mass.iter().sum::<f64>() / n * gravity,
+            weight: grains.mass.iter().sum::<f64>() / grains.len() as f64 * gravity,
             diameter,
             fall_time: (diameter / gravity).sqrt(),
         }
@@ -80,7 +79,7 @@ fn energies(grains: &Grains) -> Vec<f64> {
     let energy = |i: usize| {
         let translation = grains.mass[i] * grains.velocity(i).norm_squared();
         let rotation = match grains.space {
-            Space::Planar => grains.inertia[i] * grains.spin(i).norm_squared(),
+            Space::Planar => grains.inertia(i) * grains.spin(i).norm_squared(),
             Space::Spatial => 0.0,
         };
         0.5 * (translation + rotation)

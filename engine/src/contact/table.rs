@@ -9,10 +9,6 @@ use crate::prefetch::fetch;
 /// Marks a candidate that remembers nothing, because it does not touch.
 pub(crate) const APART: u32 = u32::MAX;
 
-/// Room for so many records more, and for an eighth of those that there are, is taken at a time: twice
-/// as much each time, as vectors do, would cost a large bed more memory than its contacts.
-const MORE_RECORDS: usize = 32;
-
 /// A grain and a partner that it may touch. One line of memory holds four: what the search for contacts and
 /// their evaluation want to know of them lies together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -134,6 +130,13 @@ impl ContactTable {
         }
     }
 
+    /// Takes memory for `n` records at once, and hardly more: twice as much each time, as vectors do, would cost a
+    /// large bed more than its contacts.
+    pub(crate) fn make_room(&mut self, n: usize) {
+        let len = self.history_len.iter().sum::<usize>().max(1);
+        reserve(&mut self.histories, n * len);
+    }
+
     /// The last number of the record that begins at `record`.
     pub(crate) fn last_of_record(&mut self, record: u32) -> &mut f64 {
         let len = self.history_len.iter().sum::<usize>();
@@ -151,11 +154,7 @@ impl ContactTable {
         let record = self.free.pop().unwrap_or_else(|| {
             let end = self.histories.len();
             // A law without memory needs records that differ all the same.
-            let new_end = end + len.max(1);
-            if new_end > self.histories.capacity() {
-                self.histories.reserve_exact(end / 8 + MORE_RECORDS * len.max(1));
-            }
-            self.histories.resize(new_end, 0.0);
+            self.histories.resize(end + len.max(1), 0.0);
             end as u32
         });
         self.candidates[row].record = record;
@@ -231,12 +230,17 @@ impl ContactTable {
 }
 
 /// Makes `list` a copy of `with`, and takes hardly more memory than that needs.
-fn replace<T: Copy>(list: &mut Vec<T>, with: &[T]) {
+pub(crate) fn replace<T: Copy>(list: &mut Vec<T>, with: &[T]) {
     list.clear();
-    if with.len() > list.capacity() {
-        list.reserve_exact(with.len() + with.len() / 16);
-    }
+    reserve(list, with.len());
     list.extend_from_slice(with);
+}
+
+/// Takes memory for `n` entries of `list`, and hardly more.
+pub(crate) fn reserve<T>(list: &mut Vec<T>, n: usize) {
+    if n > list.capacity() {
+        list.reserve_exact(n + n / 32 - list.len());
+    }
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::contact::table::Merger;
 use crate::math::Vec3;
+use crate::neighbours::Neighbourhood;
 use crate::surface::SurfacePoint;
 
 /// The buffers of all threads. What is in them is of no use to the next who takes them.
@@ -33,5 +34,7 @@ pub(super) struct Bench {
     pub(super) near: Vec<u32>,
     pub(super) near_rows: Vec<u32>,
     pub(super) keys: Vec<[u32; 2]>,
+    pub(super) neighbourhood: Neighbourhood,
+    pub(super) halo: Vec<u32>,
     pub(super) merger: Merger,
 }

@@ -135,6 +135,7 @@ impl Block {
     {
         let n_near = self.find_near::<D, N>(grains, &mut bench.near);
         let near = &bench.near[..n_near];
+        self.pairs.make_room(n_near);
         let mut pairs = Pairs {
             grains,
             first: self.first as u32,
@@ -240,6 +241,7 @@ impl Block {
             }
         }
         part.surface.closest_many(&bench.points_half, &mut bench.nearest_half);
+        table.make_room(bench.near_rows.len());
 
         let is_wall = part.partner == Partner::Wall;
         let halves = bench.nearest_half.chunks(GROUPS);

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::body::Part;
 use crate::contact::Partner;
-use crate::contact::table::{Candidate, ContactTable};
+use crate::contact::table::{Candidate, ContactTable, replace, reserve};
 use crate::contacts::stage::{ContactStage, Sweep};
 use crate::dimension::{Dimension, Planar, Quad, Quads, Spatial};
 use crate::grains::{Grains, Space};
@@ -87,11 +87,10 @@ impl Contacts {
     ) {
         let benches = &self.benches;
         marked(&mut self.blocks, marks).for_each(|block| {
-            let Bench { keys, merger, .. } = &mut *benches.own();
+            let Bench { keys, merger, neighbourhood, .. } = &mut *benches.own();
             keys.clear();
-            for i in block.first..(block.first + BLOCK).min(grains.len()) {
-                grid.pairs_of(grains, i, margin, keys);
-            }
+            let own = block.first..(block.first + BLOCK).min(grains.len());
+            grid.pairs_of(grains, own, margin, neighbourhood, keys);
             block.pairs.rekey(keys, merger);
         });
         self.address_loads(grains.len(), marks);
@@ -119,7 +118,7 @@ impl Contacts {
             part.surface.closest_many(&bench.points, &mut bench.nearest);
             bench.keys.clear();
             for (i, nearest) in here.zip(&bench.nearest) {
-                if nearest.gap < grains.radius[i] + margin {
+                if nearest.gap < grains.radius(i) + margin {
                     bench.keys.push([i as u32, 0]);
                 }
             }
@@ -130,13 +129,16 @@ impl Contacts {
     /// Says for every pair whose load its second grain has, and for every grain of a halo where the
     /// block that owns it finds its load, after the blocks with a mark have been listed.
     fn address_loads(&mut self, n_grains: usize, marks: &[bool]) {
+        let benches = &self.benches;
         marked(&mut self.blocks, marks).for_each(|block| {
             let own = block.first..(block.first + BLOCK).min(n_grains);
             let is_own = |j: u32| own.contains(&(j as usize));
-            block.halo.clear();
-            block.halo.extend(block.pairs.keys().map(|[_, j]| j).filter(|&j| !is_own(j)));
-            block.halo.sort_unstable();
-            block.halo.dedup();
+            let Bench { halo, .. } = &mut *benches.own();
+            halo.clear();
+            halo.extend(block.pairs.keys().map(|[_, j]| j).filter(|&j| !is_own(j)));
+            halo.sort_unstable();
+            halo.dedup();
+            replace(&mut block.halo, halo);
             for Candidate { key: [_, j], target, .. } in block.pairs.candidates_mut() {
                 *target = if is_own(*j) {
                     *j - own.start as u32
@@ -182,7 +184,9 @@ impl Contacts {
         self.blocks.par_iter_mut().with_max_len(1).for_each(|block| {
             let bench = &mut *benches.own();
             let own = (block.first + BLOCK).min(grains.len()) - block.first;
-            block.loads.resize((own + block.halo.len()) * D::Load::LEN, Quad::ZERO);
+            let n_quads = (own + block.halo.len()) * D::Load::LEN;
+            reserve(&mut block.loads, n_quads);
+            block.loads.resize(n_quads, Quad::ZERO);
             block.loads.fill(Quad::ZERO);
             block.tally.clear();
             block.sweep_pairs::<D, N>(grains, stages, dt, bench);
@@ -318,18 +322,22 @@ impl Contacts {
             .iter()
             .map(|stage| stages.iter().position(|name| name == stage.name()))
             .collect();
-        for memory in memories {
-            let block = self.blocks.get_mut(block_of(memory.key[0] as usize));
-            let table = block.and_then(|block| match memory.part {
+        let place = |memory: &Memory| (block_of(memory.key[0] as usize), memory.part);
+        for of_table in memories.chunk_by(|one, next| place(one) == place(next)) {
+            let (block, part) = place(&of_table[0]);
+            let table = self.blocks.get_mut(block).and_then(|block| match part {
                 None => Some(&mut block.pairs),
                 Some(part) => block.surfaces.get_mut(part),
             });
             let Some(table) = table else { continue };
-            let Some(row) = table.row_of(memory.key) else { continue };
-            for (stage, source) in sources.iter().enumerate() {
-                let values = source.and_then(|source| memory.history.get(source));
-                if let Some(values) = values.filter(|v| v.len() == table.history_len()[stage]) {
-                    table.restore_row(stage, row, values);
+            table.make_room(of_table.len());
+            for memory in of_table {
+                let Some(row) = table.row_of(memory.key) else { continue };
+                for (stage, source) in sources.iter().enumerate() {
+                    let values = source.and_then(|source| memory.history.get(source));
+                    if let Some(values) = values.filter(|v| v.len() == table.history_len()[stage]) {
+                        table.restore_row(stage, row, values);
+                    }
                 }
             }
         }

@@ -175,6 +175,12 @@ const fn room(numbers: usize) -> usize {
     if numbers % 4 == 3 { numbers + 1 } else { numbers }
 }
 
+/// How many of `numbers` in a record are read by fours, and where those end that are read by twos.
+const fn parts(numbers: usize) -> (usize, usize) {
+    let by_four = room(numbers) / 4 * 4;
+    (by_four, if numbers < by_four { by_four } else { numbers / 2 * 2 })
+}
+
 /// Where among `n` values the rows of `room` numbers begin that lie `offset` into `records`.
 ///
 /// # Panics
@@ -195,20 +201,25 @@ fn rows_within(
 #[inline(always)]
 #[expect(unsafe_code, reason = "measured: see docs/performance.md")]
 fn read<R: Lanes, H: Record<R>>(histories: &Histories<'_>, records: &[u32; MOST_LANES]) -> H {
-    const { assert!(H::LEN <= MOST_NUMBERS) }
+    const { assert!(H::LEN <= MOST_NUMBERS - 2) }
     let values = &*histories.values;
     let begins = rows_within(values.len(), histories.offset, records, room(H::LEN));
     // SAFETY: they have just been seen to lie within.
     let rows: [&[f64]; MOST_LANES] =
         per_lane(|lane| unsafe { values.get_unchecked(begins[lane]..begins[lane] + room(H::LEN)) });
     let mut numbers = [R::zero(); MOST_NUMBERS];
-    let whole = room(H::LEN) / 4 * 4;
-    for at in (0..whole).step_by(4) {
+    let (by_four, by_two) = parts(H::LEN);
+    for at in (0..by_four).step_by(4) {
         let quads = per_lane(|lane| [0, 1, 2, 3].map(|k| rows[lane][at + k]));
         let columns = R::columns(per_lane(|lane| &quads[lane]));
         numbers[at..at + 4].copy_from_slice(&columns);
     }
-    for at in whole..H::LEN {
+    for at in (by_four..by_two).step_by(2) {
+        let twos = per_lane(|lane| [0, 1].map(|k| rows[lane][at + k]));
+        let columns = R::columns_of_two(per_lane(|lane| &twos[lane]));
+        numbers[at..at + 2].copy_from_slice(&columns);
+    }
+    for at in by_two..H::LEN {
         numbers[at] = R::from_lanes(|lane| rows[lane][at]);
     }
     let mut at = 0;
@@ -232,20 +243,24 @@ fn write<R: Lanes, H: Record<R>>(
         numbers[at] = value;
         at += 1;
     });
-    let whole = room(H::LEN) / 4 * 4;
+    let (by_four, by_two) = parts(H::LEN);
     let mut quads = [[[0.0; 4]; MOST_LANES]; MOST_NUMBERS / 4];
-    for (quad, at) in quads.iter_mut().zip((0..whole).step_by(4)) {
+    for (quad, at) in quads.iter_mut().zip((0..by_four).step_by(4)) {
         *quad = R::rows([0, 1, 2, 3].map(|k| numbers[at + k]));
     }
+    let twos = R::rows_of_two([0, 1].map(|k| numbers[by_four + k]));
     let values = &mut *histories.values;
     let begins = rows_within(values.len(), histories.offset, records, room(H::LEN));
     for lane in 0..R::COUNT {
         // SAFETY: as in `read`.
         let row = unsafe { values.get_unchecked_mut(begins[lane]..begins[lane] + room(H::LEN)) };
-        for (quad, at) in quads.iter().zip((0..whole).step_by(4)) {
+        for (quad, at) in quads.iter().zip((0..by_four).step_by(4)) {
             row[at..at + 4].copy_from_slice(&quad[lane]);
         }
-        for at in whole..H::LEN {
+        for at in (by_four..by_two).step_by(2) {
+            row[at..at + 2].copy_from_slice(&twos[lane]);
+        }
+        for at in by_two..H::LEN {
             row[at] = numbers[at].lane(lane);
         }
     }

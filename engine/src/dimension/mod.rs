@@ -145,6 +145,9 @@ pub(crate) trait Dimension<const N: usize>: Send + Sync + 'static {
     /// The centre of a grain (m).
     fn position(place: &Quad) -> Vec3;
 
+    /// The radius of a grain (m).
+    fn radius(place: &Quad) -> f64;
+
     /// Whether the grains at the places `i` and `j` are nearer to each other than `margin` (m).
     fn are_near<R: Lanes>(i: &Places<'_>, j: &Places<'_>, period: &Period, margin: f64) -> R::Mask;
 

@@ -65,6 +65,11 @@ impl Dimension<1> for Planar {
     }
 
     #[inline(always)]
+    fn radius(place: &Quad) -> f64 {
+        place.0[2]
+    }
+
+    #[inline(always)]
     fn are_near<R: Lanes>(i: &Places<'_>, j: &Places<'_>, period: &Period, margin: f64) -> R::Mask {
         let [[x_i, z_i, r_i, _], [x_j, z_j, r_j, _]] = [i, j].map(gather_place::<R>);
         let x = period.nearest(0, x_i - x_j);

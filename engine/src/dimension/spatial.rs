@@ -70,6 +70,11 @@ impl Dimension<3> for Spatial {
     }
 
     #[inline(always)]
+    fn radius(place: &Quad) -> f64 {
+        place.0[3]
+    }
+
+    #[inline(always)]
     fn are_near<R: Lanes>(i: &Places<'_>, j: &Places<'_>, period: &Period, margin: f64) -> R::Mask {
         let [[x_i, y_i, z_i, r_i], [x_j, y_j, z_j, r_j]] = [i, j].map(gather_place::<R>);
         let x = period.nearest(0, x_i - x_j);

@@ -5,9 +5,10 @@ use std::ops::{
 };
 
 use num_traits::{One, Zero};
-use wide::{f64x8, u32x8};
+use wide::bytemuck::cast;
+use wide::{f64x8, u32x8, u64x8};
 
-use super::{Lanes, MOST_LANES, Mask, per_lane};
+use super::{HALF_OF_LAST, Lanes, MOST_LANES, Mask, UPPER, per_lane};
 
 /// Eight numbers: one vector where the processor has such wide ones, else two of four.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -187,6 +188,28 @@ impl Lanes for Eight {
     fn rows(columns: [Self; 4]) -> [[f64; 4]; MOST_LANES] {
         transposition::to_rows(columns.map(|column| column.0))
     }
+
+    #[inline(always)]
+    fn columns_of_two(rows: [&[f64; 2]; MOST_LANES]) -> [Self; 2] {
+        transposition::to_columns_of_two(rows).map(Self)
+    }
+
+    #[inline(always)]
+    fn rows_of_two(columns: [Self; 2]) -> [[f64; 2]; MOST_LANES] {
+        transposition::to_rows_of_two(columns.map(|column| column.0))
+    }
+
+    #[inline(always)]
+    fn pack(one: Self, other: Self) -> Self {
+        let round = |numbers: Self| cast::<_, u64x8>(numbers.0) + u64x8::splat(HALF_OF_LAST);
+        Self(cast((round(one) >> 32) | (round(other) & u64x8::splat(UPPER))))
+    }
+
+    #[inline(always)]
+    fn unpack(self) -> [Self; 2] {
+        let bits = cast::<_, u64x8>(self.0);
+        [Self(cast(bits << 32)), Self(cast(bits & u64x8::splat(UPPER)))]
+    }
 }
 
 /// Rows to columns and back. Left to itself the compiler moves number by number, which takes twice as
@@ -240,12 +263,31 @@ mod transposition {
         let ([r_2, r_6], [r_3, r_7]) = (halves(far(even)), halves(far(odd)));
         [r_0, r_1, r_2, r_3, r_4, r_5, r_6, r_7]
     }
+
+    #[inline(always)]
+    pub(super) fn to_columns_of_two(rows: [&[f64; 2]; 8]) -> [f64x8; 2] {
+        let [[a, b], [c, d], [e, f], [g, h], [i, j], [k, l], [m, n], [o, p]] = rows;
+        let even = m512d::from([*a, *b, *e, *f, *i, *j, *m, *n]);
+        let odd = m512d::from([*c, *d, *g, *h, *k, *l, *o, *p]);
+        [shuffle_m512d::<0x00>(even, odd), shuffle_m512d::<0xFF>(even, odd)]
+            .map(|column| f64x8::new(column.to_array()))
+    }
+
+    #[inline(always)]
+    pub(super) fn to_rows_of_two(columns: [f64x8; 2]) -> [[f64; 2]; 8] {
+        let [one, other] = columns.map(|column| m512d::from(column.to_array()));
+        let [a, b, e, f, i, j, m, n] = shuffle_m512d::<0x00>(one, other).to_array();
+        let [c, d, g, h, k, l, o, p] = shuffle_m512d::<0xFF>(one, other).to_array();
+        [[a, b], [c, d], [e, f], [g, h], [i, j], [k, l], [m, n], [o, p]]
+    }
 }
 
 /// Rows to columns and back.
 #[cfg(not(target_feature = "avx512f"))]
 mod transposition {
     use wide::{f64x4, f64x8};
+
+    use super::per_lane;
 
     #[inline(always)]
     pub(super) fn to_columns(rows: [&[f64; 4]; 8]) -> [f64x8; 4] {
@@ -267,5 +309,16 @@ mod transposition {
         };
         let ([a, b, c, d], [e, f, g, h]) = (half(0), half(4));
         [a, b, c, d, e, f, g, h]
+    }
+
+    #[inline(always)]
+    pub(super) fn to_columns_of_two(rows: [&[f64; 2]; 8]) -> [f64x8; 2] {
+        [0, 1].map(|at| f64x8::new(per_lane(|lane| rows[lane][at])))
+    }
+
+    #[inline(always)]
+    pub(super) fn to_rows_of_two(columns: [f64x8; 2]) -> [[f64; 2]; 8] {
+        let [one, other] = columns.map(f64x8::to_array);
+        per_lane(|lane| [one[lane], other[lane]])
     }
 }

@@ -100,6 +100,18 @@ pub trait Lanes:
     /// The way back: four numbers of each lane.
     fn rows(columns: [Self; 4]) -> [[f64; 4]; MOST_LANES];
 
+    /// The same of two numbers of each lane.
+    fn columns_of_two(rows: [&[f64; 2]; MOST_LANES]) -> [Self; 2];
+
+    /// The way back: two numbers of each lane.
+    fn rows_of_two(columns: [Self; 2]) -> [[f64; 2]; MOST_LANES];
+
+    /// `one` and `other`, rounded to six digits, in the room of one number: not a number to compute with.
+    fn pack(one: Self, other: Self) -> Self;
+
+    /// What [`Lanes::pack`] put there.
+    fn unpack(self) -> [Self; 2];
+
     /// The sum over the lanes, from the first to the last.
     fn sum_of_lanes(&self) -> f64 {
         (1..Self::COUNT).fold(self.lane(0), |sum, lane| sum + self.lane(lane))
@@ -206,6 +218,28 @@ impl Lanes for f64 {
     fn rows(columns: [Self; 4]) -> [[f64; 4]; MOST_LANES] {
         [columns; MOST_LANES]
     }
+
+    #[inline(always)]
+    fn columns_of_two(rows: [&[f64; 2]; MOST_LANES]) -> [Self; 2] {
+        *rows[0]
+    }
+
+    #[inline(always)]
+    fn rows_of_two(columns: [Self; 2]) -> [[f64; 2]; MOST_LANES] {
+        [columns; MOST_LANES]
+    }
+
+    #[inline(always)]
+    fn pack(one: Self, other: Self) -> Self {
+        let [one, other] = [one, other].map(|number| number.to_bits().wrapping_add(HALF_OF_LAST));
+        Self::from_bits(one >> 32 | other & UPPER)
+    }
+
+    #[inline(always)]
+    fn unpack(self) -> [Self; 2] {
+        let bits = self.to_bits();
+        [bits << 32, bits & UPPER].map(Self::from_bits)
+    }
 }
 
 /// A vector of `N` components, each in lanes.
@@ -307,6 +341,54 @@ impl<R: Lanes, const N: usize> Record<R> for Vector<R, N> {
     }
 }
 
+/// The upper half of a number: its sign, its exponent and twenty bits behind the point.
+const UPPER: u64 = 0xFFFF_FFFF_0000_0000;
+
+/// Half of the last of them, with which numbers are rounded.
+const HALF_OF_LAST: u64 = 1 << 31;
+
+/// By how much of itself a number of a [`Coarse`] record is off, at most (–).
+pub const COARSE_ERROR: f64 = 1.0 / (1 << 21) as f64;
+
+/// How many numbers a [`Coarse`] record has at most.
+const MOST_COARSE: usize = 8;
+
+/// A record that keeps six digits, two of its numbers in the room of one: for what laws remember for the ledger
+/// alone, where steps are good for fewer. Forces are to depend on none of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Coarse<T>(pub T);
+
+impl<R: Lanes, T: Record<R>> Record<R> for Coarse<T> {
+    const LEN: usize = T::LEN.div_ceil(2);
+
+    #[inline(always)]
+    fn read(next: &mut impl FnMut() -> R) -> Self {
+        const { assert!(T::LEN <= MOST_COARSE) }
+        let mut numbers = [R::zero(); MOST_COARSE];
+        for two in numbers.as_chunks_mut().0.iter_mut().take(Self::LEN) {
+            *two = next().unpack();
+        }
+        let mut at = 0;
+        Self(T::read(&mut || {
+            at += 1;
+            numbers[at - 1]
+        }))
+    }
+
+    #[inline(always)]
+    fn write(&self, put: &mut impl FnMut(R)) {
+        let mut numbers = [R::zero(); MOST_COARSE];
+        let mut at = 0;
+        self.0.write(&mut |number| {
+            numbers[at] = number;
+            at += 1;
+        });
+        for [one, other] in numbers.as_chunks().0.iter().take(Self::LEN) {
+            put(R::pack(*one, *other));
+        }
+    }
+}
+
 /// A struct of numbers in lanes that is a [`Record`]: fields are lanes, vectors or other records.
 ///
 /// ```
@@ -357,6 +439,27 @@ macro_rules! record {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn two_numbers_in_the_room_of_one_keep_six_digits_and_their_signs() {
+        let numbers = [0.0, -0.0, 1.0, -1.0 / 3.0, 1e-300, -7.7e11, f64::MIN_POSITIVE, 0.1];
+        for one in numbers {
+            for other in numbers {
+                let packed = f64::pack(one, other);
+                assert!(packed.is_finite());
+                for (kept, number) in packed.unpack().into_iter().zip([one, other]) {
+                    assert!(
+                        (kept - number).abs() <= COARSE_ERROR * number.abs(),
+                        "{kept} {number}"
+                    );
+                    assert_eq!(kept.is_sign_negative(), number.is_sign_negative());
+                }
+                let in_lanes = Eight::pack(Eight::splat(one), Eight::splat(other));
+                assert_eq!(in_lanes.lane(7).to_bits(), packed.to_bits());
+                assert_eq!(in_lanes.unpack().map(|part| part.lane(3)), packed.unpack());
+            }
+        }
+    }
 
     #[test]
     fn one_component_is_shortened_as_the_same_vector_in_space() {

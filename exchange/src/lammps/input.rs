@@ -28,7 +28,7 @@ pub(super) fn text(
 ) -> String {
     let space = model.medium.space;
     let grains = &simulation.bed().grains;
-    let mean_diameter = 2.0 * grains.radius.iter().sum::<f64>() / grains.len() as f64;
+    let mean_diameter = grains.mean_diameter();
     let dt = simulation.clock().dt;
     let frame = 1.0 / model.model.log.frames_per_s;
     let sides = if model.medium.container.sides == SidesKind::Periodic { "p" } else { "m" };

@@ -35,8 +35,7 @@ impl Intruder {
         if is_round(model) {
             return Self { clump: None, stiffness: vec![1.0] };
         }
-        let radii = &simulation.bed().grains.radius;
-        let grain = radii.iter().sum::<f64>() / radii.len() as f64;
+        let grain = 0.5 * simulation.bed().grains.mean_diameter();
         let clump = Clump::of(body.surface(), model.medium.space, grain);
         let mut powers: Vec<i32> = match law.knows_curvature() {
             true => clump.balls.iter().map(|ball| power(ball, grain)).collect(),

@@ -19,11 +19,11 @@ fn add(total: &mut Total, part: Vec3) {
 fn momenta(world: &World) -> (Total, Total) {
     let (mut linear, mut angular) = ((Vec3::zeros(), 0.0), (Vec3::zeros(), 0.0));
     let grains = &world.bed().grains;
-    for (grain, &inertia) in grains.iter().zip(&grains.inertia) {
+    for (i, grain) in grains.iter().enumerate() {
         let momentum = grain.velocity * grain.mass;
         add(&mut linear, momentum);
         add(&mut angular, (grain.position - MIDDLE).cross(&momentum));
-        add(&mut angular, grain.spin * inertia);
+        add(&mut angular, grain.spin * grains.inertia(i));
     }
     for body in world.intruder().bodies() {
         let momentum = body.velocity * body.mass;

@@ -28,7 +28,7 @@ fn all_touching_pairs(grains: &Grains) -> Vec<[usize; 2]> {
     for i in 0..grains.len() {
         for j in i + 1..grains.len() {
             let distance = (grains.position(i) - grains.position(j)).norm();
-            if grains.radius[i] + grains.radius[j] - distance > 0.0 {
+            if grains.radius(i) + grains.radius(j) - distance > 0.0 {
                 pairs.push([i, j]);
             }
         }

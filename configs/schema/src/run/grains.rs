@@ -108,7 +108,7 @@ impl Setting<'_> {
     /// What to say where the floor may have stopped the intruder.
     fn floor_warning(&self, simulation: &Simulation) -> Option<String> {
         let grains = &simulation.bed().grains;
-        let mean_diameter = 2.0 * grains.radius.iter().sum::<f64>() / grains.len() as f64;
+        let mean_diameter = grains.mean_diameter();
         let left = simulation.intruder().bodies().iter().map(|body| body.lowest());
         near_the_floor(left.fold(f64::INFINITY, f64::min), mean_diameter, 2.0 * self.drawn_radius())
     }
@@ -343,7 +343,7 @@ impl Run<'_> {
             .collect();
         let mut samples = (0..grains.len()).map(|i| GrainSample {
             position: grains.position(i),
-            radius: grains.radius[i],
+            radius: grains.radius(i),
             velocity: grains.velocity(i),
             force: (grains.force(i) - bed.gravity * grains.mass[i]).norm(),
             id: grains.id[i],

@@ -37,12 +37,10 @@ impl<'a> Observables<'a> {
         let dt = simulation.clock().dt;
         let field_steps = grains.medium.log.fields_at.iter().map(|&time| steps_in(time, dt));
         let bed = simulation.bed();
-        let n = bed.grains.len() as f64;
-        let mean = |of: &[f64]| of.iter().sum::<f64>() / n;
         let encounter = Encounter {
             // The intruder is much heavier, and its faces are flat to a grain.
-            mass_eff: mean(&bed.grains.mass),
-            radius_eff: mean(&bed.grains.radius),
+            mass_eff: bed.grains.mass.iter().sum::<f64>() / bed.grains.len() as f64,
+            radius_eff: 0.5 * bed.grains.mean_diameter(),
             speed: simulation.intruder().bodies()[0].velocity.norm(),
         };
         let restitution = restitution(bed.stages(), Partner::Intruder, &encounter);
@@ -90,7 +88,7 @@ impl<'a> Observables<'a> {
     ) -> Result<(), RecordError> {
         let bed = simulation.bed();
         let grains = &bed.grains;
-        let diameter = 2.0 * grains.radius.iter().sum::<f64>() / grains.len() as f64;
+        let diameter = grains.mean_diameter();
         let body = &simulation.intruder().bodies()[0];
         // Through a periodic side the intruder may have left the box.
         let at_home = bed.image_inside(body.position);
