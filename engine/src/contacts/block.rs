@@ -5,16 +5,17 @@ use std::ops::Range;
 use arrayvec::ArrayVec;
 
 use super::bench::Bench;
-use super::pairs::{Pairs, Side, lanes_of};
+use super::pairs::{Pairs, Side};
 use super::tally::Tally;
 use crate::body::Part;
 use crate::contact::geometry::{loads_on_grain_and_part, with_surface};
-use crate::contact::table::{APART, ContactTable};
+use crate::contact::table::{APART, ContactTable, replace};
 use crate::contact::{Contact, Partner, Response};
 use crate::contacts::stage::{Batch, ContactStage, Histories, Sweep};
 use crate::dimension::{Dimension, Motion, Quad, Quads};
 use crate::grains::Grains;
 use crate::lanes::{Eight, Lanes, MOST_LANES, Mask, per_lane};
+use crate::parallel::block_of;
 use crate::prefetch::fetch;
 
 /// Groups of as many contacts as there are lanes that are evaluated together.
@@ -29,6 +30,13 @@ pub(super) struct Block {
     pub(super) first: usize,
     /// Its keys are grains of the bed: whoever lists or restores them sees to that.
     pub(super) pairs: ContactTable,
+    /// The rows of `pairs` that touch or are close, ascending: no others can touch before grains have gone
+    /// `close_left`.
+    close: Vec<u32>,
+    /// How far (m) two grains of `pairs` may still go towards each other; below zero `close` is good for nothing.
+    close_left: f64,
+    /// The blocks of the grains of the halo, ascending.
+    pub(super) around: Vec<u32>,
     /// Grains of other blocks that are listed in pairs of this one, ascending.
     pub(super) halo: Vec<u32>,
     /// What contacts do to the grains of the block, then to those of the halo.
@@ -123,17 +131,45 @@ where
 }
 
 impl Block {
-    /// Evaluates the contacts between grains: eight at a time, then what is left over one by one.
+    /// The block that begins with grain `first`, of which nothing is listed yet, and so many parts.
+    pub(super) fn new(
+        first: usize,
+        (pairs, surface): (ContactTable, ContactTable),
+        tally: Tally,
+        n_parts: usize,
+    ) -> Self {
+        Self {
+            first,
+            pairs,
+            close: Vec::new(),
+            close_left: -1.0,
+            around: Vec::new(),
+            halo: Vec::new(),
+            loads: Vec::new(),
+            inbox: Vec::new(),
+            surfaces: vec![surface; n_parts],
+            tally,
+        }
+    }
+
+    /// Takes note that the rows of `pairs` are others now.
+    pub(super) fn relisted(&mut self) {
+        self.close_left = -1.0;
+    }
+
+    /// Evaluates the contacts between grains: eight at a time, then what is left over one by one. For `gone` and `close`
+    /// see [`Self::find_near`].
     pub(super) fn sweep_pairs<D: Dimension<N>, const N: usize>(
         &mut self,
         grains: &Grains,
         stages: &[Box<dyn ContactStage>],
+        (gone, close): (impl Fn(usize) -> f64, Option<f64>),
         dt: f64,
         bench: &mut Bench,
     ) where
         dyn ContactStage: Sweep<f64, N> + Sweep<Eight, N>,
     {
-        let n_near = self.find_near::<D, N>(grains, &mut bench.near);
+        let n_near = self.find_near::<D, N>(grains, gone, close, &mut bench.near);
         let near = &bench.near[..n_near];
         self.pairs.make_room(n_near);
         let mut pairs = Pairs {
@@ -156,49 +192,80 @@ impl Block {
         Evaluation::<f64, N>::of_pairs::<D>(&mut pairs, stages, rest);
     }
 
-    /// Writes the rows of candidates that overlap, or did a step ago, and returns how many.
+    /// Writes the rows of candidates that overlap, or did a step ago, and returns how many. They are looked for among those
+    /// nearer than `close` (m), if that is given; `gone` tells how far (m) the grains of a block have gone in the step, at
+    /// most.
     fn find_near<D: Dimension<N>, const N: usize>(
-        &self,
+        &mut self,
         grains: &Grains,
+        gone: impl Fn(usize) -> f64,
+        close: Option<f64>,
         near: &mut Vec<u32>,
     ) -> usize {
-        let n_rows = self.pairs.candidates().len();
+        let all = (self.pairs.candidates().len(), |row| row as u32);
+        let Some(margin) = close else { return self.find::<D, N>(grains, all, 0.0, near) };
+        let around = self.around.iter().map(|&block| gone(block as usize)).fold(0.0, f64::max);
+        let own = gone(block_of(self.first));
+        self.close_left -= own + own.max(around);
+        if self.close_left < 0.0 {
+            let n_close = self.find::<D, N>(grains, all, margin, near);
+            replace(&mut self.close, &near[..n_close]);
+            self.close_left = margin;
+        }
+        let close = &self.close[..];
+        self.find::<D, N>(grains, (close.len(), |k| close[k]), 0.0, near)
+    }
+
+    /// Writes those of so many rows whose grains are nearer to each other than `margin` (m), or touched a step ago, and
+    /// returns how many.
+    fn find<D: Dimension<N>, const N: usize>(
+        &self,
+        grains: &Grains,
+        (n_rows, row): (usize, impl Fn(usize) -> u32 + Copy),
+        margin: f64,
+        near: &mut Vec<u32>,
+    ) -> usize {
         let in_lanes = n_rows - n_rows % Eight::COUNT;
         if near.len() < n_rows {
             near.resize(n_rows, 0);
         }
-        let found = self.find_near_in::<D, Eight, N>(grains, 0..in_lanes, (near, 0));
-        self.find_near_in::<D, f64, N>(grains, in_lanes..n_rows, (near, found))
+        let found = self.find_in::<D, Eight, N>(grains, (0..in_lanes, row), margin, (near, 0));
+        self.find_in::<D, f64, N>(grains, (in_lanes..n_rows, row), margin, (near, found))
     }
 
-    /// Writes those of `rows` behind the first of `near`, and returns how many it then has.
+    /// Writes those of the rows behind the first of `near`, and returns how many it then has.
     #[inline(always)]
     #[expect(unsafe_code, reason = "measured: see docs/performance.md")]
-    fn find_near_in<D: Dimension<N>, R: Lanes, const N: usize>(
+    fn find_in<D: Dimension<N>, R: Lanes, const N: usize>(
         &self,
         grains: &Grains,
-        rows: Range<usize>,
+        (range, row): (Range<usize>, impl Fn(usize) -> u32),
+        margin: f64,
         (near, mut found): (&mut [u32], usize),
     ) -> usize {
-        let all = self.pairs.candidates();
-        let candidates = all[rows.clone()].chunks_exact(R::COUNT);
-        for (row, candidates) in rows.step_by(R::COUNT).zip(candidates) {
-            let ahead = row + ROWS_AHEAD;
-            for candidate in all.get(ahead..ahead + R::COUNT).unwrap_or_default() {
-                fetch(grains.place(candidate.key[1] as usize));
+        // SAFETY: rows of the table, see [`Block::close`].
+        let candidate = |row: u32| unsafe { self.pairs.candidate_unchecked(row) };
+        let end = range.end;
+        for k in range.step_by(R::COUNT) {
+            let ahead = k + ROWS_AHEAD;
+            if ahead + R::COUNT <= end {
+                for k in ahead..ahead + R::COUNT {
+                    fetch(grains.place(candidate(row(k)).key[1] as usize));
+                }
             }
-            let of_lane = lanes_of::<R, _>(candidates);
+            let rows = per_lane(|lane| row(k + lane.min(R::COUNT - 1)));
+            let of_lane = per_lane(|lane| candidate(rows[lane]));
             // SAFETY: tables hold grains of the bed alone, see [`Block::pairs`].
             let place = |side: usize| {
                 per_lane(|lane| unsafe { grains.place_unchecked(of_lane[lane].key[side] as usize) })
             };
             let [i, j] = [place(0), place(1)];
-            let overlap = D::are_near::<R>(&i, &j, &grains.period, 0.0).bits();
-            let kept = overlap | R::differ(&per_lane(|lane| of_lane[lane].record), APART);
-            // Without a branch: about half of the candidates touch, and which ones cannot be foreseen.
+            let is_near = D::are_near::<R>(&i, &j, &grains.period, margin).bits();
+            let kept = is_near | R::differ(&per_lane(|lane| of_lane[lane].record), APART);
+            // Without a branch: which ones are near cannot be foreseen.
             for lane in 0..R::COUNT {
-                // SAFETY: not more are found than there are rows, see above.
-                *unsafe { near.get_unchecked_mut(found) } = (row + lane) as u32;
+                // SAFETY: not more are found than there are rows, for which there is room.
+                *unsafe { near.get_unchecked_mut(found) } = rows[lane];
                 found += (kept >> lane & 1) as usize;
             }
         }

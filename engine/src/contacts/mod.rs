@@ -35,6 +35,8 @@ pub(crate) struct Contacts {
     stages: Vec<Box<dyn ContactStage>>,
     blocks: Vec<Block>,
     benches: Benches,
+    /// Gap (m) up to which pairs are looked at in every step, if not all are.
+    close_margin: Option<f64>,
 }
 
 impl Contacts {
@@ -42,21 +44,17 @@ impl Contacts {
         stages: Vec<Box<dyn ContactStage>>,
         (space, n_grains): (Space, usize),
         n_parts: usize,
+        close_margin: Option<f64>,
     ) -> Self {
         let [of_pair, of_surface] = record_lens(&stages, space);
         let n_channels = stages.iter().map(|stage| stage.channels().len()).sum();
         let blocks = (0..n_grains.div_ceil(BLOCK))
-            .map(|block| Block {
-                first: block * BLOCK,
-                pairs: ContactTable::new(&of_pair),
-                halo: Vec::new(),
-                loads: Vec::new(),
-                inbox: Vec::new(),
-                surfaces: vec![ContactTable::new(&of_surface); n_parts],
-                tally: Tally::new(n_channels, n_parts),
+            .map(|block| {
+                let tables = (ContactTable::new(&of_pair), ContactTable::new(&of_surface));
+                Block::new(block * BLOCK, tables, Tally::new(n_channels, n_parts), n_parts)
             })
             .collect();
-        Self { stages, blocks, benches: Benches::new() }
+        Self { stages, blocks, benches: Benches::new(), close_margin }
     }
 
     pub(crate) fn stages(&self) -> &[Box<dyn ContactStage>] {
@@ -131,6 +129,7 @@ impl Contacts {
     fn address_loads(&mut self, n_grains: usize, marks: &[bool]) {
         let benches = &self.benches;
         marked(&mut self.blocks, marks).for_each(|block| {
+            block.relisted();
             let own = block.first..(block.first + BLOCK).min(n_grains);
             let is_own = |j: u32| own.contains(&(j as usize));
             let Bench { halo, .. } = &mut *benches.own();
@@ -139,6 +138,9 @@ impl Contacts {
             halo.sort_unstable();
             halo.dedup();
             replace(&mut block.halo, halo);
+            halo.iter_mut().for_each(|grain| *grain = block_of(*grain as usize) as u32);
+            halo.dedup();
+            replace(&mut block.around, halo);
             for Candidate { key: [_, j], target, .. } in block.pairs.candidates_mut() {
                 *target = if is_own(*j) {
                     *j - own.start as u32
@@ -164,22 +166,31 @@ impl Contacts {
 
     /// Finds what touches, lets the laws act, and sums forces within each block; [`Contacts::loads`] puts
     /// them together.
-    pub(crate) fn evaluate(&mut self, grains: &Grains, walls: &[Part], intruder: &[Part], dt: f64) {
+    /// `fastest` has the greatest speed (m/s) of a grain of each block in the step, of `dt` (s).
+    pub(crate) fn evaluate(
+        &mut self,
+        grains: &Grains,
+        fastest: &[f64],
+        parts: [&[Part]; 2],
+        dt: f64,
+    ) {
         match grains.space {
-            Space::Planar => self.evaluate_in::<Planar, 1>(grains, [walls, intruder], dt),
-            Space::Spatial => self.evaluate_in::<Spatial, 3>(grains, [walls, intruder], dt),
+            Space::Planar => self.evaluate_in::<Planar, 1>(grains, fastest, parts, dt),
+            Space::Spatial => self.evaluate_in::<Spatial, 3>(grains, fastest, parts, dt),
         }
     }
 
     fn evaluate_in<D: Dimension<N>, const N: usize>(
         &mut self,
         grains: &Grains,
+        fastest: &[f64],
         parts: [&[Part]; 2],
         dt: f64,
     ) where
         dyn ContactStage: Sweep<f64, N> + Sweep<Eight, N>,
     {
         let (stages, benches) = (&self.stages[..], &self.benches);
+        let close = self.close_margin;
         // Each block by itself: blocks differ, and half of them in one piece keeps a thread waiting.
         self.blocks.par_iter_mut().with_max_len(1).for_each(|block| {
             let bench = &mut *benches.own();
@@ -189,7 +200,8 @@ impl Contacts {
             block.loads.resize(n_quads, Quad::ZERO);
             block.loads.fill(Quad::ZERO);
             block.tally.clear();
-            block.sweep_pairs::<D, N>(grains, stages, dt, bench);
+            let gone = |block: usize| fastest[block] * dt;
+            block.sweep_pairs::<D, N>(grains, stages, (gone, close), dt, bench);
             for (index, part) in parts.into_iter().flatten().enumerate() {
                 block.sweep_surface::<D, N>(grains, stages, (index, part), dt, bench);
             }
