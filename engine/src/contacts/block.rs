@@ -12,7 +12,7 @@ use crate::contact::geometry::{loads_on_grain_and_part, with_surface};
 use crate::contact::table::{APART, ContactTable, replace};
 use crate::contact::{Contact, Partner, Response};
 use crate::contacts::stage::{Batch, ContactStage, Histories, Sweep};
-use crate::dimension::{Dimension, Motion, Quad, Quads};
+use crate::dimension::{Components, Dimension, Motion};
 use crate::grains::Grains;
 use crate::lanes::{Eight, Lanes, MOST_LANES, Mask, per_lane};
 use crate::parallel::block_of;
@@ -40,7 +40,7 @@ pub(super) struct Block {
     /// Grains of other blocks that are listed in pairs of this one, ascending.
     pub(super) halo: Vec<u32>,
     /// What contacts do to the grains of the block, then to those of the halo.
-    pub(super) loads: Vec<Quad>,
+    pub(super) loads: Vec<f64>,
     pub(super) inbox: Vec<Delivery>,
     /// Per part of walls and intruder.
     pub(super) surfaces: Vec<ContactTable>,

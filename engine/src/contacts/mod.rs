@@ -19,7 +19,7 @@ use crate::body::Part;
 use crate::contact::Partner;
 use crate::contact::table::{Candidate, ContactTable, replace, reserve};
 use crate::contacts::stage::{ContactStage, Sweep};
-use crate::dimension::{Dimension, Planar, Quad, Quads, Spatial};
+use crate::dimension::{Components, Dimension, Planar, Spatial};
 use crate::grains::{Grains, Space};
 use crate::lanes::Eight;
 use crate::math::Vec3;
@@ -195,10 +195,10 @@ impl Contacts {
         self.blocks.par_iter_mut().with_max_len(1).for_each(|block| {
             let bench = &mut *benches.own();
             let own = (block.first + BLOCK).min(grains.len()) - block.first;
-            let n_quads = (own + block.halo.len()) * D::Load::LEN;
-            reserve(&mut block.loads, n_quads);
-            block.loads.resize(n_quads, Quad::ZERO);
-            block.loads.fill(Quad::ZERO);
+            let n_numbers = (own + block.halo.len()) * D::Load::LEN;
+            reserve(&mut block.loads, n_numbers);
+            block.loads.resize(n_numbers, 0.0);
+            block.loads.fill(0.0);
             block.tally.clear();
             let gone = |block: usize| fastest[block] * dt;
             block.sweep_pairs::<D, N>(grains, stages, (gone, close), dt, bench);
@@ -376,7 +376,7 @@ fn record_lens(stages: &[Box<dyn ContactStage>], space: Space) -> [Vec<usize>; 2
 /// What contacts do to the grains of one block, grain by grain.
 pub(crate) struct Loads<'a> {
     blocks: &'a [Block],
-    own: &'a [Quad],
+    own: &'a [f64],
     /// What is still to be handed out.
     inbox: std::slice::Iter<'a, Delivery>,
 }

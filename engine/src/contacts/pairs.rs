@@ -3,7 +3,7 @@
 use super::tally::Tally;
 use crate::contact::table::{APART, Candidate, ContactTable};
 use crate::contact::{Contact, Response};
-use crate::dimension::{Dimension, Frame, Quad, Quads};
+use crate::dimension::{Components, Dimension, Frame, Quads};
 use crate::grains::{Grains, Space};
 use crate::lanes::{Lanes, MOST_LANES, Mask, per_lane};
 
@@ -15,7 +15,7 @@ pub struct Pairs<'a> {
     /// The rows of candidates that overlap, or did a step ago: rows of the table, no others.
     pub(super) near: &'a [u32],
     pub(super) table: &'a mut ContactTable,
-    pub(super) loads: &'a mut [Quad],
+    pub(super) loads: &'a mut [f64],
     pub(super) tally: &'a mut Tally,
     /// (s).
     pub(super) dt: f64,

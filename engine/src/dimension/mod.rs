@@ -24,14 +24,6 @@ pub(crate) struct Quad(pub(crate) [f64; 4]);
 
 impl Quad {
     pub(crate) const ZERO: Self = Self([0.0; 4]);
-
-    /// Adds `other`, number by number.
-    #[inline(always)]
-    pub(crate) fn add(&mut self, other: &Self) {
-        for (own, part) in self.0.iter_mut().zip(other.0) {
-            *own += part;
-        }
-    }
 }
 
 /// A few of them that belong to one grain.
@@ -44,9 +36,6 @@ pub(crate) trait Quads: Copy + Send + Sync {
 
     /// The same, to be changed.
     fn each_mut(all: &mut [Quad]) -> &mut [Self];
-
-    /// Adds `other`, number by number.
-    fn add(&mut self, other: &Self);
 
     /// Has them brought near.
     fn fetch(&self);
@@ -66,16 +55,45 @@ impl<const LEN: usize> Quads for [Quad; LEN] {
     }
 
     #[inline(always)]
-    fn add(&mut self, other: &Self) {
-        for (own, part) in self.iter_mut().zip(other) {
-            own.add(part);
-        }
-    }
-
-    #[inline(always)]
     fn fetch(&self) {
         // A line of memory holds two.
         self.iter().step_by(2).chain(self.last()).for_each(fetch);
+    }
+}
+
+/// The components of the load of one grain.
+pub(crate) trait Components: Copy + Send + Sync {
+    /// How many.
+    const LEN: usize;
+
+    /// Those of all grains, grain by grain.
+    fn each(all: &[f64]) -> &[Self];
+
+    /// The same, to be changed.
+    fn each_mut(all: &mut [f64]) -> &mut [Self];
+
+    /// Adds `other`, number by number.
+    fn add(&mut self, other: &Self);
+}
+
+impl<const LEN: usize> Components for [f64; LEN] {
+    const LEN: usize = LEN;
+
+    #[inline(always)]
+    fn each(all: &[f64]) -> &[Self] {
+        all.as_chunks().0
+    }
+
+    #[inline(always)]
+    fn each_mut(all: &mut [f64]) -> &mut [Self] {
+        all.as_chunks_mut().0
+    }
+
+    #[inline(always)]
+    fn add(&mut self, other: &Self) {
+        for (own, part) in self.iter_mut().zip(other) {
+            *own += part;
+        }
     }
 }
 
@@ -134,7 +152,7 @@ pub(crate) trait Dimension<const N: usize>: Send + Sync + 'static {
     /// How a grain moves.
     type Moves: Quads;
     /// The load of a grain.
-    type Load: Quads;
+    type Load: Components;
 
     /// Writes the state of a grain.
     fn pack(state: &Motion, place: &mut Quad, motion: &mut Self::Moves);

@@ -5,7 +5,7 @@
 use wide::f64x4;
 
 use super::{
-    Dimension, Frame, Load, Motion, Motions, Places, Quad, Quads, Squares, Stride, gather,
+    Components, Dimension, Frame, Load, Motion, Motions, Places, Quad, Squares, Stride, gather,
     gather_place, inverse_nearby, with_last_of,
 };
 use crate::boundary::Period;
@@ -28,7 +28,7 @@ fn in_plane(x: f64, z: f64) -> Vec3 {
 
 impl Dimension<1> for Planar {
     type Moves = [Quad; 2];
-    type Load = [Quad; 1];
+    type Load = [f64; 4];
 
     fn pack(state: &Motion, place: &mut Quad, motion: &mut [Quad; 2]) {
         let quad = |velocity, spin, last| {
@@ -149,7 +149,7 @@ impl Dimension<1> for Planar {
         frame: &Frame<R>,
         response: &Response<R, 1>,
         targets: &[[u32; 2]; MOST_LANES],
-        loads: &mut [[Quad; 1]],
+        loads: &mut [[f64; 4]],
     ) {
         let (n_x, n_z) = (frame.normal[0], frame.normal[2]);
         let (pressed, sheared) = (response.normal_force, response.tangential_force[0]);
@@ -162,9 +162,9 @@ impl Dimension<1> for Planar {
         for lane in 0..R::COUNT {
             let [i, j] = targets[lane].map(|target| target as usize);
             // SAFETY: the caller's.
-            unsafe { loads.get_unchecked_mut(i) }.add(&[Quad(on_i[lane])]);
+            unsafe { loads.get_unchecked_mut(i) }.add(&on_i[lane]);
             // SAFETY: the caller's.
-            unsafe { loads.get_unchecked_mut(j) }.add(&[Quad(on_j[lane])]);
+            unsafe { loads.get_unchecked_mut(j) }.add(&on_j[lane]);
         }
     }
 
@@ -201,22 +201,22 @@ impl Dimension<1> for Planar {
     }
 
     #[inline(always)]
-    fn add_load(load: &Load, to: &mut [Quad; 1]) {
+    fn add_load(load: &Load, to: &mut [f64; 4]) {
         let [x, z, turn] = components(load.force, load.torque);
-        to[0].add(&Quad([x, z, turn, 0.0]));
+        to.add(&[x, z, turn, 0.0]);
     }
 
     #[inline(always)]
     fn kick_drift(
         place: &mut Quad,
         motion: &mut [Quad; 2],
-        load: &[Quad; 1],
+        load: &[f64; 4],
         stride: &Stride,
         inverse_inertia: f64,
     ) -> Squares {
         let inverse_mass = motion[0].0[3];
         let mobility = f64x4::new([inverse_mass, inverse_mass, inverse_inertia, 0.0]);
-        let acceleration = f64x4::new(load[0].0) * mobility;
+        let acceleration = f64x4::new(*load) * mobility;
         let between = f64x4::new(motion[0].0) + acceleration * f64x4::splat(stride.before);
         let kick = acceleration * f64x4::splat(stride.after);
         let during = between + kick;

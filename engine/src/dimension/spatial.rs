@@ -3,7 +3,7 @@
 use wide::f64x4;
 
 use super::{
-    Dimension, Frame, Load, Motion, Motions, Places, Quad, Quads, Squares, Stride, gather,
+    Components, Dimension, Frame, Load, Motion, Motions, Places, Quad, Squares, Stride, gather,
     gather_place, inverse_nearby, with_last_of,
 };
 use crate::boundary::Period;
@@ -12,7 +12,7 @@ use crate::lanes::{Lanes, MOST_LANES, Vector};
 use crate::math::Vec3;
 
 /// A place is (x, r), a motion (v, 1/m), (ω, mobility), (v at the end of the step, 1/r), (ω at the end of
-/// the step, 0), a load (F, 0), (M, 0).
+/// the step, 0), a load F, M.
 pub(crate) struct Spatial;
 
 fn quad(vector: Vec3, last: f64) -> Quad {
@@ -34,7 +34,7 @@ fn gather_split<R: Lanes>(motions: &Motions<'_, [Quad; 4]>, quad: usize) -> (Vec
 
 impl Dimension<3> for Spatial {
     type Moves = [Quad; 4];
-    type Load = [Quad; 2];
+    type Load = [f64; 6];
 
     fn pack(state: &Motion, place: &mut Quad, motion: &mut [Quad; 4]) {
         *place = quad(state.position, state.radius);
@@ -154,20 +154,28 @@ impl Dimension<3> for Spatial {
         frame: &Frame<R>,
         response: &Response<R, 3>,
         targets: &[[u32; 2]; MOST_LANES],
-        loads: &mut [[Quad; 2]],
+        loads: &mut [[f64; 6]],
     ) {
         let force = frame.normal * response.normal_force + response.tangential_force;
         let twist = frame.normal.cross(&response.tangential_force);
         let on_i = twist * frame.arms[0] + response.couple;
         let on_j = -(twist * frame.arms[1]) - response.couple;
-        let rows = |of: Vector<R, 3>| R::rows([of[0], of[1], of[2], R::zero()]);
-        let (push, pull, on_i, on_j) = (rows(force), rows(-force), rows(on_i), rows(on_j));
+        let rows = |force: Vector<R, 3>, torque: Vector<R, 3>| {
+            let first = R::rows([force[0], force[1], force[2], torque[0]]);
+            (first, R::rows_of_two([torque[1], torque[2]]))
+        };
+        let (on_i, on_j) = (rows(force, on_i), rows(-force, on_j));
+        let load = |(first, last): &([[f64; 4]; MOST_LANES], [[f64; 2]; MOST_LANES]),
+                    lane: usize| {
+            let ([a, b, c, d], [e, f]) = (first[lane], last[lane]);
+            [a, b, c, d, e, f]
+        };
         for lane in 0..R::COUNT {
             let [i, j] = targets[lane].map(|target| target as usize);
             // SAFETY: the caller's.
-            unsafe { loads.get_unchecked_mut(i) }.add(&[Quad(push[lane]), Quad(on_i[lane])]);
+            unsafe { loads.get_unchecked_mut(i) }.add(&load(&on_i, lane));
             // SAFETY: the caller's.
-            unsafe { loads.get_unchecked_mut(j) }.add(&[Quad(pull[lane]), Quad(on_j[lane])]);
+            unsafe { loads.get_unchecked_mut(j) }.add(&load(&on_j, lane));
         }
     }
 
@@ -182,23 +190,24 @@ impl Dimension<3> for Spatial {
     }
 
     #[inline(always)]
-    fn add_load(load: &Load, to: &mut [Quad; 2]) {
-        to[0].add(&quad(load.force, 0.0));
-        to[1].add(&quad(load.torque, 0.0));
+    fn add_load(load: &Load, to: &mut [f64; 6]) {
+        let Load { force, torque } = load;
+        to.add(&[force.x, force.y, force.z, torque.x, torque.y, torque.z]);
     }
 
     #[inline(always)]
     fn kick_drift(
         place: &mut Quad,
         motion: &mut [Quad; 4],
-        load: &[Quad; 2],
+        load: &[f64; 6],
         stride: &Stride,
         inverse_inertia: f64,
     ) -> Squares {
+        let [f_x, f_y, f_z, m_x, m_y, m_z] = *load;
         let [before, after] = [stride.before, stride.after].map(f64x4::splat);
         let accelerations = [
-            f64x4::new(load[0].0) * f64x4::splat(motion[0].0[3]),
-            f64x4::new(load[1].0) * f64x4::splat(inverse_inertia),
+            f64x4::new([f_x, f_y, f_z, 0.0]) * f64x4::splat(motion[0].0[3]),
+            f64x4::new([m_x, m_y, m_z, 0.0]) * f64x4::splat(inverse_inertia),
         ];
         let mut squares = [[0.0; 4]; 2];
         for (kind, acceleration) in accelerations.into_iter().enumerate() {
