@@ -16,7 +16,7 @@ use crate::grain_pass::{GrainPass, SumsOfGrains};
 use crate::grains::{Grain, Grains, Space};
 use crate::ledger::{ChannelKind, Term, TermKind};
 use crate::math::Vec3;
-use crate::neighbours::{BlockFreshness, CellGrid, Freshness, spatial_order};
+use crate::neighbours::{BlockFreshness, CellGrid, Freshness, sort_in_space};
 use crate::parallel::BLOCK;
 use crate::recessive::RecessiveWork;
 use crate::surface::Placement;
@@ -91,9 +91,8 @@ pub struct RestingBed {
 impl RestingBed {
     /// A bed that nobody has touched yet: grains without contact histories, put in spatial order.
     #[must_use]
-    pub fn without_history(space: Space, grains: &[Grain]) -> Self {
-        let order = spatial_order(space, grains);
-        let grains = order.into_iter().map(|i| grains[i]).collect();
+    pub fn without_history(space: Space, mut grains: Vec<Grain>) -> Self {
+        sort_in_space(space, &mut grains);
         Self { space, grains, stages: Vec::new(), memories: Vec::new() }
     }
 }
@@ -556,7 +555,7 @@ mod tests {
         let container = Container::walled_box(0.03, 0.03);
         let kinds = [GrainKind { count: 500, radius: RADIUS, mass: 1e-5 }];
         let grains = fill(&kinds, (Space::Spatial, &container), 1);
-        let resting = RestingBed::without_history(Space::Spatial, &grains);
+        let resting = RestingBed::without_history(Space::Spatial, grains);
         let mut bed = GrainBed::new(&resting, container, Vec3::zeros(), Vec::new(), 1);
         let size = ratio * RADIUS;
         let mut ball = RigidBody::new("ball", Arc::new(Ball(size)), 1.0, Vec3::repeat(1.0));
@@ -585,7 +584,7 @@ mod tests {
             let turn = k as f64;
             grain.velocity = Vec3::new(libm::cos(turn), 0.0, libm::sin(turn)) * (0.1 + 0.1 * turn);
         }
-        let resting = RestingBed::without_history(Space::Planar, &grains);
+        let resting = RestingBed::without_history(Space::Planar, grains);
         let mut bed = GrainBed::new(&resting, container, Vec3::zeros(), Vec::new(), 0);
         let dt = 1e-5;
         let stride = Stride { before: 0.0, after: 0.0, drift: dt };

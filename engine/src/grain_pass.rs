@@ -65,8 +65,9 @@ impl GrainPass<'_> {
         let liftable = 2.0 * MOVING_LIFT * self.gravity.norm();
         let moved = block.places.iter_mut().zip(D::Moves::each_mut(block.motions));
         let coefficient = self.inertia_coefficient;
-        let bodies = block.mass.iter().zip(block.inverse_inertia);
-        for (k, ((place, motion), (&mass, &inverse_inertia))) in moved.zip(bodies).enumerate() {
+        // 1/I over 1/(I + m r²): dividing for each grain would cost a fourth of this pass.
+        let over_mobility = (1.0 + coefficient) / coefficient;
+        for (k, ((place, motion), &mass)) in moved.zip(block.mass).enumerate() {
             let grain = D::unpack(place, motion);
             let weight = self.gravity * mass;
             let mut load = loads.of::<D, N>(k);
@@ -74,6 +75,7 @@ impl GrainPass<'_> {
             if let Some(drag) = drags(&grain, mass, &mut sums) {
                 D::add_load(&drag, &mut load);
             }
+            let inverse_inertia = over_mobility * grain.rolling_mobility;
             let squares = D::kick_drift(place, motion, &load, &self.stride, inverse_inertia);
             D::wrap(place, &self.period);
             let translation = 0.5 * mass * squares.speed;

@@ -92,8 +92,6 @@ pub struct Grains {
     pub mass: Vec<f64>,
     /// Moment of inertia over m r² (–).
     inertia_coefficient: f64,
-    /// 1/I (1/(kg m²)): dividing for it in every step would cost a fourth of the pass over the grains.
-    inverse_inertia: Vec<f64>,
     /// Where each grain is and how large, see [`Dimension`].
     places: Vec<Quad>,
     /// How each grain moves, see [`Dimension`].
@@ -115,8 +113,6 @@ pub(crate) struct BlockOfGrains<'a> {
     pub(crate) motions: &'a mut [Quad],
     /// Of its grains (kg).
     pub(crate) mass: &'a [f64],
-    /// Of its grains (1/(kg m²)).
-    pub(crate) inverse_inertia: &'a [f64],
 }
 
 impl Grains {
@@ -128,7 +124,6 @@ impl Grains {
             id: list.iter().map(|grain| grain.id).collect(),
             mass: list.iter().map(|grain| grain.mass).collect(),
             inertia_coefficient: 0.0,
-            inverse_inertia: vec![0.0; list.len()],
             places: vec![Quad::ZERO; list.len()],
             motions: vec![Quad::ZERO; list.len() * quads(space)],
             ahead: 0.0,
@@ -300,9 +295,7 @@ impl Grains {
         self.inertia_coefficient = coefficient;
         for i in 0..self.len() {
             let (mass, radius) = (self.mass[i], self.radius(i));
-            let inertia = self.inertia(i);
-            self.inverse_inertia[i] = 1.0 / inertia;
-            let rolling_mobility = 1.0 / (inertia + mass * radius * radius);
+            let rolling_mobility = 1.0 / (self.inertia(i) + mass * radius * radius);
             self.set_motion(i, &Motion { rolling_mobility, ..self.motion(i) });
         }
     }
@@ -321,10 +314,10 @@ impl Grains {
 
     /// Whether all arrays hold `n` finite entries, for grains that were read from a file.
     pub(crate) fn is_consistent(&self, n: usize) -> bool {
-        let scalars = [&self.mass, &self.inverse_inertia];
         let finite = |quads: &[Quad]| quads.iter().all(|quad| quad.0.iter().all(|x| x.is_finite()));
         self.id.len() == n
-            && scalars.iter().all(|list| list.len() == n && list.iter().all(|x| x.is_finite()))
+            && self.mass.len() == n
+            && self.mass.iter().all(|mass| mass.is_finite())
             && self.inertia_coefficient.is_finite()
             && self.places.len() == n
             && self.motions.len() == n * quads(self.space)
@@ -427,16 +420,14 @@ impl Grains {
             self.places.par_chunks_mut(BLOCK),
             self.motions.par_chunks_mut(BLOCK * D::Moves::LEN),
             self.mass.par_chunks(BLOCK),
-            self.inverse_inertia.par_chunks(BLOCK),
         )
             .into_par_iter()
             .enumerate()
-            .map(|(block, (places, motions, mass, inverse_inertia))| BlockOfGrains {
+            .map(|(block, (places, motions, mass))| BlockOfGrains {
                 block,
                 places,
                 motions,
                 mass,
-                inverse_inertia,
             })
     }
 }

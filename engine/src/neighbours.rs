@@ -341,9 +341,8 @@ pub(crate) struct Neighbourhood {
     places: Vec<Quad>,
 }
 
-/// Order of grains in which neighbours in space are near in memory: by cell along a Morton curve,
-/// then by identity.
-pub(crate) fn spatial_order(space: Space, grains: &[Grain]) -> Vec<usize> {
+/// Puts neighbours in space near each other in memory: by cell along a Morton curve, then by identity.
+pub(crate) fn sort_in_space(space: Space, grains: &mut [Grain]) {
     let low =
         grains.iter().fold(Vec3::repeat(f64::INFINITY), |low, grain| low.inf(&grain.position));
     let width = 2.0 * grains.iter().fold(0.0, |largest: f64, grain| largest.max(grain.radius));
@@ -351,15 +350,13 @@ pub(crate) fn spatial_order(space: Space, grains: &[Grain]) -> Vec<usize> {
         Space::Planar => &[0, 2],
         Space::Spatial => &[0, 1, 2],
     };
-    let curve = |i: usize| {
-        let offset = (grains[i].position - low) / width;
+    let curve = |grain: &Grain| {
+        let offset = (grain.position - low) / width;
         axes.iter().enumerate().fold(0, |key, (shift, &axis)| {
             key | interleave(offset[axis] as u32, axes.len()) << shift
         })
     };
-    let mut order: Vec<usize> = (0..grains.len()).collect();
-    order.sort_by_cached_key(|&i| (curve(i), grains[i].id));
-    order
+    grains.sort_by_cached_key(|grain| (curve(grain), grain.id));
 }
 
 /// The low 20 bits of `coordinate`, `stride` places apart.

@@ -137,7 +137,7 @@ pub fn bed(
 ) -> GrainBed {
     let grains: Vec<Grain> =
         grains.iter().zip(0..).map(|(&grain, id)| Grain { id, ..grain }).collect();
-    let resting = RestingBed::without_history(space, &grains);
+    let resting = RestingBed::without_history(space, grains);
     GrainBed::new(&resting, container, gravity, stages, n_intruder_parts)
 }
 

@@ -90,7 +90,7 @@ fn simulation(impact: &ImpactRow) -> Simulation {
             id,
         })
         .collect();
-    let resting = RestingBed::without_history(Space::Planar, &grains);
+    let resting = RestingBed::without_history(Space::Planar, grains);
     let container = Container::walled_box(0.560175, 0.0);
     let gravity = Vec3::new(0.0, 0.0, -9.81);
     let bed = GrainBed::new(&resting, container, gravity, stages(impact.rolling_friction), 1);

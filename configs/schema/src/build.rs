@@ -186,7 +186,7 @@ impl GrainModel<'_> {
                 id,
             })
             .collect();
-        Some(RestingBed::without_history(self.medium.space, &grains))
+        Some(RestingBed::without_history(self.medium.space, grains))
     }
 
     /// `resting` in the container under the laws and the forces on grains of the run, ready for the intruder.

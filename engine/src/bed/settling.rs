@@ -86,7 +86,7 @@ impl Settling {
         stages: Vec<Box<dyn ContactStage>>,
         dt: f64,
     ) -> Self {
-        let start = RestingBed::without_history(space, grains);
+        let start = RestingBed::without_history(space, grains.to_vec());
         let bed = GrainBed::new(&start, container, gravity, stages, 0);
         let scales = Scales::of(&bed);
         let world = World::new(bed, Box::new(NoIntruder), dt);

@@ -239,7 +239,7 @@ pub(crate) fn replace<T: Copy>(list: &mut Vec<T>, with: &[T]) {
 /// Takes memory for `n` entries of `list`, and hardly more.
 pub(crate) fn reserve<T>(list: &mut Vec<T>, n: usize) {
     if n > list.capacity() {
-        list.reserve_exact(n + n / 32 - list.len());
+        list.reserve_exact(n + n / 64 - list.len());
     }
 }
 

@@ -149,7 +149,14 @@ impl Contacts {
                 };
             }
         });
-        self.blocks.iter_mut().for_each(|block| block.inbox.clear());
+        let mut n_sent = vec![0; self.blocks.len()];
+        for block in &self.blocks {
+            block.halo.iter().for_each(|&grain| n_sent[block_of(grain as usize)] += 1);
+        }
+        for (block, n_sent) in self.blocks.iter_mut().zip(n_sent) {
+            block.inbox.clear();
+            reserve(&mut block.inbox, n_sent);
+        }
         for from in 0..self.blocks.len() {
             let own = (self.blocks[from].first + BLOCK).min(n_grains) - self.blocks[from].first;
             for k in 0..self.blocks[from].halo.len() {

@@ -118,12 +118,13 @@ fn impact(grains: &[Grain], units: Units, steps: usize) -> Vec<Vec3> {
         tangential_damping_rate: S1.tangential_damping_rate * rate,
         friction: S1.friction,
     };
-    let resting = RestingBed::without_history(Space::Planar, &grains);
+    let resting = RestingBed::without_history(Space::Planar, grains);
     let room = Container::walled_box(BOX.extents()[0] * length, 0.0);
     let gravity = Vec3::new(0.0, 0.0, -9.81 * velocity / time);
     let bed = GrainBed::new(&resting, room, gravity, vec![law.stage(), rolling(0.1, 0.3)], 1);
     let size = Size { radius: 0.01 * length, mass: 5e-3 * mass };
-    let top = grains.iter().fold(0.0_f64, |top, grain| top.max(grain.position.z + grain.radius));
+    let grains = resting.grains.iter();
+    let top = grains.fold(0.0_f64, |top, grain| top.max(grain.position.z + grain.radius));
     let start = Vec3::new(0.021 * length, 0.0, top + size.radius);
     let thrown = Vec3::new(0.2, 0.0, -1.0) * velocity;
     let disc = size.disc(start, thrown, Vec3::y() * (10.0 * rate));
