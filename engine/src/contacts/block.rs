@@ -336,7 +336,7 @@ impl Block {
                     loads_on_grain_and_part(contact, &response, grain.radius, apart);
                 let i = table.candidates()[row].key[0];
                 let loads = D::Load::each_mut(&mut self.loads);
-                D::add_load(&on_grain, &mut loads[i as usize - self.first]);
+                loads[i as usize - self.first].add(&D::load(&on_grain));
                 if !(evaluation.contacts[k].overlaps() | evaluation.responses[k].holds) {
                     table.open(row);
                 } else {

@@ -41,14 +41,17 @@ impl Pairs<'_> {
     #[expect(unsafe_code, reason = "measured: see docs/performance.md")]
     pub(super) fn fetch<D: Dimension<N>, const N: usize>(&self, near: &[u32]) {
         let moves = self.grains.moves::<D, N>();
-        for &row in near {
+        for (k, &row) in near.iter().enumerate() {
             // SAFETY: see [`Pairs::near`].
             let Candidate { key, record, .. } = *unsafe { self.table.candidate_unchecked(row) };
-            for grain in key {
+            let fetched = &key[usize::from(k % D::FIRST_EVERY != 0)..];
+            for &grain in fetched {
                 // SAFETY: tables hold grains of the bed alone, and every grain has a motion.
                 unsafe { moves.get_unchecked(grain as usize) }.fetch();
             }
-            self.table.fetch(record);
+            if k % D::RECORD_EVERY == 0 {
+                self.table.fetch(record);
+            }
         }
     }
 

@@ -74,6 +74,9 @@ pub(crate) trait Components: Copy + Send + Sync {
 
     /// Adds `other`, number by number.
     fn add(&mut self, other: &Self);
+
+    /// Each of them times `factor`.
+    fn times(&self, factor: f64) -> Self;
 }
 
 impl<const LEN: usize> Components for [f64; LEN] {
@@ -94,6 +97,13 @@ impl<const LEN: usize> Components for [f64; LEN] {
         for (own, part) in self.iter_mut().zip(other) {
             *own += part;
         }
+    }
+
+    #[inline(always)]
+    fn times(&self, factor: f64) -> Self {
+        let mut product = *self;
+        product.iter_mut().for_each(|number| *number *= factor);
+        product
     }
 }
 
@@ -154,6 +164,12 @@ pub(crate) trait Dimension<const N: usize>: Send + Sync + 'static {
     /// The load of a grain.
     type Load: Components;
 
+    /// First grains of contacts follow each other in memory: one in so many is fetched ahead of its turn.
+    const FIRST_EVERY: usize;
+
+    /// The same of records.
+    const RECORD_EVERY: usize;
+
     /// Writes the state of a grain.
     fn pack(state: &Motion, place: &mut Quad, motion: &mut Self::Moves);
 
@@ -195,8 +211,8 @@ pub(crate) trait Dimension<const N: usize>: Send + Sync + 'static {
     /// The answer of laws to a contact with a surface, back in the world frame.
     fn widen(response: &Response<f64, N>, normal: Vec3) -> Response;
 
-    /// Adds a load to that of a grain.
-    fn add_load(load: &Load, to: &mut Self::Load);
+    /// The components of a load.
+    fn load(load: &Load) -> Self::Load;
 
     /// Ends a step and begins the next: half a kick under `load`, the same again, and the drift, after
     /// which the velocities are extrapolated to its end. `inverse_inertia` is 1/I (1/(kg m²)).

@@ -30,6 +30,9 @@ impl Dimension<1> for Planar {
     type Moves = [Quad; 2];
     type Load = [f64; 4];
 
+    const FIRST_EVERY: usize = 8;
+    const RECORD_EVERY: usize = 4;
+
     fn pack(state: &Motion, place: &mut Quad, motion: &mut [Quad; 2]) {
         let quad = |velocity, spin, last| {
             let [x, z, turn] = components(velocity, spin);
@@ -201,9 +204,9 @@ impl Dimension<1> for Planar {
     }
 
     #[inline(always)]
-    fn add_load(load: &Load, to: &mut [f64; 4]) {
+    fn load(load: &Load) -> [f64; 4] {
         let [x, z, turn] = components(load.force, load.torque);
-        to.add(&[x, z, turn, 0.0]);
+        [x, z, turn, 0.0]
     }
 
     #[inline(always)]

@@ -36,6 +36,9 @@ impl Dimension<3> for Spatial {
     type Moves = [Quad; 4];
     type Load = [f64; 6];
 
+    const FIRST_EVERY: usize = 1;
+    const RECORD_EVERY: usize = 1;
+
     fn pack(state: &Motion, place: &mut Quad, motion: &mut [Quad; 4]) {
         *place = quad(state.position, state.radius);
         motion[0] = quad(state.velocity, state.inverse_mass);
@@ -190,9 +193,9 @@ impl Dimension<3> for Spatial {
     }
 
     #[inline(always)]
-    fn add_load(load: &Load, to: &mut [f64; 6]) {
+    fn load(load: &Load) -> [f64; 6] {
         let Load { force, torque } = load;
-        to.add(&[force.x, force.y, force.z, torque.x, torque.y, torque.z]);
+        [force.x, force.y, force.z, torque.x, torque.y, torque.z]
     }
 
     #[inline(always)]
