@@ -263,9 +263,9 @@ impl Block {
             let is_near = D::are_near::<R>(&i, &j, &grains.period, margin).bits();
             let kept = is_near | R::differ(&per_lane(|lane| of_lane[lane].record), APART);
             // Without a branch: which ones are near cannot be foreseen.
-            for lane in 0..R::COUNT {
+            for (lane, &row) in rows.iter().enumerate().take(R::COUNT) {
                 // SAFETY: not more are found than there are rows, for which there is room.
-                *unsafe { near.get_unchecked_mut(found) } = rows[lane];
+                *unsafe { near.get_unchecked_mut(found) } = row;
                 found += (kept >> lane & 1) as usize;
             }
         }

@@ -173,8 +173,8 @@ impl Dimension<3> for Spatial {
             let ([a, b, c, d], [e, f]) = (first[lane], last[lane]);
             [a, b, c, d, e, f]
         };
-        for lane in 0..R::COUNT {
-            let [i, j] = targets[lane].map(|target| target as usize);
+        for (lane, target) in targets.iter().enumerate().take(R::COUNT) {
+            let [i, j] = target.map(|target| target as usize);
             // SAFETY: the caller's.
             unsafe { loads.get_unchecked_mut(i) }.add(&load(&on_i, lane));
             // SAFETY: the caller's.
