@@ -33,7 +33,7 @@ pub(super) struct Block {
     /// The rows of `pairs` that touch or are close, ascending: no others can touch before grains have gone
     /// `close_left`.
     close: Vec<u32>,
-    /// How far (m) two grains of `pairs` may still go towards each other; below zero `close` is good for nothing.
+    /// How far (m) two grains of `pairs` may still go towards each other; below zero `close` has to be made.
     close_left: f64,
     /// The blocks of the grains of the halo, ascending.
     pub(super) around: Vec<u32>,
@@ -154,6 +154,7 @@ impl Block {
 
     /// Takes note that the rows of `pairs` are others now.
     pub(super) fn relisted(&mut self) {
+        self.close.clear();
         self.close_left = -1.0;
     }
 
@@ -207,7 +208,9 @@ impl Block {
         let around = self.around.iter().map(|&block| gone(block as usize)).fold(0.0, f64::max);
         let own = gone(block_of(self.first));
         self.close_left -= own + own.max(around);
-        if self.close_left < 0.0 {
+        // What is not a number is no less a reason to look.
+        let is_good = self.close_left >= 0.0;
+        if !is_good {
             let n_close = self.find::<D, N>(grains, all, margin, near);
             replace(&mut self.close, &near[..n_close]);
             self.close_left = margin;
