@@ -16,28 +16,12 @@ use crate::grain_pass::{GrainPass, SumsOfGrains};
 use crate::grains::{Grain, Grains, Space};
 use crate::ledger::{ChannelKind, Term, TermKind};
 use crate::math::Vec3;
-use crate::neighbours::{BlockFreshness, CellGrid, Freshness, sort_in_space};
+use crate::neighbours::{
+    BlockFreshness, CellGrid, Freshness, close_margin, pair_margin, sort_in_space,
+};
 use crate::parallel::BLOCK;
 use crate::recessive::RecessiveWork;
 use crate::surface::Placement;
-
-/// Gap up to which grains are listed as neighbours, in mean grain diameters: the wider, the rarer lists are made. In a
-/// plane that is worth the memory.
-const fn pair_margin(space: Space) -> f64 {
-    match space {
-        Space::Planar => 0.5,
-        Space::Spatial => 0.25,
-    }
-}
-
-/// Gap up to which neighbours are looked at in every step, in mean grain diameters, if not all are: a second list pays where
-/// the first is long.
-const fn close_margin(space: Space) -> Option<f64> {
-    match space {
-        Space::Planar => Some(0.03),
-        Space::Spatial => None,
-    }
-}
 
 /// Gap up to which grains are listed as near the intruder, in mean grain diameters.
 const INTRUDER_MARGIN: f64 = 0.4;

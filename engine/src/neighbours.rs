@@ -11,6 +11,24 @@ use crate::lanes::{Eight, MOST_LANES, Mask, per_lane};
 use crate::math::Vec3;
 use crate::parallel::BLOCK;
 
+/// Gap up to which grains are listed as neighbours, in mean grain diameters: the wider, the rarer lists are made. In a
+/// plane that is worth the memory.
+pub(crate) const fn pair_margin(space: Space) -> f64 {
+    match space {
+        Space::Planar => 0.5,
+        Space::Spatial => 0.25,
+    }
+}
+
+/// Gap up to which neighbours are looked at in every step, in mean grain diameters, if not all are: a second list pays where
+/// the first is long.
+pub(crate) const fn close_margin(space: Space) -> Option<f64> {
+    match space {
+        Space::Planar => Some(0.03),
+        Space::Spatial => None,
+    }
+}
+
 /// Counts down to the next rebuild of a neighbour list: the list holds everything nearer than
 /// `margin`, so it is good until the relative displacement of any two bodies may exceed that.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -167,7 +167,7 @@ impl<L: ContactLaw, R: Lanes, const N: usize> Sweep<R, N> for Stage<L> {
 /// How many groups of contacts ahead what they need is fetched.
 const GROUPS_AHEAD: usize = 2;
 
-/// Longest record of one stage.
+/// Longest record of one stage, and room for two numbers more, which are moved together.
 const MOST_NUMBERS: usize = 16;
 
 /// Room for `numbers` in a record: they are read by fours, and three are read sooner as four.
