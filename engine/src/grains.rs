@@ -72,12 +72,12 @@ pub struct Grain {
 }
 
 impl Grain {
-    /// Whether all of it is finite, and it has a size and a mass.
+    /// Whether all of it is finite, also one over its inertia, and it has a size and a mass.
     pub(crate) fn is_sound(&self) -> bool {
         let Self { position, velocity, spin, radius, mass, .. } = self;
         let vectors = [position, velocity, spin];
         vectors.iter().all(|vector| vector.iter().all(|x| x.is_finite()))
-            && [radius, mass].into_iter().all(|x| x.is_normal() && *x > 0.0)
+            && [*radius, *mass, mass * radius * radius].iter().all(|x| x.is_normal() && *x > 0.0)
     }
 }
 
@@ -163,7 +163,7 @@ impl Grains {
         (0..self.len()).map(|i| self.radius(i))
     }
 
-    /// (m).
+    /// The mean diameter of a grain (m).
     #[must_use]
     pub fn mean_diameter(&self) -> f64 {
         2.0 * self.radii().sum::<f64>() / self.len() as f64
