@@ -42,6 +42,43 @@ pub enum StepError {
         /// The time step (s).
         dt: f64,
     },
+    /// The intruder has gone through a wall.
+    #[error(
+        "step {step}: the intruder is {overlap:.2e} m inside of the {wall}, more than the radius of {radius:e} m \
+         with which it touches; take a smaller time step than {dt:e} s or a stiffer contact"
+    )]
+    IntruderInWall {
+        /// The step.
+        step: u64,
+        /// The floor or a side.
+        wall: &'static str,
+        /// (m).
+        overlap: f64,
+        /// (m).
+        radius: f64,
+        /// The time step (s).
+        dt: f64,
+    },
+    /// The intruder may have gone past grains without touching them.
+    #[error(
+        "step {step}: the intruder moves at {speed:.3e} m/s, {way:.2e} m in a step of {dt:e} s, farther than \
+         the radius {radius:e} m of the smallest grain, and would pass grains unseen; take a time step of \
+         {suggested_dt:.1e} s"
+    )]
+    IntruderTooFast {
+        /// The step.
+        step: u64,
+        /// Of its fastest point (m/s).
+        speed: f64,
+        /// In the step (m).
+        way: f64,
+        /// Of the smallest grain (m).
+        radius: f64,
+        /// The time step (s).
+        dt: f64,
+        /// One that would do (s).
+        suggested_dt: f64,
+    },
     /// The energy budget no longer closes.
     #[error(
         "step {step}: {unaccounted:.2e} J of {scale:.2e} J are unaccounted for, a closure of \

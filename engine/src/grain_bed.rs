@@ -3,9 +3,11 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::at_walls::ContactsAtWalls;
 use crate::body::{Mechanism, Part};
 use crate::boundary::{Absorber, Container};
 use crate::contact::Partner;
+use crate::contact::table::ContactTable;
 use crate::contacts::stage::ContactStage;
 use crate::contacts::{Contacts, Memory, SavedBlock, Tally};
 use crate::dimension::{Dimension, Planar, Spatial, Stride};
@@ -26,6 +28,9 @@ use crate::surface::Placement;
 /// Gap up to which grains are listed as near the intruder, in mean grain diameters.
 const INTRUDER_MARGIN: f64 = 0.4;
 
+/// The way of an intruder in a step that is surely short enough, in radii of the smallest grain.
+const SAFE_WAY: f64 = 0.1;
+
 /// A bed of grains under gravity.
 pub struct GrainBed {
     /// The grains.
@@ -38,6 +43,7 @@ pub struct GrainBed {
     walls: Vec<Part>,
     recessive: RecessiveWork,
     contacts: Contacts,
+    at_walls: ContactsAtWalls,
     sums: Tally,
     sums_of_grains: Vec<SumsOfGrains>,
     grid: CellGrid,
@@ -47,6 +53,8 @@ pub struct GrainBed {
     marks: Vec<bool>,
     /// Greatest speed of a grain of each block in the drift that has begun (m/s).
     fastest: Vec<f64>,
+    /// Radius of the smallest grain (m).
+    smallest: f64,
 }
 
 /// Everything of a bed that changes during a run.
@@ -58,6 +66,7 @@ pub(crate) struct SavedBed {
     intruder_list: Freshness,
     fastest: Vec<f64>,
     recessive: RecessiveWork,
+    at_walls: ContactTable,
 }
 
 /// A bed at rest as it is stored: grains in the order of memory, and what their contacts remember.
@@ -125,6 +134,7 @@ impl GrainBed {
             forces: GrainForces::new(),
             recessive: RecessiveWork::new(n_intruder_parts),
             sums: contacts.no_sums(),
+            at_walls: ContactsAtWalls::new(&contacts, grains.space, n_intruder_parts, walls.len()),
             contacts,
             sums_of_grains: vec![SumsOfGrains::default(); n_blocks],
             grid: CellGrid::default(),
@@ -132,6 +142,7 @@ impl GrainBed {
             intruder_list: Freshness::stale(INTRUDER_MARGIN * mean_diameter),
             marks: Vec::new(),
             fastest: vec![0.0; n_blocks],
+            smallest: grains.radii().fold(f64::INFINITY, f64::min),
             walls,
             grains,
         };
@@ -237,6 +248,7 @@ impl GrainBed {
     /// Has laws book no energies from now on.
     pub(crate) fn book_nothing(&mut self) {
         self.contacts.book_nothing();
+        self.at_walls.book_nothing();
     }
 
     /// Lists neighbours again where the lists may have become stale.
@@ -283,6 +295,8 @@ impl GrainBed {
         let parts = [&self.walls[..], intruder.parts()];
         self.contacts.evaluate(&self.grains, &self.fastest, parts, dt);
         self.contacts.sum(&mut self.sums);
+        let who = (self.grains.space, &self.walls[..], intruder.parts());
+        self.at_walls.evaluate(&self.contacts, who, dt, &mut self.sums);
         self.recessive.book(intruder.parts(), &self.sums.unfelt[self.walls.len()..], dt);
     }
 
@@ -454,7 +468,40 @@ impl GrainBed {
             let radius = overlap / self.sums.overlap.relative;
             return Err(StepError::OverlapTooLarge { step, grain, overlap, radius, dt });
         }
+        let in_wall = self.at_walls.deepest();
+        if in_wall.relative > 1.0 {
+            let wall = if in_wall.wall == 0 { "floor" } else { "side" };
+            let (overlap, radius) = (in_wall.overlap, in_wall.overlap / in_wall.relative);
+            return Err(StepError::IntruderInWall { step, wall, overlap, radius, dt });
+        }
         Ok(())
+    }
+
+    /// Whether no point of the intruder may have gone past a grain unseen: farther in the step than the
+    /// radius of the smallest.
+    pub(crate) fn check_way(
+        &self,
+        intruder: &dyn Mechanism,
+        step: u64,
+        dt: f64,
+    ) -> Result<(), StepError> {
+        let speeds = intruder
+            .parts()
+            .iter()
+            .map(|part| part.placement.max_speed(part.surface.bounding_radius()));
+        let speed = speeds.fold(0.0, f64::max);
+        if speed * dt <= self.smallest {
+            return Ok(());
+        }
+        let radius = self.smallest;
+        let suggested_dt = SAFE_WAY * radius / speed;
+        Err(StepError::IntruderTooFast { step, speed, way: speed * dt, radius, dt, suggested_dt })
+    }
+
+    /// How many contacts the intruder has with walls.
+    #[must_use]
+    pub fn intruder_wall_contacts(&self) -> usize {
+        self.at_walls.n_touching()
     }
 
     /// The largest overlap in units of the smaller radius (m), and the identity of a grain that has it.
@@ -472,6 +519,7 @@ impl GrainBed {
             intruder_list: self.intruder_list,
             fastest: self.fastest.clone(),
             recessive: self.recessive.clone(),
+            at_walls: self.at_walls.save(),
         }
     }
 
@@ -483,6 +531,7 @@ impl GrainBed {
             || !saved.grains.is_consistent(n)
             || saved.pair_lists.n_blocks() != self.fastest.len()
             || saved.fastest.len() != self.fastest.len()
+            || !self.at_walls.restore(saved.at_walls)
             || !self.contacts.restore(saved.blocks, (self.grains.space, n))
         {
             return false;

@@ -5,6 +5,7 @@
 //! the traits that those implement.
 
 pub mod activity;
+mod at_walls;
 pub mod bed;
 pub mod body;
 pub mod boundary;
@@ -17,6 +18,7 @@ pub mod course;
 pub mod crater;
 mod dimension;
 pub mod error;
+pub mod feature;
 pub mod footprint;
 pub mod grain_bed;
 pub mod grain_force;

@@ -29,7 +29,8 @@ use crate::ledger::Ledger;
 /// Moves the bed and the intruder by one step of `dt` (s); `step` is its number, from 1.
 ///
 /// # Errors
-/// If something is no longer finite, or a grain has passed through another.
+/// If something is no longer finite, a grain has passed through another, or the intruder through a wall or, in one
+/// step, past grains.
 pub(crate) fn step(
     bed: &mut GrainBed,
     intruder: &mut dyn Mechanism,
@@ -38,6 +39,7 @@ pub(crate) fn step(
     dt: f64,
 ) -> Result<(), StepError> {
     intruder.kick_drift(dt);
+    bed.check_way(intruder, step, dt)?;
     bed.refresh_neighbours(intruder, dt);
     bed.evaluate_contacts(intruder, dt);
     bed.load_intruder(intruder);

@@ -1,5 +1,6 @@
 //! What a wall or an intruder looks like to a grain.
 
+use crate::feature::Feature;
 use crate::math::{Quat, Vec3};
 
 /// The point of a surface nearest to a query point, in the frame of the query.
@@ -34,6 +35,12 @@ pub trait Surface: Send + Sync {
 
     /// Radius of the smallest sphere about the origin that holds the surface (m).
     fn bounding_radius(&self) -> f64;
+
+    /// By what it meets a wall, if it moves; nothing of a wall itself. What is not felt
+    /// ([`SurfacePoint::felt`]) meets none.
+    fn features(&self) -> &[Feature] {
+        &[]
+    }
 
     /// Whether contacts at some points are not felt ([`SurfacePoint::felt`]).
     fn is_recessive(&self) -> bool {

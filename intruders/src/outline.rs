@@ -7,6 +7,7 @@
 //!
 //! In a plane the outline and its mirror image are the body, and its sides are not curved.
 
+use engine::feature::Feature;
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::surface::{Surface, SurfacePoint};
@@ -22,6 +23,7 @@ const DRAWN: u32 = 12;
 pub(crate) struct Revolved {
     facets: Vec<Facet>,
     corners: Vec<Corner>,
+    features: Vec<Feature>,
     size: f64,
     space: Space,
     is_recessive: bool,
@@ -88,8 +90,37 @@ impl Draft {
             })
             .collect();
         let size = facets.iter().map(Facet::reach).fold(0.0, f64::max);
-        Revolved { facets, corners, size, space, is_recessive }
+        let features = features(&facets, space);
+        Revolved { facets, corners, features, size, space, is_recessive }
     }
+}
+
+/// By what the body with this outline meets a wall: its domes, sharp rims and tips, but not its shaft.
+fn features(facets: &[Facet], space: Space) -> Vec<Feature> {
+    let felt: Vec<Facet> = facets.iter().copied().filter(Facet::is_felt).collect();
+    let ends = || felt.iter().map(Facet::start).chain(felt.last().map(Facet::end));
+    // An edge, a tip and a face have no curvature that a law could use: they count as a ball of the width of the body.
+    let edge_radius = ends().map(|end| end.r).fold(0.0, f64::max);
+    let domes = felt.iter().filter_map(|facet| match *facet {
+        Facet::Dome { centre, radius, is_upper } => Some(Feature::dome(centre, radius, is_upper)),
+        Facet::Straight { .. } => None,
+    });
+    let corners = ends().enumerate().filter_map(|(place, at)| {
+        let beside = [place.checked_sub(1).map(|k| felt[k]), felt.get(place).copied()];
+        let sides = || beside.iter().flatten();
+        let ends_dome = sides().any(|facet| matches!(facet, Facet::Dome { .. }));
+        if at.r == 0.0 {
+            let is_sharp = |facet: &Facet| facet.normal_at(at).r != 0.0;
+            return sides().any(is_sharp).then(|| Feature::tip(at.z, edge_radius));
+        }
+        let is_smooth = match beside {
+            [Some(before), Some(after)] => before.normal_at(at).is_near(after.normal_at(at)),
+            _ => false,
+        };
+        let is_planar = space == Space::Planar;
+        (!is_smooth).then(|| Feature::rim((at.z, at.r), is_planar, ends_dome, edge_radius))
+    });
+    domes.chain(corners).collect()
 }
 
 impl Revolved {
@@ -151,6 +182,10 @@ impl Surface for Revolved {
 
     fn bounding_radius(&self) -> f64 {
         self.size
+    }
+
+    fn features(&self) -> &[Feature] {
+        &self.features
     }
 
     fn is_recessive(&self) -> bool {

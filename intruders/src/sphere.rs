@@ -7,7 +7,6 @@ use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::{ParamSpec, ParamTable};
 use engine::resistance::{Compact, Silhouette};
-use parry3d_f64::shape::Ball;
 
 use crate::parry_surface::BallSurface;
 use crate::registry::{Body, Casting, Drawing, Launchable, ShapeEntry};
@@ -146,5 +145,5 @@ impl Silhouette for Cap {
 }
 
 fn surface(radius: f64) -> Arc<BallSurface> {
-    Arc::new(BallSurface(Ball::new(radius)))
+    Arc::new(BallSurface::new(radius))
 }

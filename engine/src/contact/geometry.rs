@@ -123,6 +123,71 @@ pub(crate) fn with_surface(
     assemble(&at_end, &at_half, bodies, dt)
 }
 
+/// Where a point of a moving part meets a wall.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touch {
+    /// Of the part, foremost into the wall (m).
+    pub(crate) point: Vec3,
+    /// Of the wall, towards the part (–).
+    pub(crate) normal: Vec3,
+    /// From the wall to the point (m), negative inside of it.
+    pub(crate) gap: f64,
+    /// Of the wall (1/m).
+    pub(crate) curvature: f64,
+}
+
+impl Touch {
+    /// From the reference point of the part, at `position`, to the middle of the overlap.
+    fn arm(&self, position: Vec3) -> Vec3 {
+        self.point - position - self.normal * (0.5 * self.gap)
+    }
+}
+
+/// The contact of a rigid part with a wall that stands still; `now` and `half` are where they meet at the end and in the
+/// middle of the step, `curvature` (1/m) is that of the part; `before` as in [`with_surface`].
+pub(crate) fn with_wall(
+    placement: &Placement,
+    (now, half): (&Touch, &Touch),
+    curvature: f64,
+    before: Option<f64>,
+    dt: f64,
+) -> Contact {
+    let still = Vec3::zeros();
+    let meeting = |touch: &Touch, position: Vec3, [v_i, w_i]: [Vec3; 2]| Meeting {
+        normal: touch.normal,
+        arm_i: touch.arm(position),
+        arm_j: still,
+        v_i,
+        w_i,
+        v_j: still,
+        w_j: still,
+    };
+    let at_end = meeting(now, placement.position, [placement.velocity_now, placement.spin_now]);
+    let at_half = meeting(half, placement.position_half, [placement.velocity, placement.spin]);
+    let inverse_radius_eff = curvature + now.curvature;
+    let mass = 1.0 / placement.inverse_mass;
+    let bodies = Bodies {
+        overlap: -now.gap,
+        inverse_radius_eff,
+        inverse_radius_eff_before: before.unwrap_or(inverse_radius_eff),
+        inverse_mass_eff: placement.inverse_mass,
+        rolling_mobility: 1.0 / (placement.inertia + mass / (curvature * curvature)),
+    };
+    assemble(&at_end, &at_half, bodies, dt)
+}
+
+/// What a wall does to the part that touches it.
+pub(crate) fn load_on_part(
+    placement: &Placement,
+    touch: &Touch,
+    contact: &Contact,
+    response: &Response,
+) -> Wrench {
+    let force = force(contact, response);
+    let torque = touch.arm(placement.position).cross(&force) + response.couple;
+    Wrench { force, torque, contacts: 1 }
+}
+
 /// From the centre of a grain, and from the reference point of a part that lies `apart` behind it,
 /// to the middle of the overlap.
 #[inline]

@@ -57,9 +57,9 @@ pub(super) struct Delivery {
 }
 
 /// Groups of contacts on their way through the laws.
-struct Evaluation<R: Lanes, const N: usize> {
+pub(crate) struct Evaluation<R: Lanes, const N: usize> {
     contacts: ArrayVec<Contact<R, N>, GROUPS>,
-    responses: ArrayVec<Response<R, N>, GROUPS>,
+    pub(crate) responses: ArrayVec<Response<R, N>, GROUPS>,
     records: ArrayVec<[u32; MOST_LANES], GROUPS>,
 }
 
@@ -67,19 +67,19 @@ impl<R: Lanes, const N: usize> Evaluation<R, N>
 where
     dyn ContactStage: Sweep<R, N>,
 {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { contacts: ArrayVec::new(), responses: ArrayVec::new(), records: ArrayVec::new() }
     }
 
     #[inline(always)]
-    fn push(&mut self, contact: Contact<R, N>, records: [u32; MOST_LANES]) {
+    pub(crate) fn push(&mut self, contact: Contact<R, N>, records: [u32; MOST_LANES]) {
         self.contacts.push(contact);
         self.responses.push(Response::default());
         self.records.push(records);
     }
 
     /// Lets every law act; without an entry in `energy` none books.
-    fn evaluate(
+    pub(crate) fn evaluate(
         &mut self,
         partner: Partner,
         stages: &[Box<dyn ContactStage>],

@@ -27,6 +27,7 @@ use crate::neighbours::CellGrid;
 use crate::parallel::{BLOCK, block_of};
 
 use bench::{Bench, Benches};
+pub(crate) use block::Evaluation;
 use block::{Block, Delivery};
 pub(crate) use tally::Tally;
 
@@ -374,7 +375,7 @@ fn marked<'a>(
 
 /// How many numbers each stage has in the record of two grains, and in that of a grain and a surface, which
 /// ends with one more: its 1/R* at the end of the last step (1/m), zero if it did not overlap.
-fn record_lens(stages: &[Box<dyn ContactStage>], space: Space) -> [Vec<usize>; 2] {
+pub(crate) fn record_lens(stages: &[Box<dyn ContactStage>], space: Space) -> [Vec<usize>; 2] {
     let of_pair: Vec<usize> = stages.iter().map(|stage| stage.history_len(space)).collect();
     let of_surface = of_pair.iter().copied().chain([1]).collect();
     [of_pair, of_surface]

@@ -58,6 +58,11 @@ impl Point {
         self.r * other.r + self.z * other.z
     }
 
+    /// Whether the two are the same but for round-off.
+    pub(super) fn is_near(self, other: Self) -> bool {
+        self.minus(other).norm() < TOO_NEAR
+    }
+
     fn minus(self, other: Self) -> Self {
         Self { r: self.r - other.r, z: self.z - other.z }
     }
