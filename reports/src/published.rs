@@ -10,12 +10,15 @@ use crate::{ReportError, Texts, object};
 /// The file whose presence means published results.
 pub(crate) const RESULT: &str = "validation.json";
 
-/// Verdicts, worst last, as they are counted.
-const VERDICTS: [(&str, &str); 4] = [
+/// Verdicts as they are counted: worse ones later, then those on what has no answer.
+const VERDICTS: [(&str, &str); 7] = [
     ("pass", "pass"),
+    ("undecided", "undecided"),
     ("deviates", "deviates"),
     ("fail", "fail"),
-    ("not-checkable", "not checkable"),
+    ("not-published", "not published"),
+    ("not-modelled", "not modelled"),
+    ("not-run", "not run"),
 ];
 
 pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
@@ -45,7 +48,9 @@ pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
 /// How many rows have each verdict.
 fn headline(rows: &[Value]) -> Vec<Number> {
     let count = |verdict: &str| rows.iter().filter(|row| row["verdict"] == verdict).count();
-    let numbers = VERDICTS.iter().map(|&(key, name)| {
+    let counted =
+        |key: &str| matches!(key, "pass" | "undecided" | "deviates" | "fail") || count(key) > 0;
+    let numbers = VERDICTS.iter().filter(|(key, _)| counted(key)).map(|&(key, name)| {
         let of = if key == "pass" { format!("of {} rows", rows.len()) } else { String::new() };
         Number::new(name, count(key).to_string(), of)
     });
@@ -55,14 +60,12 @@ fn headline(rows: &[Value]) -> Vec<Number> {
 fn overview(rows: &[Value]) -> Table {
     let mut table = Table::new(&["row", "what", "verdict"]);
     table.head.extend(VERDICTS.iter().map(|(_, name)| (*name).to_owned()));
-    table.head.push("of them undecided".to_owned());
     for row in rows {
         let checks = list(&row["checks"]);
         let count =
             |verdict: &str| checks.iter().filter(|check| check["verdict"] == verdict).count();
         let mut cells = vec![text(&row["id"]), text(&row["title"]), text(&row["verdict"])];
         cells.extend(VERDICTS.iter().map(|(key, _)| count(key).to_string()));
-        cells.push(checks.iter().filter(|check| check["undecided"] == true).count().to_string());
         table.rows.push(cells);
     }
     table

@@ -1,6 +1,6 @@
 //! What a diagnosis says, and how it is written.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::bench::Fitted;
@@ -9,7 +9,7 @@ use crate::rounding::{six_digits, six_digits_or_null};
 use crate::sensitivity::Point;
 
 /// The answer to "which effect is missing?".
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// The data are explained as they are.

@@ -46,8 +46,7 @@ pub fn rows(bins: &[Bin]) -> Vec<Score> {
         .map(|bin| Score {
             metric: format!("predicted {:.2} to be ranked first if there: observed", bin.predicted),
             measured: Measured::Share(bin.observed),
-            required: Target::Within(bin.predicted - 0.1, bin.predicted + 0.1),
-            stretch: Target::Within(bin.predicted - 0.05, bin.predicted + 0.05),
+            target: Target::Within(bin.predicted - 0.1, bin.predicted + 0.1),
         })
         .collect()
 }

@@ -63,6 +63,26 @@ pub fn quantile(values: &[f64], share: f64) -> Option<f64> {
     Some(below + (above - below) * place.fract())
 }
 
+/// Interval of at least 95 % of the median of what `values` are drawn from, whatever its distribution: the two values
+/// between which it lies as a coin would have it (Conover 1999, Practical Nonparametric Statistics, section 3.2). None of
+/// fewer than six.
+#[must_use]
+pub fn interval_of_median(values: &[f64]) -> Option<[f64; 2]> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let n = sorted.len();
+    // The first term is 1/2ⁿ, each next one is larger by (n − k)/(k + 1).
+    let mut term = 0.5_f64.powi(i32::try_from(n).unwrap_or(i32::MAX));
+    let (mut tail, mut outside) = (term, 0);
+    while tail <= 0.025 && outside < n {
+        term *= (n - outside) as f64 / (outside + 1) as f64;
+        tail += term;
+        outside += 1;
+    }
+    let first = outside.checked_sub(1)?;
+    Some([*sorted.get(first)?, sorted[n - 1 - first]])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -88,6 +108,17 @@ mod tests {
         assert!((mcnemar(9, 1) - 22.0 / 1024.0).abs() < 1e-15);
         assert!((mcnemar(1, 9) - mcnemar(9, 1)).abs() < 1e-15);
         assert_eq!((mcnemar(3, 3), mcnemar(0, 0)), (1.0, 1.0));
+    }
+
+    #[test]
+    fn a_median_lies_between_the_values_that_the_tables_say() {
+        // Ranks of the interval of at least 95 %: 1 and 6 of 6, 2 and 9 of 10, 6 and 15 of 20.
+        let ranks = |n: u32| interval_of_median(&(1..=n).map(f64::from).collect::<Vec<_>>());
+        assert_eq!(ranks(5), None);
+        assert_eq!(ranks(0), None);
+        assert_eq!(ranks(6), Some([1.0, 6.0]));
+        assert_eq!(ranks(10), Some([2.0, 9.0]));
+        assert_eq!(ranks(20), Some([6.0, 15.0]));
     }
 
     #[test]

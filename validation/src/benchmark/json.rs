@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::calibration::{Bin, rows};
-use super::scores::{Measured, Score, Target, scores};
+use super::scores::{Measured, Reached, Score, Target, scores};
 use super::trial::{Answer, Outcome, Trial};
 
 /// Scores, calibration and every trial.
@@ -21,14 +21,19 @@ fn score(row: &Score) -> Value {
         Measured::Share(share) => json!({
             "share": share.value(), "hits": share.hits, "n": share.n, "interval": share.interval(),
         }),
-        Measured::Spread { quartiles, n } => json!({ "quartiles": quartiles, "n": n }),
+        Measured::Spread { quartiles, median, n } => {
+            json!({ "quartiles": quartiles, "interval_of_median": median, "n": n })
+        }
     };
     json!({
         "metric": row.metric,
         "measured": measured,
-        "required": target(row.required),
-        "stretch": target(row.stretch),
-        "met": row.required.is_met(&row.measured),
+        "target": target(row.target),
+        "reached": row.target.reached(&row.measured).map(|reached| match reached {
+            Reached::Met => "met",
+            Reached::NotShown => "not-shown",
+            Reached::Missed => "missed",
+        }),
     })
 }
 

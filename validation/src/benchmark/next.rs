@@ -2,6 +2,7 @@
 //! drawn from the same grid.
 
 use configs::Model;
+use serde::{Deserialize, Serialize};
 
 use super::chance::Chance;
 use super::design::Design;
@@ -23,7 +24,7 @@ const ADDED: usize = 2;
 const STREAM: u64 = 1 << 52;
 
 /// Whether the truth stands alone after one more condition, and after two.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Resolved {
     /// By the recommended ones.
     pub recommended: [bool; ADDED],

@@ -8,7 +8,7 @@ use super::hidden::{FORMS, Hidden, Kinship};
 use super::interval::quantile;
 use super::peers::PEERS;
 use super::plan::{Row, STRENGTHS};
-use super::scores::{Measured, Score, Target, at_strength, is_first, percent};
+use super::scores::{Measured, Reached, Score, Target, at_strength, is_first, percent};
 use super::trial::{Outcome, Trial};
 use super::{calibration, scores};
 
@@ -43,7 +43,7 @@ pub fn worlds() -> String {
     table(["hidden", "law in the world", "form of the candidate"], rows)
 }
 
-/// The rows, each with its interval and its targets.
+/// The rows, each with its interval (of a spread, that of the median), its target and what became of it.
 #[must_use]
 pub fn score_table(rows: &[Score]) -> String {
     let cells = rows.iter().map(|row| {
@@ -53,28 +53,22 @@ pub fn score_table(rows: &[Score]) -> String {
                 let value = share.value().map_or("-".to_owned(), |value| format!("{value:.2}"));
                 (value, share.n, format!("{low:.2} to {high:.2}"))
             }
-            Measured::Spread { quartiles, n } => match quartiles {
-                Some([low, middle, high]) => {
-                    (format!("{middle:.3}"), *n, format!("quartiles {low:.3}, {high:.3}"))
-                }
-                None => ("-".to_owned(), *n, "-".to_owned()),
-            },
+            Measured::Spread { quartiles, median, n } => {
+                let middle =
+                    quartiles.map_or("-".to_owned(), |[_, middle, _]| format!("{middle:.3}"));
+                let ends = |[low, high]: [f64; 2]| format!("{low:.3} to {high:.3}");
+                (middle, *n, median.map_or("-".to_owned(), ends))
+            }
         };
-        let met = |target: Target| match target.is_met(&row.measured) {
-            Some(true) => " yes",
-            Some(false) => " NO",
-            None => "",
+        let reached = match row.target.reached(&row.measured) {
+            Some(Reached::Met) => "met",
+            Some(Reached::NotShown) => "not shown",
+            Some(Reached::Missed) => "**missed**",
+            None => "-",
         };
-        [
-            row.metric.clone(),
-            value,
-            n.to_string(),
-            interval,
-            format!("{}{}", target(row.required), met(row.required)),
-            format!("{}{}", target(row.stretch), met(row.stretch)),
-        ]
+        [row.metric.clone(), value, n.to_string(), interval, target(row.target), reached.to_owned()]
     });
-    table(["metric", "measured", "n", "95 % interval", "required", "stretch"], cells)
+    table(["metric", "measured", "n", "95 % interval", "target", ""], cells)
 }
 
 fn target(target: Target) -> String {

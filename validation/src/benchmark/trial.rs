@@ -5,6 +5,7 @@ use std::time::Instant;
 use configs::{ConfigError, LoadOptions, Model, ModelSource, find_shipped};
 use contact_laws::find_resistance;
 use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
 
 use super::chance::Chance;
 use super::laboratory::{Nature, measure, resting_points};
@@ -36,7 +37,7 @@ pub struct Trial {
 }
 
 /// What came of a planned set.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Outcome {
     /// The diagnosis.
     Answered(Box<Answer>),
@@ -45,7 +46,7 @@ pub enum Outcome {
 }
 
 /// What a diagnosis said, as far as it is scored.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// The verdict.
     pub verdict: Verdict,
@@ -190,7 +191,9 @@ impl Answer {
             ranked: ids(|effect| effect.testable),
             refused: ids(|effect| !effect.testable),
             predicted_first: first.and_then(|effect| effect.predicted_top1),
-            amplitude: first.and_then(|effect| effect.q.zip(effect.se)),
+            amplitude: first
+                .and_then(|effect| effect.q.zip(effect.se))
+                .filter(|(q, se)| q.is_finite() && se.is_finite()),
             hidden: nature.hidden.iter().map(|(_, q)| *q).collect(),
             leaders: diagnosis.leaders,
             named: diagnosis.effects,

@@ -12,6 +12,7 @@ use lexopt::Parser;
 use lexopt::prelude::{Long, Short, ValueExt};
 use validation::benchmark::calibration::{calibration, picture};
 use validation::benchmark::interval::quantile;
+use validation::benchmark::kept::Kept;
 use validation::benchmark::plan::{Row, Seeds, Size};
 use validation::benchmark::trial::{Trial, baseline, draw};
 use validation::benchmark::{document, json, run, table};
@@ -21,7 +22,7 @@ const HELP: &str = "\
 Worlds in which something is hidden, measured and diagnosed blindly: how often is it found?
 
 Usage: cargo xtask bench diagnosis [--seeds development|release] [--only ROW]... [--sets N] [--quick]
-                                   [--threads N] [--json] [--write] [--export DIR]
+                                   [--threads N] [--keep FILE] [--json] [--write] [--export DIR]
 
   --seeds WHICH  random numbers for work on the diagnosis (default), or those of the tables
   --only ROW     one row; may be given several times
@@ -30,6 +31,8 @@ Usage: cargo xtask bench diagnosis [--seeds development|release] [--only ROW]...
   --sets N       worlds per effect and strength (3); all rows grow with it
   --quick        a third of singles, nulls and unlisted
   --threads N    sets diagnosed at a time (one per core)
+  --keep FILE    outcomes so far, one JSON object per line; those that are there are not diagnosed again. They
+                 are of one program: a changed diagnosis wants another file
   --json         one JSON object, every set in it
   --write        the tables to docs/diagnosis-benchmark.md, the picture to docs/diagnosis-calibration.svg
   --export DIR   writes the first set of what is asked for to DIR, and diagnoses nothing
@@ -45,6 +48,7 @@ struct Wish {
     seeds: Seeds,
     size: Size,
     threads: usize,
+    keep: Option<PathBuf>,
     json: bool,
     write: bool,
     export: Option<PathBuf>,
@@ -58,7 +62,8 @@ fn main() -> ExitCode {
 fn parse(mut args: Parser) -> Result<Option<Wish>, lexopt::Error> {
     let (mut seeds, mut size, mut only, mut draws) =
         (Seeds::Development, Size::full(), Vec::new(), None);
-    let (mut threads, mut json, mut write, mut export) = (0, false, false, None);
+    let (mut threads, mut json, mut write) = (0, false, false);
+    let (mut keep, mut export) = (None, None);
     while let Some(arg) = args.next()? {
         match arg {
             Long("seeds") => {
@@ -72,6 +77,7 @@ fn parse(mut args: Parser) -> Result<Option<Wish>, lexopt::Error> {
             Long("sets") => draws = Some(args.value()?.parse_with(count)?),
             Long("threads") => threads = args.value()?.parse_with(count)?,
             Long("quick") => size = Size::quick(),
+            Long("keep") => keep = Some(PathBuf::from(args.value()?)),
             Long("json") => json = true,
             Long("write") => write = true,
             Long("export") => export = Some(PathBuf::from(args.value()?)),
@@ -83,7 +89,7 @@ fn parse(mut args: Parser) -> Result<Option<Wish>, lexopt::Error> {
         size.rows = only;
     }
     size.draws = draws.unwrap_or(size.draws);
-    Ok(Some(Wish { seeds, size, threads, json, write, export }))
+    Ok(Some(Wish { seeds, size, threads, keep, json, write, export }))
 }
 
 fn row(name: &str) -> Result<Row, String> {
@@ -120,8 +126,9 @@ fn work(wish: &Wish, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
         }
     };
     let timed: Vec<_> = plans.iter().take(TIMED).cloned().collect();
-    let trials = with_threads(wish.threads, || run(plans, &model, &done))?;
-    let alone = with_threads(1, || run(timed, &model, &|| ()))?;
+    let kept = wish.keep.as_deref().map(Kept::open).transpose()?;
+    let trials = with_threads(wish.threads, || run(plans, &model, kept.as_ref(), &done))??;
+    let alone = with_threads(1, || run(timed, &model, None, &|| ()))??;
     let seconds: Vec<f64> = alone.iter().filter_map(Trial::answer).map(|a| a.seconds).collect();
     let bins = calibration(&trials);
     let mut report = table::report(&trials, &bins);

@@ -14,7 +14,7 @@ use engine::parallel::with_threads;
 use lexopt::prelude::{Long, Short, ValueExt};
 use validation::beds::{Elsewhere, Place, Progress, Stage, Watch};
 use validation::published::{
-    Effort, Judged, Laboratory, Missing, ROWS, Row, Verdict, markdown, to_json,
+    Effort, Judged, Laboratory, Missing, ROWS, Row, Verdict, markdown, tally, to_json,
 };
 use validation::{CASES, Case, command, three_shapes};
 
@@ -22,7 +22,8 @@ const HELP: &str = "\
 The published results, run again and judged.
 
 Usage: cargo xtask validate [--quick | --full] [--so-far] [--only ID[,ID]...]... [--out DIR]
-                            [--cache DIR] [--threads N] [--on WHERE] [--list] [--case NAME]...
+                            [--cache DIR] [--threads N] [--on WHERE] [--expect ID=VERDICT[,...]]...
+                            [--list] [--case NAME]...
 
   --quick      every row at a reduced cost (default): under ten minutes on two cores, if its beds are there
   --full       what the sources ran: hours; impacts that are there are not run again
@@ -32,11 +33,14 @@ Usage: cargo xtask validate [--quick | --full] [--so-far] [--only ID[,ID]...]...
   --cache DIR  where beds and impacts are kept (else $PLUNGE_CACHE, else runs/.cache)
   --threads N  impacts at a time (one per core)
   --on WHERE   where impacts are run: local (default), slurm or hyperqueue, which are waited for
+  --expect E   instead of failing where a row fails, fails where the verdict of a row is not the expected one,
+               better or worse: ID=VERDICT of every row that is judged, with commas between them
   --list       the rows, without running them
   --case NAME  instead, every number of a case with a known answer, as the documents have it; may be
                given several times
 
-Exit status: 0 no row fails, 1 one does or could not be run, 2 the command line was not understood.
+Exit status: 0 no row fails, 1 one does or could not be run, 2 the command line was not understood. With --expect: 0 every
+verdict is the expected one, 1 one is not.
 ";
 
 /// Time between two lines of progress.
@@ -51,6 +55,7 @@ struct Wish {
     cache: PathBuf,
     threads: Option<NonZero<usize>>,
     elsewhere: Option<Elsewhere>,
+    expected: Vec<(&'static str, Verdict)>,
     list: bool,
     cases: Vec<&'static Case>,
 }
@@ -77,7 +82,7 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     let done = match &wish.cases[..] {
-        [] => validate(&wish).map(|verdict| verdict < Verdict::Fail),
+        [] => validate(&wish),
         cases => with_threads(1, || show(cases)).map_err(Box::from),
     };
     match done {
@@ -101,6 +106,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Wish>, lexopt::Error> {
         cache: cache.into(),
         threads: None,
         elsewhere: None,
+        expected: Vec::new(),
         list: false,
         cases: Vec::new(),
     };
@@ -114,6 +120,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Wish>, lexopt::Error> {
             Long("cache") => wish.cache = parser.value()?.into(),
             Long("threads") => wish.threads = Some(parser.value()?.parse()?),
             Long("on") => wish.elsewhere = command::on(&mut parser)?,
+            Long("expect") => wish.expected.extend(parser.value()?.parse_with(expected)?),
             Long("list") => wish.list = true,
             Long("case") => wish.cases.push(parser.value()?.parse_with(case)?),
             Short('h') | Long("help") => return Ok(None),
@@ -134,6 +141,20 @@ fn rows(ids: &str) -> Result<Vec<&'static Row>, String> {
         row.ok_or_else(|| format!("no row is called `{id}`; there are {}", known()))
     };
     ids.split(',').map(str::trim).map(find).collect()
+}
+
+/// The verdicts that `list` expects, as in `E9=pass,E14=fail`.
+fn expected(list: &str) -> Result<Vec<(&'static str, Verdict)>, String> {
+    let one = |pair: &str| {
+        let (id, word) = pair.split_once('=').ok_or(format!("`{pair}` is no ID=VERDICT"))?;
+        let verdict = Verdict::ALL.into_iter().find(|verdict| verdict.name() == word.trim());
+        let known = || Verdict::ALL.map(Verdict::name).join(", ");
+        let verdict =
+            verdict.ok_or_else(|| format!("`{word}` is no verdict; there are {}", known()))?;
+        Ok(rows(id)?.into_iter().map(|row| (row.id, verdict)).collect())
+    };
+    let pairs: Result<Vec<Vec<_>>, String> = list.split(',').map(one).collect();
+    Ok(pairs?.concat())
 }
 
 fn case(name: &str) -> Result<&'static Case, String> {
@@ -157,7 +178,8 @@ fn show(cases: &[&Case]) -> bool {
     holds
 }
 
-fn validate(wish: &Wish) -> Result<Verdict, Box<dyn Error>> {
+/// Judges the rows and prints the count, then a line of each; whether they are as they should be.
+fn validate(wish: &Wish) -> Result<bool, Box<dyn Error>> {
     let workers = wish.threads.or(std::thread::available_parallelism().ok());
     let shapes = three_shapes::Places { out: wish.cache.join("shapes"), cache: wish.cache.clone() };
     let mut judged = Vec::with_capacity(wish.rows.len());
@@ -177,13 +199,7 @@ fn validate(wish: &Wish) -> Result<Verdict, Box<dyn Error>> {
             sets: "validation/data".into(),
         };
         let one = Judged::by(row, &laboratory);
-        println!(
-            "{:4}{:14} {} ({:.0} s)",
-            row.id,
-            one.verdict(),
-            row.title,
-            start.elapsed().as_secs_f64()
-        );
+        eprintln!("{}: {} ({:.0} s)", row.id, one.verdict(), start.elapsed().as_secs_f64());
         if let Err(why) = &one.findings {
             eprintln!("error: {}: {why}", row.id);
         }
@@ -191,8 +207,34 @@ fn validate(wish: &Wish) -> Result<Verdict, Box<dyn Error>> {
         // What is judged so far stays, also where a later row is interrupted.
         write(&wish.out, &judged, wish.effort)?;
     }
+    println!("{}", tally(&judged));
+    for one in &judged {
+        println!("{:4}{:14} {}", one.row.id, one.verdict(), one.row.title);
+    }
     println!("{}", wish.out.join("REPORT.md").display());
-    Ok(judged.iter().map(Judged::verdict).max().unwrap_or(Verdict::NotCheckable))
+    if wish.expected.is_empty() {
+        return Ok(judged.iter().all(|one| one.verdict() < Verdict::Fail));
+    }
+    let found: Vec<_> = judged.iter().map(|one| (one.row.id, one.verdict())).collect();
+    let surprises = surprises(&wish.expected, &found);
+    surprises.iter().for_each(|surprise| eprintln!("error: {surprise}"));
+    Ok(surprises.is_empty())
+}
+
+/// What is not as `expected` in the verdicts `found`, row by row.
+fn surprises(expected: &[(&str, Verdict)], found: &[(&str, Verdict)]) -> Vec<String> {
+    let of = |list: &[(&str, Verdict)], id: &str| {
+        list.iter().find(|(own, _)| *own == id).map(|(_, verdict)| *verdict)
+    };
+    let judged = found.iter().filter_map(|(id, verdict)| match of(expected, id) {
+        None => Some(format!("{id}: {verdict}, and no verdict is expected of it")),
+        Some(wanted) if wanted != *verdict => {
+            Some(format!("{id}: {verdict}, where {wanted} is expected"))
+        }
+        Some(_) => None,
+    });
+    let not_judged = expected.iter().filter(|(id, _)| of(found, id).is_none());
+    judged.chain(not_judged.map(|(id, _)| format!("{id}: expected, and not judged"))).collect()
 }
 
 /// Writes what there is to `folder`.
@@ -233,5 +275,33 @@ impl Watch for Teller {
 
     fn wants_to_stop(&self) -> bool {
         false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_verdict_that_changes_is_a_surprise_in_either_direction() {
+        let expected = expected("e9=pass, E14=fail").expect("both are rows");
+        let found = |e9, e14| surprises(&expected, &[("E9", e9), ("E14", e14)]);
+        assert_eq!(found(Verdict::Pass, Verdict::Fail), Vec::<String>::new());
+        assert_eq!(found(Verdict::Fail, Verdict::Fail), ["E9: fail, where pass is expected"]);
+        assert_eq!(found(Verdict::Pass, Verdict::Pass), ["E14: pass, where fail is expected"]);
+    }
+
+    #[test]
+    fn a_row_without_an_expectation_and_one_that_was_not_judged_are_surprises() {
+        let expected = expected("E9=pass").expect("a row");
+        let found = surprises(&expected, &[("E1", Verdict::Pass)]);
+        assert_eq!(found.len(), 2, "{found:?}");
+    }
+
+    #[test]
+    fn an_expectation_of_no_row_or_no_verdict_is_not_understood() {
+        for wrong in ["E9", "E9=good", "E0=pass"] {
+            assert!(expected(wrong).is_err(), "{wrong}");
+        }
     }
 }

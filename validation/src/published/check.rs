@@ -8,25 +8,52 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// The source lost its numbers, or asks for what is not there, or the impacts that were run do not decide it
-    /// ([`Check::undecided`]).
-    NotCheckable,
+    /// The source does not give the numbers, or they are lost.
+    NotPublished,
+    /// The source has what plunge does not model.
+    NotModelled,
+    /// Plunge can run it, and it was not run.
+    NotRun,
     /// Within the band, or the trend holds.
     Pass,
-    /// Outside of the band, by a cause and an amount that were listed beforehand.
+    /// The impacts that were run allow either answer ([`Check::undecided_if`]).
+    Undecided,
+    /// Outside of the band, by a cause and an amount that a source stated before the comparison.
     Deviates,
     /// Outside of the band.
     Fail,
 }
 
-impl fmt::Display for Verdict {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::NotCheckable => "not-checkable",
+impl Verdict {
+    /// Every verdict on what could be held against something, then those on what could not.
+    pub const ALL: [Self; 7] = [
+        Self::Pass,
+        Self::Undecided,
+        Self::Deviates,
+        Self::Fail,
+        Self::NotPublished,
+        Self::NotModelled,
+        Self::NotRun,
+    ];
+
+    /// Its name, as `validation.json` and the command line have it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NotPublished => "not-published",
+            Self::NotModelled => "not-modelled",
+            Self::NotRun => "not-run",
             Self::Pass => "pass",
+            Self::Undecided => "undecided",
             Self::Deviates => "deviates",
             Self::Fail => "fail",
-        })
+        }
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
     }
 }
 
@@ -132,9 +159,7 @@ pub struct Check {
     pub band: String,
     /// The verdict.
     pub verdict: Verdict,
-    /// Whether there is something to hold it against, but more impacts are needed to tell.
-    pub undecided: bool,
-    /// The cause of a deviation, or why it cannot be checked; may be empty.
+    /// The cause of a deviation, or why there is no answer; may be empty.
     pub cause: String,
 }
 
@@ -159,7 +184,6 @@ impl Check {
             ours: Side::Number(ours),
             band: format!("± {half}: {}", band.reason),
             verdict: if within { Verdict::Pass } else { Verdict::Fail },
-            undecided: false,
             cause: String::new(),
         };
         check.undecided_if(within && published.value.abs() <= band.half)
@@ -196,7 +220,6 @@ impl Check {
             ours: Side::Number(ours),
             band: format!("at most {limit}: {}", band.reason),
             verdict: if ours.value <= band.half { Verdict::Pass } else { Verdict::Fail },
-            undecided: false,
             cause: String::new(),
         }
     }
@@ -218,10 +241,33 @@ impl Check {
             ours: Side::Number(ours),
             band: format!("positive by {half}: {}", band.reason),
             verdict: if ours.value > band.half { Verdict::Pass } else { Verdict::Fail },
-            undecided: false,
             cause: String::new(),
         };
         check.undecided_if(ours.value.abs() <= band.half)
+    }
+
+    /// A number that the source has zero, known to within `band`: it fails beyond. Within, it passes where the band does
+    /// not reach `contrary`, the least number that contradicts the source's words; it is undecided where it does.
+    #[must_use]
+    pub fn zero(
+        what: impl Into<String>,
+        published: impl Into<String>,
+        ours: Estimate,
+        band: Band,
+        contrary: f64,
+    ) -> Self {
+        let band = Band { half: or_endless(band.half), ..band };
+        let half = Estimate::new(band.half, 0.0);
+        let check = Self {
+            what: what.into(),
+            published: Side::Words(published.into()),
+            ours: Side::Number(ours),
+            band: format!("zero to {half}: {}", band.reason),
+            verdict: if ours.value.abs() <= band.half { Verdict::Pass } else { Verdict::Fail },
+            cause: String::new(),
+        };
+        let within = check.verdict == Verdict::Pass;
+        check.undecided_if(within && band.half >= contrary.abs())
     }
 
     /// A statement that `holds` or does not, as `ours` shows by the test `decided`.
@@ -238,37 +284,52 @@ impl Check {
             ours: Side::Words(ours),
             band: decided.to_owned(),
             verdict: if holds { Verdict::Pass } else { Verdict::Fail },
-            undecided: false,
             cause: String::new(),
         }
     }
 
-    /// What cannot be held against anything, and why.
+    /// What has no answer, with the `verdict` that says of what kind, and `why`.
     #[must_use]
-    pub fn not_checkable(what: impl Into<String>, published: &str, why: &str) -> Self {
+    pub fn unanswered(
+        what: impl Into<String>,
+        published: &str,
+        verdict: Verdict,
+        why: &str,
+    ) -> Self {
         Self {
             what: what.into(),
             published: Side::Words(published.to_owned()),
             ours: Side::Words("–".to_owned()),
             band: "–".to_owned(),
-            verdict: Verdict::NotCheckable,
-            undecided: false,
+            verdict,
             cause: why.to_owned(),
         }
+    }
+
+    /// What the source does not give, or what of it is lost.
+    #[must_use]
+    pub fn not_published(what: impl Into<String>, published: &str, why: &str) -> Self {
+        Self::unanswered(what, published, Verdict::NotPublished, why)
+    }
+
+    /// What there are too few impacts for.
+    #[must_use]
+    pub fn undecided(what: impl Into<String>, published: &str, why: &str) -> Self {
+        Self::unanswered(what, published, Verdict::Undecided, why)
     }
 
     /// The same, neither passed nor failed where the impacts allow `either`.
     #[must_use]
     pub fn undecided_if(mut self, either: bool) -> Self {
         if either {
-            self.verdict = Verdict::NotCheckable;
-            self.undecided = true;
+            self.verdict = Verdict::Undecided;
             self.cause = TOO_FEW.to_owned();
         }
         self
     }
 
-    /// A failure turns into a deviation with a cause that was listed beforehand, where `is_known`.
+    /// A failure turns into a deviation with a cause that a source stated beforehand, where `is_known`. An earlier run of
+    /// plunge is no source.
     #[must_use]
     pub fn listed(mut self, is_known: bool, cause: &str) -> Self {
         if self.verdict == Verdict::Fail && is_known {
@@ -291,6 +352,18 @@ impl Check {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn of_several_verdicts_failing_is_worst_and_undecided_is_worse_than_a_pass() {
+        use Verdict::{Deviates, Fail, NotModelled, NotPublished, NotRun, Pass, Undecided};
+        let worst = |of: &[Verdict]| of.iter().max().copied();
+        assert_eq!(worst(&[Pass, Undecided, Deviates, Fail]), Some(Fail));
+        assert_eq!(worst(&[Pass, Undecided, Deviates]), Some(Deviates));
+        assert_eq!(worst(&[Pass, Undecided, Pass]), Some(Undecided));
+        // What has no answer stands apart: it does not make a pass of a row that has none, nor lower one.
+        assert_eq!(worst(&[NotPublished, NotModelled, NotRun, Pass]), Some(Pass));
+        assert_eq!(worst(&[NotPublished, NotRun]), Some(NotRun));
+    }
 
     const BAND: Band = Band { half: 0.1, reason: "a test" };
     const KNOWN: Known = Known { ratio: [1.1, 1.3], cause: "the source says so" };
@@ -323,18 +396,18 @@ mod tests {
                 Estimate::new(ours, 0.0),
                 Band { half, reason: "a test" },
             );
-            (check.verdict, check.undecided)
+            check.verdict
         };
-        assert_eq!(verdict(1.5, 0.9), (Verdict::Pass, false));
-        assert_eq!(verdict(1.5, 1.1), (Verdict::NotCheckable, true));
-        assert_eq!(verdict(2.5, 1.1), (Verdict::Fail, false));
+        assert_eq!(verdict(1.5, 0.9), Verdict::Pass);
+        assert_eq!(verdict(1.5, 1.1), Verdict::Undecided);
+        assert_eq!(verdict(2.5, 1.1), Verdict::Fail);
     }
 
     #[test]
     fn a_deviation_fails_only_by_more_than_the_scatter_of_ours_explains() {
         let verdict = |ours| Check::deviation("", "", Estimate::new(ours, 0.0), 0.05, BAND).verdict;
         assert_eq!(verdict(0.09), Verdict::Pass);
-        assert_eq!(verdict(0.14), Verdict::NotCheckable);
+        assert_eq!(verdict(0.14), Verdict::Undecided);
         assert_eq!(verdict(0.16), Verdict::Fail);
         assert_eq!(verdict(f64::NAN), Verdict::Fail);
     }
@@ -350,10 +423,22 @@ mod tests {
     fn a_sign_is_decided_only_beyond_the_band() {
         let verdict = |value: f64| Check::positive("", "", Estimate::new(value, 0.0), BAND).verdict;
         assert_eq!(verdict(0.11), Verdict::Pass);
-        assert_eq!(verdict(0.09), Verdict::NotCheckable);
-        assert_eq!(verdict(-0.09), Verdict::NotCheckable);
+        assert_eq!(verdict(0.09), Verdict::Undecided);
+        assert_eq!(verdict(-0.09), Verdict::Undecided);
         assert_eq!(verdict(-0.11), Verdict::Fail);
         assert_eq!(verdict(f64::NAN), Verdict::Fail);
+    }
+
+    #[test]
+    fn zero_is_decided_only_where_the_band_is_narrower_than_what_contradicts_it() {
+        let verdict = |value: f64, contrary: f64| {
+            Check::zero("", "", Estimate::new(value, 0.0), BAND, contrary).verdict
+        };
+        assert_eq!(verdict(0.05, 1.0), Verdict::Pass);
+        assert_eq!(verdict(0.05, 0.1), Verdict::Undecided);
+        assert_eq!(verdict(-0.11, 1.0), Verdict::Fail);
+        assert_eq!(verdict(0.11, 0.1), Verdict::Fail);
+        assert_eq!(verdict(f64::NAN, 1.0), Verdict::Fail);
     }
 
     #[test]

@@ -42,13 +42,6 @@ impl Judged {
         checks.filter(|check| check.verdict == verdict).count()
     }
 
-    /// How many of its checks are undecided.
-    #[must_use]
-    pub fn undecided(&self) -> usize {
-        let checks = self.findings.iter().flat_map(|findings| &findings.checks);
-        checks.filter(|check| check.undecided).count()
-    }
-
     /// How it was run.
     #[must_use]
     pub fn how(&self, effort: Effort) -> &'static str {
@@ -103,24 +96,37 @@ fn word(effort: Effort) -> &'static str {
     }
 }
 
+/// How many rows have each verdict: `14 rows: 5 pass, 1 undecided`.
+#[must_use]
+pub fn tally(judged: &[Judged]) -> String {
+    let count = |verdict| judged.iter().filter(|one| one.verdict() == verdict).count();
+    tally_of(judged.len(), &Verdict::ALL.map(|verdict| (verdict, count(verdict))))
+}
+
+fn tally_of(rows: usize, counts: &[(Verdict, usize)]) -> String {
+    let there = counts.iter().filter(|(_, n)| *n > 0);
+    let words: Vec<String> = there.map(|(verdict, n)| format!("{n} {verdict}")).collect();
+    format!("{rows} row{}: {}", if rows == 1 { "" } else { "s" }, words.join(", "))
+}
+
 /// What stands below the table of rows.
-const UNDECIDED: &str = "A check is undecided where the scatter of the impacts that were run allows either answer: a full run has \
-                         enough of them for most.";
+const UNDECIDED: &str = "The verdict of a row is the worst of its checks: fail, deviates, undecided, pass, in this order. A check is \
+                         undecided where the scatter of the impacts that were run allows either answer. What the source does \
+                         not give (not published), what plunge has no model of (not modelled) and what plunge could run and did \
+                         not (not run) is counted apart and does not count in the verdict.";
 
 fn write_all(text: &mut String, judged: &[Judged], effort: Effort) -> std::fmt::Result {
-    writeln!(text, "# Published results, run again ({})\n", word(effort))?;
-    writeln!(
-        text,
-        "| row | what | source | pass | deviates | fail | not checkable | of them undecided | verdict |"
-    )?;
-    writeln!(text, "|---|---|---|---|---|---|---|---|---|")?;
+    writeln!(text, "# Published results, run again ({}): {}\n", word(effort), tally(judged))?;
+    write!(text, "| row | what | source |")?;
+    Verdict::ALL.iter().try_for_each(|verdict| write!(text, " {verdict} |"))?;
+    writeln!(text, " verdict |\n|{}", "---|".repeat(4 + Verdict::ALL.len()))?;
     for one in judged {
         let row = one.row;
         write!(text, "| {} | {} | {} |", row.id, cell(row.title), cell(row.source))?;
-        for verdict in [Verdict::Pass, Verdict::Deviates, Verdict::Fail, Verdict::NotCheckable] {
+        for verdict in Verdict::ALL {
             write!(text, " {} |", one.count(verdict))?;
         }
-        writeln!(text, " {} | **{}** |", one.undecided(), one.verdict())?;
+        writeln!(text, " **{}** |", one.verdict())?;
     }
     writeln!(text, "\n{UNDECIDED}")?;
     let findings = judged.iter().flat_map(|one| &one.findings);
@@ -213,16 +219,57 @@ mod tests {
     }
 
     #[test]
-    fn what_is_undecided_is_counted_and_a_headline_stands_before_the_rows() {
+    fn what_is_undecided_lowers_its_row_and_what_has_no_answer_is_counted_apart() {
         let mut one = judged(1.0);
         if let Ok(findings) = &mut one.findings {
             let check = findings.checks[0].clone();
             findings.checks.push(check.undecided_if(true));
+            findings.checks.push(Check::not_published("c", "Fig. 1", "its numbers are lost"));
             findings.headline = Some(Table::new("at a glance", &["angle"]));
         }
         let text = markdown(&[one], Effort::Quick);
-        assert!(text.contains("| E0 | A test | nobody | 1 | 0 | 0 | 1 | 1 | **pass** |"), "{text}");
+        assert!(
+            text.starts_with("# Published results, run again (quick): 1 row: 1 undecided\n"),
+            "{text}"
+        );
+        assert!(
+            text.contains("| E0 | A test | nobody | 1 | 1 | 0 | 0 | 1 | 0 | 0 | **undecided** |"),
+            "{text}"
+        );
         assert!(text.find("at a glance") < text.find("## E0"), "{text}");
+    }
+
+    /// The verdicts in the bold cells of `text`, which end its lines or come before a cause.
+    fn verdicts(text: &str) -> Vec<Verdict> {
+        let words =
+            text.lines().filter_map(|line| Some(line.rsplit_once("| **")?.1.split_once("**")?.0));
+        let named = |word: &str| Verdict::ALL.into_iter().find(|verdict| verdict.name() == word);
+        words.map(|word| named(word).unwrap_or_else(|| panic!("{word}"))).collect()
+    }
+
+    #[test]
+    fn the_kept_report_and_the_pages_that_speak_of_it_count_the_rows_alike() {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let read = |path: &str| {
+            std::fs::read_to_string(root.join(path))
+                .unwrap_or_else(|error| panic!("{path}: {error}"))
+        };
+        let report = read("validation/REPORT.md");
+        let (head, _) = report.split_once("\n## E1:").expect("rows");
+        let rows = verdicts(head);
+        assert_eq!(rows.len(), crate::published::ROWS.len());
+        for (row, verdict) in crate::published::ROWS.iter().zip(&rows) {
+            let (_, own) = report.split_once(&format!("\n## {}: ", row.id)).expect(row.id);
+            let own = own.split_once("\n## E").map_or(own, |(own, _)| own);
+            assert!(own.starts_with(row.title), "{}", row.id);
+            assert_eq!(verdicts(own).into_iter().max().as_ref(), Some(verdict), "{}", row.id);
+        }
+        let count = |verdict| rows.iter().filter(|own| **own == verdict).count();
+        let counts = Verdict::ALL.map(|verdict| (verdict, count(verdict)));
+        let tally = tally_of(rows.len(), &counts);
+        for path in ["validation/REPORT.md", "README.md", "docs/published-impacts.md"] {
+            assert!(read(path).contains(&tally), "{path} does not say: {tally}");
+        }
     }
 
     #[test]

@@ -76,10 +76,10 @@ pub struct Figure {
 }
 
 impl Findings {
-    /// The worst verdict of its checks.
+    /// The worst verdict of its checks, in the order of [`Verdict`].
     #[must_use]
     pub fn verdict(&self) -> Verdict {
-        self.checks.iter().map(|check| check.verdict).max().unwrap_or(Verdict::NotCheckable)
+        self.checks.iter().map(|check| check.verdict).max().unwrap_or(Verdict::NotRun)
     }
 
     /// Adds the picture `svg` under `caption`.

@@ -1,6 +1,6 @@
 //! Trends that other groups published, and where plunge answers to each.
 
-use super::check::Check;
+use super::check::{Check, Verdict};
 use super::row::Table;
 
 /// A published trend.
@@ -19,8 +19,8 @@ struct Signature {
 enum Answer {
     /// These rows.
     Rows(&'static str),
-    /// No row, and why.
-    None(&'static str),
+    /// No row, of what kind that is, and why.
+    None(Verdict, &'static str),
 }
 
 /// Trends that rows answer to.
@@ -32,7 +32,7 @@ pub fn table() -> Table {
         Answer::Rows(rows) => {
             Some([one.system, one.trend, one.source, rows].map(str::to_owned).to_vec())
         }
-        Answer::None(_) => None,
+        Answer::None(..) => None,
     };
     table.rows = SIGNATURES.iter().filter_map(row).collect();
     table
@@ -42,8 +42,9 @@ pub fn table() -> Table {
 #[must_use]
 pub fn unanswered() -> Vec<Check> {
     let check = |one: &Signature| match one.answer {
-        Answer::None(why) => {
-            Some(Check::not_checkable(format!("{}: {}", one.system, one.trend), one.source, why))
+        Answer::None(verdict, why) => {
+            let what = format!("{}: {}", one.system, one.trend);
+            Some(Check::unanswered(what, one.source, verdict, why))
         }
         Answer::Rows(_) => None,
     };
@@ -59,14 +60,16 @@ const fn signature(
     Signature { system, trend, source, answer }
 }
 
-/// What is not modelled, or not known.
-const NO_AIR: Answer = Answer::None("plunge has no air flow between grains");
-const NO_WATER: Answer = Answer::None("plunge has no saturated grains");
-const NO_NUMBERS: Answer = Answer::None("its coefficients are not published");
-const NO_DRIVE: Answer = Answer::None("plunge drives no intruder at a set speed");
-const NO_MEASURE: Answer = Answer::None("no number says how intermittent a force has to be");
-const NO_WHEELS: Answer = Answer::None("plunge has no wheels");
-const NOT_RUN: Answer = Answer::None("plunge can run it, and no row does yet");
+const NO_AIR: Answer = Answer::None(Verdict::NotModelled, "plunge has no air flow between grains");
+const NO_WATER: Answer = Answer::None(Verdict::NotModelled, "plunge has no saturated grains");
+const NO_DRIVE: Answer =
+    Answer::None(Verdict::NotModelled, "plunge drives no intruder at a set speed");
+const NO_WHEELS: Answer = Answer::None(Verdict::NotModelled, "plunge has no wheels");
+const NO_NUMBERS: Answer =
+    Answer::None(Verdict::NotPublished, "its coefficients are not published");
+const NO_MEASURE: Answer =
+    Answer::None(Verdict::NotPublished, "no number says how intermittent a force has to be");
+const NOT_RUN: Answer = Answer::None(Verdict::NotRun, "plunge can run it, and no row does yet");
 
 const E1_E5: Answer = Answer::Rows("E1, E5");
 const E2: Answer = Answer::Rows("E2");
@@ -240,3 +243,19 @@ static SIGNATURES: &[Signature] = &[
         NO_NUMBERS,
     ),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_plunge_cannot_do_is_not_laid_on_the_source() {
+        let verdict = |system: &str| {
+            let found = unanswered().into_iter().find(|check| check.what.starts_with(system));
+            found.map(|check| check.verdict)
+        };
+        assert_eq!(verdict("wheel, fast"), Some(Verdict::NotModelled));
+        assert_eq!(verdict("spinning sphere"), Some(Verdict::NotRun));
+        assert_eq!(verdict("wooden sphere into beads"), Some(Verdict::NotPublished));
+    }
+}

@@ -46,10 +46,10 @@ pub struct Outcome {
     pub verdict: String,
     /// What is named, or not told from what would be.
     pub named: Vec<String>,
-    /// Whether the answer is right: the effect alone or in a set of at most three; nothing where nothing
-    /// is; no listed effect where an unlisted one is.
+    /// Whether the answer is right: the effect alone or in a set of at most three; *nothing detected* where nothing is
+    /// hidden; nothing named where what is hidden is not listed.
     pub right: bool,
-    /// Whether a single wrong effect is named.
+    /// Whether what is named is wrong: another effect, a set without the one that is hidden, or a pair, which claims two.
     pub wrong: bool,
     /// Predicted probability that the truth, were it as strong as fitted, is ranked first.
     pub predicted: Option<f64>,
@@ -110,6 +110,21 @@ impl Hidden {
         }
     }
 
+    /// Whether a verdict that names these effects is right, and whether what it names is wrong. Neither is an answer that
+    /// names nothing where something listed is hidden.
+    fn scored(self, verdict: Verdict, named: &[String]) -> [bool; 2] {
+        let is_in = match self {
+            Self::Switch(id, _) => named.iter().any(|one| one == id) && verdict != Verdict::Pair,
+            Self::Nothing | Self::Unlisted => false,
+        };
+        let right = match self {
+            Self::Switch(..) => is_in && named.len() <= 3,
+            Self::Nothing => verdict == Verdict::NothingDetected,
+            Self::Unlisted => named.is_empty() && verdict != Verdict::CannotTell,
+        };
+        [right, !named.is_empty() && !is_in]
+    }
+
     fn variation(self, stand: &Stand<'_>) -> Variation {
         match self {
             Self::Nothing => Variation::default(),
@@ -159,13 +174,7 @@ impl Case {
             Hidden::Switch(id, _) => Some(id),
             Hidden::Nothing | Hidden::Unlisted => None,
         };
-        let single = matches!(diagnosis.verdict, Verdict::Supported);
-        let in_set = truth.is_some_and(|truth| named.iter().any(|id| id == truth));
-        let right = match self.hidden {
-            Hidden::Switch(..) => in_set && named.len() <= 3,
-            Hidden::Nothing => named.is_empty(),
-            Hidden::Unlisted => !single,
-        };
+        let [right, wrong] = self.hidden.scored(diagnosis.verdict, &named);
         let leader = diagnosis.ranking.first();
         let own = diagnosis.ranking.iter().find(|effect| Some(effect.id.as_str()) == truth);
         let held_out = diagnosis.holdout.as_ref().filter(|_| !diagnosis.amplitudes.is_empty());
@@ -177,7 +186,7 @@ impl Case {
                 .and_then(|value| Some(value.as_str()?.to_owned()))
                 .unwrap_or_default(),
             right,
-            wrong: single && !in_set,
+            wrong,
             predicted: own.and_then(|effect| effect.predicted_top1),
             first: truth.is_some() && leader.map(|effect| effect.id.as_str()) == truth,
             held_out: held_out.map(|errors| [errors.before, errors.after, errors.noise_floor]),
@@ -185,5 +194,33 @@ impl Case {
             impacts,
             seconds,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrong_pairs_and_sets_are_wrong_and_the_unlisted_is_blamed_on_nothing() {
+        let scored = |hidden: Hidden, verdict, named: &[&str]| {
+            let named: Vec<String> = named.iter().map(|&id| id.to_owned()).collect();
+            hidden.scored(verdict, &named)
+        };
+        let (right, neither, wrong) = ([true, false], [false, false], [false, true]);
+        let packing = Hidden::Switch("packing", 1.0);
+        assert_eq!(scored(packing, Verdict::Supported, &["packing"]), right);
+        assert_eq!(scored(packing, Verdict::NotSeparable, &["side-wall", "packing"]), right);
+        assert_eq!(scored(packing, Verdict::NotSeparable, &["a", "b", "c", "packing"]), neither);
+        assert_eq!(scored(packing, Verdict::NotSeparable, &["side-wall", "pore-air"]), wrong);
+        assert_eq!(scored(packing, Verdict::Pair, &["side-wall", "packing"]), wrong);
+        assert_eq!(scored(packing, Verdict::Supported, &["side-wall"]), wrong);
+        assert_eq!(scored(packing, Verdict::NoneOfTheCandidates, &[]), neither);
+        assert_eq!(scored(Hidden::Nothing, Verdict::NothingDetected, &[]), right);
+        assert_eq!(scored(Hidden::Nothing, Verdict::CannotTell, &[]), neither);
+        assert_eq!(scored(Hidden::Nothing, Verdict::NotSeparable, &["a", "b"]), wrong);
+        assert_eq!(scored(Hidden::Unlisted, Verdict::NoneOfTheCandidates, &[]), right);
+        assert_eq!(scored(Hidden::Unlisted, Verdict::Pair, &["a", "b"]), wrong);
+        assert_eq!(scored(Hidden::Unlisted, Verdict::NotSeparable, &["a", "b"]), wrong);
     }
 }

@@ -51,10 +51,10 @@ fn rates(outcomes: &[Outcome]) -> String {
     let lines = [
         format!("right, alone or among at most three: {}", share(&listed, &|one| one.right)),
         format!("ranked first: {} (predicted {mean:.2})", share(&listed, &|one| one.first)),
-        format!("a single wrong effect named: {}", share(&of(&|_| true), &|one| one.wrong)),
+        format!("a wrong effect, pair or set named: {}", share(&of(&|_| true), &|one| one.wrong)),
         format!("nothing named where nothing is: {}", share(&of(&nothing), &|one| one.right)),
         format!(
-            "the unlisted not blamed on a listed one: {}",
+            "nothing named where what is hidden is not listed: {}",
             share(&of(&unlisted), &|one| one.right)
         ),
         format!(
@@ -94,7 +94,7 @@ mod tests {
             "| packing 1 | 0 | supported | packing | yes | 2.00 → 1.00 (0.50) | 10 | 1.0 |"
         ));
         assert!(text.contains("at most three: 1 of 1"));
-        assert!(text.contains("wrong effect named: 1 of 3"));
+        assert!(text.contains("wrong effect, pair or set named: 1 of 3"));
         assert!(text.contains("where nothing is: 0 of 1"));
         assert!(text.contains("1.3 times the floor: 3 of 3"));
     }

@@ -4,7 +4,7 @@
 use super::matrix::{self, Cell, READINGS, Reading};
 use super::tables::Published;
 use crate::beds::Record;
-use crate::published::check::{Band, Check, Estimate, Known};
+use crate::published::check::{Band, Check, Estimate, Known, Verdict};
 use crate::published::plot::{Panel, Plot, Points};
 use crate::published::regression::{self, Fitted};
 use crate::published::row::{Findings, PublishedError, Table};
@@ -35,8 +35,10 @@ pub struct Quantity {
     pub goal: Band,
     /// Scatter of one impact to another place of the bed, as a share, where the article states it.
     pub stated_scatter: Option<f64>,
-    /// What was known of the disagreement beforehand, per reading.
+    /// What a source stated of the disagreement beforehand, per reading: of every impact from 1 m/s on.
     pub known: [Known; 2],
+    /// Angle (deg) that it was stated of; it excuses no other.
+    pub known_at: f64,
 }
 
 /// The form of a published curve, with names and published values of its coefficients.
@@ -66,6 +68,12 @@ impl Form {
             Self::Line => regression::linear(&[v.to_vec(), vec![1.0; v.len()]], y, errors),
             Self::Exponential => regression::exponential(v, y, errors),
         }
+    }
+
+    /// Whether coefficient `number` is twice as large for a curve that is twice as high everywhere.
+    #[must_use]
+    pub fn scales(self, number: usize) -> bool {
+        self == Self::Line || number != 1
     }
 
     /// The value at the speed `v` (m/s).
@@ -234,15 +242,21 @@ impl Quantity {
             "{title}: {}, mean deviation from the published curve (%), {mean:.3} of it in the mean",
             self.name
         );
-        let (known, sigmas) = (&self.known[at], series.sigmas());
-        let margin = if scatter > 0.0 { sigmas * of_mean } else { 0.0 };
+        let sigmas = series.sigmas();
+        let known = Some(&self.known[at]).filter(|_| angle.total_cmp(&self.known_at).is_eq());
+        let of_one = if scatter > 0.0 { sigmas * scatter } else { 0.0 };
+        let as_listed =
+            known.is_some_and(|known| ratios.iter().all(|ratio| known.covers(*ratio, of_one)));
+        let cause = known.map_or("", |known| known.cause);
         let by_scatter = match scatter > 0.0 {
             true => 100.0 * regression::deviation_by_scatter(&vec![scatter; ratios.len()], sigmas),
             // Nothing is known of it.
             false => f64::INFINITY,
         };
         let check = Check::deviation(what, "0", ours, by_scatter, self.goal);
-        findings.checks.push(check.unless_known(Some(known), (mean, margin)));
+        let check = check.listed(as_listed, cause);
+        let curve_deviates = check.verdict == Verdict::Deviates;
+        findings.checks.push(check);
         let share = self.stated_scatter.unwrap_or(scatter);
         let fitted = curve.form.fit(&series.speeds, &series.means, series.errors.as_deref());
         for (name, number) in curve.names.iter().zip(0..) {
@@ -250,7 +264,7 @@ impl Quantity {
             let published = Estimate::new(curve.values[number], curve.error(number, share));
             let Some(fitted) = fitted.as_ref().filter(|_| series.errors.is_some()) else {
                 let why = "too few impacts to know the scatter of their fit";
-                findings.checks.push(Check::not_checkable(what, &published.to_string(), why));
+                findings.checks.push(Check::undecided(what, &published.to_string(), why));
                 continue;
             };
             let ours = Estimate::new(fitted.coefficients[number], fitted.error(number));
@@ -258,7 +272,12 @@ impl Quantity {
             let reason = "two standard errors (Student's t): of the published fit by the scatter of its positions, \
                           and of ours";
             let check = Check::number(what, published, ours, Band { half, reason });
-            findings.checks.push(check.listed(known.covers(mean, margin), known.cause));
+            // Judged by its own number, where its curve is off by what was listed. A rate does not grow with its curve.
+            let [ratio, margin] =
+                [ours.value, sigmas * ours.error].map(|one| one / published.value);
+            let scales = curve.form.scales(number);
+            let as_listed = known.is_some_and(|known| known.covers(ratio, margin.abs()));
+            findings.checks.push(check.listed(curve_deviates && scales && as_listed, cause));
         }
         off
     }
@@ -330,7 +349,6 @@ mod tests {
     use super::super::records::record;
     use super::super::tables::{Line, PUBLISHED};
     use super::*;
-    use crate::published::Verdict;
 
     const DEPTH: Quantity = Quantity {
         name: "depth",
@@ -344,6 +362,7 @@ mod tests {
         goal: Band { half: 6.0, reason: "a test" },
         stated_scatter: Some(0.06),
         known: [Known { ratio: [1.0, 1.2], cause: "a test" }; 2],
+        known_at: 90.0,
     };
 
     /// Impacts of every angle, two positions each, `factor` times as deep as published and 1 % off.
@@ -371,10 +390,52 @@ mod tests {
         let published = verdicts(1.0);
         assert_eq!(published.len(), 2 * 7 * 3);
         assert!(published.iter().all(|verdict| *verdict == Verdict::Pass), "{published:?}");
-        // The deviation is the first check of every three.
+        // The deviation is the first check of every three. What is listed is listed of 90°, the last of seven angles.
         let first = |verdicts: &[Verdict]| verdicts.iter().copied().step_by(3).collect::<Vec<_>>();
-        assert!(first(&verdicts(1.15)).iter().all(|verdict| *verdict == Verdict::Deviates));
+        let deeper = first(&verdicts(1.15));
+        for (at, verdict) in deeper.iter().enumerate() {
+            let is_listed = at / READINGS.len() == PUBLISHED.len() - 1;
+            assert_eq!(*verdict, if is_listed { Verdict::Deviates } else { Verdict::Fail }, "{at}");
+        }
         assert!(first(&verdicts(1.5)).iter().all(|verdict| *verdict == Verdict::Fail));
+    }
+
+    /// The checks at 90° as printed of impacts that are `depth` (m) deep at a speed (m/s), two positions 1 % off.
+    fn at_90(depth: impl Fn(f64) -> f64) -> Vec<Check> {
+        let published = PUBLISHED.last().expect("angles");
+        let cell = |speed: f64| {
+            let at = |share: f64| record(0.1, vec![0.0, 0.0], vec![0.0, share * depth(speed)]);
+            let reading = &READINGS[0];
+            Cell { reading, published, speed, records: vec![at(0.99), at(1.01)] }
+        };
+        let cells = SPEEDS.map(cell);
+        DEPTH.judge(&cells, "depth.svg").expect("a picture").checks
+    }
+
+    #[test]
+    fn a_coefficient_deviates_only_with_its_curve_and_by_its_own_number() {
+        let published = PUBLISHED.last().expect("angles").depth;
+        let verdicts = |depth: &dyn Fn(f64) -> f64| {
+            at_90(depth).iter().map(|check| check.verdict).collect::<Vec<_>>()
+        };
+        // A sixth deeper at every speed, as listed: so are both coefficients, which deviate or are within their bands.
+        let deeper = verdicts(&|v| 1.15 * published.at(v));
+        assert_eq!(deeper[0], Verdict::Deviates);
+        assert!(deeper.iter().all(|verdict| *verdict < Verdict::Fail), "{deeper:?}");
+        // A line turned about 2 m/s: near the published one in the mean, and its slope is off by a third.
+        let turned = |v: f64| published.at(v) + 0.33 * published.slope * (v - 2.0);
+        let turned = verdicts(&turned);
+        assert_eq!(turned[1], Verdict::Fail, "{turned:?}");
+    }
+
+    #[test]
+    fn a_curve_is_off_as_listed_only_if_it_is_at_every_speed() {
+        let published = PUBLISHED.last().expect("angles").depth;
+        // In the mean a tenth deeper, as listed; a quarter at the ends.
+        let bent = |v: f64| {
+            (1.25 - 0.3 * libm::sin((v - 1.0) / 3.0 * std::f64::consts::PI)) * published.at(v)
+        };
+        assert_eq!(at_90(bent)[0].verdict, Verdict::Fail);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::published::oblique::own_depths;
 use crate::published::oblique::tables::{ForceLaw, Published};
 use crate::published::plot::{Panel, Plot, Points};
 use crate::published::row::{Findings, PublishedError, Row};
-use crate::published::rows::e02_depth_and_range::DEPTHS;
+use crate::published::rows::e02_depth_and_range::{DEPTHS, DEPTHS_AT};
 
 pub(super) static ROW: Row = Row {
     id: "E3",
@@ -56,7 +56,12 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
                 let published = own[0].published;
                 let (law, known) = match component {
                     Component::Horizontal => (published.horizontal, None),
-                    Component::Vertical => (published.vertical, known(published, DEPTHS[at])),
+                    Component::Vertical => {
+                        // What independent codes had of the depths is known at one angle.
+                        let is_known = published.angle_deg.total_cmp(&DEPTHS_AT).is_eq();
+                        let depths = if is_known { DEPTHS[at] } else { [1.0; 2] };
+                        (published.vertical, known(published, depths))
+                    }
                 };
                 if let Some(law) = law {
                     findings.checks.extend(coefficients(&title, law, &found, known));
@@ -186,7 +191,7 @@ mod tests {
         assert_eq!([verdict(15.0, &law), verdict(15.0, &none)], [Verdict::Fail, Verdict::Pass]);
         assert_eq!(verdict(15.0, &found([0.8, 0.05], -1.0)), Verdict::Pass);
         let vague = found([0.55, 0.1], 4.5);
-        assert_eq!([15.0, 90.0].map(|angle| verdict(angle, &vague)), [Verdict::NotCheckable; 2]);
+        assert_eq!([15.0, 90.0].map(|angle| verdict(angle, &vague)), [Verdict::Undecided; 2]);
     }
 
     #[test]

@@ -151,7 +151,7 @@ fn over_angle(reading: &Reading, cells: &[Cell]) -> Check {
         format!("{}: fall of the stopping time with the angle (ms per degree)", reading.name);
     let published = "falls with the angle at a given speed";
     let Some(found) = regression::leaving_out(impacts.len(), fit) else {
-        return Check::not_checkable(what, published, "one angle at every speed");
+        return Check::undecided(what, published, "one angle at every speed");
     };
     let sigmas = regression::student(SIGMAS, impacts.len().saturating_sub(1));
     Check::positive(
@@ -177,11 +177,7 @@ fn characteristic(reading: &Reading, cells: &[&Cell], known: &Known) -> Vec<Chec
     let fitted = Form::Exponential.fit(&points.speeds, &points.means, points.errors.as_deref());
     let Some(fitted) = fitted else {
         let what = format!("90°, {}: characteristic time and speed", reading.name);
-        return vec![Check::not_checkable(
-            what,
-            "0.16 s, 1 m/s",
-            "fewer than four speeds are there",
-        )];
+        return vec![Check::undecided(what, "0.16 s, 1 m/s", "fewer than four speeds are there")];
     };
     let [amplitude, rate, plateau] = [0, 1, 2].map(|at| fitted.coefficients[at]);
     let speed = libm::log(amplitude / (EXCESS * plateau)) / rate;

@@ -21,11 +21,6 @@ pub(super) static ROW: Row = Row {
 /// Largest difference of speed that does not show in a figure (% of the impact speed).
 const BAND: Band = Band { half: 2.0, reason: "the width of a line in a figure" };
 
-/// On beds of ours, 7 to 11 % (`docs/three-shapes.md`).
-const LISTED: f64 = 11.0;
-const CAUSE: &str = "the study shows one bed with parameters that are lost; on beds of ours friction matters by 7 to \
-                     11 %, about as much as beds differ";
-
 fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
     let pairs = shapes::rubbed(laboratory)?;
     let mut findings = Findings::default();
@@ -58,8 +53,7 @@ fn difference(seed: u64, without: &[f64], with: &[f64]) -> Check {
     let off = without.iter().zip(with).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let off = 100.0 * off / RUBBED.1;
     let what = format!("bed {seed}: largest difference of speed (% of the impact speed)");
-    let check = Check::at_most(what, "none visible", Estimate::new(off, 0.0), BAND);
-    check.listed(off <= LISTED, CAUSE)
+    Check::at_most(what, "none visible", Estimate::new(off, 0.0), BAND)
 }
 
 #[cfg(test)]
@@ -68,11 +62,9 @@ mod tests {
     use crate::published::Verdict;
 
     #[test]
-    fn speeds_that_agree_pass_those_of_the_study_of_ours_deviate_and_others_fail() {
+    fn speeds_that_agree_pass_and_a_difference_that_a_figure_shows_fails() {
         let verdict = |off: f64| difference(1, &[2.0, 1.0], &[2.0, 1.0 - off]).verdict;
-        assert_eq!(
-            [0.02, 0.2, 0.3].map(verdict),
-            [Verdict::Pass, Verdict::Deviates, Verdict::Fail]
-        );
+        // 1 % and 5 % of the impact speed of 2 m/s.
+        assert_eq!([0.02, 0.1].map(verdict), [Verdict::Pass, Verdict::Fail]);
     }
 }

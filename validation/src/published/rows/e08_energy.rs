@@ -29,6 +29,9 @@ const AT_REST: Band = Band {
 /// Kinetic energy at which a bed is calm, over the greatest of all impacts.
 const CALM_SHARE: f64 = 0.01;
 
+/// Standard errors by which a slope or a curvature counts.
+const SIGMAS: f64 = 2.0;
+
 const HEMISPHERE: &str = "hemisphere-3d";
 
 /// Mass (kg) and strength of gravity (m/s²).
@@ -95,6 +98,17 @@ fn dissipation_time(one: &Outcome, calm: f64) -> Option<f64> {
     one.time_s.get(next).copied()
 }
 
+/// What equation 24 needs of an impact.
+#[derive(Clone, Copy)]
+struct Dissipated {
+    /// Greatest mechanical energy of the grains (J).
+    energy: f64,
+    /// Largest share of the grains that move at one time.
+    share: f64,
+    /// Time (s) until the bed is calm; none where it is not at the end.
+    time: Option<f64>,
+}
+
 /// What rises with the energy, and equation 24.
 fn dissipation(impacts: &[Impact], tables: &mut Vec<Table>) -> Vec<Check> {
     let calm = calm_below(impacts);
@@ -105,33 +119,45 @@ fn dissipation(impacts: &[Impact], tables: &mut Vec<Table>) -> Vec<Check> {
     );
     let head = ["speed (m/s)", "bed", "impact (mJ)", "E (mJ)", "γ", "T (ms)", "T γ (ms)"];
     let mut table = Table::new(&caption, &head);
-    let mut points = Vec::new();
+    let mut all = Vec::new();
     for (case, one) in impacts {
-        let most = one.energies.grains_j.iter().copied().fold(0.0, f64::max);
-        let time = dissipation_time(one, calm);
+        let energy = one.energies.grains_j.iter().copied().fold(0.0, f64::max);
+        let here =
+            Dissipated { energy, share: one.moving_share, time: dissipation_time(one, calm) };
         let shown =
             |time: Option<f64>| time.map_or("–".to_owned(), |time| format!("{:.1}", 1e3 * time));
         table.rows.push(vec![
             format!("{}", case.speed),
             format!("{}", case.seed),
             format!("{:.2}", 1e3 * one.impact_energy_j),
-            format!("{:.2}", 1e3 * most),
-            format!("{:.3}", one.moving_share),
-            shown(time),
-            shown(time.map(|time| time * one.moving_share)),
+            format!("{:.2}", 1e3 * energy),
+            format!("{:.3}", here.share),
+            shown(here.time),
+            shown(here.time.map(|time| time * here.share)),
         ]);
-        if let Some(time) = time {
-            points.push((most, time, one.moving_share));
-        }
+        all.push(here);
     }
     tables.push(table);
+    equation_24(&all)
+}
+
+/// Equation 24, and what rises with the energy of `all` impacts.
+fn equation_24(all: &[Dissipated]) -> Vec<Check> {
+    let calm = all.iter().filter(|one| one.time.is_some()).count();
+    let title = |what: &str| match all.len() - calm {
+        0 => format!("{what} over ln E"),
+        left_out => format!(
+            "{what} over ln E, {calm} of {} impacts ({left_out} not calm at their end)",
+            all.len()
+        ),
+    };
+    let product = points(all, |one| Some(one.time? * one.share));
     vec![
-        rising("T γ (s) over ln E", "T γ = ζ ln E + c", &points, |(_, time, share)| {
-            time * share
-        }),
-        rising("γ over ln E", "rises with the energy", &points, |(_, _, share)| *share),
-        rising("T (s) over ln E", "rises with the energy", &points, |(_, time, _)| *time),
-        Check::not_checkable(
+        straight(&title("T γ (s)"), "T γ = ζ ln E + c", &product),
+        rising(&title("T γ (s)"), "rises with the energy", &product),
+        rising("γ over ln E", "rises with the energy", &points(all, |one| Some(one.share))),
+        rising(&title("T (s)"), "rises with the energy", &points(all, |one| one.time)),
+        Check::not_published(
             "ζ and c",
             "Fig. 15",
             "the figure's numbers and the table of parameters are lost",
@@ -139,22 +165,43 @@ fn dissipation(impacts: &[Impact], tables: &mut Vec<Table>) -> Vec<Check> {
     ]
 }
 
-/// Whether a number of `points` (energy, time, share) rises with the logarithm of the energy.
-fn rising(
-    what: &str,
-    published: &str,
-    points: &[(f64, f64, f64)],
-    of: fn(&(f64, f64, f64)) -> f64,
-) -> Check {
-    let logs: Vec<f64> = points.iter().map(|(energy, ..)| libm::log(*energy)).collect();
-    let values: Vec<f64> = points.iter().map(of).collect();
-    let fitted = regression::linear(&[logs, vec![1.0; points.len()]], &values, None);
-    let Some(fitted) = fitted else {
-        return Check::not_checkable(what, published, "fewer than two beds came to be calm");
+/// The logarithm of the energy of each impact and a number of it, of those that have it.
+fn points(all: &[Dissipated], of: fn(&Dissipated) -> Option<f64>) -> [Vec<f64>; 2] {
+    let there = all.iter().filter_map(|one| Some((libm::log(one.energy), of(one)?)));
+    let (logs, values): (Vec<f64>, Vec<f64>) = there.unzip();
+    [logs, values]
+}
+
+/// Whether `values` lie on a straight line over `logs`: a square term does not improve it. What contradicts a line as
+/// surely as can be is a curve that turns within the range.
+fn straight(what: &str, published: &str, [logs, values]: &[Vec<f64>; 2]) -> Check {
+    let n = logs.len() as f64;
+    let middle = logs.iter().sum::<f64>() / n;
+    let linear: Vec<f64> = logs.iter().map(|log| log - middle).collect();
+    let square = linear.iter().map(|log| log * log).collect();
+    let reach = linear.iter().copied().map(f64::abs).fold(0.0, f64::max);
+    let fitted = regression::linear(&[square, linear, vec![1.0; logs.len()]], values, None);
+    let Some(fitted) = fitted.filter(|fitted| fitted.freedom > Some(0)) else {
+        return Check::undecided(what, published, "fewer than four beds came to be calm");
+    };
+    let curvature = Estimate::new(fitted.coefficients[0], fitted.error(0));
+    let turning = fitted.coefficients[1] / (2.0 * reach);
+    let reason = "two standard errors (Student's t) of what the curve leaves over";
+    let band = Band { half: fitted.as_surely_as(SIGMAS) * curvature.error, reason };
+    let sigmas = curvature.value / curvature.error;
+    let what = format!("{what}: curvature, {sigmas:+.1} standard errors from zero");
+    Check::zero(what, published, curvature, band, turning)
+}
+
+/// Whether `values` rise with `logs`, the logarithm of the energy.
+fn rising(what: &str, published: &str, [logs, values]: &[Vec<f64>; 2]) -> Check {
+    let columns = [logs.clone(), vec![1.0; logs.len()]];
+    let Some(fitted) = regression::linear(&columns, values, None) else {
+        return Check::undecided(what, published, "fewer than two beds came to be calm");
     };
     let slope = Estimate::new(fitted.coefficients[0], fitted.error(0));
     let reason = "two standard errors (Student's t) of what the line leaves over";
-    let band = Band { half: fitted.as_surely_as(2.0) * slope.error, reason };
+    let band = Band { half: fitted.as_surely_as(SIGMAS) * slope.error, reason };
     let what = format!("{what}: slope, of a line that explains {:.3}", fitted.r_squared);
     Check::positive(what, published, slope, band)
 }
@@ -217,11 +264,49 @@ mod tests {
         assert_eq!(dissipation_time(&impact(1.0).1, 1e-12), None);
     }
 
+    /// Impacts of four energies on `beds` beds, which differ by 2 %, with a product of time and share as told of ln E;
+    /// every share is a half.
+    fn impacts_of(beds: usize, product: impl Fn(f64) -> f64) -> Vec<Dissipated> {
+        let one = |bed: usize, energy: f64| {
+            let scatter = 0.98 + 0.02 * (bed % 3) as f64;
+            let time = Some(2.0 * scatter * product(libm::log(energy)));
+            Dissipated { energy, share: 0.5, time }
+        };
+        (0..beds).flat_map(|bed| [1.0, 2.0, 4.0, 8.0].map(|energy| one(bed, energy))).collect()
+    }
+
     #[test]
     fn what_rises_passes_and_what_falls_fails() {
-        let points = [(0.1, 0.02, 0.1), (0.2, 0.03, 0.2), (0.4, 0.041, 0.28), (0.8, 0.05, 0.42)];
-        let verdict = |of: fn(&(f64, f64, f64)) -> f64| rising("", "", &points, of).verdict;
-        assert_eq!(verdict(|one| one.1), Verdict::Pass);
-        assert_eq!(verdict(|one| -one.2), Verdict::Fail);
+        let verdict = |sign: f64| {
+            let all = impacts_of(3, |log| 0.1 + 0.05 * sign * log);
+            rising("", "", &points(&all, |one| one.time)).verdict
+        };
+        assert_eq!([1.0, -1.0].map(verdict), [Verdict::Pass, Verdict::Fail]);
+    }
+
+    #[test]
+    fn a_product_on_a_line_over_the_logarithm_passes_and_a_power_of_the_energy_fails() {
+        let verdict = |all: &[Dissipated]| equation_24(all)[0].verdict;
+        assert_eq!(verdict(&impacts_of(3, |log| 0.1 + 0.05 * log)), Verdict::Pass);
+        let power = impacts_of(3, |log| 0.1 * libm::exp(log));
+        assert_eq!(verdict(&power), Verdict::Fail);
+        // It rises all the same, which is not what equation 24 says.
+        assert_eq!(equation_24(&power)[1].verdict, Verdict::Pass);
+        assert_eq!(verdict(&impacts_of(1, |log| 0.1 + 0.05 * log)[..3]), Verdict::Undecided);
+    }
+
+    #[test]
+    fn an_impact_after_which_the_bed_is_not_calm_is_counted_and_used_where_its_time_is_not_needed()
+    {
+        let mut all = impacts_of(3, |log| 0.1 + 0.05 * log);
+        for (at, one) in all.iter_mut().enumerate() {
+            one.share = 0.1 + 0.1 * libm::log(one.energy) + 0.01 * (at % 2) as f64;
+        }
+        let checks = equation_24(&all);
+        all[3].time = None;
+        let without = equation_24(&all);
+        assert!(without[0].what.contains("11 of 12 impacts (1 not calm"), "{}", without[0].what);
+        assert_ne!(checks[0].ours, without[0].ours);
+        assert_eq!(checks[2], without[2], "γ needs no time");
     }
 }

@@ -36,7 +36,7 @@ fn judge(laboratory: &Laboratory<'_>) -> Result<Findings, PublishedError> {
     for angles in ANGLES {
         findings.checks.extend(chain_over_speed(angles)?);
     }
-    findings.checks.push(Check::not_checkable(
+    findings.checks.push(Check::not_published(
         "two-link chain: error of the model against the measured table",
         "Tables 2 and 5",
         "the tables are lost, with the sizes, speeds and angles",

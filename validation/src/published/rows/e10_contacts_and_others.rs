@@ -15,7 +15,7 @@ use crate::published::signatures;
 
 pub(super) static ROW: Row = Row {
     id: "E10",
-    title: "Contacts whose answer is known; vertical impacts by the laws of other groups; published trends",
+    title: "Contacts whose answer is known; a force law of another group, integrated; published trends",
     source: "Chung & Ooi 2011; Katsuragi & Durian 2007; Ambroso et al. 2005; literature",
     how: [
         "every case, impacts on resistive media, and 35 on planar beds of 1 040 and 3 000 discs",
@@ -73,6 +73,10 @@ struct End {
     decelerations: Vec<f64>,
 }
 
+/// What stands before each check of the sphere. The law is that of the source, so these check the solver of resistive
+/// impacts and not a law of plunge.
+const SOLVER: &str = "check of the solver, Katsuragi & Durian's own law integrated";
+
 /// What Katsuragi & Durian state of their sphere, by their law integrated here.
 fn sphere() -> Result<Vec<Check>, PublishedError> {
     let mut ends = Vec::new();
@@ -84,7 +88,7 @@ fn sphere() -> Result<Vec<Check>, PublishedError> {
         values.iter().map(|value| format!("{:.1}", 1e3 * value)).collect::<Vec<_>>().join("; ")
     };
     let mut checks = vec![Check::trend(
-        "steel sphere in beads: stopping time (ms) from 0.1 to 4 m/s",
+        format!("{SOLVER}: stopping time (ms) from 0.1 to 4 m/s"),
         ("falls with speed", shown(&times)),
         "every step from speed to speed",
         times.windows(2).all(|pair| pair[1] < pair[0]),
@@ -92,7 +96,7 @@ fn sphere() -> Result<Vec<Check>, PublishedError> {
     let at_stop = ends[1..].iter().filter_map(|end| end.decelerations.last().copied());
     let least = at_stop.fold(f64::INFINITY, f64::min);
     checks.push(Check::trend(
-        "steel sphere in beads: deceleration just before the stop (m/s²)",
+        format!("{SOLVER}: deceleration just before the stop (m/s²)"),
         ("finite: it jumps to zero", format!("{least:.1} at least from 0.5 m/s on")),
         "above one weight",
         least > 9.81,
@@ -100,7 +104,7 @@ fn sphere() -> Result<Vec<Check>, PublishedError> {
     let fast = &ends[SPEEDS.len() - 1];
     let largest = fast.decelerations.iter().copied().fold(0.0, f64::max);
     checks.push(Check::trend(
-        "steel sphere in beads at 4 m/s: the deceleration is largest at first contact (m/s²)",
+        format!("{SOLVER}: at 4 m/s the deceleration is largest at first contact (m/s²)"),
         (
             "v²/d₁ at contact, then a fall",
             format!("{largest:.0} at most, {:.0} at contact", fast.decelerations[0]),
@@ -136,8 +140,7 @@ fn scaling(ends: &[End]) -> Result<Check, PublishedError> {
     let ours = Estimate::new(ours, square.sqrt());
     let reason = "two standard errors of the law's coefficients";
     let half = 2.0 * ours.error;
-    let what =
-        "steel sphere in beads, 1 to 4 m/s: exponent of depth over the total drop distance (–)";
+    let what = format!("{SOLVER}: exponent of depth over the total drop distance, 1 to 4 m/s (–)");
     Ok(Check::number(what, Estimate::new(EXPONENT, 0.0), ours, Band { half, reason }))
 }
 

@@ -2,7 +2,7 @@
 //! planar bed.
 
 use crate::beds::Record;
-use crate::published::check::{Band, Check, Estimate};
+use crate::published::check::{Band, Check, Estimate, Verdict};
 use crate::published::laboratory::Laboratory;
 use crate::published::planar::{self, Bed, DIAMETER, Fall};
 use crate::published::regression;
@@ -120,7 +120,7 @@ impl Ran {
         let what = "disc a quarter of its diameter from a side wall: moved away from it (mm); its turning is not kept";
         let published = "moves away from the wall, and turns (cylinder; Díaz-Melián et al. 2020)";
         if away.is_empty() {
-            return Check::not_checkable(what, published, NONE);
+            return Check::unanswered(what, published, Verdict::NotRun, NONE);
         }
         let (mean, error) = mean_and_error(&away);
         let half = regression::student(SIGMAS, away.len().saturating_sub(1)) * error;
@@ -133,7 +133,7 @@ impl Ran {
         let published = "scale as with friction (disc; Seguin et al. 2009)";
         let title = "discs without friction, 0.5 to 2 m/s";
         if without.len() < 3 || with.len() < 3 {
-            return vec![Check::not_checkable(title, published, NONE)];
+            return vec![Check::unanswered(title, published, Verdict::NotRun, NONE)];
         }
         let [deep, friction] = [&without, &with].map(|points| exponent(points));
         let off =
@@ -203,7 +203,7 @@ fn positive(what: String, published: &str, ours: Estimate, n: usize) -> Check {
 /// Whether the first of two groups lies below the second, whose scatter both share.
 fn less(what: &str, published: &str, [near, middle]: [&[f64]; 2]) -> Check {
     if near.is_empty() || middle.is_empty() {
-        return Check::not_checkable(what, published, NONE);
+        return Check::unanswered(what, published, Verdict::NotRun, NONE);
     }
     let freedom = (near.len() + middle.len()).saturating_sub(2);
     let squares: f64 = [near, middle]
@@ -227,7 +227,6 @@ fn mean(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::published::Verdict;
     use crate::published::oblique::records::record;
 
     /// A record of each fall that goes as deep and takes as long as told of its speed.
@@ -267,8 +266,8 @@ mod tests {
     fn a_group_is_less_only_where_its_scatter_lets_it_be() {
         let verdict = |near: &[f64], middle: &[f64]| less("", "", [near, middle]).verdict;
         assert_eq!(verdict(&[0.8, 0.82], &[0.99, 1.0, 1.01]), Verdict::Pass);
-        assert_eq!(verdict(&[0.6, 1.2], &[0.9, 1.0, 1.1]), Verdict::NotCheckable);
+        assert_eq!(verdict(&[0.6, 1.2], &[0.9, 1.0, 1.1]), Verdict::Undecided);
         assert_eq!(verdict(&[1.2, 1.22], &[0.99, 1.0, 1.01]), Verdict::Fail);
-        assert_eq!(verdict(&[], &[1.0]), Verdict::NotCheckable);
+        assert_eq!(verdict(&[], &[1.0]), Verdict::NotRun);
     }
 }

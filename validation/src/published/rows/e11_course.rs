@@ -1,7 +1,7 @@
 //! E11: the course of oblique impacts: regimes of the motion, paths, force peaks, and what governs the stop.
 
 use crate::beds::Record;
-use crate::published::check::{Band, Check, Estimate};
+use crate::published::check::{Band, Check, Estimate, Verdict};
 use crate::published::laboratory::Laboratory;
 use crate::published::oblique::matrix::{self, Cell, READINGS, Reading};
 use crate::published::plot::{Panel, Plot};
@@ -103,7 +103,7 @@ fn displacement(reading: &Reading, cells: &[Cell], angles: &[f64]) -> Check {
     let what = format!("{}: whole displacement (mm), from flat to steep", reading.name);
     let published = "falls with the angle";
     if common.is_empty() || angles.len() < 2 {
-        return Check::not_checkable(what, published, NONE);
+        return Check::unanswered(what, published, Verdict::NotRun, NONE);
     }
     Check::trend(
         what,
@@ -138,7 +138,7 @@ fn peaks(reading: &Reading, cells: &[Cell], flattest: f64) -> Check {
         Some((mean(cell, |one| peak(one).0), mean(cell, |one| peak(one).1)))
     };
     let (Some(steep), Some(flat), true) = (of(STEEP), of(flattest), flattest < STEEP) else {
-        return Check::not_checkable(what, published, NONE);
+        return Check::unanswered(what, published, Verdict::NotRun, NONE);
     };
     let ours = format!(
         "{:.0} m/s² after {:.0} ms at {STEEP}°, {:.0} m/s² after {:.0} ms at {flattest}°",
@@ -175,7 +175,7 @@ fn governed(reading: &Reading, cells: &[Cell]) -> Check {
     let Some(found) = regression::leaving_out(points.len(), fit).filter(|_| points.len() > 2)
     else {
         let what = format!("{}: rank correlations of the stopping time", reading.name);
-        return Check::not_checkable(what, "governed by the vertical speed", NONE);
+        return Check::unanswered(what, "governed by the vertical speed", Verdict::NotRun, NONE);
     };
     let what = format!(
         "{}: rank correlation of the stopping time with the vertical speed, {:.2}, and with the horizontal one, {:.2}: \
@@ -208,7 +208,7 @@ fn straightness(reading: &Reading, cells: &[Cell]) -> Check {
     let published = "from curved to straight as the vertical speed passes 1.12 m/s";
     match regression::leaving_out(points.len(), fit).filter(|_| points.len() > 2) {
         Some(found) => Check::positive(what, published, found[0], band(found[0], points.len())),
-        None => Check::not_checkable(what, published, NONE),
+        None => Check::unanswered(what, published, Verdict::NotRun, NONE),
     }
 }
 
@@ -257,7 +257,7 @@ fn regimes(reading: &Reading, cells: &[Cell]) -> [Check; 2] {
         let reason = "two standard errors (Student's t) of the scatter of impacts";
         let published = "three regimes: impact, penetration, collapse";
         if falls.is_empty() {
-            return Check::not_checkable(what, published, NONE);
+            return Check::unanswered(what, published, Verdict::NotRun, NONE);
         }
         Check::positive(what, published, Estimate::new(mean, error), Band { half, reason })
     };
@@ -325,7 +325,6 @@ fn rank_correlation(x: &[f64], y: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::published::Verdict;
     use crate::published::oblique::records::{cells, record, straight_down};
     use crate::published::oblique::tables::published;
 

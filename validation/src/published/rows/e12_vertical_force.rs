@@ -212,7 +212,7 @@ fn plateau(reading: &str, cells: &[&Cell], known: &Known) -> Check {
     let points = series(cells, |record| record.stopping_time);
     let fitted = Form::Exponential.fit(&points.speeds, &points.means, points.errors.as_deref());
     let Some(fitted) = fitted else {
-        return Check::not_checkable(what, published, "fewer than four speeds are there");
+        return Check::undecided(what, published, "fewer than four speeds are there");
     };
     let ours = Estimate::new(fitted.coefficients[2], fitted.error(2));
     let [(_, shortest, _), _, (_, longest, _)] = forms();
@@ -281,7 +281,7 @@ mod tests {
             of_the_order(String::new(), (Estimate::new(value, 0.0), margin), 1040.0).verdict
         };
         assert_eq!(verdict(150.0, 10.0), Verdict::Pass);
-        assert_eq!(verdict(98.0, 80.0), Verdict::NotCheckable);
+        assert_eq!(verdict(98.0, 80.0), Verdict::Undecided);
         assert_eq!(verdict(10.0, 5.0), Verdict::Fail);
     }
 

@@ -112,17 +112,20 @@ mod tests {
     }
 
     #[test]
-    fn what_needs_no_bed_is_judged_and_does_not_fail() {
+    fn what_needs_no_bed_is_judged_and_fails_where_it_is_known_to() {
         let folder = tempfile::tempdir().expect("a folder");
         let laboratory = laboratory(folder.path(), 1);
         let e10 = e10_contacts_and_others::without_beds();
         let judged =
             [e09_links::ROW.judge, e14_chain_forces::ROW.judge].map(|judge| judge(&laboratory));
-        for findings in judged.into_iter().chain([e10]) {
-            let findings = findings.unwrap_or_else(|error| panic!("{error}"));
-            let failing = findings.checks.iter().filter(|check| check.verdict == Verdict::Fail);
-            assert_eq!(failing.collect::<Vec<_>>(), Vec::<&Check>::new());
-        }
+        let checks = judged.into_iter().chain([e10]).flat_map(|findings| {
+            findings.unwrap_or_else(|error| panic!("{error}")).checks.into_iter()
+        });
+        let failing = checks.filter(|check: &Check| check.verdict > Verdict::Pass);
+        let failing: Vec<String> = failing.map(|check| check.what).collect();
+        // The article on the chain says that the static force overtakes later at higher speed.
+        let overtakes = |angles| format!("{angles}: static force overtakes (ms after contact)");
+        assert_eq!(failing, ["30° and -30°", "20° and -40°"].map(overtakes));
     }
 
     #[test]
@@ -134,10 +137,11 @@ mod tests {
             ..laboratory(folder.path(), 1)
         };
         let judged = ROWS.iter().map(|row| Judged::by(row, &laboratory));
-        for one in judged.filter(|one| one.row.id != "E10") {
-            assert!(one.verdict() < Verdict::Fail, "{}: {:?}", one.row.id, one.findings);
+        // The others need impacts on beds.
+        for one in judged.filter(|one| !["E9", "E10", "E14"].contains(&one.row.id)) {
+            assert_eq!(one.verdict(), Verdict::NotRun, "{}: {:?}", one.row.id, one.findings);
         }
         let trends = e10_trends::checks(&laboratory).expect("models");
-        assert!(trends.iter().all(|check| check.verdict == Verdict::NotCheckable), "{trends:?}");
+        assert!(trends.iter().all(|check| check.verdict == Verdict::NotRun), "{trends:?}");
     }
 }
