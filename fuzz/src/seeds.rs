@@ -30,11 +30,19 @@ pub fn of(name: &str, root: &Path) -> Result<Vec<Vec<u8>>, Box<dyn Error>> {
 
 fn models(root: &Path) -> Result<Vec<Vec<u8>>, Box<dyn Error>> {
     let mut inputs = Vec::new();
-    for folder in ["configs", "configs/schema/tests/good", "configs/schema/tests/bad"] {
+    let good = root.join("configs/schema/tests/good");
+    for folder in [&root.join("configs"), &good] {
         let is_model = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "toml");
-        for path in entries(&root.join(folder))?.into_iter().filter(is_model) {
+        for path in entries(folder)?.into_iter().filter(is_model) {
             inputs.push(fs::read(path)?);
         }
+    }
+    for case in fixtures::topics(&root.join("configs/schema/tests/bad"))?
+        .iter()
+        .flat_map(|topic| &topic.cases)
+    {
+        let base = fs::read_to_string(good.join(&case.base).with_extension("toml"))?;
+        inputs.push(case.apply(&base)?.into_bytes());
     }
     Ok(inputs)
 }

@@ -71,6 +71,14 @@ impl Sources {
         Some(Span { start: start + part.start, end: start + part.end, ..span })
     }
 
+    /// Line and column of the first character of `span`, counted from 1.
+    fn position(&self, span: Span) -> (usize, usize) {
+        let SourceText { text, first_line, .. } = &self.texts[span.source.0];
+        let before = &text[..floor(text, span.start)];
+        let line = before.rfind('\n').map_or(before, |at| &before[at + 1..]);
+        (first_line + before.matches('\n').count(), 1 + line.chars().count())
+    }
+
     /// What stands at `span`, shortened for use inside a message.
     #[must_use]
     pub fn quote(&self, span: Span) -> String {
@@ -176,6 +184,33 @@ impl Diagnostic {
         let mut text = renderer.decor_style(DecorStyle::Ascii).render(&[group]);
         text.push('\n');
         text
+    }
+
+    /// The message without the lines that it is about: a headline, a line for each place with what
+    /// stands there, the help. Places in the first text are given without its name.
+    #[must_use]
+    pub fn brief(&self, sources: &Sources) -> String {
+        let level = match self.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        let mut text = format!("{level}: {}\n", self.message);
+        let markers = std::iter::once("-->").chain(std::iter::repeat(":::"));
+        for (marker, (span, label)) in markers.zip(self.primary.iter().chain(&self.secondary)) {
+            let name = match span.source {
+                SourceId(0) => String::new(),
+                SourceId(id) => format!("{}:", sources.texts[id].name),
+            };
+            let (line, column) = sources.position(*span);
+            let quote = sources.quote(*span);
+            let place = format!("{marker} {name}{line}:{column} «{quote}» {label}");
+            text.push_str(place.trim_end());
+            text.push('\n');
+        }
+        if let Some(help) = &self.help {
+            text.push_str(&format!("= help: {}\n", help.replace('\n', "\n  ")));
+        }
+        printable(&text)
     }
 
     /// One snippet per text that is pointed into, the primary one first.

@@ -1,9 +1,10 @@
-//! Every good model loads and prints itself; every bad one is refused with the message beside it.
+//! Every good model loads and prints itself; every bad one is refused with the expected message.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use configs::{Color, LoadOptions, Loaded, Model, ModelSource, SHIPPED};
+use configs::{Color, ConfigError, LoadOptions, Loaded, Model, ModelSource, SHIPPED};
+use fixtures::Case;
 
 fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
@@ -73,26 +74,41 @@ fn shipped_models_are_the_files_in_configs_and_load_without_a_warning() {
     }
 }
 
-/// With `BLESS=1` in the environment the messages beside the models are rewritten.
-#[test]
-fn bad_models_are_refused_with_the_message_beside_them() {
-    let bless = std::env::var_os("BLESS").is_some();
-    let mut wrong = String::new();
-    let paths = models_in("tests/bad");
-    assert!(paths.len() >= 35, "only {} bad models", paths.len());
-    for path in paths {
-        let Err(message) = load_file(&path) else {
-            wrong.push_str(&format!("{} was accepted\n", path.display()));
-            continue;
-        };
-        let beside = path.with_extension("txt");
-        if bless {
-            fs::write(&beside, &message).expect("a writable repository");
+/// The message about the bad model `case`.
+fn refusal(case: &Case) -> Result<String, String> {
+    let base = folder("tests/good").join(&case.base).with_extension("toml");
+    let good = fs::read_to_string(&base).map_err(|error| format!("{}: {error}", base.display()))?;
+    let source = ModelSource::Text {
+        name: format!("{}.toml", case.name),
+        text: case.apply(&good).map_err(|error| error.to_string())?,
+        folder: folder("tests/bad"),
+    };
+    let options = LoadOptions { sets: case.set.clone(), ..LoadOptions::default() };
+    match Model::load(source, &options) {
+        Ok(_) => Err("the model is accepted".to_owned()),
+        Err(ConfigError::Invalid { diagnostics, sources }) if !case.whole => {
+            Ok(diagnostics.iter().map(|one| one.brief(&sources)).collect())
         }
-        let expected = fs::read_to_string(&beside).unwrap_or_default();
-        if message != expected {
-            wrong.push_str(&format!("{}:\n{message}\nexpected:\n{expected}\n", path.display()));
-        }
+        Err(error) => Ok(error.render(Color::Off)),
     }
-    assert!(wrong.is_empty(), "{wrong}");
+}
+
+/// `BLESS=1` in the environment rewrites the expected messages.
+#[test]
+fn bad_models_are_refused_with_the_expected_messages() {
+    fixtures::check(&folder("tests/bad"), refusal).unwrap_or_else(|wrong| panic!("{wrong}"));
+}
+
+#[test]
+fn a_string_of_5000_characters_is_refused_and_shown_in_part() {
+    let minimal = fs::read_to_string(folder("tests/good/minimal.toml")).expect("a good model");
+    let source = ModelSource::Text {
+        name: "model.toml".to_owned(),
+        text: minimal.replace("\"small\"", &format!("\"{}\"", "x".repeat(5000))),
+        folder: folder("tests/good"),
+    };
+    let message = Model::load(source, &LoadOptions::default()).expect_err("too long").to_string();
+    assert!(message.starts_with("error: `name` is 5000 bytes long\n --> model.toml:2:8\n"));
+    assert!(message.contains("xxx...xxx") && message.contains("at most 4096"), "{message}");
+    assert!(message.lines().all(|line| line.chars().count() < 200), "{message}");
 }
