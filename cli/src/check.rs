@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use configs::engine::resistance::Space;
 use configs::estimate::Estimate;
+use configs::resistive::Space;
 use configs::{Color, GrainModel, Medium, Model, ResistiveModel, TimeStep, stability};
 use serde_json::{Map, Value, json};
 

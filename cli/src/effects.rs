@@ -2,13 +2,11 @@
 
 use std::path::PathBuf;
 
-use configs::contact_laws::{
-    ActsOn, GRAIN_FORCES, GrainForceEntry, LAWS, LawEntry, RESISTANCE_LAWS, ResistanceEntry, Role,
-    Twin, twins,
-};
+use configs::contact_laws::{ActsOn, GRAIN_FORCES, GrainForceEntry, LAWS, LawEntry};
 use configs::engine::ledger::{Channel, ChannelKind};
 use configs::engine::params::{Default, ParamSpec, Range};
 use configs::engine::units::format_si;
+use configs::resistive::{RESISTANCE_LAWS, ResistanceEntry, Role, Twin, twins};
 use configs::{describe_range, nearest};
 use serde_json::{Value, json};
 

@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use configs::contact_laws::formula::FUNCTIONS;
-use configs::contact_laws::{Effect, OwnEffect, STATE_VARIABLES};
-use configs::engine::resistance::Space;
 use configs::engine::units::format_si;
+use configs::resistive::Space;
+use configs::resistive::formula::FUNCTIONS;
+use configs::resistive::{Effect, OwnEffect, STATE_VARIABLES};
 use configs::{LoadOptions, Model, ModelSource, describe_range};
 use serde_json::{Value, json};
 

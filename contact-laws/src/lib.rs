@@ -5,14 +5,12 @@ mod capillary_bridge;
 mod cohesion_dmt;
 mod cohesion_jkr;
 mod damped;
-pub mod formula;
 mod grain_force;
 mod hertz;
 mod hertz_mindlin;
 mod hertz_mindlin_viscous;
 mod linear_spring_dashpot;
 mod registry;
-mod resistance;
 mod rolling_constant_torque;
 mod rolling_resistance;
 mod twisting_resistance;
@@ -21,11 +19,6 @@ mod velocity_restitution;
 pub use grain_force::{GRAIN_FORCES, GrainForceEntry, find_grain_force};
 pub use hertz::damping_ratio;
 pub use registry::{ActsOn, FromParams, LawEntry};
-pub use resistance::{
-    Acts, Coefficients, Direction, Draft, Effect, Expression, Facts, ForceError, Needs, OwnEffect,
-    OwnEffectError, OwnParameter, RESISTANCE_LAWS, ResistanceEntry, Role, STATE_VARIABLES,
-    StateVariable, Twin, find_resistance, twins,
-};
 
 /// Every law and effect, in the order of the docs.
 pub static LAWS: &[&LawEntry] = &[

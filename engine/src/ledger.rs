@@ -132,7 +132,7 @@ impl Ledger {
     }
 
     /// Takes the present values as the start: dissipation counts from here.
-    pub(crate) fn open(&mut self, entries: &[f64]) {
+    pub fn open(&mut self, entries: &[f64]) {
         self.balance.values.fill(0.0);
         self.post(entries);
         for (term, value) in self.terms.iter().zip(&mut self.balance.values) {
@@ -146,7 +146,7 @@ impl Ledger {
     }
 
     /// Closes a step: `entries` hold what is there now, or what was lost or put in during the step.
-    pub(crate) fn close(&mut self, entries: &[f64]) {
+    pub fn close(&mut self, entries: &[f64]) {
         self.post(entries);
         self.balance.unaccounted = self.total() - self.balance.initial;
         self.balance.worst = self.balance.worst.max(self.balance.unaccounted.abs());

@@ -34,7 +34,6 @@ pub mod params;
 mod prefetch;
 mod recessive;
 pub mod record;
-pub mod resistance;
 pub mod simulation;
 pub mod step;
 pub mod stopping;

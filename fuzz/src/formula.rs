@@ -1,6 +1,6 @@
 //! Formulas of a model.
 
-use contact_laws::formula::Formula;
+use resistive::formula::Formula;
 
 /// Names that a formula may use.
 const VARIABLES: [&str; 4] = ["v", "z", "rho", "A"];

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
-use engine::resistance::{Compact, Silhouette};
 use engine::units::Dimension;
+use resistive::{Compact, Silhouette};
 
 use crate::outline::{Draft, Revolved};
 use crate::registry::{Body, Casting, Launchable, ShapeEntry};

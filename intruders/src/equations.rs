@@ -1,7 +1,7 @@
 //! Equations of motion of planar bodies in a few coordinates: inertia and forces at points of them.
 
 use engine::math::{Mat4, Vec3, Vec4};
-use engine::resistance::assembly::COORDINATES;
+use resistive::assembly::COORDINATES;
 
 /// How the coordinates move a point.
 #[derive(Clone, Copy, Debug)]

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::{ParamSpec, ParamTable};
-use engine::resistance::{Compact, Silhouette};
+use resistive::{Compact, Silhouette};
 
 use crate::outline::{Draft, Revolved};
 use crate::registry::{Body, Casting, Launchable, ShapeEntry};

@@ -14,9 +14,9 @@ use engine::contact::Partner;
 use engine::grains::Space;
 use engine::math::{Vec3, Vec4, turned_about_y};
 use engine::params::ParamTable;
-use engine::resistance::State;
 use engine::stopping::Followed;
 use engine::surface::{Placement, Wrench};
+use resistive::State;
 
 use crate::equations::Equations;
 use crate::rod::{Pose, Rod};

@@ -2,8 +2,8 @@
 
 use engine::math::Vec3;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
-use engine::resistance::assembly::{COORDINATES, PARTS};
-use engine::resistance::{Assembly, Part, PartLoad, State};
+use resistive::assembly::{COORDINATES, PARTS};
+use resistive::{Assembly, Part, PartLoad, State};
 
 use crate::equations::Equations;
 use crate::registry::{Casting, Launchable, ShapeEntry};

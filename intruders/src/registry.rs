@@ -5,8 +5,8 @@ use std::sync::Arc;
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::{ParamSpec, ParamTable};
-use engine::resistance::{Assembly, State};
 use engine::surface::Surface;
+use resistive::{Assembly, State};
 
 use crate::hinged_links::HingedLinks;
 use crate::outline::Revolved;

@@ -5,8 +5,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use engine::grains::Space;
 use engine::math::{Vec3, Vec4};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
-use engine::resistance::{Immersion, Part, PartLoad};
 use engine::units::Dimension;
+use resistive::{Immersion, Part, PartLoad};
 
 use crate::equations::{Equations, Point};
 use crate::outline::Draft;

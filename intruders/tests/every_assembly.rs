@@ -3,8 +3,8 @@
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::{Default, ParamTable};
-use engine::resistance::{Immersion, State};
 use intruders::{Casting, Launchable, SHAPES, ShapeEntry};
+use resistive::{Immersion, State};
 
 /// A shape of middling size, or leaning, with the volume that its entry states.
 struct Example {

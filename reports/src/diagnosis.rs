@@ -1,6 +1,6 @@
 //! The report of a diagnosis: which effect is missing, what else it could be, and what to measure next.
 
-use configs::contact_laws::find_resistance;
+use configs::resistive::find_resistance;
 use serde_json::Value;
 
 use crate::comparison::{by_kind, views};

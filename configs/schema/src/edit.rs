@@ -2,9 +2,10 @@
 
 mod candidates;
 
-use contact_laws::{ActsOn, Role};
+use contact_laws::ActsOn;
 use engine::params::ParamSpec;
 use engine::units::{self, Dimension};
+use resistive::Role;
 use thiserror::Error;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, Value};
 
@@ -172,12 +173,12 @@ fn push(list: &mut Array, text: &str) {
 
 fn resistance_effect(name: &str) -> Result<&'static [ParamSpec], EditError> {
     let is_effect = |role: Role| matches!(role, Role::Effect(_));
-    if let Some(entry) = contact_laws::find_resistance(name)
+    if let Some(entry) = resistive::find_resistance(name)
         && is_effect(entry.role)
     {
         return Ok(entry.params);
     }
-    let all = contact_laws::RESISTANCE_LAWS.iter();
+    let all = resistive::RESISTANCE_LAWS.iter();
     let known = all.filter(|entry| is_effect(entry.role)).map(|entry| entry.name).collect();
     let other =
         contact_laws::find(name).is_some() || contact_laws::find_grain_force(name).is_some();
@@ -196,7 +197,7 @@ fn contact_effect(name: &str) -> Result<&'static [ParamSpec], EditError> {
     let effects = contact_laws::LAWS.iter().filter(|law| law.acts_on == ActsOn::ContactEffect);
     let forces = contact_laws::GRAIN_FORCES.iter().map(|force| force.name);
     let known = effects.map(|law| law.name).chain(forces).collect();
-    let other = contact_laws::find_resistance(name).is_some();
+    let other = resistive::find_resistance(name).is_some();
     Err(unknown(name, ["grains", "resistive-force"], known, other))
 }
 
@@ -259,7 +260,7 @@ fn set_number(document: &mut DocumentMut, path: &str, si: f64) -> Option<()> {
         Some((key, node)) => (key, Some(node)),
         None => (key, None),
     };
-    let entry = contact_laws::find_resistance(&baseline)?;
+    let entry = resistive::find_resistance(&baseline)?;
     let dimension = entry.params.iter().find(|spec| spec.key == key)?.dimension;
     let resistance = document.get_mut(table)?.as_table_like_mut()?;
     if node.is_none() && !resistance.contains_key(key) {

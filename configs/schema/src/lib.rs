@@ -47,4 +47,4 @@ pub use paths::PathError;
 pub use reader::interval as describe_range;
 pub use resolved::quoted as toml_string;
 pub use shipped::{SHIPPED, Shipped, find as find_shipped};
-pub use {contact_laws, engine, intruders};
+pub use {contact_laws, engine, intruders, resistive};

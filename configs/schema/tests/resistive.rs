@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use configs::contact_laws::{RESISTANCE_LAWS, Role};
 use configs::edit::{AddedEffect, Addition, add_effects};
+use configs::resistive::{RESISTANCE_LAWS, Role};
 use configs::{
     Color, LoadOptions, Model, ModelSource, ParameterError, ResistiveMedium, find_shipped,
 };

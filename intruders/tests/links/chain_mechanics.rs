@@ -2,7 +2,7 @@
 
 use super::common::{FINE, LENGTH, MASS, chain, law, link};
 use engine::math::Vec3;
-use engine::resistance::{Impact, PartLoad, State, Surroundings};
+use resistive::{Impact, PartLoad, State, Surroundings};
 
 const GRAVITY: f64 = 9.81;
 

@@ -1,11 +1,11 @@
 //! Links and the law of their resistance, for the tests of both.
 
-use contact_laws::{Coefficients, find_resistance};
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::{Default, ParamSpec, ParamTable};
-use engine::resistance::{Impact, ResistanceLaw, Surroundings, Tolerance};
 use intruders::{Casting, Launchable};
+use resistive::{Coefficients, find_resistance};
+use resistive::{Impact, ResistanceLaw, Surroundings, Tolerance};
 
 /// Length and diameter (m) and mass (kg) of a link of aluminium.
 pub(crate) const LENGTH: f64 = 0.2;

@@ -5,9 +5,9 @@ use engine::body::Mechanism;
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::ParamTable;
-use engine::resistance::{Impact, PartLoad, State, Surroundings};
 use engine::surface::Wrench;
 use intruders::HingedLinks;
+use resistive::{Impact, PartLoad, State, Surroundings};
 
 const GRAVITY: f64 = 9.81;
 const ANGLES: [f64; 2] = [0.8, -0.4];

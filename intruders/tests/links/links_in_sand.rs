@@ -2,7 +2,7 @@
 
 use super::common::{chain, down, into_sand, law, link, resistance};
 use engine::math::Vec3;
-use engine::resistance::{Ending, Impact, PartSample, Recorder, State, Trajectory};
+use resistive::{Ending, Impact, PartSample, Recorder, State, Trajectory};
 
 /// Longer than any of these impacts (s).
 const LONG: f64 = 2.0;

@@ -1,15 +1,13 @@
 //! The effect of `docs/own-effects.md` as a Rust type: what would be one new file in
-//! `contact-laws/src/resistance` and one line in the table there.
+//! `resistive/src/laws` and one line in the table there.
 
 use configs::{LoadOptions, Model, ModelSource};
-use contact_laws::{Coefficients, Facts, Needs, ResistanceEntry, Role};
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
-use engine::resistance::{
-    Account, Flow, Immersion, Impact, Load, Motion, ResistanceLaw, Surroundings,
-};
 use engine::units::Dimension;
 use intruders::Casting;
+use resistive::{Account, Flow, Immersion, Impact, Load, Motion, ResistanceLaw, Surroundings};
+use resistive::{Coefficients, Facts, Needs, ResistanceEntry, Role};
 
 /// F = −q ρ A v² z/D v̂   (N)
 struct LateDrag {

@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use configs::{ConfigError, LoadOptions, Model, ModelSource, find_shipped};
-use contact_laws::find_resistance;
 use nalgebra::DVector;
+use resistive::find_resistance;
 use serde::{Deserialize, Serialize};
 
 use super::chance::Chance;

@@ -3,7 +3,7 @@
 //! Sizes, mass, speeds, angles and two of four coefficients are assumed (`docs/two-link-chain.md`).
 
 use configs::{LoadOptions, Model, ModelSource};
-use engine::resistance::{Assembly, Recorder, State};
+use resistive::{Assembly, Recorder, State};
 
 use super::row::PublishedError;
 

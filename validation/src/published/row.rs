@@ -2,7 +2,7 @@
 
 use configs::ConfigError;
 use engine::error::ThreadsError;
-use engine::resistance::ImpactError;
+use resistive::ImpactError;
 use serde::Serialize;
 use thiserror::Error;
 

@@ -1,7 +1,7 @@
 //! An effect of another form than its formula: its strength changes with depth and with speed.
 
 use engine::math::Vec3;
-use engine::resistance::{Account, Immersion, Load, Motion, ResistanceLaw, Surroundings};
+use resistive::{Account, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 
 /// A law whose contribution is multiplied by what depends on depth and speed.
 pub(super) struct Bent {

@@ -1,6 +1,6 @@
 //! What a diagnosis is told of the effects that could be added.
 
-use contact_laws::{Effect, Twin, twins};
+use resistive::{Effect, Twin, twins};
 
 use super::needs::{contains, missing};
 use crate::forward::Candidate;

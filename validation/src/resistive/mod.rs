@@ -9,7 +9,7 @@ mod scatter;
 use configs::{FreeParameter, Medium, Model};
 use std::sync::Arc;
 
-use contact_laws::{Effect, RESISTANCE_LAWS};
+use resistive::{Effect, RESISTANCE_LAWS};
 use thiserror::Error;
 
 use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use contact_laws::Needs;
+use resistive::Needs;
 
 use crate::measurement::{Condition, MeasurementSet, Role, Run};
 

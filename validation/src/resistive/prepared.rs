@@ -5,13 +5,11 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::{Mutex, PoisonError};
 
 use configs::{FreeParameter, ResistiveMedium};
-use contact_laws::{Coefficients, Effect, Expression, ResistanceEntry};
 use engine::math::Vec3;
 use engine::params::{Default, ParamTable};
-use engine::resistance::{
-    Ending, Impact, ResistanceLaw, Space, State, Surroundings, Tolerance, Trajectory,
-};
 use intruders::{Casting, ShapeEntry};
+use resistive::{Coefficients, Effect, Expression, ResistanceEntry};
+use resistive::{Ending, Impact, ResistanceLaw, Space, State, Surroundings, Tolerance, Trajectory};
 
 use super::ForwardError;
 use super::bent::Bent;

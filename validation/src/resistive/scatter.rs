@@ -1,7 +1,7 @@
 //! What differs from run to run, as something that laws can be told.
 
 use engine::math::Vec3;
-use engine::resistance::{Account, Immersion, Load, Motion, ResistanceLaw};
+use resistive::{Account, Immersion, Load, Motion, ResistanceLaw};
 
 use crate::forward::Scatter;
 

@@ -1,13 +1,13 @@
 //! Poncelet's law has closed forms: eqs 18–22 of the three-shape study, restored.
 
-use engine::resistance::Trajectory;
+use resistive::Trajectory;
 
 use super::rig::{BED, MASS, law, law_of_depth, sphere};
 
 /// Solver errors and the last 1e-10 m at constant deceleration stay far below this (relative).
 const TOLERANCE: f64 = 1e-8;
 
-fn poncelet(h: f64, beta: f64) -> Vec<Box<dyn engine::resistance::ResistanceLaw>> {
+fn poncelet(h: f64, beta: f64) -> Vec<Box<dyn resistive::ResistanceLaw>> {
     vec![law("poncelet", &[("inertial", h), ("resistance", beta)])]
 }
 

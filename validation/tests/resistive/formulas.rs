@@ -1,7 +1,7 @@
 //! Formulas of any text, and of arithmetic that is known.
 
-use contact_laws::formula::Formula;
 use proptest::prelude::*;
+use resistive::formula::Formula;
 
 const VARIABLES: [&str; 3] = ["z", "v", "rho"];
 const VALUES: [f64; 3] = [0.02, 1.5, 3.0];

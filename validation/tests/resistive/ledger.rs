@@ -1,6 +1,6 @@
 //! The energy ledger of a resistive medium.
 
-use contact_laws::{RESISTANCE_LAWS, Role};
+use resistive::{RESISTANCE_LAWS, Role};
 
 use super::rig::{law, spinning_sphere, with_ledger};
 

@@ -3,11 +3,11 @@
 
 use std::sync::Arc;
 
-use contact_laws::{Acts, Direction, Draft, OwnEffect, OwnParameter};
 use engine::grains::Space;
 use engine::params::Range;
-use engine::resistance::{Impact, ImpactError, Recorder, ResistanceLaw, Trajectory};
 use engine::units::Dimension;
+use resistive::{Acts, Direction, Draft, OwnEffect, OwnParameter};
+use resistive::{Impact, ImpactError, Recorder, ResistanceLaw, Trajectory};
 
 use super::late_drag;
 use super::rig::{law, sphere, with_ledger};
@@ -38,7 +38,7 @@ fn own(force: &str, direction: Direction) -> Arc<OwnEffect> {
         parameters,
         space: Space::Spatial,
     };
-    Arc::new(OwnEffect::new(draft).expect("an effect"))
+    Arc::new(OwnEffect::new(draft, |_| false).expect("an effect"))
 }
 
 fn with(effect: Box<dyn ResistanceLaw>, angle: f64) -> Impact {

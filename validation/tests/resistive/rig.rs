@@ -1,11 +1,11 @@
 //! A sphere on a medium made of named laws.
 
-use contact_laws::{Coefficients, Expression, find_resistance};
 use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::{Default, ParamTable};
-use engine::resistance::{Ending, Impact, Recorder, ResistanceLaw, Surroundings};
 use intruders::Casting;
+use resistive::{Coefficients, Expression, find_resistance};
+use resistive::{Ending, Impact, Recorder, ResistanceLaw, Surroundings};
 
 pub(crate) const MASS: f64 = 0.0692;
 pub(crate) const DIAMETER: f64 = 0.0254;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::{Problem, TextFile, numbered};
 
 /// Files with tables of laws; the laws stand beside them.
-const REGISTRIES: [&str; 2] = ["contact-laws/src/lib.rs", "contact-laws/src/resistance/mod.rs"];
+const REGISTRIES: [&str; 2] = ["contact-laws/src/lib.rs", "resistive/src/laws/mod.rs"];
 
 /// A line of a registry table: `module::CONSTANT`.
 #[derive(Debug, PartialEq, Eq)]
@@ -237,7 +237,7 @@ fn find() { LAWS.iter().find(|entry| entry.name == name).copied() }
         };
         let found = |role: &str| {
             let law = law(role);
-            let file = ("contact-laws/src/resistance/drag.rs", law.as_str());
+            let file = ("resistive/src/laws/drag.rs", law.as_str());
             whats_of(REGISTRIES[1], &[registry, file])
         };
         assert_eq!(found("Baseline"), ["no model in configs/*.toml uses `drag`"]);

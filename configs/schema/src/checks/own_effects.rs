@@ -1,9 +1,9 @@
 //! Whether the formulas of a model's own effects are forces in the states that its impacts pass.
 
-use contact_laws::{Effect, OwnEffect};
 use engine::math::Vec3;
-use engine::resistance::{Motion, State};
 use engine::units::{Dimension, format_si};
+use resistive::{Effect, OwnEffect};
+use resistive::{Motion, State};
 
 use super::{Common, rounded};
 use crate::diagnostics::Diagnostic;

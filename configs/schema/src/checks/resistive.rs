@@ -1,8 +1,8 @@
 //! What only a model of a resistive force is checked for.
 
-use contact_laws::{Expression, Needs};
 use engine::params::ParamSpec;
 use engine::units::{Dimension, format_si};
+use resistive::{Expression, Needs};
 
 use super::{Common, own_effects, rounded, seconds};
 use crate::diagnostics::{Diagnostic, Span};

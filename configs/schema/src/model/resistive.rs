@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use contact_laws::{Coefficients, Effect, Expression, OwnEffect, ResistanceEntry};
 use engine::params::{ParamSpec, ParamTable};
-use engine::resistance::{Impact, ResistanceLaw, Space, Surroundings};
 use intruders::Casting;
+use resistive::{Coefficients, Effect, Expression, OwnEffect, ResistanceEntry};
+use resistive::{Impact, ResistanceLaw, Space, Surroundings};
 
 use super::{Condition, Intruder, Launch, Model};
 use crate::diagnostics::Span;

@@ -185,7 +185,7 @@ fn explain_law(name: &str, span: Span, slot: ActsOn, known: &[&LawEntry]) -> Dia
                 ActsOn::ContactBase => "contact law",
                 ActsOn::ContactEffect => "effect",
             };
-            if contact_laws::find_resistance(name).is_some() {
+            if resistive::find_resistance(name).is_some() {
                 return Diagnostic::error(format!("`{shown}` acts in a resistive-force medium"))
                     .at(span, "this medium is a bed of grains")
                     .help(format!("{kind}s: {list}; `plunge effects` describes them"));

@@ -1,12 +1,10 @@
 //! `[[effect]]` and `[[candidate]]` of the name `expression`: a force as a formula.
 
-use contact_laws::formula::{FormulaError, SyntaxError};
-use contact_laws::{
-    Acts, Direction, Draft, OwnEffect, OwnEffectError, OwnParameter, STATE_VARIABLES,
-};
 use engine::params::Range;
-use engine::resistance::Space;
 use engine::units::{self, Dimension};
+use resistive::Space;
+use resistive::formula::{FormulaError, SyntaxError};
+use resistive::{Acts, Direction, Draft, OwnEffect, OwnEffectError, OwnParameter, STATE_VARIABLES};
 
 use super::Places;
 use crate::diagnostics::{Diagnostic, Span, nearest, shorten};
@@ -66,7 +64,7 @@ pub(super) fn own_effect(
         parameters: parameters?,
         space,
     };
-    match OwnEffect::new(draft) {
+    match OwnEffect::new(draft, |id| contact_laws::find(id).is_some()) {
         Ok(effect) => Some((effect, id.span)),
         Err(error) => {
             table.reader.report(explain(table, &error, &id, &force));

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use contact_laws::{Effect, OwnEffect, RESISTANCE_LAWS, ResistanceEntry, Role};
 use engine::grains::Space;
+use resistive::{Effect, OwnEffect, RESISTANCE_LAWS, ResistanceEntry, Role};
 
 use super::fit::free;
 use super::foreign::Foreign;
@@ -253,7 +253,7 @@ fn explain(name: &str, span: Span, slot: Slot, known: &[&str]) -> Diagnostic {
     let kind = slot.name();
     let own = if slot == Slot::Effect { ", expression" } else { "" };
     let list = format!("{kind}s: {}{own}; `plunge effects` describes them", known.join(", "));
-    match (contact_laws::find_resistance(name), slot) {
+    match (resistive::find_resistance(name), slot) {
         (None, _) => {}
         (Some(_), Slot::Baseline) => {
             return Diagnostic::error(format!("`{shown}` is an effect, not a resistance law"))

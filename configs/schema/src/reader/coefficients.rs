@@ -1,7 +1,7 @@
 //! Coefficients of a force law: numbers, tables over the impact angle, expressions.
 
-use contact_laws::Expression;
 use engine::params::ParamSpec;
+use resistive::Expression;
 
 use super::{Found, TableReader};
 use crate::diagnostics::Diagnostic;

@@ -13,11 +13,11 @@ mod summary;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use ::resistive::ImpactError;
 use engine::bed::BedReport;
 use engine::checkpoint::{CheckpointError, FORMAT};
 use engine::error::StepError;
 use engine::record::RecordError;
-use engine::resistance::ImpactError;
 use thiserror::Error;
 
 use crate::build::BuildError;

@@ -8,7 +8,7 @@ use engine::parallel::n_threads;
 use engine::record::{
     BodyFrame, BodyLoad, BodySample, EventLevel, LogSetup, LoggedBody, RecordError, RunLog, Stamp,
 };
-use engine::resistance::{Ending, Impact, Recorder, Sample};
+use resistive::{Ending, Impact, Recorder, Sample};
 
 use super::drawing::shape_of;
 use super::folder::OutputFolder;

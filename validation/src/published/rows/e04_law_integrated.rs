@@ -1,7 +1,7 @@
 //! E4: the law of E3, integrated, beside the impacts that it was separated from.
 
 use configs::{LoadOptions, Medium, Model, ModelSource};
-use engine::resistance::Trajectory;
+use resistive::Trajectory;
 
 use crate::beds::Record;
 use crate::published::check::{Band, Check, Estimate, or_endless};

@@ -2,7 +2,7 @@
 
 use configs::{LoadOptions, Model, ModelSource};
 use engine::parallel::with_threads;
-use engine::resistance::Trajectory;
+use resistive::Trajectory;
 
 use crate::CASES;
 use crate::case::Outcome;

@@ -2,7 +2,7 @@
 
 use engine::ledger::{ChannelKind, Ledger, TermKind};
 use engine::math::Vec3;
-use engine::resistance::{Ending, Impact, PartStop, Sample};
+use resistive::{Ending, Impact, PartStop, Sample};
 use serde::{Deserialize, Serialize};
 
 use super::{

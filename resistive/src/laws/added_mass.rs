@@ -1,0 +1,86 @@
+//! Grains that move with the intruder.
+
+use crate::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings};
+use engine::ledger::{Channel, ChannelKind};
+use engine::params::Range;
+
+use super::facts::{Facts, Needs, Twin};
+use super::registry::{ResistanceEntry, Role, amplitude};
+
+/// (m + m_a) a = … − dm_a/dt v,  m_a = q ρ V(z)   (kg)
+///
+/// Grains come in at rest: their kinetic energy is held, as much again is lost in setting them in
+/// motion.
+///
+/// Source: added-mass foot model of Aguilar & Goldman, Nature Phys. 12, 278 (2016), with the immersed
+/// volume in place of its cone.
+struct AddedMass {
+    q: f64,
+}
+
+const ACCOUNTS: &[Account] = &[
+    Account {
+        channel: Channel { name: "added-mass", kind: ChannelKind::Stored },
+        flow: Flow::AddedMass,
+    },
+    Account {
+        channel: Channel { name: "added-mass", kind: ChannelKind::Dissipated },
+        flow: Flow::Recruitment,
+    },
+];
+
+/// The registry's line.
+pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
+    name: "added-mass",
+    role: Role::Effect(Facts {
+        unit: "1",
+        visible: &[],
+        separable_from: &[
+            Twin { effect: "buoyancy", any_of: &[Needs::Masses] },
+            Twin { effect: "yield-stress", any_of: &[Needs::Masses] },
+        ],
+    }),
+    summary: "Grains that move with the intruder and add to its inertia.",
+    formula: "(m + q rho V) dv/dt = ... - q rho dV/dt v",
+    signature: "lower deceleration, longer and deeper path; a jerk at entry",
+    source: "Aguilar & Goldman, Nature Phys. 12, 278 (2016)",
+    params: &[amplitude(
+        Range::closed(0.0, 50.0),
+        Range::closed(0.0, 5.0),
+        "moving grains in units of the displaced bed",
+    )],
+    variables: &[],
+    accounts: ACCOUNTS,
+    build: |given| Box::new(AddedMass { q: given.get("q") }),
+};
+
+impl ResistanceLaw for AddedMass {
+    fn accounts(&self) -> &'static [Account] {
+        ACCOUNTS
+    }
+
+    fn act(&self, at: &Immersion, _: &Motion, bed: &Surroundings, load: &mut Load) {
+        let density = self.q * bed.bulk_density;
+        load.added_mass += density * at.volume;
+        load.recruitment += density * at.volume_rate;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{SPHERE, sinking, surroundings};
+    use super::*;
+
+    #[test]
+    fn mass_is_recruited_as_fast_as_the_volume_grows() {
+        let bed = surroundings();
+        let (mut here, mut deeper) = (Load::default(), Load::default());
+        let law = AddedMass { q: 2.0 };
+        let at = SPHERE.at(0.01);
+        let at = Immersion { volume_rate: 3.0 * at.section, ..at };
+        law.act(&at, &sinking(3.0), &bed, &mut here);
+        law.act(&SPHERE.at(0.01 + 3e-7), &sinking(3.0), &bed, &mut deeper);
+        let rate = (deeper.added_mass - here.added_mass) / 1e-7;
+        assert!((here.recruitment / rate - 1.0).abs() < 1e-4);
+    }
+}

@@ -1,0 +1,64 @@
+//! Drag that is another one sideways than downward.
+
+use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
+use engine::params::Range;
+
+use super::facts::{Facts, Needs, Twin};
+use super::registry::{ResistanceEntry, Role, amplitude};
+
+/// F_x → (1 + q) F_x   (N)
+///
+/// of the drag; the vertical component is left as it is.
+///
+/// Source: coefficients of the horizontal and the vertical component differ and depend on the impact angle
+/// (Wang, Ye & Zheng, Eur. Phys. J. E 35, 7 (2012), Table 3).
+struct AnisotropicDrag {
+    q: f64,
+}
+
+const ACCOUNTS: &[Account] = &[];
+
+/// The registry's line.
+pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
+    name: "anisotropic-drag",
+    role: Role::Effect(Facts {
+        unit: "1",
+        visible: &[Needs::Oblique],
+        separable_from: &[Twin { effect: "lift", any_of: &[Needs::ObliqueAngles] }],
+    }),
+    summary: "A drag that is another one sideways than downward.",
+    formula: "F_x -> (1+q) F_x of the drag",
+    signature: "oblique impacts stop sooner and less far along, or later and farther; vertical ones are unchanged",
+    source: "Wang, Ye & Zheng, Eur. Phys. J. E 35, 7 (2012), Table 3",
+    params: &[amplitude(
+        Range::closed(-0.95, 20.0),
+        Range::closed(-0.8, 2.0),
+        "relative excess of the horizontal drag",
+    )],
+    variables: &[],
+    accounts: ACCOUNTS,
+    build: |given| Box::new(AnisotropicDrag { q: given.get("q") }),
+};
+
+impl ResistanceLaw for AnisotropicDrag {
+    fn accounts(&self) -> &'static [Account] {
+        ACCOUNTS
+    }
+
+    fn expose(&self, at: &mut Immersion, _: &Motion, _: &Surroundings) {
+        at.sideways_drag *= 1.0 + self.q;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{SPHERE, sinking, surroundings};
+    use super::*;
+
+    #[test]
+    fn only_the_horizontal_drag_is_multiplied() {
+        let mut at = SPHERE.at(0.02);
+        AnisotropicDrag { q: 0.25 }.expose(&mut at, &sinking(1.0), &surroundings());
+        assert_eq!(at, Immersion { sideways_drag: 1.25, ..SPHERE.at(0.02) });
+    }
+}

@@ -1,0 +1,110 @@
+//! An effect of a resistive medium, whoever defines it.
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::ResistanceLaw;
+use engine::params::{ParamSpec, ParamTable};
+
+use super::coefficients::Coefficients;
+use super::expression::OwnEffect;
+use super::facts::Needs;
+use super::registry::{ResistanceEntry, Role};
+use super::{RESISTANCE_LAWS, find_resistance};
+
+/// Something added to a force law, with one amplitude `q` that is 0 when it is absent.
+#[derive(Clone)]
+pub enum Effect {
+    /// One of [`RESISTANCE_LAWS`].
+    Listed(&'static ResistanceEntry),
+    /// One that a model file defines.
+    Own(Arc<OwnEffect>),
+}
+
+impl Effect {
+    /// The listed effect called `name`.
+    #[must_use]
+    pub fn listed(name: &str) -> Option<Self> {
+        let entry = find_resistance(name)?;
+        matches!(entry.role, Role::Effect(_)).then_some(Self::Listed(entry))
+    }
+
+    /// Its name: in a ranking, in the names of files, in `effect.NAME.q`.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Listed(entry) => entry.name,
+            Self::Own(own) => own.id(),
+        }
+    }
+
+    /// Its amplitude and what that may be.
+    #[must_use]
+    pub fn amplitude(&self) -> &ParamSpec {
+        match self {
+            Self::Listed(entry) => &entry.params[0],
+            Self::Own(own) => own.amplitude(),
+        }
+    }
+
+    /// Unit of its amplitude; "1" where it is a pure number.
+    #[must_use]
+    pub fn unit(&self) -> String {
+        match self {
+            Self::Listed(ResistanceEntry { role: Role::Effect(facts), .. }) => {
+                facts.unit.to_owned()
+            }
+            _ => Some(self.amplitude().dimension.si_unit())
+                .filter(|unit| !unit.is_empty())
+                .unwrap_or_else(|| "1".to_owned()),
+        }
+    }
+
+    /// What data must contain for it to act at all.
+    #[must_use]
+    pub fn visible(&self) -> Vec<Needs> {
+        match self {
+            Self::Listed(ResistanceEntry { role: Role::Effect(facts), .. }) => {
+                facts.visible.to_vec()
+            }
+            Self::Listed(_) => Vec::new(),
+            Self::Own(own) => own.visible(),
+        }
+    }
+
+    /// Its term of the force with amplitude `q` (SI) in an impact at `angle` below the horizontal (rad).
+    #[must_use]
+    pub fn build(&self, q: f64, angle: f64) -> Box<dyn ResistanceLaw> {
+        match self {
+            Self::Listed(entry) => {
+                let mut numbers = ParamTable::new();
+                numbers.set("q", q);
+                (entry.build)(&Coefficients::new(numbers))
+            }
+            Self::Own(own) => own.build(q, angle),
+        }
+    }
+
+    /// Sorts effects as they act: those of the table in its order, then the others by their names.
+    #[must_use]
+    pub fn rank(&self) -> (usize, &str) {
+        let listed = RESISTANCE_LAWS.iter().position(|entry| entry.name == self.name());
+        (listed.unwrap_or(RESISTANCE_LAWS.len()), self.name())
+    }
+}
+
+impl PartialEq for Effect {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Listed(a), Self::Listed(b)) => a.name == b.name,
+            (Self::Own(a), Self::Own(b)) => a == b,
+            _ => false,
+        }
+    }
+}
+
+impl fmt::Debug for Effect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Effect").field(&self.name()).finish()
+    }
+}

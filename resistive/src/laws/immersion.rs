@@ -1,0 +1,63 @@
+//! Only what is in the bed is loaded.
+
+use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
+use engine::params::Range;
+
+use super::facts::Facts;
+use super::registry::{ResistanceEntry, Role, amplitude};
+
+/// A → A + q (A_i − A)   (m², planar m)
+///
+/// in every force that acts on the frontal area A; A_i is that of the immersed part alone. The areas of a
+/// link are those of its immersed part already.
+///
+/// Source: geometry: a cap of depth z of a sphere shows π z (D − z).
+struct ImmersedArea {
+    q: f64,
+}
+
+const ACCOUNTS: &[Account] = &[];
+
+/// The registry's line.
+pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
+    name: "immersion",
+    role: Role::Effect(Facts { unit: "1", visible: &[], separable_from: &[] }),
+    summary: "Loads act on the immersed part of the frontal area, not on all of it.",
+    formula: "A -> A + q (A_immersed - A)",
+    signature: "a softer entry: slow impacts go deeper, fast ones hardly",
+    source: "area of the immersed cap",
+    params: &[amplitude(
+        Range::closed(0.0, 1.0),
+        Range::closed(0.0, 1.0),
+        "share of the frontal area that is loaded only when it is immersed",
+    )],
+    variables: &[],
+    accounts: ACCOUNTS,
+    build: |given| Box::new(ImmersedArea { q: given.get("q") }),
+};
+
+impl ResistanceLaw for ImmersedArea {
+    fn accounts(&self) -> &'static [Account] {
+        ACCOUNTS
+    }
+
+    fn expose(&self, at: &mut Immersion, _: &Motion, _: &Surroundings) {
+        at.loaded_area += self.q * (at.immersed_area - at.frontal_area);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{SPHERE, sinking, surroundings};
+    use super::*;
+
+    #[test]
+    fn a_sphere_at_a_quarter_of_its_diameter_is_loaded_on_three_quarters_of_its_area() {
+        let mut at = SPHERE.at(0.0254 / 4.0);
+        ImmersedArea { q: 1.0 }.expose(&mut at, &sinking(1.0), &surroundings());
+        assert!((at.loaded_area / SPHERE.frontal_area() - 0.75).abs() < 1e-14);
+        let mut deep = SPHERE.at(0.03);
+        ImmersedArea { q: 1.0 }.expose(&mut deep, &sinking(1.0), &surroundings());
+        assert!((deep.loaded_area / SPHERE.frontal_area() - 1.0).abs() < 1e-14);
+    }
+}

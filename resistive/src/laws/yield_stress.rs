@@ -1,0 +1,75 @@
+//! A resistance that is there at any depth and speed: cohesion.
+
+use crate::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings};
+use engine::ledger::{Channel, ChannelKind};
+use engine::math::Vec3;
+use engine::params::Range;
+
+use super::facts::{Facts, Needs, Twin};
+use super::registry::{ResistanceEntry, Role, amplitude};
+
+/// F = −q ρ g A D v̂ in the bed   (N)
+///
+/// Source: constant term of the resistance law; a bearing factor 5 to 9 times a cohesion c (Pa) gives
+/// q = N_c c/(ρ g D).
+struct YieldStress {
+    q: f64,
+}
+
+const ACCOUNTS: &[Account] = &[Account {
+    channel: Channel { name: "yield-stress", kind: ChannelKind::Dissipated },
+    flow: Flow::Static,
+}];
+
+/// The registry's line.
+pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
+    name: "yield-stress",
+    role: Role::Effect(Facts {
+        unit: "1",
+        visible: &[],
+        separable_from: &[Twin {
+            effect: "rail-friction",
+            any_of: &[Needs::FramesBeforeImpact, Needs::Diameters],
+        }],
+    }),
+    summary: "A constant resistance in the bed, against the motion: cohesion.",
+    formula: "F = -q rho g A D v/|v|",
+    signature: "largest at low speed: the intruder stops sooner and less deep, hardly at high speed",
+    source: "constant term of the resistance law; bearing factor times cohesion",
+    params: &[amplitude(
+        Range::closed(0.0, 200.0),
+        Range::closed(0.0, 50.0),
+        "resistance in units of rho g A D",
+    )],
+    variables: &[],
+    accounts: ACCOUNTS,
+    build: |given| Box::new(YieldStress { q: given.get("q") }),
+};
+
+impl ResistanceLaw for YieldStress {
+    fn accounts(&self) -> &'static [Account] {
+        ACCOUNTS
+    }
+
+    fn act(&self, at: &Immersion, _: &Motion, bed: &Surroundings, load: &mut Load) {
+        let weight = bed.bulk_density * bed.gravity * at.loaded_area * at.diameter;
+        load.friction += Vec3::new(1.0, 0.0, 1.0) * (self.q * weight);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{SPHERE, sinking, surroundings};
+    use super::*;
+
+    #[test]
+    fn the_limit_does_not_depend_on_depth_or_speed() {
+        let bed = surroundings();
+        let (mut here, mut there) = (Load::default(), Load::default());
+        YieldStress { q: 2.0 }.act(&SPHERE.at(0.01), &sinking(1.0), &bed, &mut here);
+        YieldStress { q: 2.0 }.act(&SPHERE.at(0.02), &sinking(3.0), &bed, &mut there);
+        let limit = 2.0 * bed.bulk_density * bed.gravity * SPHERE.frontal_area() * 0.0254;
+        assert!((here.friction.z - limit).abs() < 1e-12);
+        assert_eq!(here, there);
+    }
+}
