@@ -1,79 +1,95 @@
-//! Every defective set is refused, or understood, with the message beside it.
+//! Every defective set is refused, or understood, with the expected message.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use configs::Color;
+use configs::{Color, Diagnostic, Sources, render_all};
+use fixtures::Case;
+use tempfile::TempDir;
 use validation::measurement::MeasurementSet;
 
-/// The folders in `tests/data/<group>`, sorted; relative, so that messages are the same everywhere.
-fn folders(group: &str) -> Vec<PathBuf> {
-    let mut folders: Vec<PathBuf> = fs::read_dir(Path::new("tests/data").join(group))
-        .expect("the folder is part of the repository")
-        .map(|entry| entry.expect("a readable folder").path())
-        .filter(|path| path.is_dir())
-        .collect();
-    folders.sort();
-    folders
+/// Where the cases are.
+const BAD: &str = "tests/data/bad";
+
+/// A set on the disk, until this is dropped.
+struct Written {
+    folder: PathBuf,
+    _around: TempDir,
 }
 
-/// What a user is told about the set in `folder`.
-fn told(folder: &Path) -> String {
-    match MeasurementSet::load(folder) {
-        Err(error) => error.render(Color::Off),
-        Ok(loaded) => {
-            let mut text = String::from("accepted\n");
-            for line in loaded.tables.iter().chain(&loaded.set.notes) {
-                text.push_str(&format!("{line}\n"));
+/// The set `case` in a folder of its own: a good set with changes in it. What is no text stands
+/// as a file in the folder of the case's name. Beside the new folder lies a table, `runs.csv`.
+fn written(case: &Case) -> Result<Written, String> {
+    let text = |error: std::io::Error| error.to_string();
+    let around = tempfile::tempdir().map_err(text)?;
+    let folder = around.path().join("set");
+    fs::create_dir(&folder).map_err(text)?;
+    fs::copy("tests/data/good/scalars/runs.csv", around.path().join("runs.csv")).map_err(text)?;
+    for entry in fs::read_dir(Path::new("tests/data/good").join(&case.base)).map_err(text)? {
+        let good = entry.map_err(text)?.path();
+        let (name, stem) = (good.file_name().unwrap_or_default(), good.file_stem());
+        let bytes = Path::new(BAD).join(&case.name).join(name);
+        let changed = match fs::read(&bytes) {
+            Ok(bytes) => bytes,
+            Err(_) => {
+                let stem = stem.unwrap_or_default().to_string_lossy();
+                let good = fs::read_to_string(&good).map_err(text)?;
+                case.apply_to(&stem, &good).map_err(|error| error.to_string())?.into_bytes()
             }
-            text + &loaded.render_warnings(Color::Off)
-        }
+        };
+        fs::write(folder.join(name), changed).map_err(text)?;
     }
+    Ok(Written { folder, _around: around })
 }
 
-/// With `BLESS=1` in the environment the messages beside the sets are rewritten.
-fn compare(group: &str, at_least: usize) {
-    let bless = std::env::var_os("BLESS").is_some();
-    let mut wrong = String::new();
-    let folders = folders(group);
-    assert!(folders.len() >= at_least, "only {} sets in {group}", folders.len());
-    for folder in folders {
-        let (told, beside) = (told(&folder), folder.join("expected.txt"));
-        if bless {
-            fs::write(&beside, &told).expect("a writable repository");
+/// What a user reads about the set `case`.
+fn message(case: &Case) -> Result<String, String> {
+    let written = written(case)?;
+    let show = |diagnostics: &[Diagnostic], sources: &Sources| match case.whole {
+        true => render_all(diagnostics, sources, Color::Off),
+        false => diagnostics.iter().map(|one| one.brief(sources)).collect(),
+    };
+    let text = match MeasurementSet::load(&written.folder) {
+        Err(error) => show(&error.diagnostics, &error.sources),
+        Ok(loaded) => {
+            let lines = loaded.tables.iter().chain(&loaded.set.notes);
+            let lines: String = lines.map(|line| format!("{line}\n")).collect();
+            format!("accepted\n{lines}{}", show(&loaded.warnings, &loaded.sources))
         }
-        let expected = fs::read_to_string(&beside).unwrap_or_default();
-        if told != expected {
-            wrong.push_str(&format!("{}:\n{told}\nexpected:\n{expected}\n", folder.display()));
-        }
-    }
-    assert!(wrong.is_empty(), "{wrong}");
+    };
+    Ok(text.replace(&format!("{}/", written.folder.display()), ""))
 }
 
-#[test]
-fn every_defect_of_a_table_is_told_as_the_message_beside_it() {
-    compare("bad-csv", 50);
+/// The case `name`, written.
+fn bad(name: &str) -> Written {
+    let topics = fixtures::topics(Path::new(BAD)).unwrap_or_else(|error| panic!("{error}"));
+    let mut cases = topics.iter().flat_map(|topic| &topic.cases);
+    let case = cases.find(|case| case.name == name).expect("a case of this name");
+    written(case).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// `BLESS=1` in the environment rewrites the expected messages.
 #[test]
-fn every_defect_of_a_measurement_toml_is_told_as_the_message_beside_it() {
-    compare("bad-set", 20);
+fn every_defect_of_a_set_brings_the_expected_message() {
+    fixtures::check(Path::new(BAD), message).unwrap_or_else(|wrong| panic!("{wrong}"));
 }
 
 #[test]
 fn what_differs_in_form_alone_reads_to_the_same_set() {
-    let load = |name: &str| {
-        let folder = Path::new("tests/data/bad-csv").join(name);
-        MeasurementSet::load(&folder).unwrap_or_else(|error| panic!("{error}")).set
-    };
-    let plain = load("no-last-line-end");
-    for name in
-        ["byte-order-mark", "line-ends-crlf", "line-ends-cr", "blank-lines-and-no-last-line-end"]
-    {
-        assert_eq!(load(name), plain, "{name}");
+    let load =
+        |folder: &Path| MeasurementSet::load(folder).unwrap_or_else(|error| panic!("{error}")).set;
+    let plain = load(Path::new("tests/data/good/scalars"));
+    for name in [
+        "byte-order-mark",
+        "line-ends-crlf",
+        "line-ends-cr",
+        "no-last-line-end",
+        "blank-lines-and-no-last-line-end",
+    ] {
+        assert_eq!(load(&bad(name).folder), plain, "{name}");
     }
     for name in ["semicolons", "tabs", "semicolons-and-decimal-commas"] {
-        assert_eq!(load(name).runs, plain.runs, "{name}");
+        assert_eq!(load(&bad(name).folder).runs, plain.runs, "{name}");
     }
 }
 
@@ -90,7 +106,7 @@ fn a_set_that_is_not_there_is_told_by_its_name() {
 
 #[test]
 fn a_set_describes_itself() {
-    let loaded = MeasurementSet::load(Path::new("tests/data/bad-csv/renamed-columns"))
+    let loaded = MeasurementSet::load(&bad("renamed-columns").folder)
         .unwrap_or_else(|error| panic!("{error}"));
     let wanted = "\
 sample: trajectories, 2 conditions (1 held out), 2 runs
