@@ -1,7 +1,7 @@
 //! Reading the records of a log, chunk by chunk, without trusting a length.
 
 use mcap::McapError;
-use mcap::records::op;
+use mcap::records::{Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 /// The most a chunk may hold, compressed or not (bytes); a log's own chunks are 64 times smaller.
@@ -61,6 +61,9 @@ impl ChunkHead {
 /// Whatever ended the reading early: a bad checksum, bad compression, a bad length, an early end.
 /// Sizes above [`CHUNK_LIMIT`] are refused before memory is taken for them.
 pub fn unpack(head: &ChunkHead, packed: &[u8], records: &mut Vec<u8>) -> Result<(), McapError> {
+    if head.uncompressed_size > CHUNK_LIMIT {
+        return Err(McapError::ChunkTooLarge(head.uncompressed_size));
+    }
     // the reader takes a file's records, so the chunk is presented as a file of one
     let mut prefix = Vec::with_capacity(RECORD_PREFIX + ChunkHead::MAX);
     let length = (head.data_start + packed.len()) as u64;
@@ -93,6 +96,10 @@ pub fn unpack(head: &ChunkHead, packed: &[u8], records: &mut Vec<u8>) -> Result<
                 *source = later;
             }
             LinearReadEvent::Record { opcode, data } => {
+                // a head without a checksum may say less than there is
+                if (records.len() + data.len()) as u64 > CHUNK_LIMIT {
+                    return Err(McapError::ChunkTooLarge(head.uncompressed_size));
+                }
                 records.push(opcode);
                 records.extend_from_slice(&(data.len() as u64).to_le_bytes());
                 records.extend_from_slice(data);
@@ -100,6 +107,59 @@ pub fn unpack(head: &ChunkHead, packed: &[u8], records: &mut Vec<u8>) -> Result<
         }
     }
     Ok(())
+}
+
+/// Parses a record as [`mcap::parse_record`] does, and takes no memory for a text that is longer than the record:
+/// a length of a few bytes can say four gigabytes.
+///
+/// # Errors
+/// If the record is cut or damaged.
+pub fn parse_record(opcode: u8, body: &[u8]) -> Result<Record<'_>, McapError> {
+    match texts_fit(opcode, body) {
+        Some(()) => mcap::parse_record(opcode, body),
+        None => Err(McapError::UnexpectedEof),
+    }
+}
+
+/// Whether every text of a record lies in its body.
+fn texts_fit(opcode: u8, body: &[u8]) -> Option<()> {
+    // Bytes before the texts, how many texts, and whether a map of texts follows them.
+    let (start, texts, map) = match opcode {
+        op::HEADER => (0, 2, false),
+        op::SCHEMA => (2, 2, false),
+        op::CHANNEL => (4, 2, true),
+        op::CHUNK => (28, 1, false),
+        op::CHUNK_INDEX => (length_at(body, 32)?.checked_add(44)?, 1, false),
+        op::ATTACHMENT => (16, 2, false),
+        op::ATTACHMENT_INDEX => (40, 2, false),
+        op::METADATA => (0, 1, true),
+        op::METADATA_INDEX => (16, 1, false),
+        _ => return Some(()),
+    };
+    let mut at = start;
+    for _ in 0..texts {
+        at = text_end(body, at)?;
+    }
+    if map {
+        let end = text_end(body, at)?;
+        at += 4;
+        while at < end {
+            at = text_end(body, at)?;
+        }
+    }
+    Some(())
+}
+
+/// The length (bytes) that stands at `at`.
+fn length_at(body: &[u8], at: usize) -> Option<usize> {
+    let bytes = body.get(at..at.checked_add(4)?)?;
+    Some(u32::from_le_bytes(bytes.try_into().ok()?) as usize)
+}
+
+/// Where the text ends whose length stands at `at`; none if that is behind the body.
+fn text_end(body: &[u8], at: usize) -> Option<usize> {
+    let end = at.checked_add(4)?.checked_add(length_at(body, at)?)?;
+    (end <= body.len()).then_some(end)
 }
 
 /// Iterates over records laid end to end, ending at the first incomplete one.
@@ -123,5 +183,64 @@ impl<'a> Iterator for Records<'a> {
         let (body, rest) = rest.split_at_checked(usize::try_from(length).ok()?)?;
         self.0 = rest;
         Some((prefix[0], body))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A body of `before` zeros, then the length `length` and nothing behind it.
+    fn cut(before: usize, length: u32) -> Vec<u8> {
+        [&vec![0; before][..], &length.to_le_bytes()].concat()
+    }
+
+    #[test]
+    fn a_text_longer_than_its_record_is_refused_before_it_takes_memory() {
+        // Of each kind: where a length stands of which nothing follows.
+        let places = [
+            (op::HEADER, 0),
+            (op::HEADER, 4),
+            (op::SCHEMA, 2),
+            (op::SCHEMA, 6),
+            (op::CHANNEL, 4),
+            (op::CHANNEL, 8),
+            (op::CHANNEL, 12),
+            (op::CHUNK, 28),
+            (op::CHUNK_INDEX, 44),
+            (op::ATTACHMENT, 16),
+            (op::ATTACHMENT, 20),
+            (op::ATTACHMENT_INDEX, 40),
+            (op::METADATA, 0),
+            (op::METADATA_INDEX, 16),
+        ];
+        for (opcode, before) in places {
+            for length in [1, 1 << 20, u32::MAX] {
+                let body = cut(before, length);
+                let found = parse_record(opcode, &body);
+                assert!(matches!(found, Err(McapError::UnexpectedEof)), "{opcode} {before}");
+            }
+        }
+        // In a map of eight bytes, a key that is longer.
+        let map = [&cut(0, 0)[..], &8_u32.to_le_bytes(), &u32::MAX.to_le_bytes(), &[0; 4]].concat();
+        assert!(matches!(parse_record(op::METADATA, &map), Err(McapError::UnexpectedEof)));
+        assert!(parse_record(op::METADATA, &[0; 8]).is_ok(), "an empty one is whole");
+    }
+
+    #[test]
+    fn a_chunk_that_says_more_than_any_may_hold_is_not_unpacked() {
+        for crc in [0, 1] {
+            let head = ChunkHead {
+                uncompressed_size: CHUNK_LIMIT + 1,
+                crc,
+                compression: "zstd".to_owned(),
+                compressed_size: 3,
+                data_start: 44,
+            };
+            let mut records = Vec::new();
+            let found = unpack(&head, &[1, 2, 3], &mut records);
+            assert!(matches!(found, Err(McapError::ChunkTooLarge(_))), "{found:?}");
+            assert!(records.is_empty());
+        }
     }
 }

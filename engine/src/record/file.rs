@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::BufWriter;
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 use mcap::records::MessageHeader;
@@ -56,7 +56,7 @@ pub(super) struct Cut {
 /// the same places.
 pub(super) struct LogFile {
     /// Gone after an error, so that nothing more is written to a broken file, not even on drop.
-    writer: Option<Writer<BufWriter<File>>>,
+    writer: Option<Writer<BufWriter<Disk>>>,
     sync: File,
     cut: Cut,
     last_step: Option<u64>,
@@ -93,7 +93,7 @@ impl LogFile {
             .compression_threads(0)
             .chunk_size(Some(cut.chunk_bytes))
             .library("plunge")
-            .create(BufWriter::new(file))
+            .create(BufWriter::new(Disk(file)))
             .map_err(|e| RecordError::mcap(working, e))?;
         Ok(Self {
             writer: Some(writer),
@@ -123,7 +123,7 @@ impl LogFile {
     /// Writes through the container's writer and closes the file if that fails.
     pub(super) fn with<T>(
         &mut self,
-        write: impl FnOnce(&mut Writer<BufWriter<File>>) -> mcap::McapResult<T>,
+        write: impl FnOnce(&mut Writer<BufWriter<Disk>>) -> mcap::McapResult<T>,
     ) -> Result<T, RecordError> {
         let Some(writer) = &mut self.writer else {
             return Err(RecordError::Closed { path: self.working.clone() });
@@ -204,6 +204,27 @@ impl LogFile {
     }
 }
 
+/// The file on the disk. Tests let the disk be full from some byte on.
+pub(super) struct Disk(File);
+
+impl io::Write for Disk {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        #[cfg(test)]
+        let bytes = tests::with_room(bytes)?;
+        self.0.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+impl io::Seek for Disk {
+    fn seek(&mut self, to: io::SeekFrom) -> io::Result<u64> {
+        self.0.seek(to)
+    }
+}
+
 /// Whether a positive multiple of `every` lies in `last..step`.
 fn passes_multiple(every: u64, last: u64, step: u64) -> bool {
     step > last && {
@@ -217,8 +238,27 @@ fn rename(from: &Path, to: &Path) -> Result<(), RecordError> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
+    use std::cell::Cell;
+    use std::io;
+
     use super::passes_multiple;
+
+    thread_local! {
+        /// Bytes for which the disk of this thread has room.
+        pub(in super::super) static ROOM: Cell<u64> = const { Cell::new(u64::MAX) };
+    }
+
+    /// What of `bytes` the disk still takes.
+    pub(super) fn with_room(bytes: &[u8]) -> io::Result<&[u8]> {
+        let room = ROOM.get();
+        let taken = bytes.len().min(usize::try_from(room).unwrap_or(usize::MAX));
+        ROOM.set(room - taken as u64);
+        match taken {
+            0 if !bytes.is_empty() => Err(io::ErrorKind::StorageFull.into()),
+            _ => Ok(&bytes[..taken]),
+        }
+    }
 
     #[test]
     fn a_chunk_ends_after_the_last_message_of_each_multiple_and_never_after_step_zero() {

@@ -35,7 +35,7 @@ pub(super) fn copy_messages(
             if to.messages() == needed {
                 break;
             }
-            match mcap::parse_record(opcode, body).map_err(|e| damaged(e.to_string()))? {
+            match chunk::parse_record(opcode, body).map_err(|e| damaged(e.to_string()))? {
                 Record::Channel(channel) => {
                     let same = usize::from(channel.id)
                         .checked_sub(1)

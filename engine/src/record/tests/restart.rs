@@ -4,6 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 use super::*;
+use crate::record::file::tests::ROOM;
 
 const LAST: u64 = 300;
 
@@ -161,17 +162,32 @@ fn the_log_of_another_model_is_not_taken_up() {
     assert!(matches!(result, Err(RecordError::OtherRun { .. })), "{result:?}");
 }
 
-#[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_an_error_of_the_call_that_met_it() {
-    let scratch = Scratch::new();
     let mut setup = setup();
     setup.grains = false;
-    std::os::unix::fs::symlink("/dev/full", scratch.0.join("run.mcap.partial")).unwrap();
-    let result = RunLog::create(&scratch.0, &setup).map(drop);
-    let Err(RecordError::Io { path, source, .. }) = result else {
-        panic!("{result:?}");
+    let written = |scratch: &Scratch| {
+        let mut log = RunLog::create(&scratch.0, &setup)?;
+        for step in 0..=LAST {
+            write_step(&mut log, step, 0)?;
+        }
+        log.finish().map(drop)
     };
-    assert_eq!(path, scratch.0.join("run.mcap.partial"));
-    assert_eq!(source.kind(), std::io::ErrorKind::StorageFull);
+    let scratch = Scratch::new();
+    written(&scratch).unwrap();
+    let whole = fs::read(scratch.0.join(RUN_LOG)).unwrap().len() as u64;
+    // Full in its head, in each of its chunks, and in the summary that `finish` writes.
+    let rooms = (0..50).map(|part| whole * part / 50).chain([whole - 200, whole - 20, whole - 1]);
+    for room in rooms {
+        let scratch = Scratch::new();
+        ROOM.set(room);
+        let result = written(&scratch);
+        ROOM.set(u64::MAX);
+        let Err(RecordError::Io { path, source, .. }) = result else {
+            panic!("room for {room} bytes: {result:?}");
+        };
+        assert_eq!(path, scratch.0.join("run.mcap.partial"), "room for {room} bytes");
+        assert_eq!(source.kind(), std::io::ErrorKind::StorageFull, "room for {room} bytes");
+        assert!(!scratch.0.join(RUN_LOG).exists(), "room for {room} bytes");
+    }
 }
