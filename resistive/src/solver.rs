@@ -4,16 +4,16 @@
 //! Written out for eight numbers and no heap: an impact is some twenty steps, thousands of impacts make
 //! a diagnosis, and the slopes that only dense output needs are found when it is asked for.
 
+mod root;
 mod tableau;
 
 use std::cell::Cell;
-
-use roots::{SimpleConvergency, find_root_brent};
 
 use super::assembly::{COORDINATES, State};
 use super::impact::Tolerance;
 use super::modes::{Modes, accelerate};
 use super::motion::System;
+use root::root;
 use tableau::{DENSE, DENSE_STAGES, END, ERROR, LOW_ORDER_STEP, Row, SLOPES, STAGES, STEP};
 
 /// Numbers of a state: coordinates, then rates.
@@ -196,9 +196,7 @@ impl<'a> Solver<'a> {
     ) -> f64 {
         debug_assert!(start >= 0.0 && end < 0.0);
         let eps = 4.0 * f64::EPSILON * (1.0 + to.abs());
-        let mut convergence = SimpleConvergency { eps, max_iter: 200 };
-        let at = |time: f64| if time - from == 0.0 { start } else { value(&self.at(time)) };
-        find_root_brent(from, to, at, &mut convergence).unwrap_or(to)
+        root((from, start), (to, end), eps, |time| value(&self.at(time)))
     }
 
     fn slope(&self, time: f64, numbers: &Flat) -> Flat {
