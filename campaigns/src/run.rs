@@ -34,6 +34,9 @@ type Failures = BTreeMap<[u8; 32], String>;
 pub fn run(planned: &Planned, folder: &Folder, place: &Place<'_>) -> Result<(), SweepError> {
     let _held = folder.claim(&planned.plan)?;
     let missing = missing(planned, folder)?;
+    if !planned.plan.keep_logs {
+        clear_done(planned, &missing, folder);
+    }
     let failures = beds(planned, &missing, place)?;
     let before = planned.plan.n_distinct() - missing.len();
     let work = |&index: &usize| planned.needs[index].work;
@@ -171,12 +174,26 @@ fn conclude(
 ) -> Result<(), FolderError> {
     folder.conclude(done)?;
     if !keep_logs {
-        for name in LOGS {
-            // What stays only takes room.
-            drop(fs::remove_file(folder.of_point(&point.hash).join(name)));
-        }
+        clear(point, folder);
     }
     Ok(())
+}
+
+/// Takes away what a kill has left of points that are done: it came between their `done.json` and the removal of
+/// their logs.
+fn clear_done(planned: &Planned, missing: &[usize], folder: &Folder) {
+    let missing: BTreeSet<&str> =
+        missing.iter().map(|&index| planned.plan.points[index].hash.as_str()).collect();
+    let done = planned.plan.points.iter().filter(|point| !missing.contains(point.hash.as_str()));
+    done.for_each(|point| clear(point, folder));
+}
+
+/// Takes away the logs of `point`; what stays only takes room.
+fn clear(point: &Point, folder: &Folder) {
+    let of_point = folder.of_point(&point.hash);
+    for name in LOGS {
+        drop(fs::remove_file(of_point.join(name)));
+    }
 }
 
 /// Whether another try at the same point would fail likewise.

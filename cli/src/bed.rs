@@ -27,7 +27,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         CommandError::bad_input(format!("a medium of the kind \"{kind}\" has no bed to prepare"))
     })?;
     common.refuse_too_large(&model)?;
-    let mut terminal = Terminal::new(common.quiet)?;
+    let mut terminal = Terminal::new(common.quiet);
     let cache = common.cache_folder();
     let prepared = common.on_threads(|| prepare(grains, &cache, &mut terminal))?;
     terminal.clear();

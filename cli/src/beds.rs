@@ -70,7 +70,7 @@ impl<'a> Workshop<'a> {
         let cache = cache_folder(beds.cache.as_deref());
         let elsewhere = beds.on.scheduler().map(Elsewhere::by).transpose();
         let elsewhere = elsewhere.context("cannot find this program")?;
-        Ok(Self { flags, cache, terminal: Terminal::new(flags.quiet)?, elsewhere })
+        Ok(Self { flags, cache, terminal: Terminal::new(flags.quiet), elsewhere })
     }
 
     fn place(&self) -> Place<'_> {

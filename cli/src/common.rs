@@ -20,7 +20,7 @@ pub(crate) struct Common {
     #[arg(long)]
     pub(crate) seed: Option<u64>,
     /// The folder to write to.
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Threads to use, 1 to 256; they never change a result.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]

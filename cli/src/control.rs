@@ -1,24 +1,18 @@
-//! Progress on a terminal, warnings, and the signals that stop a run.
+//! Progress on a terminal, warnings, and whether to go on.
 
 use std::io::{self, IsTerminal};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
-use anyhow::Context as _;
 use configs::printable;
 use configs::run::{Control, Progress};
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-use signal_hook::flag;
 use validation::beds::{self as campaign, Watch};
 
 use crate::output::{self, CommandError};
+use crate::signals;
 
-/// What the terminal and the signals say while a model runs.
+/// What the terminal shows, and signals say, while a model runs.
 pub(crate) struct Terminal {
-    /// The signal that asked to stop; 0 for none.
-    signal: Arc<AtomicUsize>,
     bar: ProgressBar,
     bar_of: Option<BarOf>,
     quiet: bool,
@@ -32,36 +26,17 @@ enum BarOf {
 }
 
 impl Terminal {
-    /// Listens for signals: the first asks the run to stop, a second ends the program at once. A signal
-    /// that is ignored, as `nohup` has it, stays ignored.
-    pub(crate) fn new(quiet: bool) -> anyhow::Result<Self> {
-        let signal = Arc::new(AtomicUsize::new(0));
-        let asked = Arc::new(AtomicBool::new(false));
-        let ignored = ignored_signals();
-        for number in [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|n| ignored >> (n - 1) & 1 == 0)
-        {
-            flag::register_conditional_shutdown(number, 128 + number, Arc::clone(&asked))
-                .and_then(|_| flag::register(number, Arc::clone(&asked)))
-                .and_then(|_| {
-                    flag::register_usize(
-                        number,
-                        Arc::clone(&signal),
-                        number.unsigned_abs() as usize,
-                    )
-                })
-                .context("cannot listen for signals")?;
-        }
+    /// A bar of progress, unless nobody would see it.
+    pub(crate) fn new(quiet: bool) -> Self {
         let shown = !quiet && io::stderr().is_terminal();
         let bar = if shown { ProgressBar::no_length() } else { ProgressBar::hidden() };
-        Ok(Self { signal, bar, bar_of: None, quiet })
+        Self { bar, bar_of: None, quiet }
     }
 
     /// What a command that was asked to stop ends with.
     pub(crate) fn interrupted(&self, consequence: &str) -> CommandError {
-        CommandError::Partly {
-            code: 128 + self.signal.load(Ordering::Relaxed) as u8,
-            message: format!("stopped by a signal; {consequence}\n"),
-        }
+        self.clear();
+        stopped(consequence)
     }
 
     /// Takes the bar away.
@@ -76,11 +51,6 @@ impl Terminal {
         }
     }
 
-    /// Whether a signal has asked to stop.
-    pub(crate) fn is_asked_to_stop(&self) -> bool {
-        self.signal.load(Ordering::Relaxed) != 0
-    }
-
     fn show(&mut self, what: BarOf, template: &str) {
         if self.bar_of == Some(what) {
             return;
@@ -92,12 +62,9 @@ impl Terminal {
     }
 }
 
-/// The signals that whoever started the program had it ignore, signal n as bit n − 1, where the system
-/// says so.
-fn ignored_signals() -> u64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+/// What a command ends with that a signal has stopped.
+pub(crate) fn stopped(consequence: &str) -> CommandError {
+    CommandError::Partly { code: signals::exit_status(), message: signals::words(consequence) }
 }
 
 /// Impacts side by side.
@@ -125,7 +92,7 @@ impl Watch for Terminal {
     }
 
     fn wants_to_stop(&self) -> bool {
-        self.is_asked_to_stop()
+        signals::is_asked_to_stop()
     }
 }
 
@@ -167,6 +134,6 @@ impl Control for Terminal {
     }
 
     fn wants_to_stop(&self) -> bool {
-        self.is_asked_to_stop()
+        signals::is_asked_to_stop()
     }
 }

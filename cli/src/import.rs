@@ -6,7 +6,10 @@ use exchange::lammps::{ImportError, Imported, import};
 use exchange::run_files::{RunFiles, is_log};
 use serde_json::json;
 
+use crate::BEGINS_AGAIN;
+use crate::control::stopped;
 use crate::output::{self, CommandError, CommandResult};
+use crate::signals;
 
 /// Arguments of `plunge import`.
 #[derive(clap::Args, Debug)]
@@ -40,7 +43,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     if let Some(folder) = folder.filter(|folder| !folder.as_os_str().is_empty()) {
         make(folder)?;
     }
-    let imported = import(&args.folder, &files.log).map_err(failed)?;
+    let imported = import(&args.folder, &files.log, &signals::is_asked_to_stop).map_err(failed)?;
     match (args.json, args.quiet) {
         (true, _) => output::json_to_stdout(&json!({
             "log": imported.files.log.to_string_lossy(),
@@ -77,6 +80,7 @@ fn as_text(Imported { summary, files, samples, frames }: &Imported) -> String {
 /// A log that cannot be written is a failure; everything else is the input's fault.
 fn failed(error: ImportError) -> CommandError {
     match error {
+        ImportError::Stopped => stopped(BEGINS_AGAIN),
         ImportError::Record(_) | ImportError::Io { doing: "write" | "make", .. } => {
             CommandError::Failed(error.into())
         }

@@ -24,6 +24,7 @@ mod own_effects;
 mod recover;
 mod report;
 mod run;
+mod signals;
 mod sweep;
 mod task;
 mod view;
@@ -89,7 +90,8 @@ fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(usage.exit_code()).unwrap_or(2));
         }
     };
-    let result = match cli.command {
+    let result = signals::listen(cli.command.if_stopped()).map_err(Into::into);
+    let result = result.and_then(|()| match cli.command {
         Command::Run(args) => run::run(&args),
         Command::Bed(args) => bed::run(&args),
         Command::Check(args) => check::run(&args),
@@ -107,6 +109,35 @@ fn main() -> ExitCode {
         Command::Task(args) => task::run(&args),
         Command::Completions(args) => completions::completions(&args, Cli::command()),
         Command::Man(args) => completions::man(&args, Cli::command()),
-    };
+    });
     output::conclude(result)
 }
+
+impl Command {
+    /// What is left of a command that a signal has ended, and how to go on.
+    fn if_stopped(&self) -> &'static str {
+        match self {
+            Self::Run(_) => "--resume goes on from the last checkpoint",
+            Self::Bed(_) | Self::Sweep(_) | Self::Task(_) => {
+                "what has ended is kept; the same command goes on"
+            }
+            Self::Compare(_) | Self::Diagnose(_) => {
+                "impacts that have ended are kept; the same command goes on"
+            }
+            Self::View(_) => "nothing is served any more",
+            Self::Check(_)
+            | Self::Add(_)
+            | Self::Effects(_)
+            | Self::New(_)
+            | Self::Report(_)
+            | Self::Export(_)
+            | Self::Import(_)
+            | Self::Recover(_)
+            | Self::Completions(_)
+            | Self::Man(_) => BEGINS_AGAIN,
+        }
+    }
+}
+
+/// What a command says that keeps nothing when a signal ends it.
+pub(crate) const BEGINS_AGAIN: &str = "nothing of it is kept; the same command begins again";

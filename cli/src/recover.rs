@@ -6,7 +6,10 @@ use anyhow::Context as _;
 use exchange::recover::{Lost, RecoverError, Recovered, recover};
 use serde_json::json;
 
+use crate::BEGINS_AGAIN;
+use crate::control::stopped;
 use crate::output::{self, CommandError, CommandResult};
+use crate::signals;
 
 /// Exit code when a log was saved, but not all of it.
 const SOMETHING_LOST: u8 = 3;
@@ -24,8 +27,10 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> CommandResult {
-    let Recovered { messages, chunks, lost, complete } = match recover(&args.input, &args.output) {
+    let recovered = recover(&args.input, &args.output, &signals::is_asked_to_stop);
+    let Recovered { messages, chunks, lost, complete } = match recovered {
         Ok(recovered) => recovered,
+        Err(RecoverError::Stopped) => return Err(stopped(BEGINS_AGAIN)),
         Err(
             error @ (RecoverError::NotMcap { .. }
             | RecoverError::OutputExists { .. }

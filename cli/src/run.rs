@@ -39,7 +39,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
             (false, false) => Existing::Keep,
         },
     };
-    let mut terminal = Terminal::new(common.quiet)?;
+    let mut terminal = Terminal::new(common.quiet);
     let outcome =
         common.on_threads(|| configs::run::run(model, &loaded.original, &places, &mut terminal))?;
     terminal.clear();

@@ -21,6 +21,7 @@ use crate::beds::time;
 use crate::common::{On, cache_folder, of_scheduler};
 use crate::control::Terminal;
 use crate::output::{self, CommandError, CommandResult};
+use crate::signals;
 use crate::workbench::write_whole;
 
 /// Most failed points that are named in the text.
@@ -32,7 +33,7 @@ pub(crate) struct Args {
     /// A campaign file.
     campaign: PathBuf,
     /// The folder of the campaign; without it, `runs/` and its name.
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Say which points there are and what they would take; run nothing.
     #[arg(long)]
@@ -73,7 +74,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     if args.status {
         return show(args, &folder, &Results::read(&folder).map_err(of_folder)?);
     }
-    let terminal = Terminal::new(args.quiet)?;
+    let terminal = Terminal::new(args.quiet);
     let cache = cache_folder(args.cache.as_deref());
     let deadline = args.budget.map(|budget| Instant::now() + Duration::from_secs_f64(budget));
     let watch = Budgeted { terminal: &terminal, deadline };
@@ -102,16 +103,17 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         Err(error) => return Err(of_sweep(error)),
     };
     let results = Results::read(&folder).map_err(of_folder)?;
-    let table = folder.path().join(TABLE);
-    exchange::table::write_parquet(&table, &campaigns::columns(&results))
-        .map_err(|error| CommandError::Failed(error.into()))?;
-    report(&folder, &results, &terminal);
-    if interrupted && !watch.is_over() {
+    if interrupted && signals::is_asked_to_stop() {
+        // Table and report of very many points take longer than a signal may.
         let Counts { points, done, failed, .. } = results.counts();
         let left =
             format!("{} of {points} points have ended; the same command goes on", done + failed);
         return Err(terminal.interrupted(&left));
     }
+    let table = folder.path().join(TABLE);
+    exchange::table::write_parquet(&table, &campaigns::columns(&results))
+        .map_err(|error| CommandError::Failed(error.into()))?;
+    report(&folder, &results, &terminal);
     show(args, &folder, &results)
 }
 

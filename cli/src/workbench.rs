@@ -1,7 +1,7 @@
 //! What `compare` and `diagnose` share: a set, models before it, and a folder for results.
 
-use std::fs;
-use std::io::ErrorKind;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind};
 use std::path::{Component, Path, PathBuf};
 
 use clap::Args;
@@ -24,6 +24,9 @@ const INPUTS: &str = "inputs.blake3";
 /// Behind the hash there, while not all results are written.
 const UNFINISHED: &str = "unfinished";
 
+/// Where new results lie until all of them are written.
+const STAGING: &str = ".partial";
+
 /// What these commands write, besides proposed models and [`where_it_fails::FILES`].
 const RESULTS: [&str; 5] =
     ["comparison.json", "comparison.svg", "diagnosis.json", "paths.svg", reports::FILE];
@@ -38,7 +41,7 @@ pub(crate) struct Flags {
     #[arg(long, default_value_t = SEED)]
     pub(crate) seed: u64,
     /// The folder to write to.
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print one JSON object to stdout.
     #[arg(long)]
@@ -266,7 +269,8 @@ impl Results {
                 (of != inputs).then_some("results of other inputs")
             }
             Err(error) if error.kind() == ErrorKind::NotFound => {
-                let occupied = fs::read_dir(&folder).is_ok_and(|mut files| files.next().is_some());
+                let occupied = fs::read_dir(&folder)
+                    .is_ok_and(|files| files.flatten().any(|file| file.file_name() != STAGING));
                 occupied.then_some("files that are no results of this command")
             }
             Err(error) => {
@@ -282,23 +286,42 @@ impl Results {
         }
     }
 
-    /// Writes each file whole or not at all, and last what they are from.
+    /// Writes the files, and what they are from. All of them are on the disk before the first of an earlier call is
+    /// touched: if there is no room for them, those are kept.
     pub(crate) fn write(&self, files: &[(String, String)]) -> CommandResult {
-        let shown = self.folder.display();
-        fs::create_dir_all(&self.folder)
-            .map_err(|error| anyhow::Error::new(error).context(format!("cannot make {shown}")))?;
-        // Whoever is stopped on the way may write here again: from now on the folder is of these inputs.
-        let stamp = self.folder.join(INPUTS);
-        write_whole(&stamp, &format!("{} {UNFINISHED}\n", self.inputs))?;
-        for name in self.earlier()? {
-            fs::remove_file(self.folder.join(&name)).map_err(|error| {
-                anyhow::Error::new(error).context(format!("cannot remove {shown}/{name}"))
-            })?;
+        let cannot = |what: &str, path: &Path, error: io::Error| {
+            let shown = format!("cannot {what} {}", path.display());
+            CommandError::Failed(anyhow::Error::new(error).context(shown))
+        };
+        let folder = &self.folder;
+        fs::create_dir_all(folder).map_err(|error| cannot("make", folder, error))?;
+        // Two calls with the same results write them one after the other.
+        let handle = File::open(folder).map_err(|error| cannot("open", folder, error))?;
+        handle.lock().map_err(|error| cannot("lock", folder, error))?;
+        let staging = Staging::inside(folder).map_err(|error| cannot("make", folder, error))?;
+        let begun = (UNFINISHED, format!("{} {UNFINISHED}\n", self.inputs));
+        let ended = (INPUTS, format!("{}\n", self.inputs));
+        for (name, text) in [&begun, &ended].map(|(name, text)| (*name, text.as_str())) {
+            write_whole(&staging.0.join(name), text)?;
         }
         for (name, text) in files {
-            write_whole(&self.folder.join(name), text)?;
+            write_whole(&staging.0.join(name), text)?;
         }
-        write_whole(&stamp, &format!("{}\n", self.inputs))
+        let hand_over = |name: &str, to: &str| {
+            let path = folder.join(to);
+            fs::rename(staging.0.join(name), &path).map_err(|error| cannot("write", &path, error))
+        };
+        // Whoever is stopped on the way may write here again: from now on the folder is of these inputs.
+        hand_over(UNFINISHED, INPUTS)?;
+        let is_new = |name: &String| files.iter().any(|(new, _)| new == name);
+        for name in self.earlier()?.into_iter().filter(|name| !is_new(name)) {
+            let path = folder.join(name);
+            fs::remove_file(&path).map_err(|error| cannot("remove", &path, error))?;
+        }
+        for (name, _) in files {
+            hand_over(name, name)?;
+        }
+        hand_over(INPUTS, INPUTS)
     }
 
     /// The results of an earlier call, by their names.
@@ -323,6 +346,28 @@ impl Results {
     /// Where they are, for messages.
     pub(crate) fn shown(&self) -> String {
         self.folder.display().to_string()
+    }
+}
+
+/// A folder inside that of the results, which takes new ones until all of them are written.
+struct Staging(PathBuf);
+
+impl Staging {
+    /// An empty one: what a kill has left in it is worth nothing.
+    fn inside(folder: &Path) -> io::Result<Self> {
+        let path = folder.join(STAGING);
+        if path.is_dir() {
+            fs::remove_dir_all(&path)?;
+        }
+        fs::create_dir(&path)?;
+        Ok(Self(path))
+    }
+}
+
+impl Drop for Staging {
+    fn drop(&mut self) {
+        // What cannot be removed is called partial, and the next call takes its place.
+        drop(fs::remove_dir_all(&self.0));
     }
 }
 

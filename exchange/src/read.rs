@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use engine::record::chunk;
 use mcap::records::Record;
 
 use fields::{EnergyFields, StateFields};
@@ -108,7 +109,7 @@ pub fn read_run(path: &Path, keep: Keep) -> Result<RunRecord, ReadError> {
         for (opcode, body) in records.present() {
             let damaged = |why: String| ReadError::Damaged { path: path.to_owned(), offset, why };
             let record =
-                mcap::parse_record(opcode, body).map_err(|error| damaged(error.to_string()))?;
+                chunk::parse_record(opcode, body).map_err(|error| damaged(error.to_string()))?;
             reading.take(record, &damaged)?;
         }
     }

@@ -18,6 +18,7 @@ use std::path::{Path, PathBuf};
 use engine::record::chunk::{self, CHUNK_LIMIT, ChunkHead, RECORD_PREFIX, Records};
 use mcap::records::{Header, Record, op};
 
+use crate::Stop;
 use output::{Definitions, Output};
 use scan::Input;
 
@@ -78,6 +79,9 @@ pub enum RecoverError {
         /// The output.
         path: PathBuf,
     },
+    /// It was asked to stop; nothing was written.
+    #[error("stopped before the end")]
+    Stopped,
 }
 
 impl RecoverError {
@@ -92,16 +96,16 @@ impl RecoverError {
 /// [`CHUNK_LIMIT`], whatever lengths the input declares.
 ///
 /// # Errors
-/// `output` exists, `input` is no MCAP file at all, or the file system's refusal. Damage is not
-/// an error: it is in [`Recovered::lost`].
-pub fn recover(input: &Path, output: &Path) -> Result<Recovered, RecoverError> {
+/// `output` exists, `input` is no MCAP file at all, the file system's refusal, or `stop` said so between two
+/// reads. Damage is not an error: it is in [`Recovered::lost`].
+pub fn recover(input: &Path, output: &Path, stop: Stop<'_>) -> Result<Recovered, RecoverError> {
     if output.symlink_metadata().is_ok() {
         return Err(RecoverError::OutputExists { path: output.to_owned() });
     }
     let mut name = output.as_os_str().to_owned();
     name.push(".recovering");
     let working = PathBuf::from(name);
-    let result = copy(input, &working).and_then(|recovered| {
+    let result = copy(input, &working, stop).and_then(|recovered| {
         let file = OpenOptions::new().write(true).open(&working);
         file.and_then(|file| file.sync_all()).map_err(|e| RecoverError::io(&working, "sync", e))?;
         fs::rename(&working, output).map_err(|e| RecoverError::io(output, "rename to", e))?;
@@ -115,15 +119,15 @@ pub fn recover(input: &Path, output: &Path) -> Result<Recovered, RecoverError> {
 }
 
 /// Writes everything readable of `input` to `working`.
-fn copy(input: &Path, working: &Path) -> Result<Recovered, RecoverError> {
-    let mut input = Input::open(input)?;
+fn copy(input: &Path, working: &Path, stop: Stop<'_>) -> Result<Recovered, RecoverError> {
+    let mut input = Input::open(input, stop)?;
     let mut recovery = Recovery::new(&mut input, working)?;
     recovery.run()?;
     recovery.finish()
 }
 
-struct Recovery<'a> {
-    input: &'a mut Input,
+struct Recovery<'a, 's> {
+    input: &'a mut Input<'s>,
     output: Output,
     marked: bool,
     chunks: u64,
@@ -133,8 +137,8 @@ struct Recovery<'a> {
     records: Vec<u8>,
 }
 
-impl<'a> Recovery<'a> {
-    fn new(input: &'a mut Input, working: &Path) -> Result<Self, RecoverError> {
+impl<'a, 's> Recovery<'a, 's> {
+    fn new(input: &'a mut Input<'s>, working: &Path) -> Result<Self, RecoverError> {
         let marked = input.bytes(0, mcap::MAGIC.len() as u64)? == mcap::MAGIC;
         let start = if marked { mcap::MAGIC.len() as u64 } else { 0 };
         // before anything is created for a file that is something else

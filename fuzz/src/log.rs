@@ -37,16 +37,16 @@ pub fn outcome(bytes: &[u8]) -> String {
         Err(error) => format!("{error}\n"),
     };
     for format in Format::ALL {
-        match export(&path, format, &folder.path().join(format.name())) {
+        match export(&path, format, &folder.path().join(format.name()), &|| false) {
             Ok(exported) => said.push_str(&format!("{} files\n", exported.files.len())),
             Err(error) => said.push_str(&format!("{error}\n")),
         }
     }
     let [first, second] = ["first", "second"].map(|name| folder.path().join(name));
-    match recover(&path, &first) {
+    match recover(&path, &first, &|| false) {
         Ok(recovered) => {
             said.extend(recovered.lost.iter().map(|lost| format!("{}\n", lost.why)));
-            let again = recover(&first, &second).expect("what was recovered is a log");
+            let again = recover(&first, &second, &|| false).expect("what was recovered is a log");
             assert!(again.complete && again.lost.is_empty(), "{again:?}");
             let read = |path: &Path| fs::read(path).expect("a file");
             assert!(read(&first) == read(&second), "recovered twice, it is another");

@@ -2,24 +2,27 @@
 
 use std::path::Path;
 
-use exchange::export::{ExportError, Exported, Format, export};
+use exchange::export::{ExportError, Exported, Format, STAGING, export};
 use exchange::read::ReadError;
 use serde_json::json;
 
+use crate::BEGINS_AGAIN;
 use crate::common::Common;
+use crate::control::stopped;
 use crate::output::{self, CommandError, CommandResult};
+use crate::signals;
 
 /// Writes `run`, the folder of a run or a log, in `format`.
 pub(super) fn write(run: &Path, format: Format, common: &Common) -> CommandResult {
     let out = common.out.clone().unwrap_or_else(|| beside(run).join(format.name()));
-    let is_occupied = std::fs::read_dir(&out).is_ok_and(|mut entries| entries.next().is_some());
-    if is_occupied && !common.force {
+    if is_occupied(&out) && !common.force {
         return Err(CommandError::bad_input(format!(
             "{} holds files already; choose another --out, or --force to write there",
             out.display()
         )));
     }
-    let Exported { files, complete } = export(run, format, &out).map_err(failed)?;
+    let Exported { files, complete } =
+        export(run, format, &out, &signals::is_asked_to_stop).map_err(failed)?;
     if !complete && !common.quiet {
         output::to_stderr("warning: the log is cut; the export goes as far as it does\n");
     }
@@ -33,6 +36,12 @@ pub(super) fn write(run: &Path, format: Format, common: &Common) -> CommandResul
         (false, true) => Ok(()),
         (false, false) => output::to_stdout(&as_text(&shown)),
     }
+}
+
+/// Whether `out` holds anything but what a killed export has left.
+fn is_occupied(out: &Path) -> bool {
+    let Ok(entries) = std::fs::read_dir(out) else { return false };
+    entries.flatten().any(|entry| entry.file_name() != STAGING)
 }
 
 /// Most files that are listed one by one.
@@ -54,6 +63,7 @@ fn beside(run: &Path) -> &Path {
 /// What cannot be opened, and what is no log of the kind, is bad input.
 fn failed(error: ExportError) -> CommandError {
     match error {
+        ExportError::Stopped => stopped(BEGINS_AGAIN),
         ExportError::Write { .. } | ExportError::Read(ReadError::Damaged { .. }) => {
             CommandError::Failed(error.into())
         }

@@ -19,7 +19,7 @@ pub(super) fn write(model: &Path, common: &Common) -> CommandResult {
     })?;
     Deck::check(grains).map_err(refused)?;
     common.refuse_too_large(&model)?;
-    let mut terminal = Terminal::new(common.quiet)?;
+    let mut terminal = Terminal::new(common.quiet);
     let cache = common.cache_folder();
     let prepared = common.on_threads(|| prepare(grains, &cache, &mut terminal))?;
     terminal.clear();

@@ -1,5 +1,6 @@
 //! `plunge view`: hands a log to viewers that run in a browser.
 
+mod request;
 mod server;
 
 use std::path::{Path, PathBuf};
@@ -7,11 +8,10 @@ use std::path::{Path, PathBuf};
 use exchange::run_files::RunFiles;
 use serde_json::json;
 
-use crate::control::Terminal;
 use crate::output::{self, CommandError, CommandResult};
 use server::{Served, Server};
 
-/// What logs are called to whoever asks, whatever their files are called.
+/// The names under which logs are served, whatever their files are called.
 const RUN: &str = "/run.mcap";
 const GRAINS: &str = "/grains.mcap";
 
@@ -33,7 +33,6 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> CommandResult {
     let files = served(&args.run)?;
-    let terminal = Terminal::new(args.quiet)?;
     let server = Server::start(args.port, files.clone()).map_err(|why| {
         CommandError::bad_input(format!("cannot listen on port {}: {why}; --port", args.port))
     })?;
@@ -44,8 +43,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     } else if !args.quiet {
         output::to_stdout(&as_text(&args.run, &files, &urls))?;
     }
-    server.serve(|| terminal.is_asked_to_stop());
-    Ok(())
+    server.serve()
 }
 
 /// The logs of `run` that are there.

@@ -2,29 +2,40 @@
 //!
 //! A viewer reads the end of a log first and then the parts that it shows, so it wants ranges; and it
 //! comes from another place than the log, so that a browser wants to be told that it may.
+//!
+//! A connection has a thread of its own and takes one request. All that it can hold is bounded: the size of a
+//! request (`request.rs`), the time to ask, the time that an answer waits for a client that does not read, and the
+//! number of connections.
 
 use std::fs::File;
-use std::io::{self, Read as _, Seek as _, SeekFrom};
-use std::net::{Ipv4Addr, SocketAddr};
-use std::ops::RangeInclusive;
+use std::io::{self, Read as _, Seek as _, SeekFrom, Write as _};
+use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use http_range_header::parse_range_header;
-use tiny_http::{Header, Method, Request, Response, StatusCode};
 
-/// Requests that are answered side by side: a browser asks for up to six at a time.
-const WORKERS: usize = 6;
+use super::request::{self, Method, Refusal, Request};
 
-/// How long a worker waits for a request before it looks whether to end.
-const WAIT: Duration = Duration::from_millis(100);
+/// Connections at a time: a browser asks for up to six.
+const MOST_CONNECTIONS: usize = 64;
+
+/// How long an answer waits for a client to read on.
+const TIME_TO_READ: Duration = Duration::from_secs(20);
+
+/// How long, and how many bytes, is listened to a client behind its request: closed earlier, the connection
+/// would take the answer with it.
+const TIME_TO_LEAVE: Duration = Duration::from_secs(1);
+const MOST_BEHIND: u64 = 64 << 10;
 
 /// Headers of every answer.
-const ALWAYS: [(&str, &str); 3] = [
+const ALWAYS: [(&str, &str); 4] = [
     ("Access-Control-Allow-Origin", "*"),
     ("Access-Control-Expose-Headers", "Accept-Ranges, Content-Length, Content-Range"),
     ("Accept-Ranges", "bytes"),
+    ("Connection", "close"),
 ];
 
 /// What a browser is told that asks whether it may ask.
@@ -34,7 +45,7 @@ const ALLOWED: [(&str, &str); 3] = [
     ("Access-Control-Allow-Private-Network", "true"),
 ];
 
-/// A file, and what it is called to whoever asks.
+/// A file, and the name under which it is served.
 #[derive(Clone, Debug)]
 pub(super) struct Served {
     /// With the slash before it.
@@ -44,114 +55,157 @@ pub(super) struct Served {
 
 /// A server of files.
 pub(super) struct Server {
-    http: tiny_http::Server,
+    listener: TcpListener,
     address: SocketAddr,
-    files: Vec<Served>,
+    files: Arc<[Served]>,
 }
 
-/// An answer with a part of a file, or nothing, as its body.
-type Answer = Response<Box<dyn io::Read + Send>>;
+/// An answer: its status, its headers beyond those of every answer, and its body with its length.
+struct Answer {
+    status: u16,
+    headers: Vec<(&'static str, String)>,
+    body: Option<io::Take<File>>,
+    length: u64,
+}
 
 impl Server {
     /// Listens on `port` of the loopback address, or on a free one if that is 0.
     pub(super) fn start(port: u16, files: Vec<Served>) -> io::Result<Self> {
-        let http =
-            tiny_http::Server::http((Ipv4Addr::LOCALHOST, port)).map_err(io::Error::other)?;
-        let address = http.server_addr().to_ip().unwrap_or((Ipv4Addr::LOCALHOST, port).into());
-        Ok(Self { http, address, files })
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
+        let address = listener.local_addr()?;
+        Ok(Self { listener, address, files: files.into() })
     }
 
     pub(super) fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// Answers until `ends` says so.
-    pub(super) fn serve(&self, ends: impl Fn() -> bool + Sync) {
-        thread::scope(|scope| {
-            for _ in 0..WORKERS {
-                scope.spawn(|| {
-                    while !ends() {
-                        if let Ok(Some(request)) = self.http.recv_timeout(WAIT) {
-                            let answer = self.answer(&request);
-                            // Whoever has gone away needs no answer.
-                            let _ = request.respond(answer);
-                        }
-                    }
-                });
+    /// Answers for ever: a signal ends the program.
+    pub(super) fn serve(&self) -> ! {
+        let open = Arc::new(());
+        loop {
+            // A client that has gone before it was let in needs no answer. Where the system has no room for one
+            // more connection it may have some later.
+            let Ok((stream, _)) = self.listener.accept() else {
+                thread::sleep(Duration::from_millis(10));
+                continue;
+            };
+            if Arc::strong_count(&open) > MOST_CONNECTIONS {
+                let _ = send(&stream, Answer::empty(503), Method::Get);
+                continue;
             }
-        });
-    }
-
-    fn answer(&self, request: &Request) -> Answer {
-        match request.method() {
-            Method::Options => with_headers(empty(204), &ALLOWED),
-            Method::Get | Method::Head => {
-                let name = request.url().split('?').next().unwrap_or_default();
-                match self.files.iter().find(|file| file.name == name) {
-                    Some(file) => part_of(file, range(request)).unwrap_or_else(|_| empty(500)),
-                    None => empty(404),
-                }
-            }
-            _ => empty(405),
+            let (files, place) = (Arc::clone(&self.files), Arc::clone(&open));
+            let talk = move || {
+                // Whoever has gone away needs no answer.
+                let _ = talk(&stream, &files);
+                drop(place);
+            };
+            // Without room for a thread the connection is closed.
+            drop(thread::Builder::new().name("view".to_owned()).spawn(talk));
         }
     }
 }
 
-/// The header `Range` of `request`.
-fn range(request: &Request) -> Option<&str> {
-    let header = request.headers().iter().find(|header| header.field.equiv("Range"));
-    header.map(|header| header.value.as_str())
+/// Reads the request of `stream`, and answers it with one of `files`.
+fn talk(stream: &TcpStream, files: &[Served]) -> io::Result<()> {
+    stream.set_write_timeout(Some(TIME_TO_READ))?;
+    let (answer, method) = match request::read(stream) {
+        Ok(request) => (answer(&request, files), request.method),
+        Err(Refusal::Status(status)) => (Answer::empty(status), Method::Get),
+        Err(Refusal::Silence) => return Ok(()),
+    };
+    send(stream, answer, method)?;
+    stream.shutdown(Shutdown::Write)?;
+    hear_out(stream)
+}
+
+/// Reads what a client still sends, within bounds.
+fn hear_out(mut stream: &TcpStream) -> io::Result<()> {
+    stream.set_read_timeout(Some(TIME_TO_LEAVE))?;
+    let (start, mut heard, mut part) = (Instant::now(), 0, [0; 4096]);
+    while start.elapsed() < TIME_TO_LEAVE && heard < MOST_BEHIND {
+        match stream.read(&mut part)? {
+            0 => break,
+            n => heard += n as u64,
+        }
+    }
+    Ok(())
+}
+
+fn answer(request: &Request, files: &[Served]) -> Answer {
+    if request.method == Method::Options {
+        let headers = ALLOWED.map(|(name, value)| (name, value.to_owned()));
+        return Answer { headers: headers.into(), ..Answer::empty(204) };
+    }
+    match files.iter().find(|file| file.name == request.path) {
+        Some(file) => {
+            part_of(file, request.range.as_deref()).unwrap_or_else(|_| Answer::empty(500))
+        }
+        None => Answer::empty(404),
+    }
 }
 
 /// The part of `file` that `range` asks for; all of it without one, and for several at once.
 fn part_of(file: &Served, range: Option<&str>) -> io::Result<Answer> {
     let mut opened = File::open(&file.path)?;
-    let length = opened.metadata()?.len();
+    let whole = opened.metadata()?.len();
     let asked = range.and_then(|range| parse_range_header(range).ok());
-    let (status, part) = match asked.map(|ranges| ranges.validate(length)) {
+    let (status, part) = match asked.map(|ranges| ranges.validate(whole)) {
         Some(Ok(ranges)) if ranges.len() == 1 => (206, Some(ranges[0].clone())),
         Some(Err(_)) => {
-            let all = format!("bytes */{length}");
-            return Ok(with_headers(empty(416), &[("Content-Range", all.as_str())]));
+            let headers = vec![("Content-Range", format!("bytes */{whole}"))];
+            return Ok(Answer { headers, ..Answer::empty(416) });
         }
         _ => (200, None),
     };
-    let (start, count) =
-        part.as_ref().map_or((0, length), |part| (*part.start(), part.end() - part.start() + 1));
+    let mut headers = vec![("Content-Type", "application/octet-stream".to_owned())];
+    let (mut start, mut length) = (0, whole);
+    if let Some(part) = part {
+        let (first, last) = (*part.start(), *part.end());
+        (start, length) = (first, last - first + 1);
+        headers.push(("Content-Range", format!("bytes {first}-{last}/{whole}")));
+    }
     opened.seek(SeekFrom::Start(start))?;
-    let body: Box<dyn io::Read + Send> = Box::new(opened.take(count));
-    let answer = Response::new(
-        StatusCode(status),
-        headers(&ALWAYS),
-        body,
-        usize::try_from(count).ok(),
-        None,
-    )
-    // A viewer wants to know the length beforehand.
-    .with_chunked_threshold(usize::MAX);
-    let answer = with_headers(answer, &[("Content-Type", "application/octet-stream")]);
-    Ok(match part {
-        Some(part) => {
-            with_headers(answer, &[("Content-Range", content_range(&part, length).as_str())])
-        }
-        None => answer,
-    })
+    Ok(Answer { status, headers, body: Some(opened.take(length)), length })
 }
 
-fn content_range(part: &RangeInclusive<u64>, length: u64) -> String {
-    format!("bytes {}-{}/{length}", part.start(), part.end())
+/// Sends `answer`; to a client that asks for the head alone, that alone.
+fn send(mut stream: &TcpStream, answer: Answer, method: Method) -> io::Result<()> {
+    let Answer { status, headers, body, length } = answer;
+    let mut head = format!("HTTP/1.1 {status} {}\r\nContent-Length: {length}\r\n", reason(status));
+    let always = ALWAYS.iter().map(|&(name, value)| (name, value));
+    let headers = headers.iter().map(|(name, value)| (*name, value.as_str()));
+    for (name, value) in always.chain(headers) {
+        head.push_str(&format!("{name}: {value}\r\n"));
+    }
+    head.push_str("\r\n");
+    stream.write_all(head.as_bytes())?;
+    match body.filter(|_| method == Method::Get) {
+        Some(mut body) => io::copy(&mut body, &mut stream).map(drop),
+        None => Ok(()),
+    }
 }
 
-fn empty(status: u16) -> Answer {
-    let body: Box<dyn io::Read + Send> = Box::new(io::empty());
-    Response::new(StatusCode(status), headers(&ALWAYS), body, Some(0), None)
+/// What a status means, as RFC 9110 and RFC 6585 have it.
+fn reason(status: u16) -> &'static str {
+    match status {
+        200 => "OK",
+        204 => "No Content",
+        206 => "Partial Content",
+        400 => "Bad Request",
+        404 => "Not Found",
+        405 => "Method Not Allowed",
+        413 => "Content Too Large",
+        416 => "Range Not Satisfiable",
+        421 => "Misdirected Request",
+        431 => "Request Header Fields Too Large",
+        503 => "Service Unavailable",
+        _ => "Internal Server Error",
+    }
 }
 
-fn with_headers(answer: Answer, more: &[(&str, &str)]) -> Answer {
-    headers(more).into_iter().fold(answer, Response::with_header)
-}
-
-fn headers(pairs: &[(&str, &str)]) -> Vec<Header> {
-    // Every one of them is plain ASCII, so none is left out.
-    pairs.iter().filter_map(|(name, value)| Header::from_bytes(*name, *value).ok()).collect()
+impl Answer {
+    fn empty(status: u16) -> Self {
+        Self { status, headers: Vec::new(), body: None, length: 0 }
+    }
 }

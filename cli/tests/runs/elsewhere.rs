@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::common::{Call, folder, names, program, small_model};
+use crate::common::{Call, Ended, folder, names, program, small_model};
 
 /// A scheduler of one machine, which does each task at once and says its number first. Of one that is to
 /// break, the last task is lost.
@@ -90,6 +90,46 @@ fn tasks_of_a_scheduler_find_the_numbers_that_this_process_finds() {
         let again = fs::read_to_string(record(here.path())).expect("a record");
         assert_eq!(again, calls, "what is kept is not handed over again");
     }
+}
+
+#[test]
+fn comparisons_at_the_same_time_on_one_cold_cache_all_end_and_run_each_impact_once() {
+    let here = folder();
+    let start = |name: &str| {
+        let call = Call::new(["compare", "--json", "--quiet", "--threads", "1", "--model"]);
+        let call = call.arg(small_model()).arg("--cache").arg(here.path().join("shared"));
+        call.arg("--out").arg(here.path().join(name)).arg(SET).start()
+    };
+    let children = ["a", "b", "c", "d"].map(start);
+    let told = children.map(|child| {
+        let ended = Ended::of(child);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        numbers(ended.json())
+    });
+    assert!(told.iter().all(|one| *one == told[0]), "{told:?}");
+    let impacts = names(&here.path().join("shared/impacts"));
+    assert!(impacts.iter().all(|name| name.ends_with(".impact")), "{impacts:?}");
+}
+
+/// What of results stays the same wherever and however often they are made; `cost` says what they took here.
+#[test]
+fn diagnoses_on_beds_differ_in_their_cost_alone() {
+    let here = folder();
+    let diagnosed = |name: &str, threads: &str| {
+        let call = Call::new(["diagnose", "--quiet", "--threads", threads]);
+        let call = call.set(&["bed.grains.0.count=40", "bed.grains.1.count=8"]);
+        let call = call.args(["--candidate", "rolling-resistance", "--model"]).arg(small_model());
+        let call = call.arg("--cache").arg(here.path().join(name));
+        let out = here.path().join(format!("out-{name}"));
+        call.arg("--out").arg(&out).arg(SET).done();
+        let mut files = names(&out);
+        files.retain(|name| name != "diagnosis.json");
+        let texts = files.iter().map(|name| fs::read_to_string(out.join(name)).expect("a file"));
+        let texts: Vec<String> = texts.collect();
+        let json = fs::read_to_string(out.join("diagnosis.json")).expect("a diagnosis");
+        (files, texts, numbers(serde_json::from_str(&json).expect("JSON")))
+    };
+    assert!(diagnosed("one", "1") == diagnosed("two", "2"), "more than the cost differs");
 }
 
 #[test]

@@ -19,6 +19,8 @@ mod recover;
 mod reports;
 mod resistive;
 mod shapes;
+#[cfg(target_os = "linux")]
+mod signals;
 mod space;
 mod summary;
 mod sweeps;

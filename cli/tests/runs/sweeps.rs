@@ -315,3 +315,22 @@ fn a_scheduler_that_is_not_there_is_told_in_a_line() {
     assert_eq!(ended.code, Some(2), "{ended:?}");
     assert!(ended.stderr.contains("cannot start `hq`") && ended.stderr.contains("on PATH"));
 }
+
+#[test]
+fn logs_that_a_kill_has_left_of_a_point_that_is_done_go_with_the_next_call() {
+    let (here, file) = campaign(LAW);
+    let out = here.path().join("out");
+    sweep(&file, &out).done();
+    let points = out.join("points");
+    let done = ends(&out);
+    for (hash, _) in &done[..2] {
+        fs::write(points.join(hash).join("run.mcap"), "a log").expect("a file");
+        fs::write(points.join(hash).join("checkpoint.prev"), "a state").expect("a file");
+    }
+    sweep(&file, &out).done();
+    for (hash, _) in &done {
+        let left = names(&points.join(hash));
+        assert_eq!(left, [".lock", "done.json", "model.toml", "summary.json"], "{hash}");
+    }
+    assert_eq!(ends(&out), done, "no point is run again");
+}

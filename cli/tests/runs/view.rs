@@ -5,6 +5,7 @@ use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
@@ -44,9 +45,26 @@ impl View {
     }
 
     fn ask(&self, method: &str, path: &str, headers: &str) -> Answer {
+        self.ask_as("127.0.0.1", method, path, headers)
+    }
+
+    /// Sends a request, and reads nothing of the answer.
+    fn sent(&self, method: &str, path: &str, headers: &str) -> TcpStream {
+        self.sent_as("127.0.0.1", method, path, headers)
+    }
+
+    fn sent_as(&self, host: &str, method: &str, path: &str, headers: &str) -> TcpStream {
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).expect("it listens");
-        let host = "Host: 127.0.0.1\r\nOrigin: https://viewer.example\r\nConnection: close\r\n";
-        write!(stream, "{method} {path} HTTP/1.1\r\n{host}{headers}\r\n").expect("it reads");
+        let origin = "Origin: https://viewer.example\r\nConnection: close\r\n";
+        let text = format!("{method} {path} HTTP/1.1\r\nHost: {host}\r\n{origin}{headers}\r\n");
+        // A server that has heard enough does not listen to the end.
+        let _ = stream.write_all(text.as_bytes());
+        stream
+    }
+
+    /// Asks, calling the server's machine `host`.
+    fn ask_as(&self, host: &str, method: &str, path: &str, headers: &str) -> Answer {
+        let mut stream = self.sent_as(host, method, path, headers);
         let mut whole = Vec::new();
         stream.read_to_end(&mut whole).expect("it answers");
         let end = whole.windows(4).position(|four| four == b"\r\n\r\n").expect("a head");
@@ -129,7 +147,49 @@ fn what_is_not_there_is_refused_and_a_head_has_no_body() {
 
 #[cfg(unix)]
 #[test]
-fn a_signal_ends_it_well() {
-    let (here, _) = log();
-    assert_eq!(View::of(here.path()).told_to_end().code(), Some(0));
+fn a_signal_ends_it_at_once_also_while_clients_ask_and_do_not_read() {
+    let here = folder();
+    // More than the buffers of a connection take.
+    fs::write(here.path().join("run.mcap"), vec![0; 32 << 20]).expect("a file");
+    let view = View::of(here.path());
+    let idle: Vec<TcpStream> = (0..20).map(|_| view.sent("GET", "/run.mcap", "")).collect();
+    assert_eq!(view.ask("HEAD", "/run.mcap", "").status, 200, "it answers others all the same");
+    let told = Instant::now();
+    assert_eq!(view.told_to_end().code(), Some(143));
+    assert!(told.elapsed() < Duration::from_secs(2), "{:?}", told.elapsed());
+    drop(idle);
+}
+
+#[test]
+fn a_body_a_head_without_end_and_another_name_of_this_machine_are_refused_and_it_goes_on() {
+    let (here, bytes) = log();
+    let view = View::of(here.path());
+    // A length that a server must not believe.
+    for length in ["99999999999", "18446744073709551615", "1"] {
+        let header = format!("Content-Length: {length}\r\n");
+        assert_eq!(view.ask("GET", "/run.mcap", &header).status, 413, "{length}");
+        assert_eq!(view.ask("POST", "/run.mcap", &header).status, 405, "{length}");
+    }
+    let endless = format!("X: {}\r\n", "y".repeat(1 << 20));
+    assert_eq!(view.ask("GET", "/run.mcap", &endless).status, 431);
+    for host in ["evil.example", "evil.example:8791", "127.0.0.1.evil.example"] {
+        assert_eq!(view.ask_as(host, "GET", "/run.mcap", "").status, 421, "{host}");
+    }
+    for host in ["127.0.0.1", "127.0.0.1:8791", "localhost:1"] {
+        assert_eq!(view.ask_as(host, "GET", "/run.mcap", "").body, bytes, "{host}");
+    }
+}
+
+#[test]
+fn clients_that_say_nothing_are_let_go_and_hold_up_nobody() {
+    let (here, bytes) = log();
+    let view = View::of(here.path());
+    let mute: Vec<TcpStream> = (0..60)
+        .map(|_| TcpStream::connect(("127.0.0.1", view.port)).expect("it listens"))
+        .collect();
+    assert_eq!(view.ask("GET", "/run.mcap", "").body, bytes);
+    for mut one in mute {
+        one.set_read_timeout(Some(Duration::from_secs(20))).expect("a time");
+        assert_eq!(one.read(&mut [0]).expect("it closes within its five seconds"), 0);
+    }
 }

@@ -7,6 +7,7 @@ use prost_reflect::{DynamicMessage, MessageDescriptor};
 use super::bodies::{Bodies, Body, MovingBead};
 use super::cloud::{Cloud, CloudReader};
 use super::{ExportError, Exported};
+use crate::Stop;
 use crate::read::messages::{Receiver, Refusal, each_message};
 
 /// All grains and bodies at one time.
@@ -84,9 +85,19 @@ pub(super) trait FrameWriter {
 }
 
 /// Hands every frame of the log at `path` to `writer`.
-pub(super) fn export(path: &Path, writer: impl FrameWriter) -> Result<Exported, ExportError> {
-    let mut frames =
-        Frames { writer, frame: Frame::default(), bodies: Bodies::default(), n: 0, failed: None };
+pub(super) fn export(
+    path: &Path,
+    writer: impl FrameWriter,
+    stop: Stop<'_>,
+) -> Result<Exported, ExportError> {
+    let mut frames = Frames {
+        writer,
+        stop,
+        frame: Frame::default(),
+        bodies: Bodies::default(),
+        n: 0,
+        failed: None,
+    };
     let read = each_message(path, &mut frames);
     if let Some(error) = frames.failed {
         return Err(error);
@@ -98,8 +109,9 @@ pub(super) fn export(path: &Path, writer: impl FrameWriter) -> Result<Exported, 
     Ok(Exported { files: frames.writer.finish()?, complete })
 }
 
-struct Frames<W> {
+struct Frames<'a, W> {
     writer: W,
+    stop: Stop<'a>,
     /// Taken again for every frame.
     frame: Frame,
     /// Of the same frame: a log says where they are before it says where grains are.
@@ -142,7 +154,7 @@ impl Frame {
     }
 }
 
-impl<W: FrameWriter> Receiver for Frames<W> {
+impl<W: FrameWriter> Receiver for Frames<'_, W> {
     type Channel = Topic;
 
     fn introduce(
@@ -163,6 +175,10 @@ impl<W: FrameWriter> Receiver for Frames<W> {
     }
 
     fn receive(&mut self, topic: &mut Topic, data: &[u8]) -> Result<(), Refusal> {
+        if (self.stop)() {
+            self.failed = Some(ExportError::Stopped);
+            return Err(Refusal::Stop);
+        }
         let decoded = |message: &MessageDescriptor| {
             DynamicMessage::decode(message.clone(), data)
                 .map_err(|error| Refusal::Damaged(error.to_string()))

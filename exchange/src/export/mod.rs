@@ -1,7 +1,8 @@
 //! Runs as files of other programs: tables for notebooks, grains for ParaView and OVITO.
 //!
 //! A [`Format`] is one file of this folder: tables of numbers go through `tables.rs`, states of grains
-//! through `grains.rs`, with the bodies of `bodies.rs`. A file has its name once it is whole.
+//! through `grains.rs`, with the bodies of `bodies.rs`. An export is written into a folder inside the one it
+//! goes to (`staging.rs`), and its files are moved there once all of them are whole.
 
 mod beads;
 mod bodies;
@@ -11,6 +12,7 @@ mod extended_xyz;
 mod grains;
 mod lammps_dump;
 mod parquet;
+mod staging;
 mod surfaces;
 mod tables;
 mod vtp;
@@ -22,8 +24,12 @@ use std::path::{Path, PathBuf};
 use engine::record::{GRAIN_LOG, RUN_LOG};
 use thiserror::Error;
 
+use crate::Stop;
 use crate::read::ReadError;
 use crate::run_files::RunFiles;
+
+pub use staging::STAGING;
+use staging::Staging;
 
 /// What a run can be exported to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,6 +106,9 @@ pub enum ExportError {
         /// The name of the log in a folder.
         log: &'static str,
     },
+    /// It was asked to stop; nothing of it is left.
+    #[error("stopped before the end")]
+    Stopped,
 }
 
 /// What was written.
@@ -112,11 +121,17 @@ pub struct Exported {
 }
 
 /// Writes `run`, a log or the folder of a run, as `format` into the folder `out`, which is made if it is
-/// not there. The same log gives the same bytes.
+/// not there. The same log gives the same bytes. An export that fails or is stopped leaves no file in `out`.
 ///
 /// # Errors
-/// If the log cannot be read or has nothing of what the format holds, or a file cannot be written.
-pub fn export(run: &Path, format: Format, out: &Path) -> Result<Exported, ExportError> {
+/// If the log cannot be read or has nothing of what the format holds, a file cannot be written, or `stop`
+/// says so between two messages of the log.
+pub fn export(
+    run: &Path,
+    format: Format,
+    out: &Path,
+    stop: Stop<'_>,
+) -> Result<Exported, ExportError> {
     let of_grains = match format {
         Format::Csv | Format::Parquet => false,
         Format::Vtp | Format::LammpsDump | Format::ExtendedXyz => true,
@@ -131,13 +146,16 @@ pub fn export(run: &Path, format: Format, out: &Path) -> Result<Exported, Export
     if !path.is_file() {
         return Err(ExportError::NoRun { path: run.to_owned(), log });
     }
-    std::fs::create_dir_all(out)
-        .map_err(|source| ExportError::Write { path: out.to_owned(), source })?;
-    match format {
-        Format::Csv => tables::export(&path, out, csv::Csv::create),
-        Format::Parquet => tables::export(&path, out, parquet::Parquet::create),
-        Format::Vtp => grains::export(&path, vtp::Vtp::new(out)),
-        Format::LammpsDump => grains::export(&path, lammps_dump::LammpsDump::create(out)?),
-        Format::ExtendedXyz => grains::export(&path, extended_xyz::ExtendedXyz::create(out)?),
-    }
+    let staging = Staging::inside(out)?;
+    let here = staging.path();
+    let Exported { files, complete } = match format {
+        Format::Csv => tables::export(&path, (here, csv::Csv::create), stop),
+        Format::Parquet => tables::export(&path, (here, parquet::Parquet::create), stop),
+        Format::Vtp => grains::export(&path, vtp::Vtp::new(here), stop),
+        Format::LammpsDump => grains::export(&path, lammps_dump::LammpsDump::create(here)?, stop),
+        Format::ExtendedXyz => {
+            grains::export(&path, extended_xyz::ExtendedXyz::create(here)?, stop)
+        }
+    }?;
+    Ok(Exported { files: staging.hand_over(&files)?, complete })
 }

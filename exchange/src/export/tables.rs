@@ -6,6 +6,7 @@ use prost_reflect::{DynamicMessage, FieldDescriptor, Kind, MessageDescriptor, Va
 
 use super::cloud::{CloudColumn, CloudReader};
 use super::{ExportError, Exported};
+use crate::Stop;
 use crate::read::messages::{Receiver, Refusal, each_message};
 
 /// A number in a table.
@@ -35,9 +36,14 @@ pub(super) trait Sink {
 /// Opens the table called by the path without an ending, with these columns.
 type Create = fn(PathBuf, &[Column]) -> Result<Box<dyn Sink>, ExportError>;
 
-/// Writes every topic of scalars and every cloud of points in the log at `path` into the folder `out`.
-pub(super) fn export(path: &Path, out: &Path, create: Create) -> Result<Exported, ExportError> {
-    let mut tables = Tables { out, create, sinks: Vec::new(), failed: None };
+/// Writes every topic of scalars and every cloud of points in the log at `path` into a folder, with tables of
+/// one kind.
+pub(super) fn export(
+    path: &Path,
+    (out, create): (&Path, Create),
+    stop: Stop<'_>,
+) -> Result<Exported, ExportError> {
+    let mut tables = Tables { out, create, stop, sinks: Vec::new(), failed: None };
     let read = each_message(path, &mut tables);
     if let Some(error) = tables.failed {
         return Err(error);
@@ -53,6 +59,7 @@ pub(super) fn export(path: &Path, out: &Path, create: Create) -> Result<Exported
 struct Tables<'a> {
     out: &'a Path,
     create: Create,
+    stop: Stop<'a>,
     sinks: Vec<Box<dyn Sink>>,
     failed: Option<ExportError>,
 }
@@ -107,6 +114,10 @@ impl Receiver for Tables<'_> {
     }
 
     fn receive(&mut self, topic: &mut Topic, data: &[u8]) -> Result<(), Refusal> {
+        if (self.stop)() {
+            self.failed = Some(ExportError::Stopped);
+            return Err(Refusal::Stop);
+        }
         match topic {
             Topic::Scalars(scalars) => self.message(scalars, data),
             Topic::Points(points) => self.cloud(points, data),

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use engine::record::chunk;
 use mcap::records::Record;
 use prost_reflect::prost::Message as _;
 use prost_reflect::prost_types::{FileDescriptorProto, FileDescriptorSet};
@@ -56,7 +57,7 @@ pub(crate) fn each_message<R: Receiver>(path: &Path, receiver: &mut R) -> Result
         for (opcode, body) in records.present() {
             let damaged = |why: String| ReadError::Damaged { path: path.to_owned(), offset, why };
             let record =
-                mcap::parse_record(opcode, body).map_err(|error| damaged(error.to_string()))?;
+                chunk::parse_record(opcode, body).map_err(|error| damaged(error.to_string()))?;
             match record {
                 Record::Schema { header, data } => {
                     schemas.entry(header.id).or_insert((header.name, data.into_owned()));

@@ -23,7 +23,7 @@ pub(super) struct Definitions {
 impl Definitions {
     /// Those that a finished log repeats at its end; they serve when their first chunk is lost.
     /// None if the checksum of that section is wrong: a damaged topic would pass as another one.
-    pub(super) fn of_summary(input: &mut Input) -> Result<Self, RecoverError> {
+    pub(super) fn of_summary(input: &mut Input<'_>) -> Result<Self, RecoverError> {
         /// An end of the data, which the reader wants to see before a summary.
         const DATA_END: [u8; RECORD_PREFIX + 4] =
             [op::DATA_END, 4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];

@@ -4,26 +4,28 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use engine::record::chunk::{CHUNK_LIMIT, ChunkHead, RECORD_PREFIX};
+use engine::record::chunk::{self, CHUNK_LIMIT, ChunkHead, RECORD_PREFIX};
 use mcap::records::{Record, op};
 
 use super::RecoverError;
+use crate::Stop;
 
 /// Bytes searched at a time for the next record.
 const WINDOW: u64 = 1 << 20;
 
 /// The damaged log.
-pub(super) struct Input {
+pub(super) struct Input<'s> {
     path: PathBuf,
     file: File,
     length: u64,
+    stop: Stop<'s>,
 }
 
-impl Input {
-    pub(super) fn open(path: &Path) -> Result<Self, RecoverError> {
+impl<'s> Input<'s> {
+    pub(super) fn open(path: &Path, stop: Stop<'s>) -> Result<Self, RecoverError> {
         let file = File::open(path).map_err(|e| RecoverError::io(path, "open", e))?;
         let length = file.metadata().map_err(|e| RecoverError::io(path, "read", e))?.len();
-        Ok(Self { path: path.to_owned(), file, length })
+        Ok(Self { path: path.to_owned(), file, length, stop })
     }
 
     pub(super) fn path(&self) -> &Path {
@@ -34,8 +36,12 @@ impl Input {
         self.length
     }
 
-    /// `count` bytes from `at`, fewer at the end of the file.
+    /// `count` bytes from `at`, fewer at the end of the file. All reading goes through here, so that here is
+    /// the place to ask whether to stop.
     pub(super) fn bytes(&mut self, at: u64, count: u64) -> Result<Vec<u8>, RecoverError> {
+        if (self.stop)() {
+            return Err(RecoverError::Stopped);
+        }
         let mut bytes = Vec::new();
         let count = count.min(self.length.saturating_sub(at));
         self.file
@@ -147,7 +153,7 @@ pub(super) fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
     if opcode == op::ATTACHMENT && attachment_length(body) != Some(body.len() as u64) {
         return None;
     }
-    let record = mcap::parse_record(opcode, body).ok()?;
+    let record = chunk::parse_record(opcode, body).ok()?;
     let length = match &record {
         Record::Header(header) => 8 + header.profile.len() + header.library.len(),
         Record::Footer(_) => 20,

@@ -37,7 +37,7 @@ impl Scratch {
         let [input, output] = ["in.mcap", "out.mcap"].map(|name| self.0.join(name));
         fs::write(&input, damaged).unwrap();
         drop(fs::remove_file(&output));
-        let recovered = recover(&input, &output)?;
+        let recovered = recover(&input, &output, &|| false)?;
         assert_eq!(fs::read_dir(&self.0).unwrap().count(), 2, "no temporary file is left");
         Ok((recovered, fs::read(output).unwrap()))
     }
@@ -142,7 +142,7 @@ impl Sample {
         for cut in places {
             fs::write(&input, &self.bytes[..cut]).unwrap();
             // without the sync to disk, which takes longer than all the rest
-            let recovered = copy(&input, &output).unwrap();
+            let recovered = copy(&input, &output, &|| false).unwrap();
             let found = in_order(&fs::read(&output).unwrap());
             let whole = self.chunks.iter().filter(|(place, _)| place.end <= cut);
             let whole: usize = whole.map(|(_, messages)| messages.len()).sum();
@@ -272,7 +272,7 @@ fn other_files_and_existing_outputs_are_refused() {
         assert!(matches!(result, Err(RecoverError::NotMcap { .. })), "{result:?}");
     }
     let input = scratch.0.join("in.mcap");
-    let result = recover(&input, &input);
+    let result = recover(&input, &input, &|| false);
     assert!(matches!(result, Err(RecoverError::OutputExists { .. })), "{result:?}");
     assert_eq!(fs::read_dir(&scratch.0).unwrap().count(), 1);
 }

@@ -133,7 +133,7 @@ fn in_lammps(folder: &Path, loaded: &Loaded, ranks: usize) -> End {
     let deck = Deck::of(grains, &resting).expect("a model that LAMMPS can express");
     deck.write(folder).expect("it can be written");
     lammps(folder, ranks, STEPS);
-    let imported = import(folder, &folder.join("lmp.mcap")).expect("a run");
+    let imported = import(folder, &folder.join("lmp.mcap"), &|| false).expect("a run");
     let log = read_run(&imported.files.log, Keep::States).expect("a log");
     let BodyState { depth, position, velocity, .. } = *log.bodies[0].states.last().expect("states");
     End { position, velocity, spin: last_spin(folder), depth }

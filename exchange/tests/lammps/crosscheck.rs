@@ -103,7 +103,7 @@ fn what_lammps_does_not_tell_is_absent_and_not_zero() {
     assert_eq!((imported.samples, imported.frames), (101, 3), "every 0.1 ms, and every 5 ms");
     let csv = exchange::export::Format::Csv;
     let out = tempfile::tempdir().expect("a folder");
-    exchange::export::export(&imported.files.log, csv, out.path()).expect("tables");
+    exchange::export::export(&imported.files.log, csv, out.path(), &|| false).expect("tables");
     let load =
         std::fs::read_to_string(out.path().join("intruder_intruder_load.csv")).expect("a table");
     let columns = load.lines().next().expect("a header");
@@ -118,7 +118,8 @@ fn in_lammps(ranks: usize) -> (TempDir, Loaded, Imported) {
     let deck = Deck::of(grains, &grains.read_bed().expect("a table")).expect("a deck");
     deck.write(folder.path()).expect("it can be written");
     lammps(folder.path(), ranks, STEPS);
-    let imported = import(folder.path(), &folder.path().join("lmp.mcap")).expect("a run");
+    let imported =
+        import(folder.path(), &folder.path().join("lmp.mcap"), &|| false).expect("a run");
     (folder, loaded, imported)
 }
 

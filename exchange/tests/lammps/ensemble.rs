@@ -80,7 +80,7 @@ impl Ensemble {
         let ours = to_the_end(&mut simulation);
         Deck::of(grains, &bed.resting).expect("a deck").write(folder).expect("it can be written");
         lammps(folder, 1, last);
-        let imported = import(folder, &folder.join("run.mcap")).expect("a run");
+        let imported = import(folder, &folder.join("run.mcap"), &|| false).expect("a run");
         let log = read_run(&imported.files.log, Keep::States).expect("a log");
         let states = &log.bodies[0].states;
         let theirs = states.iter().map(|state| state.depth).fold(0.0, f64::max);

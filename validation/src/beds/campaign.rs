@@ -195,10 +195,12 @@ impl Impacts for Place<'_> {
         let work = |&at: &usize| jobs[at].work();
         let ran = self.side_by_side(Stage::Impacts, &missing, (&work, done), |at, heed| {
             let job = &jobs[at];
-            match job.run(self.cache, heed) {
-                Ok(Some(record)) => {
-                    pace.lock().unwrap_or_else(PoisonError::into_inner).learn(&record);
-                    Job::keep(self.cache, &keys[at], &record).map(|()| Some(record))
+            match job.kept_or_run((self.cache, &keys[at]), heed) {
+                Ok(Some((record, was_run))) => {
+                    if was_run {
+                        pace.lock().unwrap_or_else(PoisonError::into_inner).learn(&record);
+                    }
+                    Ok(Some(record))
                 }
                 Ok(None) => Err(CampaignError::Interrupted),
                 Err(CampaignError::Step(why)) => {

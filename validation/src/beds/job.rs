@@ -1,8 +1,10 @@
 //! One impact to be run, or found in the cache.
 
+use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use configs::run::{Control, Progress, bed_key, prepare, result_key};
 use configs::{Condition, Model, StartX};
@@ -11,8 +13,8 @@ use engine::checkpoint;
 use super::CampaignError;
 use super::record::{Record, Recorder};
 
-/// Steps between two looks at whether to stop.
-const LOOK_EVERY: u64 = 200;
+/// Time between two looks at whether to stop while another process runs the same impact.
+const WAIT: Duration = Duration::from_millis(50);
 
 /// Counts the changes of what is kept of an impact.
 const KEPT: u32 = 1;
@@ -87,11 +89,7 @@ impl Job {
     }
 
     /// Runs it, on a bed that is found or made in `cache`. Nothing if it was stopped.
-    pub(super) fn run(
-        &self,
-        cache: &Path,
-        heed: &mut dyn Control,
-    ) -> Result<Option<Record>, CampaignError> {
+    fn run(&self, cache: &Path, heed: &mut dyn Control) -> Result<Option<Record>, CampaignError> {
         let grains = self.model.grains().ok_or_else(|| CampaignError::no_grains(&self.model))?;
         let of_bed = self.bed.grains().ok_or_else(|| CampaignError::no_grains(&self.bed))?;
         let Some(bed) = prepare(of_bed, cache, heed)? else { return Ok(None) };
@@ -105,11 +103,31 @@ impl Job {
         while !simulation.is_over() {
             simulation.advance()?;
             recorder.observe(&simulation);
-            if simulation.clock().step.is_multiple_of(LOOK_EVERY) && heed.wants_to_stop() {
+            if heed.wants_to_stop() {
                 return Ok(None);
             }
         }
         Ok(Some(recorder.record(&simulation, start.elapsed().as_secs_f64())))
+    }
+
+    /// Its record, which `cache` has afterwards, and whether it was run for it now. Processes that want the same
+    /// impact at the same time run it once. Nothing if it was stopped.
+    pub(super) fn kept_or_run(
+        &self,
+        (cache, key): (&Path, &[u8; 32]),
+        heed: &mut dyn Control,
+    ) -> Result<Option<(Record, bool)>, CampaignError> {
+        let lock_path = Self::path(cache, key).with_extension("lock");
+        let Some(lock) = lock(&lock_path, heed)? else { return Ok(None) };
+        if let Some(record) = Self::kept(cache, key) {
+            return Ok(Some((record, false)));
+        }
+        let Some(record) = self.run(cache, heed)? else { return Ok(None) };
+        Self::keep(cache, key, &record)?;
+        // A process that waits for this lock, or makes a new one, finds the record.
+        drop(fs::remove_file(&lock_path));
+        drop(lock);
+        Ok(Some((record, true)))
     }
 
     /// Its record, if `cache` has it.
@@ -118,12 +136,26 @@ impl Job {
         checkpoint::load::<Record>(&Self::path(cache, key), key).ok()
     }
 
-    /// Keeps `record` in `cache`, whole or not at all.
-    pub(super) fn keep(cache: &Path, key: &[u8; 32], record: &Record) -> Result<(), CampaignError> {
+    /// Keeps `record` in `cache`, whole or not at all; its lock is held.
+    fn keep(cache: &Path, key: &[u8; 32], record: &Record) -> Result<(), CampaignError> {
         let path = Self::path(cache, key);
         // What is there is damaged, and not worth keeping as the one before.
-        let _ = std::fs::remove_file(&path);
+        let _ = fs::remove_file(&path);
         Ok(checkpoint::save(&path, key, record)?)
+    }
+}
+
+/// Holds the lock at `path`, once it is free. Nothing if `heed` wants to stop before.
+fn lock(path: &Path, heed: &dyn Control) -> Result<Option<File>, CampaignError> {
+    let io = |action| move |source| CampaignError::Io { action, path: path.to_owned(), source };
+    let file = File::create(path).map_err(io("make"))?;
+    loop {
+        match file.try_lock() {
+            Ok(()) => return Ok(Some(file)),
+            Err(TryLockError::WouldBlock) if heed.wants_to_stop() => return Ok(None),
+            Err(TryLockError::WouldBlock) => sleep(WAIT),
+            Err(TryLockError::Error(source)) => return Err(io("lock")(source)),
+        }
     }
 }
 

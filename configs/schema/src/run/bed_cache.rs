@@ -12,7 +12,7 @@ use engine::grain_bed::RestingBed;
 use super::{Control, Progress, RunError, result_key};
 use crate::model::{BedSource, GrainModel};
 
-/// Steps between two looks at the control while a bed settles.
+/// Steps between two messages of progress while a bed settles.
 const LOOK_EVERY: u64 = 100;
 
 /// Steps between two checkpoints of a settling bed.
@@ -142,10 +142,11 @@ fn settle(
                 time: clock.time(),
                 restlessness: settling.restlessness(),
             });
-            if control.wants_to_stop() {
-                checkpoint::save(unfinished, key, &settling.save())?;
-                return Ok(None);
-            }
+        }
+        // After every step: of a large bed one alone may take a good part of a second.
+        if control.wants_to_stop() {
+            checkpoint::save(unfinished, key, &settling.save())?;
+            return Ok(None);
         }
     }
     Ok(Some(settling.bed().resting()))

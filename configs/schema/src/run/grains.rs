@@ -71,10 +71,11 @@ impl Setting<'_> {
             run.advance()?;
             if run.simulation.clock().step.is_multiple_of(LOOK_EVERY) {
                 control.progress(&self.progress(&run.simulation));
-                if control.wants_to_stop() {
-                    run.save()?;
-                    return Ok(None);
-                }
+            }
+            // After every step: of a large bed one alone may take a good part of a second.
+            if control.wants_to_stop() {
+                run.save()?;
+                return Ok(None);
             }
         }
         let step = run.simulation.clock().step;

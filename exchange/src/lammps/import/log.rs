@@ -13,6 +13,7 @@ use super::super::facts::Facts;
 use super::super::samples::Sample;
 use super::ImportError;
 use super::faller::{ENERGIES, Faller, Turned};
+use crate::Stop;
 
 /// Steps after which a chunk of the log ends.
 const FLUSH_EVERY: u64 = 1000;
@@ -27,7 +28,7 @@ pub(super) fn write(
     faller: &Faller<'_>,
     path: &[Turned<'_>],
     mut dump: Dump,
-    folder: &Path,
+    (folder, stop): (&Path, Stop<'_>),
 ) -> Result<usize, ImportError> {
     let mut log = RunLog::import(folder, &setup(facts, faller))?;
     let first = path[0];
@@ -37,6 +38,9 @@ pub(super) fn write(
     let mut stopping = Stopping::new(faller.followed(first));
     let (mut next, mut frames) = (dump.next()?, 0);
     for turned in path {
+        if stop() {
+            return Err(ImportError::Stopped);
+        }
         let Turned { sample, orientation } = *turned;
         let at = stamp(sample);
         let state = faller.state(*turned);

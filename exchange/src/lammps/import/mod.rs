@@ -17,6 +17,7 @@ use super::dump::Dump;
 use super::facts::Facts;
 use super::samples::samples;
 use super::{DUMP, FACTS, INTRUDER_TABLE};
+use crate::Stop;
 use crate::run_files::RunFiles;
 
 use faller::Faller;
@@ -77,6 +78,9 @@ pub enum ImportError {
     /// The log cannot be written.
     #[error(transparent)]
     Record(#[from] RecordError),
+    /// It was asked to stop; no log is left.
+    #[error("stopped before the end")]
+    Stopped,
 }
 
 impl ImportError {
@@ -95,8 +99,9 @@ impl ImportError {
 /// motion and height, and what touches the intruder. How a body is turned follows from its spins.
 ///
 /// # Errors
-/// If a file is missing, unreadable or not what the input asks for, or the log cannot be written.
-pub fn import(folder: &Path, log: &Path) -> Result<Imported, ImportError> {
+/// If a file is missing, unreadable or not what the input asks for, the log cannot be written, or `stop` says
+/// so between two samples.
+pub fn import(folder: &Path, log: &Path, stop: Stop<'_>) -> Result<Imported, ImportError> {
     let path = folder.join(FACTS);
     let facts: Facts = serde_json::from_str(&read(&path)?)
         .map_err(|error| ImportError::Misread { path: path.clone(), why: error.to_string() })?;
@@ -107,7 +112,7 @@ pub fn import(folder: &Path, log: &Path) -> Result<Imported, ImportError> {
     let files = RunFiles::of(log);
     let staging = Staging::beside(&files.log)?;
     let turned = faller.turned(&samples);
-    let frames = log::write(&facts, &faller, &turned, dump, &staging.0)?;
+    let frames = log::write(&facts, &faller, &turned, dump, (&staging.0, stop))?;
     let summary = summary::of(&facts, &faller, &turned, folder);
     staging.hand_over(&files, &summary)?;
     Ok(Imported { summary, files, samples: samples.len(), frames })

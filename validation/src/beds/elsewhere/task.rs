@@ -1,6 +1,5 @@
 //! What another process does for this one.
 
-use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -114,26 +113,16 @@ fn impact(job: &Job, asked: &str, cache: &Path) -> Result<(), CampaignError> {
     if hexadecimal(&key) != asked {
         return Err(CampaignError::OtherProgram);
     }
-    let path = Job::path(cache, &key);
-    let io = |action, path: &Path| {
-        let path = path.to_owned();
-        move |source| CampaignError::Io { action, path, source }
-    };
     // Tasks that were handed over twice do it once.
-    let lock_path = path.with_extension("lock");
-    let lock = File::create(&lock_path).map_err(io("make", &lock_path))?;
-    lock.lock().map_err(io("lock", &lock_path))?;
-    if Job::kept(cache, &key).is_none() {
-        match job.run(cache, &mut unattended()) {
-            Ok(Some(record)) => Job::keep(cache, &key, &record)?,
-            Ok(None) => return Err(CampaignError::Interrupted),
-            Err(CampaignError::Step(why)) => eprintln!("the impact is left out: {why}"),
-            Err(other) => return Err(other),
+    match job.kept_or_run((cache, &key), &mut unattended()) {
+        Ok(Some(_)) => Ok(()),
+        Ok(None) => Err(CampaignError::Interrupted),
+        Err(CampaignError::Step(why)) => {
+            eprintln!("the impact is left out: {why}");
+            Ok(())
         }
+        Err(other) => Err(other),
     }
-    // Whoever waits for this lock, or makes a new one, finds the record.
-    drop(std::fs::remove_file(&lock_path));
-    Ok(())
 }
 
 fn unattended() -> Heed<'static> {
