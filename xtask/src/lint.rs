@@ -7,6 +7,9 @@ use xshell::{Cmd, Shell, cmd};
 
 use crate::tidy;
 
+/// What installs the tools that are no part of Rust, by their versions.
+const REQUIREMENTS: &str = ".ci/lint-requirements.txt";
+
 /// Runs all checks, also after one has failed, and ends with the list of those that failed.
 pub(crate) fn run(sh: &Shell) -> Result<ExitCode> {
     let mut failed = Vec::new();
@@ -31,13 +34,18 @@ pub(crate) fn run(sh: &Shell) -> Result<ExitCode> {
     }
 
     let tools = [
-        ("cargo-deny", cmd!(sh, "cargo deny --version"), cmd!(sh, "cargo deny --locked check")),
+        (
+            "cargo-deny",
+            cmd!(sh, "cargo-deny --version"),
+            cmd!(sh, "cargo-deny --locked check bans licenses sources"),
+        ),
         ("typos", cmd!(sh, "typos --version"), cmd!(sh, "typos")),
     ];
     for (name, version, check) in tools {
         if !is_installed(version) {
             heading(name);
-            eprintln!("skipped: {name} is not installed");
+            eprintln!("{name} is not on the path: `pip install -r {REQUIREMENTS}` installs it");
+            failed.push(name);
         } else if !passes(name, check) {
             failed.push(name);
         }

@@ -20,7 +20,7 @@ Chores of the repository.
 
 Usage: cargo xtask <task>
 
-  lint               fmt, clippy, doc and tidy, then cargo-deny and typos where installed
+  lint               fmt, clippy, doc and tidy, then cargo-deny and typos
   tidy               the rules of the repository that no other tool knows
   bench [ARG]...     grain-steps per second, in release; the arguments go to the program
   bench resistive    impacts per second on resistive media, in release

@@ -32,7 +32,7 @@ const ALLOWED: [(&str, &[&str]); 14] = [
 ];
 
 /// Crates of others that are kept behind one of ours (two where a second reads what the first writes).
-const ONLY: [(&str, &[&str]); 38] = [
+const ONLY: [(&str, &[&str]); 37] = [
     ("annotate-snippets", &["configs"]),
     ("anyhow", &["plunge", "xtask"]),
     ("askama", &["reports"]),
@@ -47,6 +47,7 @@ const ONLY: [(&str, &[&str]); 38] = [
     ("exmex", &["resistive"]),
     ("foxglove", &["engine"]),
     ("http-range-header", &["plunge"]),
+    ("httparse", &["plunge"]),
     ("indicatif", &["plunge"]),
     ("levenberg-marquardt", &["validation"]),
     ("lexopt", &["fuzz", "validation", "xtask"]),
@@ -61,13 +62,11 @@ const ONLY: [(&str, &[&str]); 38] = [
     ("postcard", &["engine", "fuzz"]),
     ("prost-reflect", &["exchange"]),
     ("rayon", &["engine", "validation"]),
-    ("roots", &["resistive"]),
     ("rustix", &["validation"]),
     ("safe_arch", &["engine"]),
     ("signal-hook", &["plunge"]),
     ("sobol_burley", &["campaigns"]),
     ("statrs", &["validation"]),
-    ("tiny_http", &["plunge"]),
     ("toml", &["configs"]),
     ("toml_edit", &["configs", "fixtures"]),
     ("wide", &["engine"]),
