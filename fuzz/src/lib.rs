@@ -2,8 +2,8 @@
 //!
 //! Each [`Target`] reads bytes as the program would and panics where something does not hold: a panic of
 //! the reader, an accepted model that prints as another one, a recovered log that needs recovery.
-//! `cargo xtask fuzz` tries changes of files that ship, led by answers that it has not had before. What was
-//! found once is kept in `found/`, and `tests/found.rs` tries it again.
+//! `cargo xtask fuzz` tries changes of files that ship, led by answers that it has not had before. What broke a
+//! reader, or the program behind it, is kept in `found/`, and `tests/found.rs` tries it again.
 
 pub mod checkpoint;
 pub mod formula;
