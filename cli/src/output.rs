@@ -67,10 +67,19 @@ pub(crate) fn conclude(result: CommandResult) -> ExitCode {
             ExitCode::from(code)
         }
         Err(CommandError::Failed(error)) => {
-            to_stderr(&format!("error: {}\n", printable(&format!("{error:#}"))));
+            to_stderr(&format!("error: {}\n", printable(&with_causes(&error))));
             ExitCode::from(1)
         }
     }
+}
+
+/// What went wrong and why, each thing once: some errors say the words of their cause themselves.
+fn with_causes(error: &anyhow::Error) -> String {
+    error.chain().fold(String::new(), |text, cause| match cause.to_string() {
+        words if text.contains(&words) => text,
+        words if text.is_empty() => words,
+        words => format!("{text}: {words}"),
+    })
 }
 
 fn printable_lines(text: &str) -> String {

@@ -274,8 +274,9 @@ impl Results {
                 occupied.then_some("files that are no results of this command")
             }
             Err(error) => {
-                let error = anyhow::Error::new(error);
-                return Err(error.context(format!("cannot read {}", stamp.display())).into());
+                return Err(CommandError::bad_input(format!(
+                    "{shown} is no folder that results can be written to: {error}"
+                )));
             }
         };
         match refusal {
@@ -294,7 +295,10 @@ impl Results {
             CommandError::Failed(anyhow::Error::new(error).context(shown))
         };
         let folder = &self.folder;
-        fs::create_dir_all(folder).map_err(|error| cannot("make", folder, error))?;
+        fs::create_dir_all(folder).map_err(|error| match error.kind() {
+            ErrorKind::StorageFull => cannot("make", folder, error),
+            _ => CommandError::bad_input(format!("cannot make {}: {error}", folder.display())),
+        })?;
         // Two calls with the same results write them one after the other.
         let handle = File::open(folder).map_err(|error| cannot("open", folder, error))?;
         handle.lock().map_err(|error| cannot("lock", folder, error))?;

@@ -114,3 +114,16 @@ fn results_that_find_no_room_leave_those_that_are_there() {
     compare(&["fit.free=[]"]).done();
     assert!(read() != before);
 }
+
+#[test]
+fn results_that_go_to_no_folder_are_bad_input() {
+    let here = folder();
+    let file = here.path().join("file");
+    fs::write(&file, "mine").expect("a file");
+    let long = here.path().join("x".repeat(300));
+    for out in [&file, &file.join("below"), &long] {
+        let message = Call::new(["compare", "--out"]).arg(out).arg(measured()).fails(2);
+        assert!(message.contains("no folder") && !message.contains("blake3"), "{message}");
+    }
+    assert_eq!(fs::read_to_string(&file).expect("the file"), "mine");
+}

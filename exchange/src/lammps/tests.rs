@@ -3,7 +3,9 @@ use std::fs;
 use configs::{LoadOptions, Loaded, Model, ModelSource};
 use tempfile::TempDir;
 
-use super::{BODY, DATA, Deck, FACTS, INPUT, LammpsError};
+use super::{
+    BODY, DATA, DUMP, Deck, FACTS, INPUT, INTRUDER_TABLE, ImportError, LammpsError, import,
+};
 
 const LINEAR: &str = "\
 name = \"linear-spring-dashpot\"
@@ -236,4 +238,29 @@ fn all_files_are_written_into_a_new_folder() {
     let read = |name: &str| fs::read_to_string(into.join(name)).expect("a file");
     assert_eq!((read(INPUT), read(DATA), read(FACTS)), (deck.input, deck.data, deck.facts));
     assert!(deck.body.is_none() && !into.join(BODY).exists(), "a disc is no clump");
+}
+
+#[test]
+fn a_stopped_import_leaves_no_log_and_the_same_call_makes_it() {
+    const TABLE: &str = "step,time_s,x_m,z_m,vx_m_per_s,vz_m_per_s,fx_N,fz_N,\
+        spin_y_rad_per_s,torque_y_N_m,kinetic_grains_translation_J,kinetic_grains_rotation_J,\
+        potential_grains_J\n";
+    let folder = tempfile::tempdir().expect("a folder");
+    written(2, LINEAR, &[]).write(folder.path()).expect("it can be written");
+    let row = |n: u32| format!("{n},{n}e-5,0.02,0.015,0,-2,0,-0.0981,0,0,0,0,1e-4\n");
+    let table: String = (0..10).map(row).collect();
+    fs::write(folder.path().join(INTRUDER_TABLE), format!("{TABLE}{table}")).expect("a table");
+    fs::write(folder.path().join(DUMP), "").expect("a dump");
+    let before = fs::read_dir(folder.path()).expect("the folder").count();
+    let log = folder.path().join("run.mcap");
+    let asked = std::cell::Cell::new(0);
+    let stop = || {
+        asked.set(asked.get() + 1);
+        asked.get() > 3
+    };
+    let stopped = import(folder.path(), &log, &stop);
+    assert!(matches!(stopped, Err(ImportError::Stopped)), "{stopped:?}");
+    assert_eq!(fs::read_dir(folder.path()).expect("the folder").count(), before);
+    let imported = import(folder.path(), &log, &|| false).expect("a run");
+    assert_eq!((imported.samples, log.is_file()), (10, true));
 }
