@@ -43,6 +43,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     if let Some(folder) = folder.filter(|folder| !folder.as_os_str().is_empty()) {
         make(folder)?;
     }
+    signals::will_be_asked_for();
     let imported = import(&args.folder, &files.log, &signals::is_asked_to_stop).map_err(failed)?;
     match (args.json, args.quiet) {
         (true, _) => output::json_to_stdout(&json!({

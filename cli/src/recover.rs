@@ -27,6 +27,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> CommandResult {
+    signals::will_be_asked_for();
     let recovered = recover(&args.input, &args.output, &signals::is_asked_to_stop);
     let Recovered { messages, chunks, lost, complete } = match recovered {
         Ok(recovered) => recovered,

@@ -66,9 +66,14 @@ pub(crate) fn listen(consequence: &'static str) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// From now on the command asks, and takes what it has begun away when it ends.
+pub(crate) fn will_be_asked_for() {
+    IS_POLLED.store(true, Ordering::Relaxed);
+}
+
 /// Whether a signal has asked to stop.
 pub(crate) fn is_asked_to_stop() -> bool {
-    IS_POLLED.store(true, Ordering::Relaxed);
+    will_be_asked_for();
     let is_asked = number() != 0;
     if is_asked {
         HAS_HEARD.store(true, Ordering::Relaxed);

@@ -21,6 +21,7 @@ pub(super) fn write(run: &Path, format: Format, common: &Common) -> CommandResul
             out.display()
         )));
     }
+    signals::will_be_asked_for();
     let Exported { files, complete } =
         export(run, format, &out, &signals::is_asked_to_stop).map_err(failed)?;
     if !complete && !common.quiet {
