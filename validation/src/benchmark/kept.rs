@@ -1,6 +1,6 @@
 //! Outcomes of trials that are kept while others are still diagnosed, one JSON object per line.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use super::trial::{Outcome, Trial};
 
 /// Outcomes so far. They are of one program: a diagnosis that was changed wants another file.
 pub struct Kept {
-    known: HashMap<String, Outcome>,
+    known: BTreeMap<String, Outcome>,
     file: Mutex<File>,
     path: PathBuf,
 }
@@ -45,7 +45,7 @@ impl Kept {
             Err(error) if error.kind() == ErrorKind::NotFound => String::new(),
             read => read.map_err(|error| failed(error.to_string()))?,
         };
-        let mut known = HashMap::new();
+        let mut known = BTreeMap::new();
         for (number, line) in text.split_inclusive('\n').enumerate() {
             match serde_json::from_str::<Line>(line) {
                 Ok(line) => known.insert(line.trial, line.outcome),
