@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use configs::run::Summary;
+use runner::run::Summary;
 use serde::{Deserialize, Serialize};
 
 /// `done.json` of a point: there once the point is done, and not before.

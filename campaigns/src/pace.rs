@@ -13,8 +13,8 @@ use configs::engine::checkpoint::write_whole;
 use configs::engine::error::StepError;
 use configs::engine::grains::Space;
 use configs::engine::world::World;
-use configs::run::{bed_file, bed_key, result_key};
 use configs::{BedSource, BuildError, GrainMedium, GrainModel};
+use runner::run::{bed_file, bed_key, result_key};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZero;
 use std::path::PathBuf;
 
-use configs::campaign::{Campaign, CampaignModel, Setting};
 use configs::estimate::Estimate;
-use configs::run::{bed_key, result_key};
 use configs::{ConfigError, Diagnostic, LoadOptions, Loaded, Model};
+use runner::campaign::file::{Campaign, CampaignModel, Setting};
+use runner::run::{bed_key, result_key};
 use serde::{Deserialize, Serialize};
 
 use crate::sampling::shares;

@@ -5,7 +5,7 @@ use std::fs;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use configs::run::{Control, Existing, Places, RunError};
+use runner::run::{Control, Existing, Places, RunError};
 use validation::beds::{CampaignError, Place, Stage};
 
 use crate::done::Done;
@@ -119,7 +119,7 @@ fn beds(
         let (Some(grains), Some(key)) = (model.grains(), planned.needs[index].bed) else {
             return Ok(());
         };
-        match configs::run::prepare(grains, place.cache, control) {
+        match runner::run::prepare(grains, place.cache, control) {
             Ok(Some(_)) => Ok(()),
             Ok(None) => Err(CampaignError::Interrupted),
             Err(error) if is_of_the_point(&error) => {
@@ -152,10 +152,10 @@ fn point(
         existing: Existing::Resume,
     };
     let start = Instant::now();
-    match configs::run::run(&loaded.model, &loaded.original, &places, control) {
-        Ok(configs::run::Outcome::One(summary)) => Ok(Done::of(hash, &summary)),
-        Ok(configs::run::Outcome::Interrupted) => Err(CampaignError::Interrupted),
-        Ok(configs::run::Outcome::List(_)) => {
+    match runner::run::run(&loaded.model, &loaded.original, &places, control) {
+        Ok(runner::run::Outcome::One(summary)) => Ok(Done::of(hash, &summary)),
+        Ok(runner::run::Outcome::Interrupted) => Err(CampaignError::Interrupted),
+        Ok(runner::run::Outcome::List(_)) => {
             Ok(Done::failed(hash, "it lists conditions of its own".to_owned(), 0.0))
         }
         Err(error) if is_of_the_point(&error) => {

@@ -5,7 +5,7 @@
 
 use std::path::PathBuf;
 
-use schedulers::{Array, Scheduler, SchedulerError, Word};
+use runner::schedulers::{Array, Scheduler, SchedulerError, Word};
 use thiserror::Error;
 
 use crate::folder::{Folder, FolderError};
@@ -65,7 +65,7 @@ pub fn submit(
         command.extend([Word::Plain("--allow-path"), Word::Path(path)]);
     }
     command.extend([Word::Plain("--quiet"), Word::Plain("--point")]);
-    schedulers::script(folder.path(), SCRIPT, &command)?;
+    runner::schedulers::script(folder.path(), SCRIPT, &command)?;
     scheduler.submit(&Array {
         name: &planned.plan.name,
         tasks: &points,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use configs::engine::bed::BedReport;
-use configs::run::{BedSummary, Control as _, prepare};
+use runner::run::{BedSummary, Control as _, prepare};
 use serde_json::json;
 
 use crate::common::Common;

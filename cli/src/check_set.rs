@@ -5,8 +5,8 @@ use std::path::Path;
 
 use anyhow::Context as _;
 use configs::{Color, Sources, document, limits, paths};
+use measurements::{Loaded, MeasurementSet, Role, Run};
 use serde_json::{Value, json};
-use validation::measurement::{Loaded, MeasurementSet, Role, Run};
 
 use crate::common::Common;
 use crate::output::{self, CommandError, CommandResult, stderr_color};

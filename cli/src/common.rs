@@ -6,7 +6,7 @@ use clap::Args;
 use configs::engine::parallel::with_threads;
 use configs::estimate::{Estimate, MEMORY_SHARE, available_memory_bytes};
 use configs::{LoadOptions, Loaded, Model, ModelSource};
-use schedulers::{Scheduler, SchedulerError};
+use runner::schedulers::{Scheduler, SchedulerError};
 
 use crate::output::{self, CommandError};
 

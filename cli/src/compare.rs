@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
+use measurements::MeasurementSet;
 use serde_json::{Value, json};
 use validation::compare::{Comparison, ModelComparison, Revision, compare};
 use validation::forward::Forward;
-use validation::measurement::MeasurementSet;
 use validation::observable::Observable;
 use validation::picture;
 use validation::residual::Residual;

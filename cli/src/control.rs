@@ -4,8 +4,8 @@ use std::io::{self, IsTerminal};
 use std::time::Duration;
 
 use configs::printable;
-use configs::run::{Control, Progress};
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use runner::run::{Control, Progress};
 use validation::beds::{self as campaign, Watch};
 
 use crate::output::{self, CommandError};

@@ -5,8 +5,8 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use anyhow::Context as _;
+use measurements::TEMPLATE;
 use serde_json::json;
-use validation::measurement::TEMPLATE;
 
 use crate::output::{self, CommandError, CommandResult};
 use crate::workbench::write_whole;

@@ -3,8 +3,8 @@
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
 
-use configs::run::RunError;
 use configs::{Color, ConfigError, Loaded, printable};
+use runner::run::RunError;
 
 /// Why a command did not do what was asked.
 #[derive(Debug)]

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use configs::run::{ListSummary, Summary};
 use exchange::run_files::{RunFiles, is_log};
 use reports::run::Course;
 use reports::{FILE, ReportError};
+use runner::run::{ListSummary, Summary};
 use serde_json::json;
 
 use crate::output::{self, CommandError, CommandResult};

@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use configs::run::{
+use reports::run::Course;
+use runner::run::{
     BedSummary, CostSummary, Existing, LinkSummary, ListSummary, Outcome, Places, Scatter, Summary,
 };
-use reports::run::Course;
 
 use crate::common::Common;
 use crate::control::Terminal;
@@ -41,7 +41,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     };
     let mut terminal = Terminal::new(common.quiet);
     let outcome =
-        common.on_threads(|| configs::run::run(model, &loaded.original, &places, &mut terminal))?;
+        common.on_threads(|| runner::run::run(model, &loaded.original, &places, &mut terminal))?;
     terminal.clear();
     match outcome.map_err(CommandError::from)? {
         Outcome::One(summary) => {

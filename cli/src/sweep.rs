@@ -10,10 +10,10 @@ use campaigns::pace::Pace;
 use campaigns::{
     Counts, Folder, FolderError, Planned, Results, SubmitError, SweepError, TABLE, Task,
 };
-use configs::campaign::Campaign;
 use configs::engine::parallel::with_threads;
 use configs::estimate::{MEMORY_SHARE, available_memory_bytes};
-use schedulers::Scheduler;
+use runner::campaign::file::Campaign;
+use runner::schedulers::Scheduler;
 use serde_json::json;
 use validation::beds::{CampaignError, Impacts, Place, Progress, Watch};
 

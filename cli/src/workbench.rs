@@ -7,8 +7,8 @@ use std::path::{Component, Path, PathBuf};
 use clap::Args;
 use configs::engine::checkpoint;
 use configs::{LoadOptions, Loaded, Model, ModelSource};
+use measurements::{MeasurementSet, SetError};
 use validation::bench::BenchError;
-use validation::measurement::{self, MeasurementSet, SetError};
 use validation::observed::Observed;
 use validation::resistive::ResistiveForward;
 use validation::where_it_fails;
@@ -84,7 +84,7 @@ impl From<SetError> for CommandError {
 impl Flags {
     /// Reads the set at `path` and shows its warnings.
     pub(crate) fn measured(&self, path: &Path) -> Result<Measured, CommandError> {
-        let measurement::Loaded { set, warnings, sources, .. } = MeasurementSet::load(path)?;
+        let measurements::Loaded { set, warnings, sources, .. } = MeasurementSet::load(path)?;
         if !self.quiet {
             output::to_stderr(&configs::render_all(&warnings, &sources, stderr_color()));
         }

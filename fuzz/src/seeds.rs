@@ -4,9 +4,9 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use configs::run::{Control, Existing, Places, Progress, run};
 use configs::{LoadOptions, Model, ModelSource};
 use engine::record::RUN_LOG;
+use runner::run::{Control, Existing, Places, Progress, run};
 
 use crate::{checkpoint, log, set};
 
@@ -68,7 +68,7 @@ fn sets(root: &Path) -> Result<Vec<Vec<u8>>, Box<dyn Error>> {
         let parts = ["measurement.toml", "runs.csv", "trajectories.csv"].map(part);
         inputs.push(parts.join(set::BETWEEN));
     }
-    let written = validation::measurement::TEMPLATE;
+    let written = measurements::TEMPLATE;
     inputs.push(written.map(|(_, text)| text.as_bytes()).join(set::BETWEEN));
     Ok(inputs)
 }

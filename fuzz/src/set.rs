@@ -3,7 +3,7 @@
 use std::fs;
 
 use configs::Color;
-use validation::measurement::MeasurementSet;
+use measurements::MeasurementSet;
 
 /// What stands between the three files of an input.
 pub const BETWEEN: &[u8] = b"\n=====\n";

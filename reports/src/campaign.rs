@@ -1,9 +1,9 @@
 //! The report of a campaign: what its points came to, over what was varied.
 
 use campaigns::{Counts, Headline, Outcome, Point, Results, Values, Varied, varied};
+use plots::legend::{self, Sign};
+use plots::{Area, Drawn, GREY, Hover, PictureError, colour, letters, short, svg};
 use plotters::prelude::*;
-use validation::picture::legend::{self, Sign};
-use validation::picture::{Area, Drawn, GREY, Hover, PictureError, colour, letters, short, svg};
 
 use crate::ReportError;
 use crate::figure::figure;

@@ -283,7 +283,7 @@ mod tests {
             "next": [], "parameters": {}, "amplitudes": [{ "id": "janssen", "q": 0.5, "se": 0.1 }]
         });
         let found = json!({ "set": "a-set", "models": [{ "model": "two-term-vector" }] });
-        let svg = validation::picture::svg((30, 20), |_| Ok(())).expect("a picture");
+        let svg = plots::svg((30, 20), |_| Ok(())).expect("a picture");
         Texts::from([
             (RESULT.to_owned(), diagnosis.to_string()),
             ("where_it_fails.json".to_owned(), found.to_string()),

@@ -15,7 +15,7 @@ mod tests {
 
     #[test]
     fn a_picture_in_a_page_names_no_address() {
-        let svg = validation::picture::svg((30, 20), |_| Ok(())).expect("a picture");
+        let svg = plots::svg((30, 20), |_| Ok(())).expect("a picture");
         assert!(svg.contains("http://"), "a file needs the address: {svg}");
         let Part::Figure(svg, caption) = figure(&svg, "empty") else { panic!("a figure") };
         assert!(svg.starts_with("<svg") && !svg.contains("http"), "{svg}");

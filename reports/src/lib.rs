@@ -23,12 +23,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use campaigns::{Folder, FolderError, PLAN, Results};
-use configs::run::{ListSummary, Summary};
 use exchange::read::ReadError;
 use exchange::run_files::{RunFiles, is_log};
+use plots::PictureError;
+use runner::run::{ListSummary, Summary};
 use serde_json::Value;
 use thiserror::Error;
-use validation::picture::PictureError;
 
 pub use diagnosis::verdict_in_words;
 pub use run::sparkline;

@@ -1,9 +1,9 @@
 //! The report of a list of runs: how depth and stopping time go with speed and angle.
 
-use configs::run::{Group, ListSummary, Scatter};
+use plots::legend::{self, Sign};
+use plots::{Area, Drawn, GREY, Hover, PictureError, colour, letters, short, svg};
 use plotters::prelude::*;
-use validation::picture::legend::{self, Sign};
-use validation::picture::{Area, Drawn, GREY, Hover, PictureError, colour, letters, short, svg};
+use runner::run::{Group, ListSummary, Scatter};
 
 use crate::ReportError;
 use crate::figure::figure;

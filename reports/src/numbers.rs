@@ -15,7 +15,7 @@ pub(crate) fn share(value: Option<f64>) -> String {
 /// `value` in three digits and a unit with a prefix: 0.0123 in J is 12.3 mJ.
 pub(crate) fn with_prefix(value: f64, unit: &str) -> String {
     let (factor, prefix) = prefix_of(value.abs());
-    format!("{} {prefix}{unit}", validation::picture::short(factor * value))
+    format!("{} {prefix}{unit}", plots::short(factor * value))
 }
 
 /// What a quantity up to `most` is multiplied with, and the prefix of its unit then.

@@ -124,10 +124,10 @@ fn side(side: &Value) -> String {
     let (value, error) = (side["value"].as_f64(), side["error"].as_f64());
     match (value, error) {
         (Some(value), Some(error)) if error > 0.0 => {
-            let [value, error] = [value, error].map(validation::picture::short);
+            let [value, error] = [value, error].map(plots::short);
             format!("{value} \u{b1} {error}")
         }
-        (Some(value), _) => validation::picture::short(value),
+        (Some(value), _) => plots::short(value),
         (None, _) => side.as_str().unwrap_or("\u{2013}").to_owned(),
     }
 }
@@ -154,7 +154,7 @@ mod tests {
               "figures": [{ "file": "e1.svg", "caption": "a figure" }] },
             { "id": "E2", "title": "two", "verdict": "fail", "error": "no bed" },
         ] });
-        let svg = validation::picture::svg((30, 20), |_| Ok(())).expect("a picture");
+        let svg = plots::svg((30, 20), |_| Ok(())).expect("a picture");
         let texts = [(RESULT.to_owned(), found.to_string()), ("e1.svg".to_owned(), svg)];
         let html = page(&texts.into_iter().collect()).expect("a page");
         // Words of a band are no number: they take several lines.

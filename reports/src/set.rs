@@ -1,6 +1,6 @@
 //! The page of a measurement set as it was understood.
 
-use validation::measurement::{Kind, Loaded, Role};
+use measurements::{Kind, Loaded, Role};
 use validation::picture;
 
 use crate::ReportError;

@@ -1,10 +1,10 @@
 //! A model on the bench: fitted to measurements, under the noise that its own trajectories give.
 
+use measurements::{Kind, MeasurementSet};
 use thiserror::Error;
 
 use crate::fit::{Data, Fit};
 use crate::forward::{Forward, PredictError};
-use crate::measurement::{Kind, MeasurementSet};
 use crate::noise::Noise;
 use crate::observed::Observed;
 use crate::sensitivity::{Point, Sensitivity};

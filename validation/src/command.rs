@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use lexopt::Parser;
 use lexopt::prelude::ValueExt;
-use schedulers::Scheduler;
+use runner::schedulers::Scheduler;
 
 use crate::beds::{Elsewhere, WORD, work};
 

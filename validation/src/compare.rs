@@ -1,5 +1,6 @@
 //! One or more revisions of a model against a measurement set: how wrong, and where.
 
+use measurements::MeasurementSet;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use thiserror::Error;
@@ -10,7 +11,6 @@ use crate::fit::Fit;
 use crate::force_error::ForceError;
 use crate::forward::Forward;
 use crate::lack_of_fit::lack_of_fit;
-use crate::measurement::MeasurementSet;
 use crate::noise::{Noise, NoiseSource};
 use crate::observed::Observed;
 use crate::rounding::{rounded, six_digits, six_digits_or_null};

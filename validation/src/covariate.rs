@@ -1,6 +1,6 @@
 //! What may differ between conditions, depths or runs, and an error may hang on.
 
-use crate::measurement::Condition;
+use measurements::Condition;
 
 /// Depth, whose values lie along a path.
 pub(crate) const DEPTH: Covariate = Covariate { name: "z", heading: "depth", unit: "m" };

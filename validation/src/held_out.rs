@@ -1,12 +1,12 @@
 //! Errors on conditions that were not fitted to.
 
+use measurements::Kind;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Serialize;
 
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::errors::{Errors, Sums};
 use crate::fit::Data;
-use crate::measurement::Kind;
 use crate::noise::log_determinant;
 use crate::observed::{Observed, ObservedCondition};
 use crate::rounding::six_digits;

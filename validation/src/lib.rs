@@ -4,7 +4,7 @@
 //! published result that is run again and judged, the cases among them. `cargo xtask validate`
 //! runs them and prints what was measured beside what is right.
 //!
-//! A [`measurement::MeasurementSet`] is a folder in `validation/data`; a [`forward::Forward`] is a
+//! A [`measurements::MeasurementSet`] is a folder in `validation/data`; a [`forward::Forward`] is a
 //! model that predicts it. What the two have to do with each other is said in these steps:
 //!
 //! 1. [`observed`] makes vectors of the runs, one [`observable::Layout`] per condition;
@@ -39,7 +39,6 @@ pub mod forward;
 pub mod held_out;
 pub mod lack_of_fit;
 mod marginal;
-pub mod measurement;
 pub mod next;
 pub mod noise;
 pub mod observable;

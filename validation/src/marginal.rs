@@ -145,9 +145,9 @@ mod tests {
 
     use super::*;
     use crate::forward::{Forward, Parameter, Request};
-    use crate::measurement::Kind;
     use crate::observed::Observed;
     use crate::test_sets::{condition, scalar_run, set};
+    use measurements::Kind;
 
     /// Depth and range go up by 10 and 8 mm per amplitude, which is known to `known` (m) of each; runs scatter
     /// in both together, and hardly against each other.

@@ -6,11 +6,11 @@
 
 use argmin::core::{CostFunction, Executor, State};
 use argmin::solver::neldermead::NelderMead;
+use measurements::Instrument;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::measurement::Instrument;
 use crate::observed::{Observed, ObservedCondition, POSITION_FLOOR};
 use crate::rounding::rounded;
 use crate::sensitivity::{Sensitivity, Spread};
@@ -264,8 +264,8 @@ impl CostFunction for Likelihood {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measurement::{Kind, StatedError};
     use crate::test_sets::{condition, scalar_run, set};
+    use measurements::{Kind, StatedError};
 
     #[test]
     fn a_scalar_with_a_stated_error_has_that_error_alone() {

@@ -1,8 +1,8 @@
 //! What a measurement set says about the observables: the vectors of its runs, condition by condition.
 
+use measurements::{Condition, Frame, Kind, MeasurementSet, Role, Run, StatedError};
 use nalgebra::DVector;
 
-use crate::measurement::{Condition, Frame, Kind, MeasurementSet, Role, Run, StatedError};
 use crate::observable::{Layout, Observable};
 use crate::resampling::{STOPPED, common_grid, depth_and_range, stopped_at};
 

@@ -1,6 +1,6 @@
 //! Trajectories of several runs at common times.
 
-use crate::measurement::Frame;
+use measurements::Frame;
 
 /// Times that agree to this (s) are the same frame.
 const SAME_TIME: f64 = 1e-7;

@@ -1,9 +1,9 @@
 //! How the observables of a condition answer to what differs from run to run.
 
+use measurements::Instrument;
 use nalgebra::{DMatrix, DVector};
 
 use crate::forward::{Forward, PredictError, Request, Scatter};
-use crate::measurement::Instrument;
 
 /// Nodes of the force multiplier along the path.
 const ALONG: usize = 6;

@@ -1,8 +1,9 @@
 //! What to try where no listed effect explains the data: a formula that grows where the force is too
 //! small. A guess from the shape of the residual, and nothing that was tested.
 
+use measurements::MeasurementSet;
+
 use crate::force_error::{ForceError, ForceErrors};
-use crate::measurement::MeasurementSet;
 
 /// A candidate of one's own, as a table for the model file, for what `errors` of `set` depend on most
 /// clearly; none where no force of the state of a body would do.

@@ -1,6 +1,6 @@
 //! Small measurement sets for the tests of this crate.
 
-use crate::measurement::{
+use measurements::{
     Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
     Role, Run, StatedError, StopDefinition,
 };

@@ -7,6 +7,8 @@ mod json;
 mod signature;
 mod tables;
 
+use measurements::MeasurementSet;
+use plots::PictureError;
 use thiserror::Error;
 
 pub use self::signature::Signature;
@@ -16,9 +18,8 @@ use crate::compare::Comparison;
 use crate::errors::Errors;
 use crate::force_error::ForceErrors;
 use crate::held_out::noise_floor;
-use crate::measurement::MeasurementSet;
 use crate::observed::Observed;
-use crate::picture::{self, PictureError};
+use crate::picture;
 use crate::residual::{Residual, residuals};
 use crate::verdict::Diagnosis;
 

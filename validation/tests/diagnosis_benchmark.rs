@@ -1,12 +1,12 @@
 //! A few worlds of the benchmark of the diagnosis, with claims that can fail.
 
+use measurements::MeasurementSet;
 use validation::bench::{Bench, DEFAULT_SEED};
 use validation::benchmark::design::Design;
 use validation::benchmark::hidden::Hidden;
 use validation::benchmark::plan::{Plan, Row, Seeds, Size};
 use validation::benchmark::trial::{Answer, Trial, baseline, draw};
 use validation::diagnose::diagnose;
-use validation::measurement::MeasurementSet;
 use validation::observed::Observed;
 use validation::resistive::ResistiveForward;
 use validation::verdict::Verdict;

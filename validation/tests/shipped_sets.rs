@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use configs::Color;
-use validation::measurement::{Loaded, MeasurementSet, Role, Run};
+use measurements::{Loaded, MeasurementSet, Role, Run};
 
 /// Tables are rounded to a millionth of a metre or second; half of that, and the last bits.
 const ROUNDING: f64 = 0.5e-6 + 1e-12;

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use configs::run::prepare;
 use exchange::lammps::{Deck, INPUT, LammpsError};
+use runner::run::prepare;
 use serde_json::json;
 
 use crate::common::Common;

@@ -6,26 +6,36 @@ use crate::diagnostics::{Diagnostic, SourceId, Sources, Span, shorten};
 
 /// A value and where it stands.
 #[derive(Clone, Debug)]
-pub(crate) struct Node {
-    pub(crate) span: Span,
-    pub(crate) value: Value,
+pub struct Node {
+    /// Its place in the text.
+    pub span: Span,
+    /// What it is.
+    pub value: Value,
 }
 
 /// What a value is.
 #[derive(Clone, Debug)]
-pub(crate) enum Value {
+pub enum Value {
+    /// A string.
     Text(String),
+    /// A whole number.
     Integer(i64),
+    /// Any other number.
     Float(f64),
+    /// True or false.
     Boolean(bool),
+    /// A date or a time, which no key takes.
     Datetime,
+    /// A list.
     Array(Vec<Node>),
+    /// A table.
     Table(Table),
 }
 
 impl Value {
     /// What kind it is, with its article.
-    pub(crate) fn kind(&self) -> &'static str {
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
         match self {
             Self::Text(_) => "a string",
             Self::Integer(_) | Self::Float(_) => "a number",
@@ -42,15 +52,18 @@ impl Value {
 pub struct Table {
     /// `[run]`, or what stands for it in an inline table.
     pub(crate) header: Span,
-    pub(crate) entries: Vec<Entry>,
+    /// Its lines.
+    pub entries: Vec<Entry>,
 }
 
 /// One line of a table.
 #[derive(Clone, Debug)]
-pub(crate) struct Entry {
-    pub(crate) key: String,
+pub struct Entry {
+    /// Left of the equals sign.
+    pub key: String,
     pub(crate) key_span: Span,
-    pub(crate) node: Node,
+    /// Right of it.
+    pub node: Node,
 }
 
 impl Table {
@@ -60,7 +73,9 @@ impl Table {
         self.get(key).is_some()
     }
 
-    pub(crate) fn get(&self, key: &str) -> Option<&Entry> {
+    /// The line of `key`.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.key == key)
     }
 }

@@ -3,14 +3,11 @@
 //! [`Model::load`] reads a file (or a shipped model), applies `--set`, checks it and gives the
 //! [`Model`], which also prints itself as a complete, re-runnable file ([`Model::resolved_toml`]).
 //!
-//! [`campaign::Campaign`] is a file of many impacts: models, and what is varied in them.
-//!
 //! `document` is the TOML with its places, `reader` reads tables key by key, `read` knows the
 //! tables of a model, `checks` compares values with each other, `diagnostics` shows what is wrong.
 
 mod absorbing;
 mod build;
-pub mod campaign;
 mod checks;
 mod diagnostics;
 pub mod document;
@@ -25,9 +22,9 @@ pub mod paths;
 mod read;
 pub mod reader;
 mod resolved;
-pub mod run;
 mod set;
 mod shipped;
+mod single;
 mod specs;
 pub mod stability;
 

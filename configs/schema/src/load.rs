@@ -58,7 +58,10 @@ impl ModelSource {
     }
 
     /// Name for messages, text, and the folder that relative paths start from.
-    pub(crate) fn open(self) -> Result<(String, String, PathBuf), ConfigError> {
+    ///
+    /// # Errors
+    /// If its file cannot be read.
+    pub fn open(self) -> Result<(String, String, PathBuf), ConfigError> {
         match self {
             Self::Shipped(shipped) => {
                 let name = format!("{}.toml (shipped)", shipped.name);

@@ -57,11 +57,7 @@ fn project_root(folder: &Path) -> PathBuf {
 ///
 /// # Errors
 /// When it does not exist, is not a regular file, or lies outside of the allowed folders.
-pub(crate) fn resolve(
-    named: &str,
-    folder: &Path,
-    allow_paths: &[PathBuf],
-) -> Result<PathBuf, PathError> {
+pub fn resolve(named: &str, folder: &Path, allow_paths: &[PathBuf]) -> Result<PathBuf, PathError> {
     if named.starts_with('~') {
         return Err(PathError::Home(named.to_owned()));
     }

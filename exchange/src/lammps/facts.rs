@@ -7,8 +7,8 @@ use configs::engine::grain_bed::RestingBed;
 use configs::engine::grains::Space;
 use configs::engine::math::Vec3;
 use configs::engine::simulation::Simulation;
-use configs::run::{BedSummary, ImpactSummary};
 use configs::{Condition, GrainModel};
+use runner::run::{BedSummary, ImpactSummary};
 use serde::{Deserialize, Serialize};
 
 use super::intruder::body;

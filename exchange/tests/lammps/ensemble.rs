@@ -6,10 +6,10 @@ use std::path::Path;
 use std::thread;
 
 use configs::engine::simulation::Simulation;
-use configs::run::{Control, Progress, prepare};
 use configs::{LoadOptions, Loaded, Model, ModelSource};
 use exchange::lammps::{Deck, import};
 use exchange::read::{Keep, read_run};
+use runner::run::{Control, Progress, prepare};
 
 use crate::program::lammps;
 

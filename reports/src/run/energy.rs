@@ -1,8 +1,8 @@
 //! The energy budget over time: what was supplied, what became of it, and what is not accounted for.
 
+use plots::legend::{self, Sign};
+use plots::{Area, Drawn, GREY, Hover, PictureError, colour, letters, svg};
 use plotters::prelude::*;
-use validation::picture::legend::{self, Sign};
-use validation::picture::{Area, Drawn, GREY, Hover, PictureError, colour, letters, svg};
 
 use super::Course;
 use super::thin::places;

@@ -7,7 +7,7 @@ mod path;
 mod sparkline;
 mod thin;
 
-use configs::run::{BedSummary, ForceSummary, LinkSummary, StopSummary, Summary};
+use runner::run::{BedSummary, ForceSummary, LinkSummary, StopSummary, Summary};
 
 pub use course::Course;
 pub(crate) use pair::page as pair_page;

@@ -1,10 +1,10 @@
 //! A run over a run.
 
 use exchange::read::BodyState;
+use plots::legend::{self, Sign};
+use plots::{Area, Drawn, GREY, Hover, PictureError, colour, letters, svg};
 use plotters::prelude::*;
 use serde_json::Value;
-use validation::picture::legend::{self, Sign};
-use validation::picture::{Area, Drawn, GREY, Hover, PictureError, colour, letters, svg};
 
 use super::Course;
 use super::thin::places;

@@ -1,9 +1,9 @@
 //! Depth, distance and velocity over time.
 
-use configs::run::Summary;
+use plots::legend::{self, Sign};
+use plots::{Area, Drawn, Hover, PictureError, colour, letters, svg};
 use plotters::prelude::*;
-use validation::picture::legend::{self, Sign};
-use validation::picture::{Area, Drawn, Hover, PictureError, colour, letters, svg};
+use runner::run::Summary;
 
 use super::Course;
 use super::thin::places;
@@ -126,7 +126,7 @@ impl Panel {
             .y_desc(self.axis)
             .axis_desc_style(letters())
             .light_line_style(WHITE)
-            .bold_line_style(validation::picture::GREY)
+            .bold_line_style(plots::GREY)
             .draw()?;
         if let Some(stop) = stop.map(|stop| 1e3 * stop).filter(|stop| *stop <= last) {
             let line = [(stop, low), (stop, high)];

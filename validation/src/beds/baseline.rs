@@ -6,6 +6,7 @@
 //! a rail. How runs scatter is learned from the runs themselves (`modes`).
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
+use measurements::{Instrument, MeasurementSet};
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
@@ -14,7 +15,6 @@ use super::record::Record;
 use super::stand::Stand;
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::forward::{Forward, PredictError, Request, Scatter};
-use crate::measurement::{Instrument, MeasurementSet};
 use crate::noise::Noise;
 use crate::observable::Layout;
 use crate::observed::{Observed, ObservedCondition, reach, reading};

@@ -9,12 +9,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use configs::run::{Control, RunError};
 use configs::{BuildError, ConfigError, GrainModel, Model};
 use engine::checkpoint::CheckpointError;
 use engine::error::{StepError, ThreadsError};
 use engine::parallel::with_threads;
-use schedulers::SchedulerError;
+use runner::run::{Control, RunError};
+use runner::schedulers::SchedulerError;
 use thiserror::Error;
 
 use super::elsewhere::{Elsewhere, Task};
@@ -251,7 +251,7 @@ impl Place<'_> {
         let tasks: Vec<Task> = beds.iter().map(|&at| Task::bed(&jobs[at])).collect();
         let files = beds
             .iter()
-            .map(|&at| jobs[at].bed_key().map(|key| configs::run::bed_file(self.cache, &key)));
+            .map(|&at| jobs[at].bed_key().map(|key| runner::run::bed_file(self.cache, &key)));
         let files = files.collect::<Result<Vec<_>, _>>()?;
         let is_there = |at: usize| files[at].is_file();
         elsewhere.run(Stage::Beds, &tasks, self.cache, self.watch, &is_there)?;
@@ -265,7 +265,7 @@ impl Place<'_> {
     fn missing_beds(&self, jobs: &[Job], missing: &[usize]) -> Result<Vec<usize>, CampaignError> {
         let keys = missing.iter().map(|&at| jobs[at].bed_key()).collect::<Result<Vec<_>, _>>()?;
         let is_missing = |place: usize| {
-            let name = configs::run::bed_file(self.cache, &keys[place]);
+            let name = runner::run::bed_file(self.cache, &keys[place]);
             !name.is_file()
                 && jobs[missing[place]].bed.grains().is_some_and(|g| g.read_bed().is_none())
         };

@@ -1,6 +1,7 @@
 //! Impacts on fresh beds under conditions that nothing was fitted to: the only number that is quoted as
 //! "the error falls", and the ledgers of both models.
 
+use measurements::Kind;
 use nalgebra::DVector;
 use serde_json::{Value, json};
 
@@ -11,7 +12,6 @@ use super::workflow::BedError;
 use crate::bench::BenchError;
 use crate::errors::{Errors, Sums};
 use crate::held_out::{HeldOut, LeftOut, Unit, standard_errors};
-use crate::measurement::Kind;
 use crate::observed::Observed;
 use crate::rounding::rounded;
 use crate::sensitivity::Point;

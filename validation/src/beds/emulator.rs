@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use measurements::MeasurementSet;
 use serde_json::{Value, json};
 
 use super::baseline::Baseline;
@@ -9,7 +10,6 @@ use super::response::Response;
 use super::switches::Switch;
 use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
 use crate::held_out::noise_floor;
-use crate::measurement::MeasurementSet;
 use crate::rounding::rounded;
 
 /// So many times the amplitude that was screened, what was found there is extrapolated: far enough for a

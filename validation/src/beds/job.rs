@@ -6,9 +6,9 @@ use std::sync::Arc;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use configs::run::{Control, Progress, bed_key, prepare, result_key};
 use configs::{Condition, Model, StartX};
 use engine::checkpoint;
+use runner::run::{Control, Progress, bed_key, prepare, result_key};
 
 use super::CampaignError;
 use super::record::{Record, Recorder};

@@ -1,5 +1,6 @@
 //! A leading switch alone, at several amplitudes, from the model as it stands.
 
+use measurements::Condition;
 use nalgebra::{DMatrix, DVector};
 
 use super::job::Job;
@@ -7,7 +8,6 @@ use super::record::Record;
 use super::response::{BetweenDraws, Line, Response, deviations};
 use super::stand::{Draw, Stand, StandError};
 use super::switches::Switch;
-use crate::measurement::Condition;
 use crate::observable::Layout;
 
 /// Amplitudes in that of the guess.

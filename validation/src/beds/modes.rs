@@ -125,9 +125,9 @@ fn principal(each: &[Standardised]) -> (DMatrix<f64>, DVector<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measurement::Kind;
     use crate::random::{Purpose, normal, stream};
     use crate::test_sets::{condition, scalar_run, set};
+    use measurements::Kind;
 
     /// Depth and range go together, the time is for itself, under two conditions of other depths.
     fn observed(runs: usize) -> Observed {

@@ -1,10 +1,10 @@
 //! What is kept of one impact on a bed of grains, and the observables that a set asks of it.
 
 use engine::simulation::Simulation;
+use measurements::{Condition, FinalDefinition, MeasurementSet, StopDefinition};
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
-use crate::measurement::{Condition, FinalDefinition, MeasurementSet, StopDefinition};
 use crate::observable::Layout;
 use crate::resampling::STOPPED;
 
@@ -187,8 +187,8 @@ impl Record {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measurement::Kind;
     use crate::test_sets::{condition, set};
+    use measurements::Kind;
 
     fn record() -> Record {
         Record {

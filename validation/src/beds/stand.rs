@@ -8,12 +8,12 @@ use configs::{
 };
 use engine::bed::random;
 use engine::grains::Space;
+use measurements::{Condition, Geometry, MeasurementSet};
 use rand::RngExt;
 use thiserror::Error;
 
 use super::job::Job;
 use super::variation::Variation;
-use crate::measurement::{Condition, Geometry, MeasurementSet};
 
 /// Most impacts on one bed, side by side.
 const MOST_PLACES: usize = 4;

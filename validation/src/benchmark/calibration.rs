@@ -1,11 +1,11 @@
 //! How far the predicted probability of a right answer can be trusted.
 
+use plots::PictureError;
 use plotters::prelude::*;
 
 use super::interval::Share;
 use super::scores::{Measured, Score, Target, is_first};
 use super::trial::Trial;
-use crate::picture::PictureError;
 
 /// Bins of the predicted probability.
 const BINS: usize = 10;

@@ -1,7 +1,8 @@
 //! What is dropped, how, and how well it is seen.
 
+use measurements::Kind;
+
 use super::forces::Setting;
-use crate::measurement::Kind;
 
 /// Diameter (m) and mass (kg) of four spheres: two of steel, two of titanium.
 const SPHERES: [[f64; 2]; 4] = [[0.0254, 0.0667], [0.0254, 0.035], [0.018, 0.024], [0.018, 0.0125]];

@@ -1,15 +1,16 @@
 //! Measurements in the world: repeats whose beds differ, seen by a camera.
 
+use measurements::{
+    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
+    Role, Run, StatedError, StopDefinition,
+};
+
 use super::chance::Chance;
 use super::design::Design;
 use super::field::Field;
 use super::forces::{DENSITY, GRAVITY, Setting, Sphere};
 use super::hidden::{Amplitudes, COUNT, Hidden};
 use super::path::{COARSE, FINE, Path, WorldError};
-use crate::measurement::{
-    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedError, StopDefinition,
-};
 
 /// Frames per second (1/s).
 const RATE: f64 = 650.0;

@@ -2,6 +2,7 @@
 //! drawn from the same grid.
 
 use configs::Model;
+use measurements::{Condition, MeasurementSet};
 use serde::{Deserialize, Serialize};
 
 use super::chance::Chance;
@@ -11,7 +12,6 @@ use super::laboratory::{Nature, measure};
 use super::plan::Plan;
 use crate::bench::{Bench, DEFAULT_SEED};
 use crate::diagnose::diagnose;
-use crate::measurement::{Condition, MeasurementSet};
 use crate::next::{Recommendation, judged};
 use crate::observed::Observed;
 use crate::resistive::ResistiveForward;

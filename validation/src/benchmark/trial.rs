@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use configs::{ConfigError, LoadOptions, Model, ModelSource, find_shipped};
+use measurements::MeasurementSet;
 use nalgebra::DVector;
 use resistive::find_resistance;
 use serde::{Deserialize, Serialize};
@@ -15,7 +16,6 @@ use super::plan::{Plan, Row};
 use super::strength::amplitude;
 use crate::bench::{Bench, BenchError, DEFAULT_SEED, Fitted};
 use crate::diagnose::diagnose;
-use crate::measurement::MeasurementSet;
 use crate::observable::Observable;
 use crate::observed::Observed;
 use crate::pair::best_pair;

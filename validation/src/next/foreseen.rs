@@ -1,12 +1,12 @@
 //! A condition that was not measured, as it would be measured.
 
+use measurements::{Condition, Kind, MeasurementSet, Role};
 use nalgebra::DVector;
 
 use super::Designs;
 use super::rival::Rival;
 use crate::bench::Bench;
 use crate::forward::Forward;
-use crate::measurement::{Condition, Kind, MeasurementSet, Role};
 use crate::observable::{Layout, Observable};
 use crate::observed::{BEFORE_STOP, ObservedCondition, PENETRATION_FRAMES};
 

@@ -1,6 +1,6 @@
 //! The conditions that could be measured next.
 
-use crate::measurement::{Condition, MeasurementSet};
+use measurements::{Condition, MeasurementSet};
 
 /// Most conditions that are tried.
 const MOST: usize = 60;
@@ -131,8 +131,8 @@ fn sorted(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measurement::{Feasible, Kind};
     use crate::test_sets::{condition, set};
+    use measurements::{Feasible, Kind};
 
     fn measured() -> MeasurementSet {
         let conditions = [(1.0, 90.0), (2.0, 60.0), (3.0, 35.0)];

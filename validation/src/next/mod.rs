@@ -11,13 +11,13 @@ mod foreseen;
 mod grid;
 mod rival;
 
+use measurements::{Condition, MeasurementSet};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::bench::Bench;
 use crate::forward::{Forward, SEPARATE};
-use crate::measurement::{Condition, MeasurementSet};
 use crate::observable::Layout;
 use crate::rounding::rounded;
 use crate::verdict::{Diagnosis, Verdict};

@@ -1,11 +1,11 @@
 //! A comparison as one picture: measured numbers with their errors, and what each revision predicts.
 
+use measurements::{MeasurementSet, Role};
+use plots::{Area, COLOURS, Drawn, Hover, PictureError, short, svg};
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
-use super::{Area, COLOURS, Drawn, Hover, PictureError, short, svg};
 use crate::compare::Comparison;
-use crate::measurement::{MeasurementSet, Role};
 use crate::observable::Observable;
 
 /// Size of one panel (pixels).

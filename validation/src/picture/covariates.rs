@@ -1,9 +1,10 @@
 //! Force errors over each covariate, with their trends.
 
+use plots::legend::{self, Sign};
+use plots::{Area, Drawn, Hover, PictureError, colour, letters, padded, short, svg};
 use plotters::prelude::*;
 
-use super::legend::{self, Sign};
-use super::{Area, Drawn, Hover, PictureError, TWO_SIDED_95, colour, letters, padded, short, svg};
+use super::TWO_SIDED_95;
 use crate::covariate::{self, Covariate};
 use crate::force_error::{ForceError, Trend};
 use crate::where_it_fails::WhereItFails;
@@ -101,7 +102,7 @@ fn draw_panel(area: &Area<'_>, covariate: Covariate, all: &[Series<'_>]) -> Draw
         .y_desc("force error (%)")
         .axis_desc_style(letters())
         .light_line_style(WHITE)
-        .bold_line_style(super::GREY)
+        .bold_line_style(plots::GREY)
         .draw()?;
     chart.draw_series([PathElement::new([(low, 0.0), (high, 0.0)], BLACK.stroke_width(1))])?;
     for (at, series) in all.iter().enumerate() {

@@ -1,9 +1,9 @@
 //! Force errors over depth, one column per condition, one panel per model.
 
+use plots::{Area, Drawn, Hover, LETTER, PictureError, fitting, legend, letters, svg, upright};
 use plotters::prelude::*;
 
 use super::signed::{self, Scale};
-use super::{Area, Drawn, Hover, LETTER, PictureError, fitting, legend, letters, svg, upright};
 use crate::force_error::ForceCell;
 use crate::where_it_fails::{Failing, WhereItFails};
 
@@ -77,7 +77,7 @@ fn draw_map(
         .x_labels(0)
         .y_desc("depth (mm)")
         .light_line_style(WHITE)
-        .bold_line_style(super::GREY)
+        .bold_line_style(plots::GREY)
         .draw()?;
     let plot = chart.plotting_area();
     let (inside, corner) = (plot.strip_coord_spec(), plot.get_base_pixel());

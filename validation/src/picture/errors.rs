@@ -1,9 +1,9 @@
 //! Errors on what was fitted to and on what was held out, model after model, above the noise.
 
+use plots::legend::{self, Sign};
+use plots::{Area, Drawn, Hover, PictureError, centred, fitting, letters, short, svg};
 use plotters::prelude::*;
 
-use super::legend::{self, Sign};
-use super::{Area, Drawn, Hover, PictureError, centred, fitting, letters, short, svg};
 use crate::errors::Errors;
 use crate::observable::Observable;
 use crate::where_it_fails::WhereItFails;
@@ -13,7 +13,7 @@ const PANEL: (u32, u32) = (230, 250);
 const WIDTH: u32 = 640;
 
 /// What is fitted to, and what is held out.
-const ROLES: [RGBColor; 2] = [super::COLOURS[0], super::COLOURS[1]];
+const ROLES: [RGBColor; 2] = [plots::COLOURS[0], plots::COLOURS[1]];
 
 /// What the errors of a panel are of: a title, what they are multiplied with, and which they are.
 struct Kind {
@@ -116,7 +116,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel<'_>) -> Drawn {
         .x_labels(0)
         .y_labels(6)
         .light_line_style(WHITE)
-        .bold_line_style(super::GREY)
+        .bold_line_style(plots::GREY)
         .draw()?;
     for (model, bars) in panel.bars.iter().enumerate() {
         let roles = bars.iter().zip(panel.floors).enumerate();

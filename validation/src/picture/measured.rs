@@ -1,10 +1,10 @@
 //! A measurement set as it was understood, before anything is fitted to it.
 
+use measurements::{Condition, Kind, MeasurementSet, Run};
 use plotters::prelude::*;
 
-use super::legend::{self, Sign};
-use super::{Area, Drawn, GREY, Hover, PictureError, colour, fitting, letters, padded, short, svg};
-use crate::measurement::{Condition, Kind, MeasurementSet, Run};
+use plots::legend::{self, Sign};
+use plots::{Area, Drawn, GREY, Hover, PictureError, colour, fitting, letters, padded, short, svg};
 
 /// Size of a panel (pixels), and panels side by side.
 const PANEL: (u32, u32) = (313, 220);

@@ -1,9 +1,10 @@
 //! Small panels of numbers over time, each with its band of noise.
 
+use plots::legend::{self, Sign};
+use plots::{Area, Drawn, GREY, Hover, PictureError, fitting, letters, padded, svg};
 use plotters::prelude::*;
 
-use super::legend::{self, Sign};
-use super::{Area, Drawn, GREY, Hover, PictureError, TWO_SIDED_95, fitting, letters, padded, svg};
+use super::TWO_SIDED_95;
 use crate::observable::Observable;
 use crate::residual::Residual;
 use crate::where_it_fails::WhereItFails;

@@ -1,8 +1,9 @@
 //! Residual trajectories beside the noise of the means.
 
-use super::legend::Sign;
+use plots::legend::Sign;
+use plots::{PictureError, colour};
+
 use super::multiples::{self, Panel, Track, tracks};
-use super::{PictureError, colour};
 use crate::residual::Residual;
 use crate::where_it_fails::WhereItFails;
 

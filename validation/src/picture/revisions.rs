@@ -1,13 +1,13 @@
 //! The error of revision after revision, as stairs that go down to the noise.
 
-use plotters::prelude::*;
-
-use super::legend::{self, Sign};
-use super::{
+use measurements::Kind;
+use plots::legend::{self, Sign};
+use plots::{
     Area, COLOURS, Drawn, GREY, Hover, PictureError, centred, fitting, letters, short, svg,
 };
+use plotters::prelude::*;
+
 use crate::errors::Errors;
-use crate::measurement::Kind;
 use crate::where_it_fails::WhereItFails;
 
 /// Height (pixels), least width, and least width of a step.

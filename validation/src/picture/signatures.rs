@@ -1,12 +1,11 @@
 //! What a model leaves over, and what the best two candidates would do about it.
 
+use plots::legend::{self, Sign};
+use plots::{Area, Drawn, Hover, LETTER, PictureError, colour, fitting, letters, svg, upright};
 use plotters::prelude::*;
 
-use super::legend::{self, Sign};
+use super::TWO_SIDED_95;
 use super::multiples::{self, Panel, Track, tracks};
-use super::{
-    Area, Drawn, Hover, LETTER, PictureError, TWO_SIDED_95, colour, fitting, letters, svg, upright,
-};
 use crate::observable::Observable;
 use crate::residual::Residual;
 use crate::where_it_fails::{Signature, WhereItFails};
@@ -150,7 +149,7 @@ impl Scalars<'_> {
             .disable_x_mesh()
             .x_labels(0)
             .light_line_style(WHITE)
-            .bold_line_style(super::GREY)
+            .bold_line_style(plots::GREY)
             .draw()?;
         let zero = [(0.0, 0.0), (self.names.len() as f64, 0.0)];
         chart.draw_series([PathElement::new(zero, BLACK.stroke_width(1))])?;

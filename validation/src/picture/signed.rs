@@ -1,9 +1,9 @@
 //! Signed force errors as colours.
 
+use plots::legend::{self, Sign};
+use plots::{Area, COLOURS, Drawn, GREY, centred, letters, short};
 use plotters::prelude::*;
 
-use super::legend::{self, Sign};
-use super::{Area, COLOURS, Drawn, GREY, centred, letters, short};
 use crate::force_error::ForceCell;
 
 /// Where a scale may end.

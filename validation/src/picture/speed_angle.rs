@@ -1,11 +1,11 @@
 //! Force errors of conditions over speed and angle, one panel per intruder and model.
 
+use measurements::Condition;
+use plots::{Area, Drawn, Hover, PictureError, fitting, legend, letters, padded, short, svg};
 use plotters::prelude::*;
 
 use super::signed::{self, Scale};
-use super::{Area, Drawn, Hover, PictureError, fitting, legend, letters, padded, short, svg};
 use crate::force_error::ForceCell;
-use crate::measurement::Condition;
 use crate::where_it_fails::WhereItFails;
 
 /// Size of a panel (pixels).
@@ -93,7 +93,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel<'_>, scale: &Scale) -> Drawn {
         .x_desc("impact speed (m/s)")
         .y_desc("angle (deg)")
         .light_line_style(WHITE)
-        .bold_line_style(super::GREY)
+        .bold_line_style(plots::GREY)
         .draw()?;
     let plot = chart.plotting_area();
     let (wide, high) = plot.dim_in_pixel();

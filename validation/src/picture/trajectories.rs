@@ -1,12 +1,11 @@
 //! Paths and velocities as measured, under what each model predicts.
 
+use plots::legend::{self, Sign};
+use plots::{Area, Drawn, GREY, Hover, PictureError, colour, fitting, letters, padded, svg};
 use plotters::prelude::*;
 
-use super::legend::{self, Sign};
+use super::TWO_SIDED_95;
 use super::multiples::{Track, tracks};
-use super::{
-    Area, Drawn, GREY, Hover, PictureError, TWO_SIDED_95, colour, fitting, letters, padded, svg,
-};
 use crate::where_it_fails::WhereItFails;
 
 /// Size of a panel (pixels).

@@ -2,8 +2,8 @@
 
 use plotters::prelude::*;
 
-use crate::picture::legend::{self, Sign};
-use crate::picture::{Area, Drawn, Hover, PictureError, colour, letters, short, svg};
+use plots::legend::{self, Sign};
+use plots::{Area, Drawn, Hover, PictureError, colour, letters, short, svg};
 
 /// Size of a panel (pixels).
 const PANEL: (u32, u32) = (330, 240);

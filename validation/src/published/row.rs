@@ -2,6 +2,7 @@
 
 use configs::ConfigError;
 use engine::error::ThreadsError;
+use plots::PictureError;
 use resistive::ImpactError;
 use serde::Serialize;
 use thiserror::Error;
@@ -11,7 +12,6 @@ use super::laboratory::Laboratory;
 use crate::beds::CampaignError;
 use crate::bench::BenchError;
 use crate::compare::CompareError;
-use crate::picture::PictureError;
 use crate::three_shapes::StudyError;
 
 /// A published result that is run again and judged.

@@ -1,10 +1,10 @@
 //! What a diagnosis is told of the effects that could be added.
 
+use measurements::MeasurementSet;
 use resistive::{Effect, Twin, twins};
 
 use super::needs::{contains, missing};
 use crate::forward::Candidate;
-use crate::measurement::MeasurementSet;
 
 /// A derivative is taken over this share of the greatest amplitude that one would expect.
 const STEP: f64 = 1e-3;

@@ -9,11 +9,11 @@ mod scatter;
 use configs::{FreeParameter, Medium, Model};
 use std::sync::Arc;
 
+use measurements::MeasurementSet;
 use resistive::{Effect, RESISTANCE_LAWS};
 use thiserror::Error;
 
 use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
-use crate::measurement::MeasurementSet;
 use crate::next::Designs;
 use crate::observable::Layout;
 use prepared::Prepared;

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use resistive::Needs;
 
-use crate::measurement::{Condition, MeasurementSet, Role, Run};
+use measurements::{Condition, MeasurementSet, Role, Run};
 
 /// Impact speeds whose largest is so many times the smallest show how a force depends on speed.
 const SPEED_RANGE: f64 = 3.0;
@@ -97,7 +97,7 @@ fn is_vertical(condition: &Condition) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measurement::{
+    use measurements::{
         Bed, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, StatedError,
         StopDefinition,
     };

@@ -8,6 +8,7 @@ use configs::{FreeParameter, ResistiveMedium};
 use engine::math::Vec3;
 use engine::params::{Default, ParamTable};
 use intruders::{Casting, ShapeEntry};
+use measurements::{Condition, FinalDefinition, Geometry, MeasurementSet, StopDefinition};
 use resistive::{Coefficients, Effect, Expression, ResistanceEntry};
 use resistive::{Ending, Impact, ResistanceLaw, Space, State, Surroundings, Tolerance, Trajectory};
 
@@ -15,7 +16,6 @@ use super::ForwardError;
 use super::bent::Bent;
 use super::scatter::PathScatter;
 use crate::forward::Scatter;
-use crate::measurement::{Condition, FinalDefinition, Geometry, MeasurementSet, StopDefinition};
 use crate::observable::Layout;
 
 /// Longer than any impact (s): what has not stopped then never does.

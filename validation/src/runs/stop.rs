@@ -1,6 +1,6 @@
 //! Two stops beside each other.
 
-use configs::run::Summary;
+use runner::run::Summary;
 use serde::Serialize;
 
 /// A number of one run beside that of another.

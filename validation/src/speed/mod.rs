@@ -16,10 +16,10 @@ pub mod trial;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use configs::run::RunError;
 use configs::{BuildError, ConfigError};
 use engine::error::{StepError, ThreadsError};
 use exchange::lammps::LammpsError;
+use runner::run::RunError;
 use thiserror::Error;
 
 /// Why a benchmark ends early.

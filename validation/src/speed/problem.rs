@@ -8,9 +8,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use configs::run::{Control, Progress, prepare};
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
 use engine::grains::{Grain, Space};
+use runner::run::{Control, Progress, prepare};
 use serde::Serialize;
 
 use super::SpeedError;

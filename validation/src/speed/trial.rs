@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Instant;
 
-use configs::run::{Control, Existing, Places, Progress, run};
 use configs::{LoadOptions, Loaded, Model, ModelSource};
 use engine::parallel::with_threads;
+use runner::run::{Control, Existing, Places, Progress, run};
 use serde::{Deserialize, Serialize};
 
 use super::SpeedError;

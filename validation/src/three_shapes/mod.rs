@@ -13,13 +13,13 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use configs::run::{Control, Progress, RunError, prepare, result_key};
 use configs::{BuildError, ConfigError, LoadOptions, Loaded, Model, ModelSource, find_shipped};
 use engine::checkpoint::write_whole;
 use engine::error::{StepError, ThreadsError};
 use engine::ledger::{ChannelKind, TermKind};
 use engine::parallel::with_threads;
 use engine::simulation::Simulation;
+use runner::run::{Control, Progress, RunError, prepare, result_key};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 

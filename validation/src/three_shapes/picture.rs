@@ -1,9 +1,9 @@
 //! The study as pictures.
 
+use plots::{Area, Canvas, Drawn, PictureError, colour, svg};
 use plotters::prelude::*;
 
 use super::{Case, FRICTIONS, Outcome, RUBBED, SHAPES, SPEEDS, group, mean_and_error};
-use crate::picture::{Area, Canvas, Drawn, PictureError, colour, svg};
 
 const SIZE: (u32, u32) = (560, 400);
 

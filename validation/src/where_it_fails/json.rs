@@ -1,11 +1,11 @@
 //! Force errors as one JSON object: cells, means of conditions, parts of covariates, and trends.
 
+use measurements::Condition;
 use serde::Serialize;
 
 use super::WhereItFails;
 use crate::covariate;
 use crate::force_error::{ForceCell, ForceErrors, Group, Trend};
-use crate::measurement::Condition;
 use crate::rounding::six_digits;
 
 #[derive(Serialize)]

@@ -4,10 +4,10 @@ use std::num::NonZero;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
+use measurements::Role;
 use validation::beds::{
     CampaignError, Impacts, Job, Place, Progress, Record, Stand, Unattended, Variation, Watch,
 };
-use validation::measurement::Role;
 
 use crate::world::{condition, empty_set, model};
 

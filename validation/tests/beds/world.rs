@@ -1,7 +1,7 @@
 //! A bed of a few hundred discs, and sets that are measured on it.
 
 use configs::{LoadOptions, Model, ModelSource};
-use validation::measurement::{
+use measurements::{
     Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role,
     StatedError, StopDefinition,
 };

@@ -4,11 +4,11 @@
 use std::path::PathBuf;
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
-use validation::forward::{Forward, Request, Scatter};
-use validation::measurement::{
+use measurements::{
     Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
     Role, Run, StatedError, StopDefinition,
 };
+use validation::forward::{Forward, Request, Scatter};
 use validation::observable::Layout;
 use validation::resistive::ResistiveForward;
 

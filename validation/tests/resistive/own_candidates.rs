@@ -1,15 +1,15 @@
 //! A candidate of a model file in a diagnosis.
 
 use configs::{LoadOptions, Model, ModelSource};
+use measurements::{
+    Bed, Condition, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role, Run,
+    StatedError, StopDefinition,
+};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 use validation::bench::{Bench, DEFAULT_SEED};
 use validation::diagnose::diagnose;
 use validation::forward::{Forward, Request, Scatter};
-use validation::measurement::{
-    Bed, Condition, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role, Run,
-    StatedError, StopDefinition,
-};
 use validation::observed::Observed;
 use validation::resistive::ResistiveForward;
 use validation::verdict::Verdict;

@@ -1,9 +1,9 @@
 //! Several revisions of a model side by side.
 
+use measurements::Kind;
 use serde_json::Value;
 use validation::bench::DEFAULT_SEED;
 use validation::compare::{Comparison, Revision, compare};
-use validation::measurement::Kind;
 use validation::observed::Observed;
 
 use crate::laboratory::Laboratory;

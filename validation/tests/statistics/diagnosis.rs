@@ -1,9 +1,9 @@
 //! The verdicts.
 
+use measurements::{Kind, MeasurementSet, StatedError};
 use validation::bench::{Bench, DEFAULT_SEED};
 use validation::diagnose::diagnose;
 use validation::held_out::LeftOut;
-use validation::measurement::{Kind, MeasurementSet, StatedError};
 use validation::observed::Observed;
 use validation::verdict::{Diagnosis, RankedEffect, Strength, Verdict};
 

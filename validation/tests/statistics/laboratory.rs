@@ -1,11 +1,11 @@
 //! Measurements in the world: repeats whose beds differ, seen by a camera.
 
-use rand::RngExt;
-use rand_pcg::Pcg64;
-use validation::measurement::{
+use measurements::{
     Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
     Role, Run, StatedError, StopDefinition,
 };
+use rand::RngExt;
+use rand_pcg::Pcg64;
 
 use crate::world::{Effect, GRAVITY, Impact, Setting, TRUTH};
 

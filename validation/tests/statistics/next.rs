@@ -1,9 +1,9 @@
 //! The next experiment.
 
+use measurements::{Feasible, MeasurementSet};
 use validation::bench::{Bench, DEFAULT_SEED};
 use validation::benchmark::trial::baseline;
 use validation::diagnose::diagnose;
-use validation::measurement::{Feasible, MeasurementSet};
 use validation::next::{Recommendation, judged, recommend};
 use validation::observed::Observed;
 use validation::resistive::ResistiveForward;

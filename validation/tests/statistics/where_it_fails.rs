@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use measurements::{Kind, MeasurementSet};
 use serde_json::Value;
 use validation::bench::{Bench, DEFAULT_SEED};
 use validation::compare::{Comparison, Revision, compare};
 use validation::diagnose::diagnose;
 use validation::force_error::{ForceCell, ForceErrors, Trend};
-use validation::measurement::{Kind, MeasurementSet};
 use validation::observed::Observed;
 use validation::where_it_fails::{FILES, WhereItFails};
 

@@ -7,7 +7,8 @@ use crate::resolved::quoted;
 impl TableReader<'_> {
     /// A list of strings, if it is given, without writing it to the resolved model; the outer `None` is
     /// an error that was reported.
-    pub(crate) fn raw_texts(
+    #[must_use]
+    pub fn raw_texts(
         &self,
         key: &'static str,
         example: &str,

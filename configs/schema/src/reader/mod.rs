@@ -49,7 +49,8 @@ pub struct Found<T> {
 
 /// What all tables of one file share.
 pub struct Reader<'a> {
-    pub(crate) sources: &'a Sources,
+    /// The texts that spans point into.
+    pub sources: &'a Sources,
     kind: FileKind,
     diagnostics: RefCell<Vec<Diagnostic>>,
     resolved: RefCell<Resolved>,
@@ -79,7 +80,9 @@ impl<'a> Reader<'a> {
         }
     }
 
-    pub(crate) fn failed(&self) -> bool {
+    /// Whether there is an error among what was reported.
+    #[must_use]
+    pub fn failed(&self) -> bool {
         self.diagnostics.borrow().iter().any(|one| one.severity == Severity::Error)
             || !self.unknown.borrow().is_empty()
     }
@@ -267,7 +270,8 @@ impl<'a> TableReader<'a> {
     }
 
     /// The value of `key` as it stands in the file.
-    pub(crate) fn node(&self, key: &'static str) -> Option<&'a Node> {
+    #[must_use]
+    pub fn node(&self, key: &'static str) -> Option<&'a Node> {
         self.entry(key).map(|entry| &entry.node)
     }
 

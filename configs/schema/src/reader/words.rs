@@ -51,7 +51,7 @@ impl TableReader<'_> {
     }
 
     /// `true` or `false`.
-    pub(crate) fn boolean(&self, key: &'static str, default: bool) -> Option<bool> {
+    pub fn boolean(&self, key: &'static str, default: bool) -> Option<bool> {
         let value = match self.entry(key) {
             None => default,
             Some(entry) => match entry.node.value {

@@ -10,7 +10,7 @@ use configs::engine::record::{BodySample, LoggedShape};
 use configs::engine::stopping::Followed;
 use configs::engine::surface::Surface;
 use configs::intruders::find;
-use configs::run::shape_of;
+use runner::run::shape_of;
 
 use super::super::facts::{Facts, Intruder};
 use super::super::samples::Sample;

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use configs::engine::checkpoint::write_whole;
 use configs::engine::record::{GRAIN_LOG, RUN_LOG, RecordError};
-use configs::run::Summary;
+use runner::run::Summary;
 use thiserror::Error;
 
 use super::dump::Dump;

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use configs::engine::stopping::Stopping;
-use configs::run::{CostSummary, EnergySummary, FinalEnergy, StopSummary, Summary};
+use runner::run::{CostSummary, EnergySummary, FinalEnergy, StopSummary, Summary};
 
 use super::super::facts::Facts;
 use super::faller::{Faller, Turned};

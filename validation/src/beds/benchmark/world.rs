@@ -2,14 +2,14 @@
 
 use configs::{ConfigError, LoadOptions, Model, ModelSource};
 use engine::bed::random;
+use measurements::{
+    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
+    Role, Run, StatedError, StopDefinition,
+};
 use rand::Rng;
 
 use crate::beds::record::Record;
 use crate::beds::{BedError, Impacts, Stand, Variation};
-use crate::measurement::{
-    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedError, StopDefinition,
-};
 
 /// The analyst's model of the bed.
 const MODEL: &str = include_str!("model.toml");

@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use configs::run::result_key;
 use engine::checkpoint::write_whole;
-use schedulers::{Array, Scheduler, Word, script};
+use runner::run::result_key;
+use runner::schedulers::{Array, Scheduler, Word, script};
 
 use super::campaign::{CampaignError, Progress, Stage, Watch};
 use super::job::hexadecimal;

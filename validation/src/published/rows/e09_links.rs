@@ -1,10 +1,10 @@
 //! E9: the free link against its measured stopping times, and the two-link chain against what is stated of it.
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
+use measurements::MeasurementSet;
 
 use crate::compare::{Revision, compare};
 use crate::forward::{Forward, Request, Scatter};
-use crate::measurement::MeasurementSet;
 use crate::observed::Observed;
 use crate::published::check::{Band, Check, Estimate};
 use crate::published::laboratory::Laboratory;

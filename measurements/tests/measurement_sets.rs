@@ -1,0 +1,157 @@
+//! Every defective set is refused, or understood, with the expected message.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use configs::{Color, Diagnostic, Sources, render_all};
+use fixtures::Case;
+use measurements::MeasurementSet;
+use tempfile::TempDir;
+
+/// Where the cases are.
+const BAD: &str = "tests/data/bad";
+
+/// A set on the disk, until this is dropped.
+struct Written {
+    folder: PathBuf,
+    _around: TempDir,
+}
+
+/// The set `case` in a folder of its own: a good set with changes in it. What is no text stands
+/// as a file in the folder of the case's name. Beside the new folder lies a table, `runs.csv`.
+fn written(case: &Case) -> Result<Written, String> {
+    let text = |error: std::io::Error| error.to_string();
+    let around = tempfile::tempdir().map_err(text)?;
+    let folder = around.path().join("set");
+    fs::create_dir(&folder).map_err(text)?;
+    fs::copy("tests/data/good/scalars/runs.csv", around.path().join("runs.csv")).map_err(text)?;
+    for entry in fs::read_dir(Path::new("tests/data/good").join(&case.base)).map_err(text)? {
+        let good = entry.map_err(text)?.path();
+        let (name, stem) = (good.file_name().unwrap_or_default(), good.file_stem());
+        let bytes = Path::new(BAD).join(&case.name).join(name);
+        let changed = match fs::read(&bytes) {
+            Ok(bytes) => bytes,
+            Err(_) => {
+                let stem = stem.unwrap_or_default().to_string_lossy();
+                let good = fs::read_to_string(&good).map_err(text)?;
+                case.apply_to(&stem, &good).map_err(|error| error.to_string())?.into_bytes()
+            }
+        };
+        fs::write(folder.join(name), changed).map_err(text)?;
+    }
+    Ok(Written { folder, _around: around })
+}
+
+/// What a user reads about the set `case`.
+fn message(case: &Case) -> Result<String, String> {
+    let written = written(case)?;
+    let show = |diagnostics: &[Diagnostic], sources: &Sources| match case.whole {
+        true => render_all(diagnostics, sources, Color::Off),
+        false => diagnostics.iter().map(|one| one.brief(sources)).collect(),
+    };
+    let text = match MeasurementSet::load(&written.folder) {
+        Err(error) => show(&error.diagnostics, &error.sources),
+        Ok(loaded) => {
+            let lines = loaded.tables.iter().chain(&loaded.set.notes);
+            let lines: String = lines.map(|line| format!("{line}\n")).collect();
+            format!("accepted\n{lines}{}", show(&loaded.warnings, &loaded.sources))
+        }
+    };
+    Ok(text.replace(&format!("{}/", written.folder.display()), ""))
+}
+
+/// The case `name`, written.
+fn bad(name: &str) -> Written {
+    let topics = fixtures::topics(Path::new(BAD)).unwrap_or_else(|error| panic!("{error}"));
+    let mut cases = topics.iter().flat_map(|topic| &topic.cases);
+    let case = cases.find(|case| case.name == name).expect("a case of this name");
+    written(case).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// `BLESS=1` in the environment rewrites the expected messages.
+#[test]
+fn every_defect_of_a_set_brings_the_expected_message() {
+    fixtures::check(Path::new(BAD), message).unwrap_or_else(|wrong| panic!("{wrong}"));
+}
+
+#[test]
+fn what_differs_in_form_alone_reads_to_the_same_set() {
+    let load =
+        |folder: &Path| MeasurementSet::load(folder).unwrap_or_else(|error| panic!("{error}")).set;
+    let plain = load(Path::new("tests/data/good/scalars"));
+    for name in [
+        "byte-order-mark",
+        "line-ends-crlf",
+        "line-ends-cr",
+        "no-last-line-end",
+        "blank-lines-and-no-last-line-end",
+    ] {
+        assert_eq!(load(&bad(name).folder), plain, "{name}");
+    }
+    for name in ["semicolons", "tabs", "semicolons-and-decimal-commas"] {
+        assert_eq!(load(&bad(name).folder).runs, plain.runs, "{name}");
+    }
+}
+
+#[test]
+fn a_set_that_is_not_there_is_told_by_its_name() {
+    let told =
+        |path: &str| MeasurementSet::load(Path::new(path)).expect_err("no set").render(Color::Off);
+    assert_eq!(told("tests/data/none"), "error: `tests/data/none`: there is no such file\n\n");
+    assert_eq!(
+        told("tests/data"),
+        "error: `tests/data/measurement.toml`: there is no such file\n\n"
+    );
+}
+
+#[test]
+fn a_set_describes_itself() {
+    let loaded = MeasurementSet::load(&bad("renamed-columns").folder)
+        .unwrap_or_else(|error| panic!("{error}"));
+    let wanted = "\
+sample: trajectories, 2 conditions (1 held out), 2 runs
+three-dimensional bed, 1480 kg/m^3, grains of 0.0008 m, gravity 9.81 m/s^2
+baseline two-term-vector
+
+condition  role     speed (m/s)  angle (deg)  shape   diameter (m)  mass (kg)  runs  readings  measured
+c01        fit      1            90           sphere  0.0254        0.0667     1     7         stop_time, final_z, z(t), x(t)
+c02        holdout  2            30           sphere  0.0254        0.0667     1     7         stop_time, final_z, final_x, z(t), x(t)
+
+runs.csv: run, condition, repeat, order, stop_time (s), final_z (m), final_x (m)
+trajectories.csv: run = trial, t = time_ms (ms), z = height_mm (mm, turned round), x (m)
+source: made up for this test
+note: In trajectories.csv the column `note` is ignored.
+";
+    assert_eq!(loaded.describe(), wanted);
+    let without = wanted.lines().filter(|line| !line.contains(".csv: "));
+    assert_eq!(loaded.set.describe().lines().collect::<Vec<_>>(), without.collect::<Vec<_>>());
+}
+
+#[test]
+fn the_template_of_the_documentation_loads_without_a_warning() {
+    let page = fs::read_to_string("../docs/measurement-sets.md").expect("the page of the format");
+    let blocks: Vec<&str> = page.split("```").skip(1).step_by(2).collect();
+    let block = |kind: &str, nth: usize| {
+        let text = blocks.iter().filter_map(|block| block.strip_prefix(kind)).nth(nth);
+        text.expect("a block of the template").trim_start()
+    };
+    let folder = tempfile::tempdir().expect("a folder for the test");
+    let files = [
+        ("measurement.toml", block("toml", 0).to_owned()),
+        ("runs.csv", block("csv", 0).to_owned()),
+        ("trajectories.csv", block("csv", 1).to_owned()),
+    ];
+    for (name, text) in files {
+        fs::write(folder.path().join(name), text).expect("a writable folder");
+    }
+    let loaded = MeasurementSet::load(folder.path()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(loaded.render_warnings(Color::Off), "");
+    assert!(loaded.set.notes.is_empty(), "{:?}", loaded.set.notes);
+    assert_eq!(loaded.set.runs.len(), 2);
+    // The keys of the second block are those of the tables.
+    let mut columns = block("toml", 0).to_owned() + block("toml", 1);
+    columns += "\n";
+    fs::write(folder.path().join("measurement.toml"), columns).expect("a writable folder");
+    let told = MeasurementSet::load(folder.path()).expect_err("columns with other names");
+    assert!(told.diagnostics.iter().all(|one| one.message.contains("is missing")), "{told}");
+}

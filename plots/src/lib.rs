@@ -1,0 +1,117 @@
+//! Pictures of a report, as SVG: the same input gives the same bytes.
+//!
+//! [`svg`] makes a picture of what is drawn on a [`Canvas`]; a [`Hover`] is a place of it that says its value to
+//! whoever points at it, and [`legend`] explains signs and colours.
+
+mod canvas;
+pub mod legend;
+
+use std::cell::RefCell;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use thiserror::Error;
+
+pub use canvas::{Canvas, Hover};
+
+/// Why there is no picture.
+#[derive(Debug, Error)]
+#[error("cannot draw: {0}")]
+pub struct PictureError(pub String);
+
+/// Colours that stay apart for most colour-blind eyes (Okabe & Ito 2008).
+pub const COLOURS: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(0, 0, 0),
+];
+
+/// Bands, and what is not known.
+pub const GREY: RGBColor = RGBColor(222, 222, 222);
+
+/// Letters of titles, labels and legends (pixels).
+const LETTERS: f64 = 13.0;
+
+/// Width of a letter of that size, on average (pixels).
+pub const LETTER: f64 = 6.6;
+
+/// A part of a picture.
+pub type Area<'a> = DrawingArea<Canvas<'a>, Shift>;
+
+/// What drawing comes to.
+pub type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+/// A picture of `size` (pixels) on white.
+///
+/// # Errors
+/// What `draw` comes to.
+pub fn svg(
+    size: (u32, u32),
+    draw: impl for<'a> FnOnce(&Area<'a>) -> Drawn,
+) -> Result<String, PictureError> {
+    let mut text = String::new();
+    let hovers = RefCell::default();
+    {
+        let area = Canvas::new(&mut text, size, &hovers).into_drawing_area();
+        area.fill(&WHITE)
+            .and_then(|()| draw(&area))
+            .and_then(|()| area.present())
+            .map_err(|error| PictureError(error.to_string()))?;
+    }
+    canvas::lay_over(&mut text, &hovers.into_inner());
+    Ok(text)
+}
+
+/// The colour of model, effect or series `index`.
+#[must_use]
+pub fn colour(index: usize) -> RGBColor {
+    COLOURS[index % COLOURS.len()]
+}
+
+/// Letters that begin at their place.
+#[must_use]
+pub fn letters() -> TextStyle<'static> {
+    ("sans-serif", LETTERS).into_font().into()
+}
+
+/// Letters around their place.
+#[must_use]
+pub fn centred() -> TextStyle<'static> {
+    letters().pos(Pos::new(HPos::Center, VPos::Center))
+}
+
+/// Letters that run upwards and end at their place.
+#[must_use]
+pub fn upright() -> TextStyle<'static> {
+    letters().transform(FontTransform::Rotate270).pos(Pos::new(HPos::Right, VPos::Center))
+}
+
+/// A number as labels have it: three digits, no zeros behind the point.
+#[must_use]
+pub fn short(value: f64) -> String {
+    let text = format!("{value:.2e}");
+    text.parse::<f64>().map_or(text, |value| value.to_string())
+}
+
+/// As much of `text` as fits `width` pixels, with a mark where some is missing.
+#[must_use]
+pub fn fitting(text: &str, width: u32) -> String {
+    let room = (f64::from(width) / LETTER) as usize;
+    if text.chars().count() <= room {
+        return text.to_owned();
+    }
+    text.chars().take(room.saturating_sub(1)).chain(['\u{2026}']).collect()
+}
+
+/// `low` and `high` with a ninth of their distance beyond either.
+#[must_use]
+pub fn padded(low: f64, high: f64) -> std::ops::Range<f64> {
+    let distance = high - low;
+    let pad = if distance > 0.0 { distance / 9.0 } else { low.abs().max(1.0) / 9.0 };
+    low - pad..high + pad
+}

@@ -1,0 +1,3 @@
+//! Campaigns: many impacts, as one file says them.
+
+pub mod file;
