@@ -75,11 +75,19 @@ impl Common {
         if self.force || estimate.memory_bytes as f64 <= MEMORY_SHARE * available as f64 {
             return Ok(());
         }
+        let [needed, free] = [estimate.memory_bytes, available].map(output::bytes);
+        if estimate.container_bytes as f64 > MEMORY_SHARE * available as f64 {
+            return Err(CommandError::bad_input(format!(
+                "cells of the size of the grains over a container {} m wide need about {needed}, and {free} are \
+                 free; its {} grains cover the floor of one that is {:.3} m wide; --force goes on all the same",
+                grains.medium.container.width,
+                estimate.n_grains,
+                grains.width_of_a_layer()
+            )));
+        }
         Err(CommandError::bad_input(format!(
-            "{} grains need about {}, and {} are free; --force goes on all the same",
-            estimate.n_grains,
-            output::bytes(estimate.memory_bytes),
-            output::bytes(available)
+            "{} grains need about {needed}, and {free} are free; --force goes on all the same",
+            estimate.n_grains
         )))
     }
 

@@ -105,3 +105,40 @@ fn a_bed_that_loses_no_energy_is_given_up_with_a_reason() {
     let message = call.set(&lossless).fails(1);
     assert!(message.contains("of a bed at rest"), "{message}");
 }
+
+#[test]
+fn a_box_that_is_wide_and_empty_is_refused_with_what_its_grains_would_cover() {
+    if configs::estimate::available_memory_bytes().is_none() {
+        return; // a system that does not say
+    }
+    for command in ["run", "bed", "check"] {
+        let here = folder();
+        let call = Call::new([command]).arg(small_model()).inside(here.path());
+        // 300 grains of 4.85 mm side by side are 1.45 m long.
+        let message = call.set(&["container.width=1e8 m"]).fails(2);
+        assert!(message.contains("a container 100000000 m wide need about"), "{message}");
+        assert!(message.contains("300 grains cover the floor of one that is 1.454 m"), "{message}");
+        assert_eq!(names(here.path()), [""; 0], "nothing is written");
+    }
+}
+
+#[test]
+fn an_intruder_shot_at_a_side_at_five_degrees_stays_in_its_box() {
+    let out = folder();
+    // Stiff enough that no grain is crushed between the intruder and the side.
+    let settings = [
+        "impact.angle=5 deg",
+        "impact.speed=10 m/s",
+        "contact_law.normal_stiffness=1e5 N/m",
+        "contact_law.tangential_stiffness=1e5 N/m",
+        "run.time_step=auto",
+        "run.duration=20 ms",
+    ];
+    let summary = Call::run(out.path()).set(&settings).done().json();
+    let number = |table: &str, key: &str| summary[table][key].as_f64().expect("a number");
+    assert!(number("energy", "closure") < 1e-2, "{summary}");
+    // It starts in the middle of a box of 10 cm with a radius of 1 cm: to the side there are 4 cm, and to the floor less than
+    // the bed is high. v √(m/k) = 2.5 mm bounds how far it goes into the side.
+    assert!(number("stop", "range_m") < 0.0425, "{summary}");
+    assert!(number("stop", "depth_m") < number("bed", "height_m"), "{summary}");
+}

@@ -75,22 +75,16 @@ impl MeanGrain {
     fn of(model: GrainModel<'_>) -> Self {
         let space = model.medium.space;
         let n = model.n_grains() as f64;
-        let (diameters, mass, content) = match &model.medium.bed.source {
-            BedSource::Settle(settle) => settle.grains.iter().fold((0.0, 0.0, 0.0), |sum, kind| {
-                let count = kind.count as f64;
-                (
-                    sum.0 + count * kind.sizes.moment(1),
-                    sum.1 + kind.total_mass(space),
-                    sum.2 + count * kind.content(space),
-                )
+        let (mass, content) = match &model.medium.bed.source {
+            BedSource::Settle(settle) => settle.grains.iter().fold((0.0, 0.0), |sum, kind| {
+                (sum.0 + kind.total_mass(space), sum.1 + kind.count as f64 * kind.content(space))
             }),
-            BedSource::Csv(csv) => csv.grains.iter().fold((0.0, 0.0, 0.0), |sum, grain| {
-                let diameter = 2.0 * grain.radius;
-                (sum.0 + diameter, sum.1 + grain.mass, sum.2 + space.grain_content(diameter))
+            BedSource::Csv(csv) => csv.grains.iter().fold((0.0, 0.0), |sum, grain| {
+                (sum.0 + grain.mass, sum.1 + space.grain_content(2.0 * grain.radius))
             }),
         };
         let base = model.medium.container.without_layers().base_area(space);
-        let diameter = diameters / n;
+        let diameter = model.mean_grain();
         let height = content / (guessed_packing(space) * base);
         Self { diameter, mass: mass / n, layers: height / diameter }
     }

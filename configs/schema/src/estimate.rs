@@ -33,6 +33,8 @@ pub struct Estimate {
     pub steps: Option<u64>,
     /// Memory while running (byte).
     pub memory_bytes: u64,
+    /// What of it the size of the container alone asks for (byte).
+    pub container_bytes: u64,
     /// Time for one impact at most, the bed's preparation not counted (s).
     pub run_time_s: Option<f64>,
 }
@@ -45,13 +47,17 @@ impl Estimate {
         // At most `limits::STEPS`, so the cast is exact.
         let steps =
             stability::time_step(model).map(|step| steps_in(model.model.run.duration, step));
+        // Too large a number becomes the largest.
+        let container_bytes = model.container_bytes() as u64;
         Self {
             n_grains,
             n_conditions: model.model.conditions().len(),
             steps,
             memory_bytes: n_grains
                 .saturating_mul(bytes_per_grain(model.medium.space))
+                .max(container_bytes)
                 .saturating_add(BYTES_FIXED),
+            container_bytes,
             run_time_s: steps.map(|steps| steps as f64 * n_grains as f64 / GRAIN_STEPS_PER_S),
         }
     }

@@ -156,11 +156,14 @@ pub fn read(bytes: &[u8], room: Room) -> Result<GrainTable, Vec<CsvFault>> {
     }
     let columns = Columns::find(&names, room.space)?;
     let mut faults = Vec::new();
-    let mut grains = Vec::new();
+    let (mut grains, mut lines) = (Vec::new(), Vec::new());
     for record in reader.records() {
         match record {
             Ok(record) => match columns.grain(&record, room) {
-                Ok(grain) => grains.push(grain),
+                Ok(grain) => {
+                    lines.push(record.position().map_or(0, csv::Position::line));
+                    grains.push(grain);
+                }
                 Err(fault) => faults.push(fault),
             },
             Err(error) => faults.push(CsvFault {
@@ -181,10 +184,32 @@ pub fn read(bytes: &[u8], room: Room) -> Result<GrainTable, Vec<CsvFault>> {
     if faults.is_empty() && grains.is_empty() {
         faults.extend(whole("there is no grain below the header"));
     }
+    if faults.is_empty() {
+        faults.extend(too_high(&grains, &lines, room));
+    }
     match faults.is_empty() {
         true => Ok(GrainTable { grains, warnings: columns.warnings }),
         false => Err(faults),
     }
+}
+
+/// The grains, on these lines of their table, that lie far above what can be a bed: higher than all of them on top of each
+/// other and once the width of the container.
+fn too_high(grains: &[CsvGrain], lines: &[u64], room: Room) -> Vec<CsvFault> {
+    let [width, depth] = room.container.extents();
+    let stacked: f64 = grains.iter().map(|grain| 2.0 * grain.radius).sum();
+    let highest = stacked + width.max(depth);
+    let faults = grains.iter().zip(lines).filter(|(grain, _)| grain.z > highest);
+    let fault = |(grain, line): (&CsvGrain, &u64)| CsvFault {
+        line: *line,
+        column: Some(Names::of(room.space).up.to_owned()),
+        message: format!(
+            "the grain at {} m is far above the bed: all {} grains on top of each other are {stacked:.3} m high",
+            grain.z,
+            grains.len()
+        ),
+    };
+    faults.map(fault).take(FAULTS).collect()
 }
 
 struct Columns {
@@ -337,6 +362,21 @@ mod tests {
         let text = "x_m,y_m,z_m,radius_m,mass_kg\n0.5,1.2,0.1,0.01,1e-3\n";
         let faults = read(text.as_bytes(), CUBE).expect_err("a grain outside");
         assert!(faults[0].to_string().contains("column y_m: the grain at 1.2 m is outside"));
+    }
+
+    #[test]
+    fn a_grain_far_above_the_others_is_a_fault() {
+        let header = "x_m,y_m,radius_m,mass_kg\n0.5,0.1,0.01,1e-3\n";
+        for height in ["50", "1e300"] {
+            let text = faults(&format!("{header}0.2,{height},0.01,1e-3\n"));
+            assert!(text.starts_with("line 3: column y_m: the grain at "), "{text}");
+            assert!(
+                text.ends_with("all 2 grains on top of each other are 0.040 m high\n"),
+                "{text}"
+            );
+        }
+        // A grain may fall from the height of the width of its box.
+        assert!(read(format!("{header}0.2,1.0,0.01,1e-3\n").as_bytes(), PLANE).is_ok());
     }
 
     #[test]

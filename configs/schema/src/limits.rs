@@ -16,6 +16,8 @@ pub const GRAIN_KINDS: usize = 1000;
 pub const GRAINS_OF_A_KIND: u64 = 1_000_000_000_000_000;
 /// Most impact conditions of one model.
 pub const CONDITIONS: usize = 10_000;
+/// Most memory (byte) that the size of a container may ask for; that of the machine refuses far less.
+pub const CONTAINER_BYTES: f64 = 1e13;
 /// Most steps of one run: what the log can number.
 pub const STEPS: f64 = u32::MAX as f64;
 /// Most messages about one file.

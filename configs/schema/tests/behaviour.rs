@@ -304,3 +304,23 @@ proptest! {
         let _ = with_sets(&[&format!("contact_law.friction={value:e}")]);
     }
 }
+
+#[test]
+fn an_intruder_that_would_jump_over_grains_within_a_step_is_refused_with_a_step_that_would_do() {
+    let message = refusal(&["impact.speed=1e4 m/s", "run.time_step=10 us"]);
+    assert!(message.contains("the intruder moves 0.1 m in a step"), "{message}");
+    assert!(message.contains("write a time step of \"0.0228 us\" or less"), "{message}");
+    let listed = refusal(&[r#"conditions.speed=["1 m/s", "1e4 m/s"]"#, "run.time_step=10 us"]);
+    assert!(listed.contains("10000 m/s"), "{listed}");
+    // A thousandth of that is a tenth of a millimetre in a step.
+    good(&["impact.speed=10 m/s", "run.time_step=10 us"]);
+}
+
+#[test]
+fn a_container_that_no_memory_holds_is_refused_with_the_width_that_the_grains_cover() {
+    for width in ["1e307 m", "1e12 m"] {
+        let message = refusal(&[&format!("container.width={width}")]);
+        assert!(message.contains("too large for cells of the size of its grains"), "{message}");
+        assert!(message.contains("grains cover the floor of one that is"), "{message}");
+    }
+}

@@ -3,6 +3,7 @@
 
 mod fill;
 mod inflate;
+mod memory;
 mod report;
 mod rest;
 mod settling;
@@ -14,6 +15,7 @@ use rand_pcg::Pcg64;
 
 pub use fill::{GrainKind, fill};
 pub use inflate::{inflate, inflation_range};
+pub use memory::container_bytes;
 pub use report::BedReport;
 pub use settling::{SavedSettling, Settling};
 pub use sizes::SizeDistribution;

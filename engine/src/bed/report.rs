@@ -67,7 +67,7 @@ fn content(grains: &Grains) -> f64 {
 }
 
 /// Distance of sampled columns, in mean grain diameters: a plane has room for finer ones.
-fn spacing(space: Space) -> f64 {
+pub(super) fn spacing(space: Space) -> f64 {
     match space {
         Space::Planar => 0.02,
         Space::Spatial => 0.1,

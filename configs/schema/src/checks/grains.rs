@@ -11,6 +11,9 @@ use crate::model::{BedSource, BottomKind, Container, GrainModel, LawChoice, Side
 use crate::read::BodyPlaces;
 use crate::stability;
 
+/// The way of an intruder in a step that is surely short enough, in radii of the smallest grain.
+const SAFE_WAY: f64 = 0.1;
+
 /// Diameters of the largest grain that a periodic box is at least wide.
 const GRAINS_ACROSS: f64 = 6.0;
 
@@ -31,6 +34,8 @@ impl GrainChecks<'_> {
         self.common.number_of_conditions();
         if !self.common.reader.failed() {
             self.start_positions();
+            self.room();
+            self.way_of_a_step();
             self.effects_of_space();
             self.steps();
             self.targets();
@@ -62,6 +67,55 @@ impl GrainChecks<'_> {
                 too_wide("grain", kind.sizes.largest(), *places);
             }
         }
+    }
+
+    /// Refuses a container that no memory holds, however few its grains are.
+    fn room(&self) {
+        if self.grains.container_bytes() <= limits::CONTAINER_BYTES {
+            return;
+        }
+        let Container { width, .. } = self.grains.medium.container;
+        self.common.reader.report(
+            Diagnostic::error("the container is too large for cells of the size of its grains")
+                .at(self.common.places.width, format!("{} wide", metres(width)))
+                .help(format!(
+                    "its {} grains cover the floor of one that is {} wide",
+                    self.grains.n_grains(),
+                    metres(self.grains.width_of_a_layer())
+                )),
+        );
+    }
+
+    /// Refuses a step in which the intruder would pass grains without touching them.
+    fn way_of_a_step(&self) {
+        let Some(step) = stability::time_step(self.grains) else { return };
+        let model = self.grains.model;
+        let impacts = model.conditions();
+        let speed = impacts.iter().fold(0.0_f64, |speed, impact| speed.max(impact.speed));
+        let radius = 0.5 * self.grains.smallest_grain();
+        if speed * step <= radius {
+            return;
+        }
+        let listed = model.conditions.as_ref().and_then(|lists| lists.speed.as_ref());
+        let place = listed.and_then(|speeds| speeds.iter().position(|one| *one >= speed));
+        let places = self.common.places;
+        let span = match place {
+            Some(place) => places.condition_speed.get(place).copied().flatten(),
+            None => places.speed,
+        };
+        self.common.reader.report(
+            Diagnostic::error(format!(
+                "the intruder moves {} in a step, farther than the radius {} of the smallest grain",
+                metres(speed * step),
+                metres(radius)
+            ))
+            .at(span, format!("{speed} m/s"))
+            .with(places.time_step, format!("a step of {}", seconds(step)))
+            .help(format!(
+                "it would pass grains without touching them; write a time step of \"{}\" or less",
+                seconds(SAFE_WAY * radius / speed)
+            )),
+        );
     }
 
     /// Refuses what a periodic side or a layer cannot be.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use contact_laws::{GrainForceEntry, LawEntry};
-use engine::bed::SizeDistribution;
+use engine::bed::{SizeDistribution, container_bytes};
 use engine::boundary::{self, Base, Bottom, Sides};
 use engine::grains::Space;
 use engine::params::ParamTable;
@@ -332,6 +332,51 @@ impl<'a> GrainModel<'a> {
             }
             BedSource::Csv(csv) => largest(&mut csv.grains.iter().map(|grain| 2.0 * grain.radius)),
         }
+    }
+
+    /// The smallest diameter of a grain (m).
+    #[must_use]
+    pub fn smallest_grain(&self) -> f64 {
+        match &self.medium.bed.source {
+            BedSource::Settle(settle) => {
+                let kinds = settle.grains.iter().filter(|kind| kind.count > 0);
+                kinds.map(|kind| kind.sizes.smallest()).fold(f64::INFINITY, f64::min)
+            }
+            BedSource::Csv(csv) => {
+                csv.grains.iter().map(|grain| 2.0 * grain.radius).fold(f64::INFINITY, f64::min)
+            }
+        }
+    }
+
+    /// The mean diameter of the grains (m).
+    #[must_use]
+    pub fn mean_grain(&self) -> f64 {
+        let sum: f64 = match &self.medium.bed.source {
+            BedSource::Settle(settle) => {
+                settle.grains.iter().map(|kind| kind.count as f64 * kind.sizes.moment(1)).sum()
+            }
+            BedSource::Csv(csv) => csv.grains.iter().map(|grain| 2.0 * grain.radius).sum(),
+        };
+        sum / self.n_grains() as f64
+    }
+
+    /// Memory (byte) that the size of the container asks for, however few the grains are.
+    #[must_use]
+    pub fn container_bytes(&self) -> f64 {
+        let container = self.medium.container.without_layers();
+        let diameters = [self.largest_grain(), self.mean_grain()];
+        container_bytes((self.medium.space, &container), diameters)
+    }
+
+    /// How wide (m) a container is of which the grains cover the floor once: a planar one, or a square.
+    #[must_use]
+    pub fn width_of_a_layer(&self) -> f64 {
+        let n = self.n_grains() as f64;
+        let across = match self.medium.space {
+            Space::Planar => n,
+            Space::Spatial => n.sqrt(),
+        };
+        across * self.mean_grain()
     }
 
     /// Number of grains in the bed.
