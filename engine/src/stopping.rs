@@ -257,6 +257,31 @@ mod tests {
     }
 
     #[test]
+    fn rest_begins_where_the_speed_has_fallen_to_a_twentieth_of_the_greatest() {
+        // v = v₀ e^(−t/τ) with τ = 0.1 s: at τ ln 20.
+        let (decay, dt) = (0.1, 1e-4);
+        let at = |t: f64| {
+            let left = libm::exp(-t / decay);
+            followed(Vec3::new(0.0, 0.0, -3.0 * decay * (1.0 - left)), Vec3::z() * (-3.0 * left))
+        };
+        let mut stopping = Stopping::new(at(0.0));
+        for step in 1..=4000 {
+            let t = f64::from(step) * dt;
+            stopping.observe(t, at(t));
+        }
+        let exact = decay * libm::log(20.0);
+        let rest = stopping.rest_time().expect("it slows down for ever");
+        // The first step that is below.
+        assert!(rest >= exact && rest < exact + dt, "{rest} {exact}");
+        // A knock of six hundredths of the greatest speed ends it, one of four does not.
+        let knock = |speed: f64| followed(Vec3::zeros(), Vec3::x() * speed);
+        stopping.observe(0.5, knock(0.04 * 3.0));
+        assert!(stopping.rest_time().is_some_and(|time| time < 0.5));
+        stopping.observe(0.6, knock(0.06 * 3.0));
+        assert_eq!(stopping.rest_time(), None);
+    }
+
+    #[test]
     fn an_intruder_let_go_from_rest_stops_when_it_has_fallen_and_not_at_once() {
         let mut stopping = Stopping::new(followed(Vec3::zeros(), Vec3::zeros()));
         assert!(stopping.stopping_time().is_none());

@@ -27,6 +27,8 @@ pub(crate) const CASE: Case = Case {
 
 const STEPS_PER_CONTACT: f64 = 100.0;
 const SPEED: f64 = 1.0;
+/// Far more than any of these collisions takes.
+const MOST_STEPS: usize = 1_000_000;
 const SPIN: f64 = 100.0;
 
 /// At how many places within a step a contact begins.
@@ -302,8 +304,11 @@ fn collide(
         .map(|(name, held)| (name.to_owned(), held, 0.0))
         .collect();
     let mut touched = false;
+    let mut steps = 0;
     while !touched || encounter.overlap() > -2.0 * SPEED * dt - reach {
         run(&mut encounter.world, 1);
+        steps += 1;
+        assert!(steps < MOST_STEPS, "the two do not part");
         touched |= encounter.overlap() > 0.0;
         for ((_, held, lost), (_, now)) in
             channels.iter_mut().zip(dissipated(encounter.world.ledger()))

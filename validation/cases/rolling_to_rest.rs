@@ -9,7 +9,7 @@ use engine::math::Vec3;
 use engine::stage::ContactStage;
 
 use crate::case::{Case, Outcome};
-use crate::rig::{S1, SMALL, on_floor, rolling, run, stage};
+use crate::rig::{S1, SMALL, on_floor, rolling, run_while, stage};
 
 pub(crate) const CASE: Case = Case {
     name: "rolling-to-rest",
@@ -21,6 +21,8 @@ const GRAVITY: f64 = 9.81;
 const DT: f64 = 1e-5;
 const SPEED: f64 = 0.1;
 const FRICTION: f64 = 0.1;
+/// Ten times what the slowest takes.
+const MOST_STEPS: usize = 500_000;
 
 type Resistance = fn() -> Box<dyn ContactStage>;
 
@@ -55,9 +57,7 @@ fn roll(name: &str, space: Space, resistance: Resistance) -> Outcome {
     );
     let from = world.bed().grains.position(0).x;
     // A couple that cannot turn the rotation round leaves a creep that dies away.
-    while world.bed().grains.velocity(0).x > 1e-6 * SPEED {
-        run(&mut world, 1);
-    }
+    run_while(&mut world, MOST_STEPS, |world| world.bed().grains.velocity(0).x > 1e-6 * SPEED);
     let way = world.bed().grains.position(0).x - from;
 
     let couple = FRICTION * SMALL.radius * SMALL.mass * GRAVITY;

@@ -178,6 +178,20 @@ pub fn run(world: &mut World, n: usize) {
     }
 }
 
+/// Advances as long as `goes_on` says so.
+///
+/// # Panics
+/// If a step cannot be trusted, or after `most` steps: an experiment of a law that is wrong fails, and does not run for ever.
+pub fn run_while(world: &mut World, most: usize, mut goes_on: impl FnMut(&World) -> bool) {
+    for _ in 0..most {
+        if !goes_on(world) {
+            return;
+        }
+        run(world, 1);
+    }
+    panic!("after {most} steps there is no end");
+}
+
 /// Deterministic numbers in [0, 1): the fractional parts of multiples of the golden ratio, which
 /// fill the interval evenly however many are taken.
 #[must_use]

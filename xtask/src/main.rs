@@ -5,6 +5,7 @@
 #![allow(clippy::print_stdout, reason = "stdout is where a command's result belongs")]
 
 mod lint;
+mod mutants;
 mod tidy;
 
 use std::ffi::{OsStr, OsString};
@@ -28,6 +29,8 @@ Usage: cargo xtask <task>
                      how often the diagnosis is right, in release; the arguments go to the program
   bench beds [ARG]...
                      the same on small beds of grains
+  mutants [NUMBER]...
+                     wrong lines, one at a time in a copy of the sources: which of them no test notices
   fuzz [ARG]...      changed files against every reader; the arguments go to the program
   three-shapes [ARG]...
                      cylinder, hemisphere and cone on beds of grains, in release; the same
@@ -48,6 +51,7 @@ enum Task {
     Fuzz(Vec<OsString>),
     Help,
     Lint,
+    Mutants(Vec<u32>),
     Tidy,
     ThreeShapes(Vec<OsString>),
     Validate(Vec<OsString>),
@@ -79,6 +83,7 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
             Some("fuzz") => return Ok(Task::Fuzz(parser.raw_args()?.collect())),
             Some("help") => Task::Help,
             Some("lint") => Task::Lint,
+            Some("mutants") => return mutants(parser),
             Some("tidy") => Task::Tidy,
             Some("three-shapes") => return Ok(Task::ThreeShapes(parser.raw_args()?.collect())),
             Some("validate") => return Ok(Task::Validate(parser.raw_args()?.collect())),
@@ -91,6 +96,20 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
         Some(Arg::Short('h') | Arg::Long("help")) => Ok(Task::Help),
         Some(other) => Err(other.unexpected()),
     }
+}
+
+/// Mutants by their numbers.
+fn mutants(mut parser: lexopt::Parser) -> Result<Task, lexopt::Error> {
+    use lexopt::ValueExt as _;
+    let mut numbers = Vec::new();
+    while let Some(arg) = parser.next()? {
+        match arg {
+            Arg::Short('h') | Arg::Long("help") => return Ok(Task::Help),
+            Arg::Value(number) => numbers.push(number.parse()?),
+            other => return Err(other.unexpected()),
+        }
+    }
+    Ok(Task::Mutants(numbers))
 }
 
 /// The benchmark that the first of `args` names; without a name, that of beds of grains.
@@ -124,6 +143,10 @@ fn run(task: Task) -> Result<ExitCode> {
         Task::Lint => {
             sh.change_dir(root()?);
             lint::run(&sh)
+        }
+        Task::Mutants(numbers) => {
+            sh.change_dir(root()?);
+            mutants::run(&sh, &numbers)
         }
         Task::Tidy => {
             sh.change_dir(root()?);
@@ -240,6 +263,13 @@ mod tests {
         let args = ["--peers", "--help"];
         let task = Task::Bench(args.map(OsString::from).into());
         assert_eq!(parsed(&["bench", args[0], args[1]]), Ok(task));
+    }
+
+    #[test]
+    fn mutants_are_chosen_by_their_numbers() {
+        assert_eq!(parsed(&["mutants"]), Ok(Task::Mutants(Vec::new())));
+        assert_eq!(parsed(&["mutants", "4", "13"]), Ok(Task::Mutants(vec![4, 13])));
+        assert!(parsed(&["mutants", "four"]).is_err_and(|error| error.contains("four")));
     }
 
     #[test]

@@ -108,6 +108,7 @@ fn taps_make_a_loose_bed_denser_and_a_restart_between_them_changes_no_bit() {
     let (mut dense, mut saved) = (tapped(0.9, 2), Vec::new());
     while dense.taps() < 2 {
         dense.advance().expect("a sound step");
+        assert!(dense.time_since_tap() < 3.0, "no rest: {}", dense.restlessness());
         let is_next = match saved.len() {
             0 => dense.clock().step == 500,
             1 => dense.taps() == 1,
@@ -123,6 +124,7 @@ fn taps_make_a_loose_bed_denser_and_a_restart_between_them_changes_no_bit() {
         assert!(resumed.restore(saved));
         while resumed.taps() < 2 {
             resumed.advance().expect("a sound step");
+            assert!(resumed.time_since_tap() < 3.0, "no rest: {}", resumed.restlessness());
         }
         assert_eq!(resumed.bed().resting(), dense.bed().resting());
     }

@@ -32,6 +32,7 @@ fn resting_bed() -> &'static RestingBed {
             Settling::new(&grains, (Space::Planar, BOX), GRAVITY, vec![S1.stage()], 1e-5);
         while settling.clock().step < 1_000 || settling.restlessness() > 100.0 {
             settling.advance().expect("a sound step");
+            assert!(settling.clock().time() < 5.0, "no rest: {}", settling.restlessness());
         }
         settling.bed().resting()
     })
