@@ -151,6 +151,7 @@ fn a_contact_that_shakes_without_sliding_loses_to_its_dashpot_alone() {
         // A swing in a millisecond, and then the same again from where it has settled.
         let dt = 1e-3 / f64::from(steps);
         let (mut force, mut work, mut before) = (0.0, 0.0, 0.0);
+        let mut most = 0.0_f64;
         for step in 1..=steps {
             let angle = |step: f64| TAU * step / f64::from(steps);
             let at = amplitude * libm::sin(angle(f64::from(step)));
@@ -159,15 +160,14 @@ fn a_contact_that_shakes_without_sliding_loses_to_its_dashpot_alone() {
             let next = touching.step(&contact, dt, Response::default()).tangential_force.x;
             work -= 0.5 * (force + next) * (at - before);
             (force, before) = (next, at);
+            most = most.max(next.abs());
         }
         let damping = touching.of("tangential-damping");
-        // The spring is back where it was, to round-off of its largest energy.
-        assert!(touching.of("sliding").abs() <= 1e-9 * work.abs(), "{}", entry.name);
-        assert!(
-            (damping - work).abs() <= 1e-6 * work.abs(),
-            "{}: {damping:e} {work:e}",
-            entry.name
-        );
+        // The spring is back where it was, to round-off of what it held meanwhile; one law has no dashpot there.
+        let round_off = 1e-9 * most * amplitude;
+        assert!(touching.of("sliding").abs() <= round_off, "{}", entry.name);
+        let error = (damping - work).abs();
+        assert!(error <= 1e-6 * work.abs() + round_off, "{}: {damping:e} {work:e}", entry.name);
         if entry.name == "linear-spring-dashpot" {
             // ∮ c v dx = π c ω A²; trapezia of a smooth cycle.
             let exact = PI * MASS * 50.0 * (TAU / 1e-3) * amplitude * amplitude;
