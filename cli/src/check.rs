@@ -11,6 +11,7 @@ use crate::check_cost::GrainCost;
 use crate::check_set;
 use crate::common::Common;
 use crate::output::{self, CommandError, CommandResult};
+use crate::table_file;
 
 /// Arguments of `plunge check`.
 #[derive(clap::Args, Debug)]
@@ -26,6 +27,8 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> CommandResult {
+    table_file::refuse(&args.model)?;
+    check_set::refuse_campaign(&args.model)?;
     if check_set::is_set(&args.model) {
         return check_set::run(&args.model, &args.common);
     }

@@ -5,7 +5,10 @@ use std::path::Path;
 
 use anyhow::Context as _;
 use configs::{Color, Sources, document, limits, paths};
-use measurements::{Loaded, MeasurementSet, Role, Run};
+use measurements::{
+    ContradictionKind, Held, Loaded, MeasurementSet, Outcome, Reading, Role, Run, RunContact,
+    Severity, Zero,
+};
 use serde_json::{Value, json};
 
 use crate::common::Common;
@@ -23,8 +26,29 @@ pub(crate) fn is_set(path: &Path) -> bool {
     path.is_file() && (path.ends_with(SET) || has_main_table(path))
 }
 
-/// Whether the file at `path` has the table `[measurement]`; what cannot be read has none.
+/// Refuses a campaign, which another command checks.
+///
+/// # Errors
+/// If the file at `path` is one.
+pub(crate) fn refuse_campaign(path: &Path) -> CommandResult {
+    match path.is_file() && has_table(path, "campaign") {
+        false => Ok(()),
+        true => {
+            let shown = path.display();
+            Err(CommandError::bad_input(format!(
+                "{shown} is a campaign; `plunge sweep {shown} --plan` checks it, and says what it would take"
+            )))
+        }
+    }
+}
+
+/// Whether the file at `path` has the table `[measurement]`.
 fn has_main_table(path: &Path) -> bool {
+    has_table(path, "measurement")
+}
+
+/// Whether the file at `path` has this table; what cannot be read has none.
+fn has_table(path: &Path, table: &'static str) -> bool {
     let name = path.display().to_string();
     let bytes = paths::read_bounded(path, &name, limits::FILE_BYTES).ok();
     let Some(text) = bytes.and_then(|bytes| String::from_utf8(bytes).ok()) else {
@@ -32,7 +56,7 @@ fn has_main_table(path: &Path) -> bool {
     };
     let mut sources = Sources::default();
     let id = sources.add(name, text);
-    document::parse(&sources, id).is_ok_and(|root| root.has("measurement"))
+    document::parse(&sources, id).is_ok_and(|root| root.has(table))
 }
 
 pub(crate) fn run(path: &Path, common: &Common) -> CommandResult {
@@ -49,8 +73,14 @@ pub(crate) fn run(path: &Path, common: &Common) -> CommandResult {
         draw(&loaded, out, common.force)?;
     }
     match common.json {
-        true => output::json_to_stdout(&as_json(&loaded)),
-        false => output::to_stdout(&as_text(&loaded, common.out.as_deref())),
+        true => output::json_to_stdout(&as_json(&loaded))?,
+        false => output::to_stdout(&as_text(&loaded, common.out.as_deref()))?,
+    }
+    match loaded.contradictions.is_empty() {
+        true => Ok(()),
+        false => Err(CommandError::BadInput(
+            loaded.render_contradictions(&ContradictionKind::ALL, stderr_color()),
+        )),
     }
 }
 
@@ -78,6 +108,10 @@ fn as_text(loaded: &Loaded, out: Option<&Path>) -> String {
     if !lines.is_empty() {
         text.push_str(&format!("\ndepth over time, from first contact\n{}", lines.concat()));
     }
+    let agreement = loaded.agreement.describe(&loaded.set);
+    if !agreement.is_empty() {
+        text.push_str(&format!("\n{agreement}"));
+    }
     if let Some(out) = out {
         text.push_str(&format!("\n-> {}\n", out.join(reports::FILE).display()));
     }
@@ -100,14 +134,101 @@ fn as_json(loaded: &Loaded) -> Value {
     let with = |role: Role| set.conditions.iter().filter(|one| one.role == role).count();
     let warnings: Vec<String> =
         loaded.warnings.iter().map(|one| one.render(&loaded.sources, Color::Off)).collect();
+    let contradictions: Vec<String> = loaded
+        .contradictions
+        .iter()
+        .map(|one| one.diagnostic.render(&loaded.sources, Color::Off))
+        .collect();
     json!({
         "set": set.id,
-        "valid": true,
+        "valid": loaded.contradictions.is_empty(),
         "conditions": set.conditions.len(),
         "runs": set.runs.len(),
         "fit": with(Role::Fit),
         "holdout": with(Role::Holdout),
         "notes": set.notes,
         "warnings": warnings,
+        "zeros": zeros_as_json(loaded),
+        "scalars": loaded.agreement.held.iter().map(held_as_json).collect::<Vec<_>>(),
+        "contradictions": contradictions,
+    })
+}
+
+fn zeros_as_json(loaded: &Loaded) -> Value {
+    let (set, zeros) = (&loaded.set, &loaded.agreement.zeros);
+    let reading = |one: Reading| json!({ "value": one.value, "se": one.se });
+    let contacts: Vec<Value> = zeros
+        .contacts
+        .iter()
+        .map(|RunContact { run, contact, is_off }| {
+            json!({
+                "run": set.runs[*run].name,
+                "is_off": is_off,
+                "contact_time_s": reading(contact.time),
+                "contact_time_between_s": contact.between.map(|t| t.is_finite().then_some(t)),
+                "depth_at_zero_m": contact.depth_at_zero.map(reading),
+                "depth_at_contact_m": reading(contact.depth),
+            })
+        })
+        .collect();
+    let offset = zeros.offset.map(|offset| {
+        json!({
+            "zero": match offset.zero {
+                Zero::Depth => "depth",
+                Zero::Clock => "clock",
+                Zero::Both => "both",
+            },
+            "severity": severity(offset.severity),
+            "is_common": offset.is_common,
+            "contact_time_s": reading(offset.time),
+            "surface_m": reading(offset.depth),
+        })
+    });
+    let speeds: Vec<Value> = zeros
+        .speeds
+        .iter()
+        .map(|one| {
+            json!({
+                "condition": set.conditions[one.condition].id,
+                "measured_over_stated": reading(one.ratio),
+                "severity": severity(one.severity),
+            })
+        })
+        .collect();
+    json!({ "offset": offset, "runs": contacts, "speeds": speeds })
+}
+
+fn severity(severity: Severity) -> &'static str {
+    match severity {
+        Severity::None => "none",
+        Severity::Notable => "notable",
+        Severity::Wrong => "wrong",
+    }
+}
+
+fn held_as_json(held: &Held) -> Value {
+    let misses: Vec<Value> = held
+        .misses
+        .iter()
+        .map(|miss| {
+            json!({
+                "definition": miss.definition,
+                "off_by": miss.mean.value,
+                "se": miss.mean.se,
+                "limit": miss.limit,
+            })
+        })
+        .collect();
+    json!({
+        "number": held.scalar.key(),
+        "is_stated": held.is_stated,
+        "runs": held.runs,
+        "outcome": held.outcome_key(),
+        "follows": match held.outcome {
+            Outcome::Follows => held.misses.first().map(|miss| miss.definition),
+            Outcome::FollowsOther(other) => Some(other),
+            _ => None,
+        },
+        "definitions": misses,
     })
 }

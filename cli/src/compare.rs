@@ -17,6 +17,7 @@ use crate::beds::{self, Beds, Workshop};
 use crate::compare_runs::{self, Found};
 use crate::output::{self, CommandError, CommandResult};
 use crate::report;
+use crate::table_file;
 use crate::workbench::{Flags, failed};
 
 /// Arguments of `plunge compare`.
@@ -40,6 +41,8 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> CommandResult {
     let flags = &args.flags;
+    table_file::refuse(&args.first)?;
+    args.second.iter().try_for_each(|second| table_file::refuse(second))?;
     match (compare_runs::what_is(&args.first), &args.second) {
         (Found::Run, Some(_)) if !args.models.is_empty() => {
             return Err(CommandError::bad_input(

@@ -17,6 +17,7 @@ use crate::compare::{lines, noise_words, probability, table};
 use crate::next;
 use crate::output::{self, CommandError, CommandResult};
 use crate::report;
+use crate::table_file;
 use crate::workbench::{Candidate, Flags, failed};
 
 /// Arguments of `plunge diagnose`.
@@ -35,6 +36,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> CommandResult {
     let flags = &args.flags;
+    table_file::refuse(&args.set)?;
     let measured = flags.measured(&args.set)?;
     let models = flags.models(args.model.as_slice(), &measured)?;
     let model = &models[0];

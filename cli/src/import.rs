@@ -10,6 +10,7 @@ use crate::BEGINS_AGAIN;
 use crate::control::stopped;
 use crate::output::{self, CommandError, CommandResult};
 use crate::signals;
+use crate::table_file;
 
 /// Arguments of `plunge import`.
 #[derive(clap::Args, Debug)]
@@ -31,6 +32,13 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> CommandResult {
+    table_file::refuse(&args.folder)?;
+    if args.folder.is_file() {
+        return Err(CommandError::bad_input(format!(
+            "{} is a file; the folder that `plunge export MODEL --to lammps` wrote is expected",
+            args.folder.display()
+        )));
+    }
     let out = args.out.as_ref().unwrap_or(&args.folder);
     let files = RunFiles::of(out);
     if !args.force && files.log.exists() {

@@ -26,6 +26,7 @@ mod report;
 mod run;
 mod signals;
 mod sweep;
+mod table_file;
 mod task;
 mod view;
 mod workbench;

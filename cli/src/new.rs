@@ -10,6 +10,7 @@ use serde_json::json;
 
 use crate::new_set;
 use crate::output::{self, CommandError, CommandResult};
+use crate::table_file;
 
 /// Arguments of `plunge new`.
 #[derive(clap::Args, Debug)]
@@ -33,6 +34,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> CommandResult {
+    table_file::refuse(Path::new(&args.from))?;
     let name = match (&args.name, args.list) {
         (Some(name), false) => name,
         _ => return list(args.json),

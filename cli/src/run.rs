@@ -12,6 +12,7 @@ use crate::common::Common;
 use crate::control::Terminal;
 use crate::output::{self, CommandError, CommandResult};
 use crate::report;
+use crate::table_file;
 
 /// Width of a curve in the text (characters).
 const SPARKLINE: usize = 40;
@@ -27,6 +28,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> CommandResult {
     let common = &args.common;
+    table_file::refuse(&args.model)?;
     let loaded = common.load(&args.model)?;
     let model = &loaded.model;
     common.refuse_too_large(model)?;

@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 use clap::Args;
 use configs::engine::checkpoint;
 use configs::{LoadOptions, Loaded, Model, ModelSource};
-use measurements::{MeasurementSet, SetError};
+use measurements::{ContradictionKind, MeasurementSet, SetError};
 use validation::bench::BenchError;
 use validation::observed::Observed;
 use validation::resistive::ResistiveForward;
@@ -55,6 +55,15 @@ pub(crate) struct Flags {
     /// Impacts on beds of grains at a time, 1 to 256; no result depends on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: Option<u16>,
+    /// Go on although the trajectories contradict stopping times, final depths or final ranges.
+    #[arg(long)]
+    trust_scalars: bool,
+    /// Go on although the trajectories contradict the zero of depth or clock.
+    #[arg(long)]
+    trust_zeros: bool,
+    /// Go on although the trajectories contradict the stated speeds, or look like another unit.
+    #[arg(long)]
+    trust_speeds: bool,
     /// Let models read data files below this folder too.
     #[arg(long = "allow-path", value_name = "DIR")]
     allow_paths: Vec<PathBuf>,
@@ -83,16 +92,41 @@ impl From<SetError> for CommandError {
 
 impl Flags {
     /// Reads the set at `path` and shows its warnings.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it; or where it contradicts its own frames, unless a flag says to go
+    /// on.
     pub(crate) fn measured(&self, path: &Path) -> Result<Measured, CommandError> {
-        let measurements::Loaded { set, warnings, sources, .. } = MeasurementSet::load(path)?;
-        if !self.quiet {
-            output::to_stderr(&configs::render_all(&warnings, &sources, stderr_color()));
+        let loaded = MeasurementSet::load(path)?;
+        let (trusted, doubted) = self.trusted();
+        let doubts = loaded.render_contradictions(&doubted, stderr_color());
+        if !doubts.is_empty() {
+            let how = overruled_by(&loaded, &doubted);
+            return Err(CommandError::BadInput(format!(
+                "{doubts}error: nothing is fitted to a set that contradicts itself; {how}\n"
+            )));
         }
+        if !self.quiet {
+            output::to_stderr(&loaded.render_contradictions(&trusted, stderr_color()));
+            output::to_stderr(&loaded.render_warnings(stderr_color()));
+        }
+        let measurements::Loaded { mut set, contradictions, .. } = loaded;
+        let overruled = contradictions.iter().map(|one| &one.diagnostic.message);
+        set.notes.extend(overruled.map(|what| format!("Overruled by a flag: {what}.")));
         let folder = match path.is_dir() {
             true => path.to_owned(),
             false => path.parent().unwrap_or(Path::new("")).to_owned(),
         };
         Ok(Measured { observed: Observed::of(&set), set, folder })
+    }
+
+    /// Kinds of contradictions that a flag overrules, and the others.
+    fn trusted(&self) -> (Vec<ContradictionKind>, Vec<ContradictionKind>) {
+        ContradictionKind::ALL.into_iter().partition(|kind| match kind {
+            ContradictionKind::Speeds => self.trust_speeds,
+            ContradictionKind::Zeros => self.trust_zeros,
+            ContradictionKind::Scalars => self.trust_scalars,
+        })
     }
 
     /// The models called `names`, or the baseline that the set starts from.
@@ -215,6 +249,23 @@ impl Flags {
         }
         Results::claim(folder, &hash.finalize().to_hex(), self.force)
     }
+}
+
+/// Which flags go on with `loaded` all the same.
+fn overruled_by(loaded: &measurements::Loaded, doubted: &[ContradictionKind]) -> String {
+    let met = |kind: &ContradictionKind| {
+        loaded.contradictions.iter().any(|one| one.kind == *kind) && doubted.contains(kind)
+    };
+    let flags: Vec<&str> = ContradictionKind::ALL
+        .into_iter()
+        .filter(met)
+        .map(|kind| match kind {
+            ContradictionKind::Speeds => "--trust-speeds",
+            ContradictionKind::Zeros => "--trust-zeros",
+            ContradictionKind::Scalars => "--trust-scalars",
+        })
+        .collect();
+    format!("{} goes on all the same", flags.join(" "))
 }
 
 impl Candidate {

@@ -238,6 +238,13 @@ mod tests {
     }
 
     #[test]
+    fn inches_and_cubic_centimetres_are_units() {
+        assert_eq!(bits("1 in", Dimension::LENGTH), 0.0254f64.to_bits());
+        assert_eq!(bits("1 inch", Dimension::LENGTH), 0.0254f64.to_bits());
+        assert_eq!(bits("1.52 g/cc", Dimension::DENSITY), 1520f64.to_bits());
+    }
+
+    #[test]
     fn a_unit_says_its_dimension() {
         assert_eq!(dimension_of("cm/s"), Some(Dimension::SPEED));
         assert_eq!(dimension_of("1"), Some(Dimension::NONE));
@@ -277,6 +284,11 @@ mod tests {
             message("3 kg"),
             "\"3 kg\" is a mass, a length is wanted; write \"3 mm\", \"3 cm\" or \"3 m\""
         );
+        assert_eq!(
+            message("25,4 mm"),
+            "\"25,4 mm\" has a decimal comma, a length is wanted; write \"25.4 mm\", with a decimal point"
+        );
+        assert!(message("3 px").contains("scale of the camera"));
         assert!(message("3").starts_with("\"3\" has no unit"));
         assert!(message("3 mmm").starts_with("the unit `mmm` in"));
         assert!(message("nan m").contains("does not begin with a number"));

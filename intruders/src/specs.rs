@@ -7,7 +7,8 @@ use engine::params::{Default, ParamSpec, Range};
 use engine::units::Dimension;
 
 /// The diameter (m) of a shape.
-pub(crate) const DIAMETER: ParamSpec = length("diameter", Range::closed(1e-3, 1.0), "diameter");
+pub(crate) const DIAMETER: ParamSpec =
+    length("diameter", Range::closed(1e-3, 1.0), "the diameter of the intruder");
 
 /// A required length (m).
 pub(crate) const fn length(

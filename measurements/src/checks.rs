@@ -1,5 +1,6 @@
 //! What only the whole set shows: signs, magnitudes, whether its errors can be known.
 
+use super::contradictions::Contradiction;
 use super::document::Document;
 use super::findings::Findings;
 use super::{Kind, MeasurementSet, Run, magnitudes, signs};
@@ -23,14 +24,19 @@ impl MeasurementSet {
     }
 }
 
-/// Checks a set whose tables were read; faults are reported.
-pub(super) fn check(set: &MeasurementSet, document: &Document, findings: &mut Findings) {
+/// Checks a set whose tables were read; faults are reported. Gives the magnitudes that no impact has.
+pub(super) fn check(
+    set: &MeasurementSet,
+    document: &Document,
+    findings: &mut Findings,
+) -> Vec<Contradiction> {
     signs::check(set, &document.places, findings);
-    magnitudes::check(set, &document.places, findings);
+    let contradictions = magnitudes::check(set, &document.places, findings);
     if !document.is_exported {
         note_errors(set, findings);
         note_late_starts(set, findings);
     }
+    contradictions
 }
 
 /// Without repeats and stated errors there is nothing to weigh a difference with.

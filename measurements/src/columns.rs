@@ -33,7 +33,7 @@ const LENGTH: Content = Content::Quantity(Dimension::LENGTH);
 const TIME: Content = Content::Quantity(Dimension::TIME);
 
 /// The columns of `runs.csv`.
-pub(super) const RUNS: [ColumnSpec; 7] = [
+pub(super) const RUNS: [ColumnSpec; 9] = [
     column("run", Content::Name, true),
     column("condition", Content::Name, true),
     column("repeat", Content::Count, false),
@@ -41,6 +41,8 @@ pub(super) const RUNS: [ColumnSpec; 7] = [
     column("stop_time", TIME, false),
     column("final_z", LENGTH, false),
     column("final_x", LENGTH, false),
+    column("t_zero", TIME, false),
+    column("z_zero", LENGTH, false),
 ];
 
 /// The columns of `trajectories.csv`.
@@ -61,6 +63,10 @@ pub(super) struct Renamed {
     pub(super) unit: Option<String>,
     /// 1, or -1 where the file counts the other way.
     pub(super) sign: f64,
+    /// What the column reads (SI) where our count begins.
+    pub(super) zero: f64,
+    /// Where the set says so.
+    pub(super) span: Option<Span>,
 }
 
 /// The table `[columns]`.
@@ -81,7 +87,7 @@ impl ColumnNames {
                 continue;
             }
             let span = table.span_of(spec.key);
-            if let Some(renamed) = renamed(table.table(spec.key, None), spec) {
+            if let Some(renamed) = renamed(table.table(spec.key, None), spec, span) {
                 if let Some(other) = columns.iter().find(|other| other.name == renamed.name) {
                     let message = format!(
                         "`{}` and `{}` are the same column, `{}`",
@@ -97,11 +103,14 @@ impl ColumnNames {
     }
 }
 
-fn renamed(table: TableReader<'_>, spec: &ColumnSpec) -> Option<Renamed> {
+/// Columns of differences, which have no zero of their own.
+const WITHOUT_ZERO: [&str; 3] = ["sigma_z", "t_zero", "z_zero"];
+
+fn renamed(table: TableReader<'_>, spec: &ColumnSpec, span: Option<Span>) -> Option<Renamed> {
     table.header()?;
     let name = table.text("name", Some(spec.key), spec.key, "the column's name in the file");
-    let (unit, sign) = match spec.content {
-        Content::Name | Content::Count => (None, 1.0),
+    let (unit, sign, zero) = match spec.content {
+        Content::Name | Content::Count => (None, 1.0, 0.0),
         Content::Quantity(dimension) => {
             let example = dimension.si_unit();
             let unit = table.text("unit", None, &example, "the unit of the column")?;
@@ -114,11 +123,15 @@ fn renamed(table: TableReader<'_>, spec: &ColumnSpec) -> Option<Renamed> {
                         .help("the unit is the place for a factor"),
                 );
             }
-            (Some(unit.value), sign.value)
+            let zero = match WITHOUT_ZERO.contains(&spec.key) {
+                true => None,
+                false => table.number_in("zero", &unit.value, dimension)?,
+            };
+            (Some(unit.value), sign.value, zero.map_or(0.0, |zero| zero.value))
         }
     };
     table.finish();
-    Some(Renamed { key: spec.key, name: name?.value, unit, sign })
+    Some(Renamed { key: spec.key, name: name?.value, unit, sign, zero, span })
 }
 
 fn check_unit(table: &TableReader<'_>, unit: &str, span: Option<Span>, dimension: Dimension) {

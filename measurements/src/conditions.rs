@@ -13,6 +13,8 @@ pub(super) struct ConditionPlaces {
     pub(super) id: Option<Span>,
     pub(super) speed: Option<Span>,
     pub(super) angle: Option<Span>,
+    pub(super) diameter: Option<Span>,
+    pub(super) mass: Option<Span>,
 }
 
 /// Shapes that a set may name, each with the keys that it should have besides the diameter.
@@ -82,6 +84,8 @@ fn condition(table: TableReader<'_>, absent: &mut Absent) -> Option<(Condition, 
         id: id.as_ref().and_then(|id| id.span),
         speed: table.span_of("speed"),
         angle: table.span_of("angle_deg"),
+        diameter: table.span_of("diameter"),
+        mass: table.span_of("mass"),
     };
     let wanted = SHAPES.iter().find(|(name, _)| Some(*name) == shape).map_or(&[][..], |row| row.1);
     for key in ["packing", "bed_depth"].iter().chain(wanted) {

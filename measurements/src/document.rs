@@ -4,6 +4,7 @@ use configs::reader::TableReader;
 use configs::{Diagnostic, Span, limits};
 use engine::params::ParamSpec;
 
+use super::bodies;
 use super::columns::ColumnNames;
 use super::conditions::{self, ConditionPlaces};
 use super::dialect::{Decimal, Delimiter};
@@ -25,6 +26,10 @@ pub(super) struct Document {
     pub(super) phase: Option<String>,
     pub(super) files: Files,
     pub(super) places: Vec<ConditionPlaces>,
+    /// Where the definitions of the stop and of the final place are stated, if they are.
+    pub(super) definitions: [Option<Span>; 2],
+    /// The header of `[measurement]`.
+    pub(super) header: Option<Span>,
     /// Whether the notes are those of an exported set, which already say what was assumed.
     pub(super) is_exported: bool,
 }
@@ -78,6 +83,9 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
     let is_disc = |shape: &str| shape == "disc";
     let planar = conditions.iter().any(|condition| is_disc(&condition.shape));
     let bed = bed(bed_table, planar, &mut unstated);
+    if bed.geometry == Geometry::Spatial {
+        bodies::check(root.reader, &conditions, &places);
+    }
     unstated.absent_if(baseline.is_none(), "model.baseline");
     root.finish();
 
@@ -101,7 +109,16 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
         runs: Vec::new(),
         notes,
     };
-    Some(Document { set, frame: head.frame, phase: head.phase, files, places, is_exported })
+    Some(Document {
+        set,
+        frame: head.frame,
+        phase: head.phase,
+        files,
+        places,
+        definitions: head.definitions,
+        header: head.header,
+        is_exported,
+    })
 }
 
 const MEASUREMENT_EXAMPLE: &str = "id = \"lab-2024-03\"\nkind = \"trajectory\"";
@@ -117,6 +134,8 @@ struct Head {
     stop: StopDefinition,
     last: FinalDefinition,
     notes: Option<Vec<String>>,
+    definitions: [Option<Span>; 2],
+    header: Option<Span>,
 }
 
 fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
@@ -139,6 +158,8 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
         _ => FinalDefinition::Resting,
     });
     let notes = table.texts("notes");
+    let definitions = ["stop_definition", "final"].map(|key| table.span_of(key));
+    let header = table.header();
     table.finish();
     unstated.absent_if(source.is_none(), "measurement.source");
     let stop = stop.or_else(|| {
@@ -153,7 +174,18 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
         unstated.assume("measurement.final = \"resting\"".to_owned());
         FinalDefinition::Resting
     });
-    Some(Head { id: id?.value, kind: kind?, source, frame, phase, stop: stop?, last, notes })
+    Some(Head {
+        id: id?.value,
+        kind: kind?,
+        source,
+        frame,
+        phase,
+        stop: stop?,
+        last,
+        notes,
+        definitions,
+        header,
+    })
 }
 
 fn instrument(table: TableReader<'_>, unstated: &mut Unstated) -> Instrument {

@@ -3,7 +3,7 @@
 use configs::{Diagnostic, Span, nearest, shorten};
 use engine::units::{self, Dimension};
 
-use super::columns::{ColumnNames, ColumnSpec, Content};
+use super::columns::{ColumnNames, ColumnSpec, Content, Renamed};
 use super::findings::Findings;
 use super::row::Row;
 use super::table::file_name;
@@ -14,6 +14,7 @@ pub(super) struct Column {
     pub(super) name: String,
     pub(super) unit: Option<String>,
     pub(super) sign: f64,
+    pub(super) zero: f64,
 }
 
 impl Column {
@@ -25,9 +26,15 @@ impl Column {
             (_, Some(unit)) => format!(" ({unit})"),
             (Content::Name | Content::Count, None) => String::new(),
         };
+        let zero = match spec.content {
+            Content::Quantity(dimension) if self.zero != 0.0 => {
+                format!(", counted from {}", units::format_si(self.zero, dimension))
+            }
+            _ => String::new(),
+        };
         match self.name == spec.key {
-            true => format!("{}{unit}", spec.key),
-            false => format!("{} = {}{unit}", spec.key, self.name),
+            true => format!("{}{unit}{zero}", spec.key),
+            false => format!("{} = {}{unit}{zero}", spec.key, self.name),
         }
     }
 }
@@ -89,12 +96,18 @@ fn find<'a>(
         Some(at) => Ok(Some(Column {
             at,
             name: name.to_owned(),
-            unit: renamed.and_then(|renamed| renamed.unit.clone()),
+            unit: renamed.or_else(|| shifted(spec, names)).and_then(|found| found.unit.clone()),
             sign: renamed.map_or(1.0, |renamed| renamed.sign),
+            zero: renamed.map_or(0.0, |renamed| renamed.zero),
         })),
         None if spec.required || renamed.is_some() => Err(name),
         None => Ok(None),
     }
+}
+
+/// The column that `spec` has zeros of: these are in its unit.
+fn shifted<'a>(spec: &ColumnSpec, names: &'a ColumnNames) -> Option<&'a Renamed> {
+    names.of(spec.key.strip_suffix("_zero")?)
 }
 
 fn note_ignored(row: &Row, found: &[String], columns: &[Option<Column>], findings: &mut Findings) {
@@ -124,13 +137,24 @@ fn missing(name: &str, spec: &ColumnSpec, found: &[String], row: &Row, findings:
         Content::Name | Content::Count => format!("{} = {{ name = \"{other}\" }}", spec.key),
     };
     let shown: Vec<String> = found.iter().take(20).map(|name| shorten(name)).collect();
+    let first = found.first().map(|name| name.to_lowercase()).unwrap_or_default();
+    let program = match () {
+        () if first.starts_with("mass") => {
+            "\nthis is a table of Tracker: remove its first line, the name of the mass"
+        }
+        () if found.iter().any(|name| name == "TRACK_ID") => {
+            "\nthis is a table of TrackMate: keep one line of names, without the rows of units below \
+             it; TRACK_ID is the run"
+        }
+        () => "",
+    };
     let span = findings.place(row, near);
     let label = if near.is_some() { "is it this one?" } else { "no column has this name" };
     findings.report(
         Diagnostic::error(format!("the column `{}` is missing", shorten(name)))
             .at(span, label)
             .help(format!(
-                "found: {}\nwhere it has another name, say it below [columns]: {entry}",
+                "found: {}\nwhere it has another name, say it below [columns]: {entry}{program}",
                 shown.join(", ")
             )),
     );

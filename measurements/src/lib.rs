@@ -4,12 +4,18 @@
 //! [`MeasurementSet::load`] reads a set, [`MeasurementSet::write`] writes one. `document` knows
 //! `measurement.toml` and `conditions` its conditions; `lines`, `dialect`, `columns`, `header`, `row`,
 //! `cells` and `table` read a table, `runs` and `trajectories` know the two tables there are; `checks`, `signs`
-//! and `magnitudes` look at the whole.
+//! and `magnitudes` look at the whole; `smooth`, `contact`, `zeros`, `stops` and `definitions` hold what
+//! it states against its frames, and `contradictions` says where they do not agree.
 
+mod agreement;
+mod bodies;
 mod cells;
 mod checks;
 mod columns;
 mod conditions;
+mod contact;
+mod contradictions;
+mod definitions;
 mod describe;
 mod dialect;
 mod document;
@@ -21,19 +27,29 @@ mod lines;
 mod load;
 mod magnitudes;
 mod order;
+mod reading;
 mod row;
 mod runs;
 mod signs;
+mod smooth;
+mod stops;
 mod table;
 mod template;
 mod trajectories;
 mod unstated;
 mod write;
+mod zeros;
 
+pub use agreement::Agreement;
+pub use contact::Contact;
+pub use contradictions::{Contradiction, ContradictionKind};
+pub use definitions::{Held, Miss, Outcome, Scalar, hold};
 pub use feasible::Feasible;
 pub use load::{Loaded, SetError};
+pub use reading::Reading;
 pub use template::TEMPLATE;
 pub use write::WriteError;
+pub use zeros::{Offset, RunContact, Severity, SpeedRatio, Zero, Zeros};
 
 /// Measurements of impacts under one or more conditions.
 #[derive(Clone, Debug, PartialEq)]

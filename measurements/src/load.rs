@@ -9,9 +9,11 @@ use configs::reader::{FileKind, Reader};
 use configs::{Color, Diagnostic, Sources, document as toml, limits, render_all, shorten};
 use thiserror::Error;
 
+use super::agreement::Agreement;
+use super::contradictions::{self, Contradiction, ContradictionKind};
 use super::document::{self, Document, FileName, Missing};
 use super::findings::Findings;
-use super::table::file_name;
+use super::table::{Format, file_name};
 use super::{MeasurementSet, checks, order, runs, trajectories};
 
 /// A set and what came with it.
@@ -27,11 +29,23 @@ pub struct Loaded {
     pub tables: Vec<String>,
     /// What its author should look at; it stands in [`MeasurementSet::notes`] too.
     pub warnings: Vec<Diagnostic>,
+    /// What the frames say of zeros, speeds and definitions.
+    pub agreement: Agreement,
+    /// Where the set contradicts itself beyond its noise: nothing should be fitted to it as it is.
+    pub contradictions: Vec<Contradiction>,
     /// The texts that diagnostics point into.
     pub sources: Sources,
 }
 
 impl Loaded {
+    /// The contradictions of these kinds as shown to the user.
+    #[must_use]
+    pub fn render_contradictions(&self, kinds: &[ContradictionKind], color: Color) -> String {
+        let all = self.contradictions.iter().filter(|one| kinds.contains(&one.kind));
+        let diagnostics: Vec<Diagnostic> = all.map(|one| one.diagnostic.clone()).collect();
+        render_all(&diagnostics, &self.sources, color)
+    }
+
     /// All warnings as shown to the user.
     #[must_use]
     pub fn render_warnings(&self, color: Color) -> String {
@@ -91,13 +105,17 @@ impl MeasurementSet {
             .chain(warnings)
             .for_each(|one| findings.note(one));
         let tables = read_tables(&mut set, &document, folder, &mut findings);
-        if findings.errors() == 0 {
-            checks::check(&set, &document, &mut findings);
-        }
         if findings.errors() > 0 {
             return Err(findings.into());
         }
         order::sort(&mut set.runs);
+        let contradictions = checks::check(&set, &document, &mut findings);
+        if findings.errors() > 0 {
+            return Err(findings.into());
+        }
+        let agreement = Agreement::of(&set, &document);
+        let contradictions =
+            contradictions::find(&set, &agreement, (&document, contradictions, &mut findings));
         set.notes = findings.notes;
         Ok(Loaded {
             set,
@@ -105,6 +123,8 @@ impl MeasurementSet {
             phase: document.phase,
             tables,
             warnings: findings.diagnostics,
+            agreement,
+            contradictions,
             sources: findings.sources,
         })
     }
@@ -158,6 +178,7 @@ fn read_tables(
         && let Some((name, file)) = open(named, folder, findings)
     {
         let columns = trajectories::read((&name, file), &mut set.runs, format, missing, findings);
+        shift(set, &read.zeros, format);
         tables.extend(columns.map(|columns| format!("{}: {columns}", file_name(&name))));
         if findings.errors() == 0 {
             settle_empty_runs(set, missing, findings);
@@ -168,6 +189,18 @@ fn read_tables(
         find_empty_conditions(set, document, findings);
     }
     tables
+}
+
+/// Counts the frames of every run from its own zeros.
+fn shift(set: &mut MeasurementSet, zeros: &[[f64; 2]], format: &Format) {
+    let sign = |key: &str| format.columns.of(key).map_or(1.0, |column| column.sign);
+    let (clock, depth) = (sign("t"), sign("z"));
+    for (run, [t, z]) in set.runs.iter_mut().zip(zeros) {
+        for frame in &mut run.frames {
+            frame.t -= clock * t;
+            frame.z -= depth * z;
+        }
+    }
 }
 
 /// A table of the set, and what messages call it.

@@ -4,13 +4,22 @@ use configs::Diagnostic;
 
 use super::checks::Start;
 use super::conditions::ConditionPlaces;
+use super::contradictions::{Contradiction, ContradictionKind};
 use super::findings::Findings;
+use super::smooth::greatest_velocity;
+use super::zeros::position;
 use super::{Condition, MeasurementSet, Run};
 
 /// Measured over stated impact speed beyond which a unit is wrong: no bed makes an intruder faster.
 const FASTEST: f64 = 5.0;
 /// The same downwards; a slow camera that sees the intruder brake stays above it.
 const SLOWEST: f64 = 0.02;
+/// The same where a path is seen from before contact on, in its greatest velocity: the velocity of a fall
+/// is known to a few per cent.
+const TWICE: f64 = 1.8;
+const HALF: f64 = 0.6;
+/// Fewest frames before contact that a path is seen from.
+const BEFORE: usize = 2;
 /// How many times its natural scale a depth, range or stopping time may be.
 const LARGEST: f64 = 10.0;
 /// How far from its rate the frames of a camera may be.
@@ -18,6 +27,7 @@ const RATE: f64 = 3.0;
 
 /// Factors between units of length that are taken for each other.
 const LENGTHS: &[(f64, &str)] = &[
+    (2.54, "×2.54 (cm for inches)"),
     (10.0, "×10 (mm for cm)"),
     (25.4, "×25.4 (mm for inches)"),
     (39.37, "×39.37 (inches for m)"),
@@ -30,32 +40,61 @@ const LENGTHS: &[(f64, &str)] = &[
 const TIMES: &[(f64, &str)] =
     &[(10.0, "×10"), (100.0, "×100"), (1e3, "×1000 (ms for s)"), (1e6, "×1e6 (µs for s)")];
 
-/// Warns of magnitudes that look like another unit.
-pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+/// Names magnitudes that look like another unit; a rate that does is warned of.
+pub(super) fn check(
+    set: &MeasurementSet,
+    places: &[ConditionPlaces],
+    findings: &mut Findings,
+) -> Vec<Contradiction> {
     // One wrong unit is told once.
-    if !check_speeds(set, places, findings) {
-        check_ways(set, places, findings);
-        check_rate(set, findings);
+    if let Some(speeds) = check_speeds(set, places) {
+        return vec![speeds];
     }
+    check_rate(set, findings);
+    check_ways(set, places)
 }
 
-/// Warns when the trajectories do not start with the stated speeds; whether it did.
-fn check_speeds(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) -> bool {
-    let ratio = |run: &Run| {
-        let (start, stated) = (Start::of(run)?, set.conditions[run.condition].speed);
-        let measured = libm::hypot(start.dx, start.dz) / start.dt;
-        (stated > 0.0).then_some((measured / stated, run.condition))
-    };
+/// The velocity of the readings over the stated one, and the condition, of the middle one of all runs that
+/// `of` gives it of.
+fn middle(set: &MeasurementSet, of: impl Fn(&Run) -> Option<f64>) -> Option<(f64, usize)> {
+    let ratio = |run: &Run| Some((of(run)?, run.condition));
     let mut ratios: Vec<(f64, usize)> = set.runs.iter().filter_map(ratio).collect();
     ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((ratio, condition)) = ratios.get(ratios.len() / 2).copied() else { return false };
-    if (SLOWEST..=FASTEST).contains(&ratio) {
-        return false;
-    }
+    ratios.get(ratios.len() / 2).copied()
+}
+
+/// Measured over stated velocity near first contact.
+fn at_start(set: &MeasurementSet, run: &Run) -> Option<f64> {
+    let (start, stated) = (Start::of(run)?, set.conditions[run.condition].speed);
+    let measured = libm::hypot(start.dx, start.dz) / start.dt;
+    (stated > 0.0).then_some(measured / stated)
+}
+
+/// Greatest measured over greatest possible downward velocity, where that is seen: a body may gain some
+/// before the bed brakes it, and no frame sees the speed of one that stops within a few of them.
+fn at_most(set: &MeasurementSet, run: &Run) -> Option<f64> {
+    let condition = &set.conditions[run.condition];
+    let stated = condition.speed * libm::sin(condition.angle_deg.to_radians());
+    let measured = greatest_velocity(&run.frames, position(set, run))?;
+    let gained = set.bed.gravity * condition.diameter;
+    let possible = (stated * stated + gained).sqrt();
+    let before = run.frames.iter().filter(|frame| frame.t < 0.0).count();
+    let ratio = if measured > possible { measured / possible } else { measured / stated };
+    (stated > 0.0 && (ratio > 1.0 || before >= BEFORE)).then_some(ratio)
+}
+
+/// Names trajectories that do not start with the stated speeds.
+fn check_speeds(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contradiction> {
+    let implausible = |ratio: f64, least: f64, most: f64| !(least..=most).contains(&ratio);
+    let start = middle(set, |run| at_start(set, run));
+    let found = start.filter(|(ratio, _)| implausible(*ratio, SLOWEST, FASTEST)).or_else(|| {
+        middle(set, |run| at_most(set, run)).filter(|(ratio, _)| implausible(*ratio, HALF, TWICE))
+    });
+    let (ratio, condition) = found?;
     let message = format!(
         "the trajectories start with {} the stated impact speed",
         match ratio > 1.0 {
-            true => format!("about {ratio:.0} times"),
+            true => format!("about {ratio:.*} times", usize::from(ratio < 5.0)),
             false => format!("a share of {ratio:.1e} of"),
         }
     );
@@ -65,15 +104,15 @@ fn check_speeds(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut
     };
     let help = format!("the {what} look like {factor}; [columns] gives the units of a table");
     let speed = places[condition].speed;
-    findings.warn(Diagnostic::warning(message).at(speed, "the stated speed").help(help));
-    true
+    let diagnostic = Diagnostic::error(message).at(speed, "the stated speed").help(help);
+    Some(Contradiction { kind: ContradictionKind::Speeds, diagnostic })
 }
 
-/// Warns of depths, ranges and stopping times that no impact at these speeds has.
-fn check_ways(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+/// Names depths, ranges and stopping times that no impact at these speeds has.
+fn check_ways(set: &MeasurementSet, places: &[ConditionPlaces]) -> Vec<Contradiction> {
     let gravity = set.bed.gravity;
     if gravity <= 0.0 {
-        return;
+        return Vec::new();
     }
     // A fall from as high as the speed needs, and a few diameters of resistance.
     let fall = |condition: &Condition| {
@@ -91,17 +130,17 @@ fn check_ways(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut F
         (RANGE, worst(set, widest, range)),
         (STOPPING_TIME, worst(set, |run| run.stop_time, time)),
     ];
-    for (observable, worst) in all {
-        let Some(Worst { value, scale, condition }) = worst else { continue };
+    let named = |(observable, worst): (Observable, Option<Worst>)| {
+        let Worst { value, scale, condition } = worst?;
         let Observable { name, unit, factors } = observable;
         // Typical values are a third to a fifth of the scale.
         let factor = nearest(4.0 * value / scale, factors);
-        findings.warn(
-            Diagnostic::warning(format!("a {name} of {value} {unit} is implausible"))
-                .at(places[condition].speed, "at this impact speed")
-                .help(format!("it looks like {factor}; [columns] gives the units of a table")),
-        );
-    }
+        let diagnostic = Diagnostic::error(format!("a {name} of {value} {unit} is implausible"))
+            .at(places[condition].speed, "at this impact speed")
+            .help(format!("it looks like {factor}; [columns] gives the units of a table"));
+        Some(Contradiction { kind: ContradictionKind::Scalars, diagnostic })
+    };
+    all.into_iter().filter_map(named).collect()
 }
 
 /// What is measured of a run, in words.

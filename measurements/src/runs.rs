@@ -24,11 +24,15 @@ const ORDER: usize = 3;
 const STOP_TIME: usize = 4;
 const FINAL_Z: usize = 5;
 const FINAL_X: usize = 6;
+const T_ZERO: usize = 7;
+const Z_ZERO: usize = 8;
 
 /// Runs, and what is understood of their table.
 pub(super) struct Runs {
     /// In the order of the file, without frames.
     pub(super) runs: Vec<Run>,
+    /// What the columns t and z read (SI) at first contact and at the surface, run by run.
+    pub(super) zeros: Vec<[f64; 2]>,
     /// The columns.
     pub(super) columns: String,
 }
@@ -46,7 +50,7 @@ pub(super) fn read(
     let index: BTreeMap<&str, usize> =
         conditions.iter().enumerate().map(|(index, one)| (one.id.as_str(), index)).collect();
     let mut lines = BTreeMap::<String, u64>::new();
-    let mut runs = Vec::new();
+    let (mut runs, mut zeros) = (Vec::new(), Vec::new());
     let mut marks = Vec::new();
     while table.next(&mut row, findings) {
         if runs.len() == MOST {
@@ -69,6 +73,7 @@ pub(super) fn read(
             Cell::Empty | Cell::Wrong => None,
         };
         let [stop_time, final_z, final_x] = [STOP_TIME, FINAL_Z, FINAL_X].map(&mut number);
+        let [t_zero, z_zero] = [T_ZERO, Z_ZERO].map(|key| number(key).unwrap_or(0.0));
         if let Some(first) = lines.get(&run) {
             let span = table.place(&row, RUN, findings);
             findings.report(
@@ -90,6 +95,7 @@ pub(super) fn read(
         lines.insert(run.clone(), row.line);
         let Some(condition) = condition else { continue };
         let frames = Vec::new();
+        zeros.push([t_zero, z_zero]);
         runs.push(Run { name: run, condition, repeat, order, stop_time, final_z, final_x, frames });
     }
     if lines.is_empty() && findings.errors() == 0 {
@@ -97,7 +103,7 @@ pub(super) fn read(
             .report(Diagnostic::error(format!("{} has no row below its header", file_name(name))));
     }
     tell_marks(&marks, name, missing, findings);
-    Some(Runs { runs, columns: table.describe() })
+    Some(Runs { runs, zeros, columns: table.describe() })
 }
 
 /// The index of the condition of a row; an unknown one is reported.

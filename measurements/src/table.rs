@@ -99,6 +99,17 @@ impl<R: BufRead> Table<R> {
                 return true;
             }
             let span = findings.place(row, None);
+            if closed && self.has_decimal_commas(row) {
+                findings.report(
+                    Diagnostic::error(format!(
+                        "{} cells found; the header has {}, and so it is in the rows below",
+                        row.width, self.width
+                    ))
+                    .at(span, "decimals after a comma, between columns that commas separate?")
+                    .help("save the table with semicolons or tabs between the columns"),
+                );
+                return false;
+            }
             findings.report(match closed {
                 false => Diagnostic::error("a quoted cell does not end on its line")
                     .at(span, "a quote stays open here"),
@@ -106,6 +117,20 @@ impl<R: BufRead> Table<R> {
             });
         }
         false
+    }
+
+    /// Whether this row and all that were looked at have more cells than the header, as decimal commas
+    /// between commas make them.
+    fn has_decimal_commas(&mut self, row: &Row) -> bool {
+        if self.dialect.delimiter != Delimiter::Comma || row.width <= self.width {
+            return false;
+        }
+        let mut other = Row::of(&row.table, row.delimiter);
+        let is_wider = |(_, text): &(u64, String)| {
+            other.text.clone_from(text);
+            other.split(&mut self.parser) && other.width > self.width
+        };
+        !self.ahead.is_empty() && self.ahead.iter().all(is_wider)
     }
 
     fn wrong_width(&self, found: usize, span: Span) -> Diagnostic {
@@ -136,7 +161,7 @@ impl<R: BufRead> Table<R> {
         let unit = column.unit.as_deref().map(|unit| (unit, dimension));
         match cells::number(row.cell(column.at), self.dialect.decimal, unit) {
             // A zero has no sign afterwards.
-            Ok(Cell::Value(value)) => Cell::Value(value * column.sign + 0.0),
+            Ok(Cell::Value(value)) => Cell::Value((value - column.zero) * column.sign + 0.0),
             Ok(cell) => cell,
             Err(what) => {
                 let span = self.place(row, key, findings);

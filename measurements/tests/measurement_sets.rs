@@ -54,7 +54,9 @@ fn message(case: &Case) -> Result<String, String> {
         Ok(loaded) => {
             let lines = loaded.tables.iter().chain(&loaded.set.notes);
             let lines: String = lines.map(|line| format!("{line}\n")).collect();
-            format!("accepted\n{lines}{}", show(&loaded.warnings, &loaded.sources))
+            let denied = loaded.contradictions.iter().map(|one| one.diagnostic.clone());
+            let all: Vec<Diagnostic> = denied.chain(loaded.warnings).collect();
+            format!("accepted\n{lines}{}", show(&all, &loaded.sources))
         }
     };
     Ok(text.replace(&format!("{}/", written.folder.display()), ""))

@@ -23,6 +23,16 @@ pub fn of_set(loaded: &Loaded) -> Result<String, ReportError> {
     let held_out = set.conditions.iter().filter(|one| one.role == Role::Holdout).count();
     let readings: usize = set.runs.iter().map(|run| run.frames.len()).sum();
     let notes: Vec<Part> = set.notes.iter().cloned().map(Part::Text).collect();
+    let contradictions = loaded
+        .contradictions
+        .iter()
+        .map(|one| match &one.diagnostic.help {
+            Some(help) => format!("{}; {help}", one.diagnostic.message),
+            None => one.diagnostic.message.clone(),
+        })
+        .map(Part::Text);
+    let agreement = Some(loaded.agreement.describe(set)).filter(|text| !text.is_empty());
+    let held = contradictions.chain(agreement.map(Part::Listing)).collect();
     let page = Page {
         title: set.id.clone(),
         kind: "measurement set",
@@ -38,6 +48,7 @@ pub fn of_set(loaded: &Loaded) -> Result<String, ReportError> {
         ],
         sections: [
             Section::new("What was read", vec![figure(&picture::measured(set)?, caption)]),
+            Section::new("Held against its own frames", held),
             Section::new("Notes", notes),
             Section::new("In words", vec![Part::Listing(loaded.describe())]),
         ]

@@ -17,7 +17,19 @@ fn a_shipped_set_is_described_by_its_folder_and_by_its_file() {
     assert_eq!(Call::new(["check"]).arg(set.join("measurement.toml")).done().stdout, text);
     let object = Call::new(["check", "--json"]).arg(&set).done().json();
     let keys: Vec<&String> = object.as_object().expect("an object").keys().collect();
-    let known = ["set", "valid", "conditions", "runs", "fit", "holdout", "notes", "warnings"];
+    let known = [
+        "set",
+        "valid",
+        "conditions",
+        "runs",
+        "fit",
+        "holdout",
+        "notes",
+        "warnings",
+        "zeros",
+        "scalars",
+        "contradictions",
+    ];
     assert_eq!(keys, known);
     assert_eq!(object["set"], "katsuragi-durian");
     assert_eq!(object["valid"], true);

@@ -6,6 +6,7 @@ mod check_sets;
 mod common;
 mod compare_runs;
 mod conditions;
+mod contradictions;
 mod csv;
 #[cfg(unix)]
 mod elsewhere;
@@ -24,6 +25,7 @@ mod signals;
 mod space;
 mod summary;
 mod sweeps;
+mod tables;
 mod threads;
 mod view;
 mod viewers;

@@ -29,6 +29,9 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// Whole symbols come before prefixed ones, so `min` is the minute.
 const ATOMS: &[Atom] = &[
     atom("m", Dimension::LENGTH, 1.0, 0, "numck"),
+    atom("in", Dimension::LENGTH, 0.0254, 0, ""),
+    atom("inch", Dimension::LENGTH, 0.0254, 0, ""),
+    atom("cc", Dimension::VOLUME, 1.0, -6, ""),
     atom("g", Dimension::MASS, 1.0, -3, "umk"),
     atom("t", Dimension::MASS, 1.0, 3, ""),
     atom("s", Dimension::TIME, 1.0, 0, "num"),
@@ -43,6 +46,9 @@ const ATOMS: &[Atom] = &[
     atom("Pa", Dimension::PRESSURE, 1.0, 0, "kMG"),
     atom("J", Dimension::ENERGY, 1.0, 0, "numk"),
 ];
+
+/// Names of a length that depends on a camera.
+const PIXELS: [&str; 4] = ["px", "pixel", "pixels", "pix"];
 
 const PREFIXES: &[(char, char, i32)] = &[
     ('n', 'n', -9),
@@ -74,6 +80,8 @@ pub struct UnitError {
 pub enum UnitFault {
     /// It does not begin with a number.
     NoNumber,
+    /// Its decimals stand behind a comma.
+    DecimalComma,
     /// There is no unit after the number.
     NoUnit,
     /// This part of the unit is not known.
@@ -91,6 +99,7 @@ impl UnitError {
         let found = &self.found;
         match &self.fault {
             UnitFault::NoNumber => format!("\"{found}\" does not begin with a number"),
+            UnitFault::DecimalComma => format!("\"{found}\" has a decimal comma"),
             UnitFault::NoUnit => format!("\"{found}\" has no unit"),
             UnitFault::UnknownUnit(unit) => {
                 format!("the unit `{unit}` in \"{found}\" is not known")
@@ -103,8 +112,15 @@ impl UnitError {
     /// What to write instead, as a clause.
     #[must_use]
     pub fn advice(&self) -> String {
-        match self.fault {
+        match &self.fault {
             UnitFault::OutOfRange => "in SI units, 1e-307 to 1e308 is possible".to_owned(),
+            UnitFault::DecimalComma => {
+                format!("write \"{}\", with a decimal point", self.found.replacen(',', ".", 1))
+            }
+            UnitFault::UnknownUnit(unit) if PIXELS.contains(&unit.as_str()) => {
+                "a pixel is as long as the scale of the camera says: multiply by that, and write mm or m"
+                    .to_owned()
+            }
             _ => format!("write {}", self.wanted.examples(&self.number)),
         }
     }
@@ -134,6 +150,10 @@ pub fn parse(text: &str, wanted: Dimension) -> Result<f64, UnitError> {
         return Err(error(UnitFault::NoNumber));
     }
     let unit_text = unit_text.trim();
+    let comma = unit_text.strip_prefix(',').unwrap_or_default();
+    if comma.starts_with(|c: char| c.is_ascii_digit()) && !comma.contains(',') {
+        return Err(error(UnitFault::DecimalComma));
+    }
     if unit_text.is_empty() && wanted != Dimension::NONE {
         return Err(error(UnitFault::NoUnit));
     }

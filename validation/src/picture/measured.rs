@@ -43,7 +43,12 @@ fn paths(set: &MeasurementSet) -> Result<String, PictureError> {
     let all = set.conditions.len();
     let signs = [
         (Sign::Line(colour(0)), format!("depth, a line per run; {n} of {all} conditions")),
-        (Sign::Dashed(colour(1)), "a fall at the stated speed: runs start along it".to_owned()),
+        (
+            Sign::Dashed(colour(1)),
+            "free fall to first contact at the stated speed, and straight on: every run follows it \
+             before t = 0"
+                .to_owned(),
+        ),
     ];
     let height = PANEL.1 * rows as u32;
     svg((PANEL.0 * COLUMNS as u32, height + legend::height(signs.len())), |area| {
@@ -51,13 +56,13 @@ fn paths(set: &MeasurementSet) -> Result<String, PictureError> {
         let panels = charts.split_evenly((rows, COLUMNS));
         for (at, (condition, panel)) in set.conditions.iter().zip(&panels).take(n).enumerate() {
             let own: Vec<&Run> = set.runs.iter().filter(|run| run.condition == at).collect();
-            draw_paths(panel, condition, &own)?;
+            draw_paths(panel, condition, set.bed.gravity, &own)?;
         }
         legend::draw(&below, &signs)
     })
 }
 
-fn draw_paths(area: &Area<'_>, condition: &Condition, runs: &[&Run]) -> Drawn {
+fn draw_paths(area: &Area<'_>, condition: &Condition, gravity: f64, runs: &[&Run]) -> Drawn {
     let Condition { id, speed, angle_deg, .. } = condition;
     let title = format!("{id}: {speed} m/s, {angle_deg}\u{b0}, {} runs", runs.len());
     area.draw(&Text::new(fitting(&title, PANEL.0 - 60), (52, 5), letters()))?;
@@ -84,8 +89,9 @@ fn draw_paths(area: &Area<'_>, condition: &Condition, runs: &[&Run]) -> Drawn {
         .bold_line_style(GREY)
         .draw()?;
     let sinking = speed * libm::sin(angle_deg.to_radians());
-    let fall = [first, EARLY * last].map(|t| (t, sinking * t));
-    chart.draw_series(DashedLineSeries::new(fall, 5, 4, colour(1).stroke_width(2)))?;
+    let frame = [padded(first, last), down];
+    let line = fall(sinking, gravity, [first, EARLY * last], &frame);
+    chart.draw_series(DashedLineSeries::new(line, 5, 4, colour(1).stroke_width(2)))?;
     for run in runs {
         let line = run.frames.iter().map(|frame| (1e3 * frame.t, 1e3 * frame.z));
         chart.draw_series(LineSeries::new(line.clone(), colour(0).stroke_width(1)))?;
@@ -96,6 +102,53 @@ fn draw_paths(area: &Area<'_>, condition: &Condition, runs: &[&Run]) -> Drawn {
         )?;
     }
     Ok(())
+}
+
+/// Points of the free fall before contact that are joined by straight lines.
+const FALL_POINTS: usize = 24;
+
+/// Free fall before contact at `speed` (m/s) downwards, and straight on behind it, as times (ms) and depths (mm)
+/// between the times `from` and `to`, cut off where it leaves the frame of times and depths.
+fn fall(
+    speed: f64,
+    gravity: f64,
+    [from, to]: [f64; 2],
+    [times, depths]: &[std::ops::Range<f64>; 2],
+) -> Vec<(f64, f64)> {
+    let before = (0..FALL_POINTS).map(|k| from * (1.0 - k as f64 / FALL_POINTS as f64));
+    // In ms and mm, 1 m/s is 1 and 1 m/s² is 1/1000.
+    let depth = |t: f64| speed * t + 0.5e-3 * gravity * t.min(0.0).powi(2);
+    let points: Vec<(f64, f64)> = before.chain([0.0, to]).map(|time| (time, depth(time))).collect();
+    let mut line: Vec<(f64, f64)> = Vec::new();
+    for (a, b) in points.iter().zip(&points[1..]) {
+        let Some((a, b)) = clipped((*a, *b), times, depths) else { continue };
+        if line.last() != Some(&a) {
+            line.push(a);
+        }
+        line.push(b);
+    }
+    line
+}
+
+/// The part of a stretch that lies within both ranges.
+fn clipped(
+    (a, b): ((f64, f64), (f64, f64)),
+    times: &std::ops::Range<f64>,
+    depths: &std::ops::Range<f64>,
+) -> Option<((f64, f64), (f64, f64))> {
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    for (start, way, range) in [(a.0, b.0 - a.0, times), (a.1, b.1 - a.1, depths)] {
+        if way == 0.0 {
+            if !(range.start..=range.end).contains(&start) {
+                return None;
+            }
+            continue;
+        }
+        let [one, other] = [range.start, range.end].map(|edge| (edge - start) / way);
+        (from, to) = (from.max(one.min(other)), to.min(one.max(other)));
+    }
+    let at = |share: f64| (a.0 + share * (b.0 - a.0), a.1 + share * (b.1 - a.1));
+    (from < to).then(|| (at(from), at(to)))
 }
 
 fn scalars(set: &MeasurementSet) -> Result<String, PictureError> {
@@ -152,4 +205,83 @@ fn draw_scalar(
         chart.draw_series([Hover::at(place, text)])?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_sets::{condition, set, trajectory_run};
+
+    /// Numbers after `key="` in the text of an element.
+    fn number(element: &str, key: &str) -> Option<f64> {
+        let rest = element.split(&format!(" {key}=\"")).nth(1)?;
+        rest.split('"').next()?.parse().ok()
+    }
+
+    /// Points of the dashed line, and places of the readings in their order (pixels).
+    fn drawn(speed: f64, path: impl Fn(f64) -> f64) -> (Vec<(f64, f64)>, Vec<(f64, f64)>) {
+        let run = trajectory_run(0, |t| (path(t), 0.0));
+        let set = set(Kind::Trajectory, vec![condition(speed, 90.0)], vec![run]);
+        let svg = measured(&set).expect("a drawing");
+        let red = colour(1).to_backend_color().rgb;
+        let red = format!("#{:02X}{:02X}{:02X}", red.0, red.1, red.2);
+        let ends = |line: &str| {
+            let points = line.split(" points=\"").nth(1)?.split('"').next()?;
+            let point = |text: &str| {
+                let (x, y) = text.split_once(',')?;
+                Some((x.parse().ok()?, y.parse().ok()?))
+            };
+            Some(points.split_whitespace().filter_map(point).collect::<Vec<(f64, f64)>>())
+        };
+        let panel = svg.lines().filter(|line| line.contains("polyline") && line.contains(&red));
+        let points = panel.filter_map(ends).flatten();
+        // Below the panels, the legend has a stretch of it too.
+        let line: Vec<(f64, f64)> = points.filter(|point| point.1 < f64::from(PANEL.1)).collect();
+        let circles = svg.split("<circle").skip(1);
+        let readings = circles.filter_map(|one| Some((number(one, "cx")?, number(one, "cy")?)));
+        (line, readings.collect())
+    }
+
+    #[test]
+    fn the_line_of_the_fall_is_bent_before_contact_and_cut_off_where_it_leaves_the_frame() {
+        let frame = [-60.0..550.0, -70.0..60.0];
+        let line = fall(2.8, 9.81, [-50.0, 150.0], &frame);
+        // At 2.8 m/s the line leaves 60 mm after 21.4 ms, far from the end of a long clip.
+        let last = line[line.len() - 1];
+        assert!((last.0 - 60.0 / 2.8).abs() < 1e-9 && (last.1 - 60.0).abs() < 1e-9, "{last:?}");
+        for (t, z) in &line {
+            let free = 2.8 * t + 0.5e-3 * 9.81 * t.min(0.0).powi(2);
+            // Chords of two milliseconds lie 0.005 mm beside a parabola of that curvature.
+            assert!((z - free).abs() < 0.01, "{t} {z}");
+            assert!(frame[0].contains(t) && (*z <= 60.0 + 1e-9 && *z >= -70.0), "{t} {z}");
+        }
+        // Before the cut at the upper edge nothing is drawn.
+        assert!(line[0].1 <= -69.0, "{:?}", line[0]);
+    }
+
+    #[test]
+    fn the_line_as_drawn_has_the_slope_of_the_readings_at_contact() {
+        // The clip goes on for half a second after a stop within 60 mm.
+        let path = |t: f64| match t < 0.0 {
+            true => 2.8 * t + 0.5 * 9.81 * t * t,
+            false => 0.06 * (1.0 - libm::exp(-2.8 * t / 0.06)),
+        };
+        let (line, readings) = drawn(2.8, path);
+        assert!(line.len() > 4 && readings.len() == 275, "{} {}", line.len(), readings.len());
+        // Readings 25 frames before contact and at it: the line of the fall joins them, in pixels.
+        let [before, contact] = [readings[0], readings[25]];
+        for (x, y) in line.iter().filter(|point| point.0 <= contact.0) {
+            let share = (x - before.0) / (contact.0 - before.0);
+            // Between them the parabola bends by g T²/8 = 3 mm of 132 mm, less than 5 of 170 pixels.
+            let chord = before.1 + share * (contact.1 - before.1);
+            assert!((y - chord).abs() < 6.0, "{x} {y}, chord {chord}");
+        }
+        let beyond: Vec<_> = line.iter().filter(|point| point.0 > contact.0 + 1.0).collect();
+        let last = beyond[beyond.len() - 1];
+        let drawn = (last.1 - contact.1) / (last.0 - contact.0);
+        let ms = (contact.0 - before.0) / 50.0;
+        let mm = (contact.1 - before.1) / (2.8 * 50.0 - 0.5e-3 * 9.81 * 2500.0);
+        // 2.8 mm in a millisecond; a pixel is a third of that.
+        assert!((drawn / (2.8 * mm / ms) - 1.0).abs() < 0.15, "{drawn}, {}", 2.8 * mm / ms);
+    }
 }

@@ -1,12 +1,13 @@
 //! The tables: one row per cell or number, keys with their units.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::WhereItFails;
 use crate::rounding::{six_digits, six_digits_or_null};
 
 #[derive(Serialize)]
 struct CellRow<'a> {
+    #[serde(serialize_with = "inert")]
     condition: &'a str,
     #[serde(serialize_with = "six_digits")]
     speed_m_per_s: f64,
@@ -24,11 +25,13 @@ struct CellRow<'a> {
     #[serde(serialize_with = "six_digits")]
     se: f64,
     significant: bool,
+    #[serde(serialize_with = "inert")]
     model: &'a str,
 }
 
 #[derive(Serialize)]
 struct ResidualRow<'a> {
+    #[serde(serialize_with = "inert")]
     condition: &'a str,
     observable: &'static str,
     #[serde(serialize_with = "six_digits_or_null")]
@@ -39,11 +42,13 @@ struct ResidualRow<'a> {
     predicted: f64,
     #[serde(serialize_with = "six_digits")]
     standard_error: f64,
+    #[serde(serialize_with = "inert")]
     model: &'a str,
 }
 
 #[derive(Serialize)]
 struct SignatureRow<'a> {
+    #[serde(serialize_with = "inert")]
     condition: &'a str,
     observable: &'static str,
     #[serde(serialize_with = "six_digits_or_null")]
@@ -52,6 +57,7 @@ struct SignatureRow<'a> {
     residual: f64,
     #[serde(serialize_with = "six_digits")]
     standard_error: f64,
+    #[serde(serialize_with = "inert")]
     effect: &'a str,
     #[serde(serialize_with = "six_digits")]
     signature: f64,
@@ -123,4 +129,33 @@ fn table(rows: impl Iterator<Item = impl Serialize>) -> Result<String, csv::Erro
     let bytes = table.into_inner().map_err(|error| csv::Error::from(error.into_error()))?;
     // Every field was a string or a number.
     Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// A name behind an apostrophe where a spreadsheet would run it as a formula.
+fn inert<S: Serializer>(name: &&str, serializer: S) -> Result<S::Ok, S::Error> {
+    let runs = name.starts_with(['=', '+', '-', '@', '\t', '\r']) && name.parse::<f64>().is_err();
+    match runs {
+        true => serializer.serialize_str(&format!("'{name}")),
+        false => serializer.serialize_str(name),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Serialize)]
+    struct Named<'a> {
+        #[serde(serialize_with = "inert")]
+        name: &'a str,
+    }
+
+    #[test]
+    fn names_that_a_spreadsheet_would_run_stand_behind_an_apostrophe() {
+        let names = ["=HYPERLINK(\"http://x\")", "@a", "-1+2", "-1.5", "c01"];
+        let written = table(names.iter().map(|name| Named { name })).expect("a table");
+        let lines: Vec<&str> = written.lines().collect();
+        let wanted = ["name", "\"'=HYPERLINK(\"\"http://x\"\")\"", "'@a", "'-1+2", "-1.5", "c01"];
+        assert_eq!(lines, wanted);
+    }
 }

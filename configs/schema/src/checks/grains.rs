@@ -418,6 +418,25 @@ impl GrainChecks<'_> {
         let contents = settle.grains.iter().map(|kind| kind.count as f64 * kind.content(space));
         let base = self.grains.medium.container.without_layers().base_area(space);
         let implied = contents.sum::<f64>() / (base * height);
+        if implied > 1.0 {
+            let most = settle.grains.iter().enumerate().max_by_key(|(_, kind)| kind.count);
+            let (at, count) = most.map_or((0, 0), |(at, kind)| (at, kind.count));
+            let places = &self.common.places;
+            let share = fraction / implied * count as f64;
+            self.common.reader.report(
+                Diagnostic::error(format!(
+                    "the grains do not fit into the bed: its height would mean a packing fraction of \
+                     {implied:.3}"
+                ))
+                .at(places.grains.get(at).and_then(|grain| grain.count), "so many grains")
+                .with(places.target_height, "the height that they are to fill")
+                .help(format!(
+                    "about {share:.0} of them would fill it to {fraction}; or is the box wider, or \
+                     the bed higher?"
+                )),
+            );
+            return;
+        }
         if (implied / fraction - 1.0).abs() > 0.03 {
             self.common.reader.report(
                 Diagnostic::warning("the two targets of the bed contradict each other")

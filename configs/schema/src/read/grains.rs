@@ -7,7 +7,7 @@ use super::bed::bed;
 use super::container::container;
 use super::foreign::Foreign;
 use super::{
-    CommonTables, DataFolder, IMPACT_EXAMPLE, INTRUDER_EXAMPLE, KINDS, Places, energy, impact, laws,
+    CommonTables, DataFolder, IMPACT_EXAMPLE, KINDS, Places, energy, impact, intruder_example, laws,
 };
 use crate::limits;
 use crate::model::{
@@ -51,7 +51,8 @@ pub(super) fn model(
     );
     let tables = root.tables("effect", limits::EFFECTS);
     let effects = laws::effects_of_run(tables, space, contact_law.as_ref());
-    let intruder = impact::in_grains(root.table("intruder", Some(INTRUDER_EXAMPLE)), space, places);
+    let intruder =
+        impact::in_grains(root.table("intruder", Some(intruder_example(space))), space, places);
     let impact_table = root.table("impact", Some(IMPACT_EXAMPLE));
     let impact = impact::impact_on_grains(&impact_table, space, places);
     let start = impact::start_positions(&impact_table, (space, container.as_ref()), places);

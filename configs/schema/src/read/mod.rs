@@ -1,5 +1,6 @@
 //! From tables to a [`Model`]: one function per table, in the order of the resolved text.
 
+use engine::grains::Space;
 use engine::params::ParamSpec;
 
 use crate::diagnostics::{Diagnostic, Span};
@@ -91,7 +92,15 @@ struct CommonTables<'a> {
 const RUN_EXAMPLE: &str =
     "name = \"my-run\"\nduration = \"0.6 s\"\ntime_step = \"10 us\"\nseed = 1";
 const MEDIUM_EXAMPLE: &str = "kind = \"grains\"\ndimension = 2\ngravity = \"9.81 m/s^2\"";
-const INTRUDER_EXAMPLE: &str = "shape = \"disc\"\ndiameter = \"4 cm\"\nmass = \"30 g\"";
+
+/// An intruder for a bed of this space.
+fn intruder_example(space: Space) -> &'static str {
+    match space {
+        Space::Planar => "shape = \"disc\"\ndiameter = \"4 cm\"\nmass = \"30 g\"",
+        Space::Spatial => "shape = \"sphere\"\ndiameter = \"25.4 mm\"\nmass = \"67 g\"",
+    }
+}
+
 const IMPACT_EXAMPLE: &str = "speed = \"2 m/s\"\nangle = \"90 deg\"";
 
 fn is_resistive(table: &TableReader<'_>) -> bool {

@@ -9,7 +9,7 @@ use super::fit::free;
 use super::foreign::Foreign;
 use super::laws::given_twice;
 use super::own_effect::{EXPRESSION, Purpose, own_effect};
-use super::{CommonTables, IMPACT_EXAMPLE, INTRUDER_EXAMPLE, KINDS, Places, energy, impact};
+use super::{CommonTables, IMPACT_EXAMPLE, KINDS, Places, energy, impact, intruder_example};
 use crate::diagnostics::{Diagnostic, Span, nearest, shorten};
 use crate::limits;
 use crate::model::{
@@ -43,7 +43,8 @@ pub(super) fn model(
     let candidates =
         space.and_then(|space| own_candidates(candidates, space, effects.as_deref(), places));
     let free = free(root.table("fit", None), resistance.as_ref(), effects.as_deref());
-    let intruder_table = root.table("intruder", Some(INTRUDER_EXAMPLE));
+    let example = intruder_example(space.unwrap_or(Space::Spatial));
+    let intruder_table = root.table("intruder", Some(example));
     let intruder = space.and_then(|space| impact::in_resistance(intruder_table, space, places));
     let impact_table = root.table("impact", Some(IMPACT_EXAMPLE));
     foreign.keys(&impact_table, "impact", &["x", "y", "position", "x_range", "attitude"]);

@@ -9,6 +9,9 @@ use crate::document::{Node, Value};
 use crate::limits;
 use crate::resolved::quoted;
 
+/// Speed of an impact (m/s) in examples: ranges reach to far larger ones.
+const USUAL_SPEED: f64 = 2.0;
+
 impl TableReader<'_> {
     /// A number or quantity as its specification says.
     pub fn number(&self, spec: &ParamSpec) -> Option<Found<f64>> {
@@ -40,6 +43,37 @@ impl TableReader<'_> {
         match self.has(spec.key) {
             true => self.number(spec).map(Some),
             false => Some(None),
+        }
+    }
+
+    /// A number in `unit`, or a string with a unit of its own, in SI; the outer `None` is an error that was
+    /// reported.
+    pub fn number_in(
+        &self,
+        key: &'static str,
+        unit: &str,
+        dimension: Dimension,
+    ) -> Option<Option<Found<f64>>> {
+        let Some(entry) = self.entry(key) else { return Some(None) };
+        let text = match &entry.node.value {
+            Value::Float(number) => format!("{number:?} {unit}"),
+            Value::Integer(number) => format!("{number} {unit}"),
+            Value::Text(text) => text.clone(),
+            _ => {
+                self.wrong_kind(entry, "a number", &quoted(&format!("12.0 {unit}")));
+                return None;
+            }
+        };
+        match units::parse(&text, dimension) {
+            Ok(value) => Some(Some(Found { value, span: Some(entry.node.span) })),
+            Err(error) => {
+                self.reader.report(
+                    Diagnostic::error(format!("`{key}`: {}", error.reason()))
+                        .at(entry.node.span, format!("{} is expected", dimension.name()))
+                        .help(format!("a bare number is in {unit}; or {}", error.advice())),
+                );
+                None
+            }
         }
     }
 
@@ -166,7 +200,9 @@ impl TableReader<'_> {
     /// Something plausible to write for a parameter.
     pub(super) fn example(&self, spec: &ParamSpec) -> String {
         let Range { min, max, .. } = spec.plausible;
+        let usual = spec.dimension == Dimension::SPEED && spec.plausible.contains(USUAL_SPEED);
         let middle = match min > 0.0 && max.is_finite() {
+            _ if usual => USUAL_SPEED,
             true => (min * max).sqrt(),
             false if max < f64::MAX => max / 5.0,
             false => 1.0,

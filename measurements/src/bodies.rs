@@ -1,0 +1,88 @@
+//! Sizes and masses of intruders that no body has.
+
+use std::f64::consts::PI;
+
+use configs::Diagnostic;
+use configs::reader::Reader;
+
+use super::Condition;
+use super::conditions::ConditionPlaces;
+
+/// Least and greatest mean density of a body (kg/m³): below the first it is lighter than any foam, above the
+/// second heavier than any metal.
+const DENSITY: (f64, f64) = (5.0, 3e4);
+
+/// Densities (kg/m³) of which intruders are made.
+const USUAL: (f64, f64) = (100.0, 2.3e4);
+
+/// Factors of units that are taken for metres and kilograms: diameter, mass, and what they are called.
+const UNITS: [(f64, f64, &str); 7] = [
+    (1e-3, 1.0, "is the diameter in mm?"),
+    (1e-2, 1.0, "is the diameter in cm?"),
+    (0.0254, 1.0, "is the diameter in inches?"),
+    (1.0, 1e-3, "is the mass in g?"),
+    (1e-3, 1e-3, "is the diameter in mm, and the mass in g?"),
+    (1e-2, 1e-3, "is the diameter in cm, and the mass in g?"),
+    (1.0, 1e-6, "is the mass in mg?"),
+];
+
+/// Refuses conditions whose intruders would be lighter or heavier than any body.
+pub(super) fn check(reader: &Reader<'_>, conditions: &[Condition], places: &[ConditionPlaces]) {
+    for (condition, places) in conditions.iter().zip(places) {
+        one(reader, condition, places);
+    }
+}
+
+fn one(reader: &Reader<'_>, condition: &Condition, places: &ConditionPlaces) {
+    let density = |size: f64, mass: f64| {
+        // Height and diameter are likely in the same unit.
+        volume(condition).map(|volume| mass * condition.mass / (volume * size.powi(3)))
+    };
+    let Some(found) = density(1.0, 1.0) else { return };
+    if (DENSITY.0..=DENSITY.1).contains(&found) {
+        return;
+    }
+    let likely = UNITS.iter().find(|(size, mass, _)| {
+        density(*size, *mass).is_some_and(|there| (USUAL.0..=USUAL.1).contains(&there))
+    });
+    let Condition { diameter, mass, shape, .. } = condition;
+    let help = match likely {
+        Some((size, grams, question)) => {
+            let mut lines = Vec::new();
+            if *size != 1.0 {
+                lines.push(format!("diameter = {}", significant(size * diameter)));
+            }
+            if *grams != 1.0 {
+                lines.push(format!("mass = {}", significant(grams * mass)));
+            }
+            format!("{question} then write {}", lines.join(" and "))
+        }
+        None => "a diameter is in metres, a mass in kilograms".to_owned(),
+    };
+    reader.report(
+        Diagnostic::error(format!(
+            "a {shape} of {diameter} m and {mass} kg has a density of {found:.2e} kg/m^3, as no body has"
+        ))
+        .at(places.diameter, "in metres")
+        .with(places.mass, "in kilograms")
+        .help(help),
+    );
+}
+
+/// A number as it is written, without the noise of a multiplication.
+fn significant(value: f64) -> f64 {
+    format!("{value:.9e}").parse().unwrap_or(value)
+}
+
+/// (m³); `None` where the shape or the set does not say it.
+fn volume(condition: &Condition) -> Option<f64> {
+    let Condition { diameter, height, .. } = condition;
+    let base = PI / 4.0 * diameter * diameter;
+    match condition.shape.as_str() {
+        "sphere" => Some(base * diameter / 1.5),
+        "hemisphere" => Some(base * diameter / 3.0),
+        "cylinder" => Some(base * (*height)?),
+        "cone" => Some(base * (*height)? / 3.0),
+        _ => None,
+    }
+}

@@ -1,0 +1,316 @@
+//! First contact as the frames of a run show it: free fall before, departure from it after.
+//!
+//! Around first contact a path is `a + b t + c t²/2 − k (t − t₀)₊ᵖ`: free fall at `c ≈ g`, then a resistance that
+//! grows with the depth. `p` follows from the shape of the tip (a sphere presents an area ∝ z, so that the
+//! path departs with the third power of time), and is not known exactly. So the fit is made for all
+//! `t₀` and several `p`, and what is said of the contact is the mean over these fits, each with the
+//! weight of its misfit; its error holds the spread between them. Nothing of a model of the bed is needed.
+
+use nalgebra::{Matrix4, Vector4};
+
+use super::reading::Reading;
+use super::smooth::{blocks, median_step, slope, velocity_window};
+use super::{Condition, Frame, Run};
+
+/// What the frames of a run say of its first contact, on the clock and the scale of the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// When the path departs from free fall (s).
+    pub time: Reading,
+    /// The earliest and the latest time (s) of contact that fit; infinite where the frames before or behind
+    /// it are missing.
+    pub between: [f64; 2],
+    /// Depth (m) that free fall has at time zero, where the frames reach that far.
+    pub depth_at_zero: Option<Reading>,
+    /// Depth (m) that free fall has at `time`.
+    pub depth: Reading,
+    /// Downward velocity (m/s) at `time`.
+    pub sinking: Reading,
+    /// Forward velocity (m/s) at `time`.
+    pub forward: Reading,
+    /// Time of the first frame near the contact (s).
+    pub first: f64,
+    /// Time from frame to frame (s).
+    pub step: f64,
+}
+
+impl Contact {
+    /// What a clock and a depth of this run alone would have to be counted from (s, m): the surface is taken
+    /// to be right where a clock alone explains what is seen.
+    #[must_use]
+    pub fn own_zeros(&self) -> (f64, f64) {
+        let [earliest, latest] = self.between;
+        let clock = self.depth_at_zero.map(|depth| -depth.value / self.sinking.value);
+        match clock.filter(|t| (earliest - self.step..=latest + self.step).contains(t)) {
+            Some(time) => (time, 0.0),
+            None => (self.time.value, self.depth.value),
+        }
+    }
+}
+
+/// Share of its greatest velocity above which a path is near its contact.
+const NEAR: f64 = 0.7;
+
+/// Fewest frames near the contact that a path can be read from.
+const FEWEST: usize = 5;
+
+/// Most frames, or means of neighbouring ones, that are fitted to.
+const MOST: usize = 48;
+
+/// Places of the contact that are tried between two frames.
+const BETWEEN_FRAMES: usize = 4;
+
+/// How well the acceleration before contact is known, relative to gravity: guides and air take some of it.
+const ACCELERATION: f64 = 0.3;
+
+/// Frames that the first velocity is taken over.
+const EARLY: usize = 4;
+
+/// Squared distance, in standard errors, up to which a fit is possible.
+const POSSIBLE: f64 = 16.0;
+
+/// The contact of `run` under `condition`, with readings that are good to `sigma` (m), the depth of free
+/// fall at the time `zero` (s) of the table; `None` where the frames do not show it, or the lowest point
+/// of the intruder is no mass that falls freely.
+#[must_use]
+pub(super) fn read(
+    run: &Run,
+    condition: &Condition,
+    (gravity, sigma): (f64, f64),
+    zero: f64,
+) -> Option<Contact> {
+    let power = power(condition)?;
+    let all = velocity_window(&run.frames, sigma, NEAR)?;
+    if all.len() < FEWEST {
+        return coarse(&run.frames, sigma, (condition, gravity, zero));
+    }
+    let step = (all[all.len() - 1].t - all[0].t) / (all.len() - 1) as f64;
+    let (frames, sigma) = blocks(all, MOST, sigma);
+    let fits = Fits::of(&frames, (gravity, sigma), power);
+    let time = fits.mean(|fit| (fit.contact, 0.0));
+    let reaches_zero = frames[0].t <= zero + 1.5 * step && zero <= frames[frames.len() - 1].t;
+    let is_whole = all[0].t <= run.frames[0].t;
+    // Behind the contact the bed brakes the forward motion too.
+    let before = frames.iter().filter(|frame| frame.t <= time.value + step).count();
+    let before = &frames[..before.clamp(3, frames.len())];
+    let forward = slope(before.iter().map(|frame| (frame.t, frame.x)), sigma);
+    Some(Contact {
+        time,
+        between: fits.between(),
+        depth_at_zero: match reaches_zero {
+            true => Some(fits.mean(|fit| fits.free(fit, zero))),
+            false if is_whole => back_to_zero(all, condition, gravity, zero),
+            false => None,
+        },
+        depth: fits.mean(|fit| fits.free(fit, fit.contact)),
+        sinking: fits.mean(|fit| fits.velocity(fit, fit.contact)),
+        forward,
+        first: all[0].t,
+        step,
+    })
+}
+
+/// Of few frames: the depth at `zero` alone, on the chord beside it.
+fn coarse(
+    frames: &[Frame],
+    sigma: f64,
+    (condition, gravity, zero): (&Condition, f64, f64),
+) -> Option<Contact> {
+    let distance = |frame: &Frame| (frame.t - zero).abs();
+    let near =
+        (0..frames.len()).min_by(|a, b| distance(&frames[*a]).total_cmp(&distance(&frames[*b])))?;
+    let chord = |from: usize| {
+        let [a, b] = [frames.get(from)?, frames.get(from + 1)?];
+        Some((b.z - a.z) / (b.t - a.t))
+    };
+    let at = frames[near];
+    let (velocity, next) = (chord(near).or_else(|| chord(near.checked_sub(1)?))?, chord(near + 1));
+    let step = median_step(frames)?;
+    let change = next.map_or(velocity, |next| velocity - next).abs();
+    let depth = match distance(&at) <= 1.5 * step {
+        true => Reading {
+            value: at.z - velocity * (at.t - zero),
+            se: libm::hypot(1.5 * sigma, change * distance(&at)),
+        },
+        false => back_to_zero(frames, condition, gravity, zero)?,
+    };
+    let unknown = Reading { value: zero, se: f64::INFINITY };
+    (velocity > 0.0).then_some(Contact {
+        time: unknown,
+        between: [f64::NEG_INFINITY, f64::INFINITY],
+        depth_at_zero: Some(depth),
+        depth,
+        sinking: Reading { value: velocity, se: change },
+        forward: unknown,
+        first: frames[0].t,
+        step,
+    })
+}
+
+/// Depth (m) at time zero of a run whose first frame comes later: the velocity in between lies between the
+/// stated one and that of the first frames.
+fn back_to_zero(
+    frames: &[Frame],
+    condition: &Condition,
+    gravity: f64,
+    zero: f64,
+) -> Option<Reading> {
+    let (first, since) = (frames[0], frames[0].t - zero);
+    if since <= 0.0 {
+        return None;
+    }
+    let early = slope(frames.iter().take(EARLY).map(|frame| (frame.t, frame.z)), 0.0).value;
+    let stated = condition.speed * libm::sin(condition.angle_deg.to_radians());
+    let gained = gravity * since;
+    let (least, most) = (early.min(stated), early.max(stated) + 0.5 * gained);
+    let value = first.z - 0.5 * (least + most) * since;
+    // Half of what the velocities differ by is the farthest that the mean of them can be off.
+    Some(Reading { value, se: (0.25 * (most - least) + 0.02 * stated) * since })
+}
+
+/// The power of time with which a path departs from free fall; `None` where its lowest point does not
+/// fall like a mass.
+fn power(condition: &Condition) -> Option<f64> {
+    let round = matches!(condition.shape.as_str(), "sphere" | "disc");
+    match condition.shape.as_str() {
+        _ if condition.spin != 0.0 && !round => None,
+        "sphere" | "hemisphere" => Some(3.0),
+        "disc" => Some(2.5),
+        "cylinder" => Some(2.0),
+        "cone" => Some(4.0),
+        _ => None,
+    }
+}
+
+/// All fits of one run.
+struct Fits {
+    /// The time (s) that fits count from, and its scale.
+    origin: f64,
+    scale: f64,
+    all: Vec<Fit>,
+    /// Ends of the frames (s).
+    ends: [f64; 2],
+    /// How much larger than stated the squares of the residuals are in the best fit, at least 1.
+    excess: f64,
+}
+
+/// The path for one contact and one power.
+struct Fit {
+    contact: f64,
+    power: f64,
+    misfit: f64,
+    /// a, b, c, k in units of the scale of time.
+    numbers: Vector4<f64>,
+    covariance: Matrix4<f64>,
+}
+
+impl Fits {
+    fn of(frames: &[Frame], (gravity, sigma): (f64, f64), power: f64) -> Self {
+        let (first, last) = (frames[0].t, frames[frames.len() - 1].t);
+        let (origin, scale) = (0.5 * (first + last), 0.5 * (last - first));
+        let places = BETWEEN_FRAMES * (frames.len() - 1);
+        let place = |k: usize| first + (last - first) * k as f64 / places as f64;
+        let mut all = Vec::new();
+        for power in [(power - 1.0).max(2.0), power, power + 1.0] {
+            for contact in (0..=places).map(place) {
+                all.extend(Fit::of(frames, (origin, scale), (gravity, sigma), (contact, power)));
+            }
+        }
+        let best = all.iter().fold(f64::INFINITY, |best, fit| best.min(fit.misfit));
+        // One row more than frames, the acceleration, and five numbers less.
+        let freedom = (frames.len() as f64 - 4.0).max(1.0);
+        // Few degrees of freedom leave the residuals, and so the errors, uncertain themselves.
+        let excess = (best / freedom).max(1.0) * (1.0 + 4.0 / freedom);
+        Self { origin, scale, all, ends: [first, last], excess }
+    }
+
+    /// Weighted mean of a number with a variance over all fits.
+    fn mean(&self, of: impl Fn(&Fit) -> (f64, f64)) -> Reading {
+        let best = self.all.iter().fold(f64::INFINITY, |best, fit| best.min(fit.misfit));
+        let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
+        for fit in &self.all {
+            let weight = libm::exp(-0.5 * (fit.misfit - best) / self.excess);
+            let (value, variance) = of(fit);
+            sum += weight;
+            first += weight * value;
+            second += weight * (value * value + self.excess * variance);
+        }
+        let value = first / sum;
+        Reading { value, se: (second / sum - value * value).max(0.0).sqrt() }
+    }
+
+    /// The earliest and latest contact that fit nearly as well as the best of their power.
+    fn between(&self) -> [f64; 2] {
+        let mut between = [f64::INFINITY, f64::NEG_INFINITY];
+        for power in self.all.iter().map(|fit| fit.power) {
+            let own = || self.all.iter().filter(|fit| fit.power == power);
+            let best = own().fold(f64::INFINITY, |best, fit| best.min(fit.misfit));
+            for fit in own().filter(|fit| fit.misfit <= best + POSSIBLE * self.excess) {
+                between = [between[0].min(fit.contact), between[1].max(fit.contact)];
+            }
+        }
+        // Sums of steps end beside the last frame.
+        let [first, last] = self.ends;
+        let near = 1e-6 * (last - first);
+        [
+            if between[0] <= first + near { f64::NEG_INFINITY } else { between[0] },
+            if between[1] >= last - near { f64::INFINITY } else { between[1] },
+        ]
+    }
+
+    /// Depth (m) of free fall at `time`, and its variance.
+    fn free(&self, fit: &Fit, time: f64) -> (f64, f64) {
+        let t = (time - self.origin) / self.scale;
+        fit.along(Vector4::new(1.0, t, 0.5 * t * t, 0.0))
+    }
+
+    /// Velocity (m/s) of free fall at `time`, and its variance.
+    fn velocity(&self, fit: &Fit, time: f64) -> (f64, f64) {
+        let t = (time - self.origin) / self.scale;
+        fit.along(Vector4::new(0.0, 1.0, t, 0.0) / self.scale)
+    }
+}
+
+impl Fit {
+    fn of(
+        frames: &[Frame],
+        (origin, scale): (f64, f64),
+        (gravity, sigma): (f64, f64),
+        (contact, power): (f64, f64),
+    ) -> Option<Self> {
+        let (mut normal, mut right, mut square) = (Matrix4::zeros(), Vector4::zeros(), 0.0);
+        let mut add = |row: Vector4<f64>, value: f64, weight: f64| {
+            normal += row * row.transpose() * weight;
+            right += row * (value * weight);
+            square += weight * value * value;
+        };
+        for frame in frames {
+            let t = (frame.t - origin) / scale;
+            let since = ((frame.t - contact) / scale).max(0.0);
+            let row = Vector4::new(1.0, t, 0.5 * t * t, -libm::pow(since, power));
+            add(row, frame.z, 1.0 / (sigma * sigma));
+        }
+        let acceleration = gravity * scale * scale;
+        let doubt = ACCELERATION * gravity.max(1.0) * scale * scale;
+        add(Vector4::new(0.0, 0.0, 1.0, 0.0), acceleration, 1.0 / (doubt * doubt));
+        let solve = |normal: Matrix4<f64>| {
+            let covariance = normal.cholesky()?.inverse();
+            let numbers = covariance * right;
+            Some((numbers, covariance, (square - numbers.dot(&right)).max(0.0)))
+        };
+        // Without a frame behind the contact nothing is known of k: it is 0, as good as exactly.
+        let mut held = normal;
+        held[(3, 3)] += 1e12 * normal[(0, 0)];
+        let free = solve(normal).filter(|(numbers, ..)| numbers[3] > 0.0);
+        let (numbers, covariance, misfit) = match free {
+            Some(found) => found,
+            None => solve(held)?,
+        };
+        Some(Self { contact, power, misfit, numbers, covariance })
+    }
+
+    /// A combination of the numbers, and its variance.
+    fn along(&self, row: Vector4<f64>) -> (f64, f64) {
+        (row.dot(&self.numbers), row.dot(&(self.covariance * row)))
+    }
+}
