@@ -6,10 +6,12 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 use configs::engine::units::{self, Dimension};
+use runner::beds::{Impacts, Place};
+use runner::{CampaignError, Elsewhere};
 use serde_json::{Value, json};
 use validation::beds::{
-    BedDiagnosis, BedError, BedForward, CampaignError, Elsewhere, Impacts, Place, Plan, Stand,
-    Wish, bed_forward, compare_jobs, diagnose_bed, unaffordable,
+    BedDiagnosis, BedError, BedForward, Plan, Stand, Wish, bed_forward, compare_jobs, diagnose_bed,
+    unaffordable,
 };
 use validation::bench::Bench;
 use validation::compare::Comparison;

@@ -1,10 +1,10 @@
 //! What a model of grains takes on this machine, and what to do where that is too much.
 
-use campaigns::pace::{Pace, PaceError, is_prepared};
 use configs::engine::grains::Space;
 use configs::engine::parallel::with_threads;
 use configs::estimate::{Estimate, MEMORY_SHARE, available_memory_bytes};
 use configs::{BedSource, GrainModel, SidesKind};
+use runner::campaign::pace::{Pace, PaceError, is_prepared};
 use serde_json::{Value, json};
 
 use crate::check::Args;

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use configs::printable;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use runner::Watch;
 use runner::run::{Control, Progress};
-use validation::beds::{self as campaign, Watch};
 
 use crate::output::{self, CommandError};
 use crate::signals;
@@ -69,10 +69,10 @@ pub(crate) fn stopped(consequence: &str) -> CommandError {
 
 /// Impacts side by side.
 impl Watch for Terminal {
-    fn progress(&self, progress: &campaign::Progress) {
+    fn progress(&self, progress: &runner::Progress) {
         let what = match progress.what {
-            campaign::Stage::Beds => "beds",
-            campaign::Stage::Impacts => "impacts",
+            runner::Stage::Beds => "beds",
+            runner::Stage::Impacts => "impacts",
         };
         if self.bar.length() != Some(progress.of as u64) {
             self.bar.set_length(progress.of as u64);

@@ -6,16 +6,17 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
-use campaigns::pace::Pace;
-use campaigns::{
-    Counts, Folder, FolderError, Planned, Results, SubmitError, SweepError, TABLE, Task,
-};
 use configs::engine::parallel::with_threads;
 use configs::estimate::{MEMORY_SHARE, available_memory_bytes};
+use runner::beds::{Impacts, Place};
 use runner::campaign::file::Campaign;
+use runner::campaign::pace::Pace;
+use runner::campaign::{
+    Counts, Folder, FolderError, Planned, Results, SubmitError, SweepError, TABLE, Task,
+};
 use runner::schedulers::Scheduler;
+use runner::{CampaignError, Progress, Watch};
 use serde_json::json;
-use validation::beds::{CampaignError, Impacts, Place, Progress, Watch};
 
 use crate::beds::time;
 use crate::common::{On, cache_folder, of_scheduler};
@@ -95,7 +96,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         return submit(args, &planned, &folder, &cache, scheduler);
     }
     refuse_too_large(&planned, place.n_workers())?;
-    let ran = campaigns::run(&planned, &folder, &place);
+    let ran = runner::campaign::run(&planned, &folder, &place);
     terminal.clear();
     let interrupted = match ran {
         Ok(()) => false,
@@ -111,7 +112,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         return Err(terminal.interrupted(&left));
     }
     let table = folder.path().join(TABLE);
-    exchange::table::write_parquet(&table, &campaigns::columns(&results))
+    exchange::table::write_parquet(&table, &runner::campaign::columns(&results))
         .map_err(|error| CommandError::Failed(error.into()))?;
     report(&folder, &results, &terminal);
     show(args, &folder, &results)
@@ -137,7 +138,7 @@ fn only(
 
 /// A task of a scheduler: its point, and nothing on stdout.
 fn one(only: &Planned, folder: &Folder, place: &Place<'_>, terminal: &Terminal) -> CommandResult {
-    match campaigns::run_one(only, folder, place) {
+    match runner::campaign::run_one(only, folder, place) {
         Err(SweepError::Campaign(CampaignError::Interrupted)) => {
             Err(terminal.interrupted("the same command goes on from here"))
         }
@@ -159,11 +160,12 @@ fn submit(
         cache: cache.to_owned(),
         allow_paths: args.allow_paths.clone(),
     };
-    let submitted =
-        campaigns::submit(scheduler, planned, folder, &task).map_err(|error| match error {
+    let submitted = runner::campaign::submit(scheduler, planned, folder, &task).map_err(
+        |error| match error {
             SubmitError::Folder(error) => of_folder(error),
             SubmitError::Scheduler(error) => of_scheduler(error),
-        })?;
+        },
+    )?;
     let Counts { points, done, failed, .. } = Results::read(folder).map_err(of_folder)?.counts();
     if args.json {
         return output::json_to_stdout(&json!({

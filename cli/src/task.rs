@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use validation::beds::work;
+use runner::beds::BedTask;
+use runner::work;
 
 use crate::output::{CommandError, CommandResult};
 
@@ -18,5 +19,6 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> CommandResult {
-    work(&args.list, &args.cache, args.number).map_err(|error| CommandError::Failed(error.into()))
+    work::<BedTask>(&args.list, &args.cache, args.number)
+        .map_err(|error| CommandError::Failed(error.into()))
 }

@@ -12,30 +12,10 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
+use runner::campaign::{Cells, TableColumn};
+
 use crate::export::ExportError;
 use crate::export::whole_file::WholeFile;
-
-/// A column under its name, which has its unit.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TableColumn {
-    /// Its name.
-    pub name: String,
-    /// Its cells, as many as every other column has.
-    pub cells: Cells,
-}
-
-/// What a column holds; a cell without a value is empty.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Cells {
-    /// Quantities.
-    Numbers(Vec<Option<f64>>),
-    /// Whole numbers.
-    Counts(Vec<Option<i64>>),
-    /// Texts.
-    Texts(Vec<Option<String>>),
-    /// Yes or no.
-    Flags(Vec<Option<bool>>),
-}
 
 /// Writes `columns` into the file `path`, whole or not at all. The same columns give the same bytes.
 ///

@@ -1,9 +1,9 @@
 //! The report of a campaign: what its points came to, over what was varied.
 
-use campaigns::{Counts, Headline, Outcome, Point, Results, Values, Varied, varied};
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, GREY, Hover, PictureError, colour, letters, short, svg};
 use plotters::prelude::*;
+use runner::campaign::{Counts, Headline, Outcome, Point, Results, Values, Varied, varied};
 
 use crate::ReportError;
 use crate::figure::figure;
@@ -266,7 +266,7 @@ fn listed(results: &Results, varied: &[Varied]) -> Vec<Part> {
     }
     let mut parts = vec![Part::Table(table)];
     if results.plan.points.len() > MOST_POINTS {
-        let rest = format!("The first {MOST_POINTS}; all are in {}.", campaigns::TABLE);
+        let rest = format!("The first {MOST_POINTS}; all are in {}.", runner::campaign::TABLE);
         parts.push(Part::Text(rest));
     }
     parts

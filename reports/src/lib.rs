@@ -22,10 +22,10 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use campaigns::{Folder, FolderError, PLAN, Results};
 use exchange::read::ReadError;
 use exchange::run_files::{RunFiles, is_log};
 use plots::PictureError;
+use runner::campaign::{Folder, FolderError, PLAN, Results};
 use runner::run::{ListSummary, Summary};
 use serde_json::Value;
 use thiserror::Error;

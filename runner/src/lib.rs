@@ -1,8 +1,24 @@
-//! Runs models: one impact or list into a folder of its own, and many as a campaign.
+//! Runs models: one impact or list into a folder of its own, many impacts side by side, and campaigns.
 //!
-//! [`run`](mod@run) makes the files of an output folder of a model; [`campaign::file`] reads a campaign file;
-//! [`schedulers`] hands numbered tasks to SLURM or HyperQueue.
+//! [`run`](mod@run) makes the files of an output folder of a model; [`beds`] runs impacts on beds whose records
+//! are kept in a cache; [`campaign`] plans many impacts from one file, runs what is not done and reads what there
+//! is. [`Workers`] does tasks side by side in this process, [`Elsewhere`] has a [`Task`] done by another one that a
+//! scheduler ([`schedulers`]) starts.
 
+pub mod beds;
 pub mod campaign;
+mod elsewhere;
+mod error;
 pub mod run;
 pub mod schedulers;
+mod workers;
+
+pub use elsewhere::{Elsewhere, ModelText, Task, WORD, work};
+pub use error::CampaignError;
+pub use workers::{Heed, Progress, Stage, Unattended, Watch, Workers};
+
+/// `key` in hexadecimal, as names of files have it.
+#[must_use]
+pub fn hexadecimal(key: &[u8; 32]) -> String {
+    key.iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -2,13 +2,18 @@
 
 use std::error::Error;
 use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 use lexopt::Parser;
 use lexopt::prelude::ValueExt;
 use runner::schedulers::Scheduler;
 
-use crate::beds::{Elsewhere, WORD, work};
+use runner::beds::BedTask;
+use runner::{CampaignError, Elsewhere, Task, WORD, work};
+use serde::{Deserialize, Serialize};
+
+use crate::three_shapes::ShapeTask;
 
 /// Status of a command line that is not understood.
 const MISUNDERSTOOD: u8 = 2;
@@ -40,6 +45,23 @@ pub fn on(parser: &mut Parser) -> Result<Option<Elsewhere>, lexopt::Error> {
     elsewhere.map_err(|error| format!("this program cannot be found: {error}").into())
 }
 
+/// What a scheduler calls a program of this crate for.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(untagged)]
+enum StudyTask {
+    Bed(BedTask),
+    Shape(ShapeTask),
+}
+
+impl Task for StudyTask {
+    fn run(&self, cache: &Path) -> Result<(), CampaignError> {
+        match self {
+            Self::Bed(task) => task.run(cache),
+            Self::Shape(task) => task.run(cache),
+        }
+    }
+}
+
 /// Does the one task that a scheduler called this program for, if one did: the word for it, a list, a cache
 /// and a number. Gives the status to end with.
 #[must_use]
@@ -50,7 +72,9 @@ pub fn task() -> Option<ExitCode> {
     }
     let (list, cache, number) = (words.next()?, words.next()?, words.next()?);
     let done = match number.to_str().and_then(|number| number.parse().ok()) {
-        Some(number) => work(list.as_ref(), cache.as_ref(), number).map_err(|e| e.to_string()),
+        Some(number) => {
+            work::<StudyTask>(list.as_ref(), cache.as_ref(), number).map_err(|e| e.to_string())
+        }
         None => Err(format!("`{}` is no number of a task", number.display())),
     };
     Some(match done {

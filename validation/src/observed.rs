@@ -2,9 +2,10 @@
 
 use measurements::{Condition, Frame, Kind, MeasurementSet, Role, Run, StatedError};
 use nalgebra::DVector;
+use runner::beds::STOPPED;
 
 use crate::observable::{Layout, Observable};
-use crate::resampling::{STOPPED, common_grid, depth_and_range, stopped_at};
+use crate::resampling::{common_grid, depth_and_range, stopped_at};
 
 /// Least error that a reading of a position is credited with (m): below it the error of models and
 /// of their integration shows, and better cameras do not help.

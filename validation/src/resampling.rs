@@ -1,12 +1,10 @@
 //! Trajectories of several runs at common times.
 
 use measurements::Frame;
+use runner::beds::STOPPED;
 
 /// Times that agree to this (s) are the same frame.
 const SAME_TIME: f64 = 1e-7;
-
-/// Share of the impact speed below which an intruder counts as stopped.
-pub(crate) const STOPPED: f64 = 0.05;
 
 /// Frames on each side over which a speed is taken: neighbouring frames differ by little more than
 /// their noise.

@@ -1,8 +1,9 @@
 //! The two-link chain and the free link as bodies: no medium, or forces that are given.
 
+use resistive::{Impact, PartLoad, State, Surroundings};
+
 use super::common::{FINE, LENGTH, MASS, chain, law, link};
 use engine::math::Vec3;
-use resistive::{Impact, PartLoad, State, Surroundings};
 
 const GRAVITY: f64 = 9.81;
 

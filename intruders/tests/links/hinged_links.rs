@@ -1,5 +1,7 @@
 //! The chain as it moves in a bed of grains, here without one, against the chain of the solver.
 
+use resistive::{Impact, PartLoad, State, Surroundings};
+
 use super::common::{DIAMETER, FINE, LENGTH, MASS, chain, resistance, sand};
 use engine::body::Mechanism;
 use engine::grains::Space;
@@ -7,7 +9,6 @@ use engine::math::Vec3;
 use engine::params::ParamTable;
 use engine::surface::Wrench;
 use intruders::HingedLinks;
-use resistive::{Impact, PartLoad, State, Surroundings};
 
 const GRAVITY: f64 = 9.81;
 const ANGLES: [f64; 2] = [0.8, -0.4];

@@ -1,8 +1,9 @@
 //! Links and chains under the resistance of a link, from first contact to rest.
 
+use resistive::{Ending, Impact, PartSample, Recorder, State, Trajectory};
+
 use super::common::{chain, down, into_sand, law, link, resistance};
 use engine::math::Vec3;
-use resistive::{Ending, Impact, PartSample, Recorder, State, Trajectory};
 
 /// Longer than any of these impacts (s).
 const LONG: f64 = 2.0;

@@ -3,8 +3,9 @@
 
 use std::fmt::Write;
 
-use super::common::{chain, down, into_sand, law};
 use resistive::{Assembly, Ending, Recorder, State};
+
+use super::common::{chain, down, into_sand, law};
 
 /// Assumed: speeds (m/s) and pairs of angles (degrees). The first pair is that of equal angles.
 const SPEEDS: [f64; 3] = [1.5, 2.0, 2.5];

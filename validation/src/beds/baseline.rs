@@ -8,10 +8,11 @@
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
 use measurements::{Instrument, MeasurementSet};
 use nalgebra::{DMatrix, DVector};
+use runner::beds::Record;
 use thiserror::Error;
 
 use super::modes::Modes;
-use super::record::Record;
+use super::observables::observables;
 use super::stand::Stand;
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::forward::{Forward, PredictError, Request, Scatter};
@@ -122,7 +123,7 @@ fn observed(
     let condition = &set.conditions[at];
     let layout = if runs.is_empty() { Layout::default() } else { layout.clone() };
     let vectors: Vec<DVector<f64>> =
-        runs.iter().map(|run| run.observables(&layout, condition, set)).collect();
+        runs.iter().map(|run| observables(run, &layout, condition, set)).collect();
     let sum = vectors.iter().fold(DVector::zeros(layout.len()), |sum, one| sum + one);
     let mean = sum / vectors.len().max(1) as f64;
     let kinds = layout.kinds();

@@ -3,10 +3,11 @@
 
 use measurements::Kind;
 use nalgebra::DVector;
+use runner::beds::Record;
 use serde_json::{Value, json};
 
 use super::emulator::BedForward;
-use super::record::Record;
+use super::observables::observables;
 use super::stand::Stand;
 use super::workflow::BedError;
 use crate::bench::BenchError;
@@ -58,7 +59,7 @@ impl Confirmation {
                     let n = runs.len() / conditions.len();
                     let numbers = runs[at * n..(at + 1) * n].iter().flatten();
                     let numbers =
-                        numbers.map(|run| run.observables(&observed.layout, of_set, stand.set));
+                        numbers.map(|run| observables(run, &observed.layout, of_set, stand.set));
                     Mean::of(&numbers.collect::<Vec<_>>())
                 })
                 .collect();

@@ -2,9 +2,10 @@
 
 use measurements::Condition;
 use nalgebra::{DMatrix, DVector};
+use runner::beds::Job;
+use runner::beds::Record;
 
-use super::job::Job;
-use super::record::Record;
+use super::observables::observables;
 use super::response::{BetweenDraws, Line, Response, deviations};
 use super::stand::{Draw, Stand, StandError};
 use super::switches::Switch;
@@ -149,7 +150,7 @@ impl<'a> LineSearch<'a> {
         (against, paired): (&Against<'_>, bool),
     ) -> Vec<Vec<(f64, DVector<f64>)>> {
         let numbers =
-            |record: &Record| record.observables(&against.layouts[condition], of_set, stand.set);
+            |record: &Record| observables(record, &against.layouts[condition], of_set, stand.set);
         let of_draw = |(draw, records): (usize, &[Option<Record>])| {
             let own = against.baseline[at].get(draw).copied().flatten().filter(|_| paired);
             let base = own.map_or_else(|| against.means[condition].clone(), numbers);

@@ -1,15 +1,15 @@
 //! What a diagnosis of a bed of grains runs, said before anything is run.
 
+use runner::beds::Job;
+use runner::beds::{Impacts, Outstanding, SETTLING};
 use serde_json::{Value, json};
 
-use super::campaign::{Impacts, Outstanding};
-use super::job::Job;
+use super::line_search;
 use super::screening::Screening;
 use super::stand::{Draw, Stand};
 use super::switches::{OF_THE_APPARATUS, SWITCHES, Switch};
 use super::variation::Variation;
 use super::workflow::BedError;
-use super::{line_search, rate};
 use crate::observed::Observed;
 
 /// How many effects a line search and a confirmation take up.
@@ -244,7 +244,7 @@ impl Plan {
         // What comes later is known in number; a job of the baseline stands for each.
         let mean = baseline.iter().map(Job::work).sum::<f64>() / baseline.len().max(1) as f64;
         let later = |name, impacts: usize, beds: usize| {
-            let work = mean * (impacts as f64 + rate::SETTLING * beds as f64);
+            let work = mean * (impacts as f64 + SETTLING * beds as f64);
             PlannedStage { name, impacts, to_run: impacts, beds, seconds: work / pace }
         };
         let Size { line_draws, confirm_draws, .. } = self.size;

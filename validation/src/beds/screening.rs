@@ -1,12 +1,13 @@
 //! One signature per switch, from runs in which half of the switches are on.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
+use runner::beds::Job;
+use runner::beds::Record;
 
 use super::baseline::Baseline;
 use super::design::folded;
 use super::emulator::Screened;
-use super::job::Job;
-use super::record::Record;
+use super::observables::observables;
 use super::response::Response;
 use super::stand::{Draw, Stand, StandError};
 use super::switches::Switch;
@@ -124,7 +125,7 @@ impl Screening {
             let on = on.iter().map(|&on| if on { 1.0 } else { 0.0 });
             rows.push(DVector::from_iterator(columns, on.chain((0..draws).map(level))));
             let condition = &stand.set.conditions[condition];
-            found.push(record.observables(layout, condition, stand.set));
+            found.push(observables(record, layout, condition, stand.set));
         }
         if rows.len() <= columns {
             return None;

@@ -10,9 +10,9 @@ use engine::bed::random;
 use engine::grains::Space;
 use measurements::{Condition, Geometry, MeasurementSet};
 use rand::RngExt;
+use runner::beds::Job;
 use thiserror::Error;
 
-use super::job::Job;
 use super::variation::Variation;
 
 /// Most impacts on one bed, side by side.

@@ -1,17 +1,18 @@
 //! From a model of grains and a set to a comparison, or to a diagnosis: what is run, in which order, and
 //! what is made of it.
 
+use runner::CampaignError;
+use runner::beds::Impacts;
+use runner::beds::Job;
+use runner::beds::Record;
 use serde_json::{Value, json};
 use thiserror::Error;
 
 use super::baseline::{Baseline, BaselineError};
-use super::campaign::{CampaignError, Impacts};
 use super::confirmation::Confirmation;
 use super::emulator::{BedForward, Screened};
-use super::job::Job;
 use super::line_search::{Against, LineSearch};
 use super::plan::{LEADERS, Plan, SEARCHES};
-use super::record::Record;
 use super::response::Response;
 use super::screening::screened;
 use super::stand::{Draw, Stand, StandError};

@@ -10,8 +10,10 @@ use std::process::ExitCode;
 use engine::checkpoint::write_whole;
 use lexopt::Parser;
 use lexopt::prelude::{Long, Short, ValueExt};
+use runner::beds::Place;
+use runner::{Elsewhere, Unattended};
+use validation::beds::Wish;
 use validation::beds::benchmark::{Case, Outcome, all, quick, table};
-use validation::beds::{Elsewhere, Place, Unattended, Wish};
 use validation::command::{conclude, on};
 
 const HELP: &str = "\

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 
 use lexopt::Parser;
 use lexopt::prelude::{Long, Short, ValueExt};
-use validation::beds::{Elsewhere, Unattended};
+use runner::{Elsewhere, Unattended};
 use validation::command::{conclude, on};
 use validation::three_shapes::{Places, cases, depths, frictions, have_done, run, table};
 

@@ -12,7 +12,8 @@ use std::time::{Duration, Instant};
 
 use engine::parallel::with_threads;
 use lexopt::prelude::{Long, Short, ValueExt};
-use validation::beds::{Elsewhere, Place, Progress, Stage, Watch};
+use runner::beds::Place;
+use runner::{Elsewhere, Progress, Stage, Watch};
 use validation::published::{
     Effort, Judged, Laboratory, Missing, ROWS, Row, Verdict, markdown, tally, to_json,
 };

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::beds::{CampaignError, Impacts, Job, Place, Record};
+use runner::CampaignError;
+use runner::beds::{Impacts, Job, Place, Record};
+
 use crate::three_shapes;
 
 /// How much is run.

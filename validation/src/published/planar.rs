@@ -7,10 +7,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
+use runner::beds::{Job, Record};
 
 use super::laboratory::Laboratory;
 use super::row::PublishedError;
-use crate::beds::{Job, Record};
 
 /// Diameter of the disc (m).
 pub const DIAMETER: f64 = 0.0223;

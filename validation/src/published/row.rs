@@ -4,15 +4,14 @@ use configs::ConfigError;
 use engine::error::ThreadsError;
 use plots::PictureError;
 use resistive::ImpactError;
+use runner::CampaignError;
 use serde::Serialize;
 use thiserror::Error;
 
 use super::check::{Check, Verdict};
 use super::laboratory::Laboratory;
-use crate::beds::CampaignError;
 use crate::bench::BenchError;
 use crate::compare::CompareError;
-use crate::three_shapes::StudyError;
 
 /// A published result that is run again and judged.
 pub struct Row {
@@ -94,8 +93,6 @@ impl Findings {
 pub enum PublishedError {
     #[error(transparent)]
     Campaign(#[from] CampaignError),
-    #[error(transparent)]
-    Study(#[from] StudyError),
     #[error(transparent)]
     Config(#[from] ConfigError),
     #[error(transparent)]

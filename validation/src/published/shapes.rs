@@ -1,8 +1,9 @@
 //! The impacts of three shapes that rows E6 to E8 and E13 share.
 
+use runner::beds::Impacts;
+
 use super::laboratory::{Effort, Laboratory, Missing};
 use super::row::PublishedError;
-use crate::beds::Impacts;
 use crate::three_shapes::{self, Bed, Case, FRICTIONS, Outcome, RUBBED, SHAPES};
 
 /// Speeds (m/s), quick and in full. From 4 m/s on the small beds of quick throw the intruder back before it

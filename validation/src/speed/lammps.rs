@@ -10,6 +10,8 @@ use std::process::Command;
 use configs::{LoadOptions, Model, ModelSource};
 use exchange::lammps::{Deck, INPUT};
 
+use runner::CampaignError;
+
 use super::SpeedError;
 use super::trial::{Span, Trial};
 
@@ -118,7 +120,7 @@ impl Lammps {
 /// If LAMMPS cannot express it.
 pub fn export(model: &Path, folder: &Path) -> Result<(), SpeedError> {
     let source = ModelSource::Path(model.to_owned());
-    let loaded = Model::load(source, &LoadOptions::default())?;
+    let loaded = Model::load(source, &LoadOptions::default()).map_err(CampaignError::from)?;
     let missing = || SpeedError::NoTable(model.to_owned());
     let grains = loaded.model.grains().ok_or_else(missing)?;
     let resting = grains.read_bed().ok_or_else(missing)?;

@@ -16,30 +16,16 @@ pub mod trial;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use configs::{BuildError, ConfigError};
-use engine::error::{StepError, ThreadsError};
 use exchange::lammps::LammpsError;
-use runner::run::RunError;
+use runner::CampaignError;
 use thiserror::Error;
 
 /// Why a benchmark ends early.
 #[derive(Debug, Error)]
 pub enum SpeedError {
-    /// A model does not load.
+    /// A model, a bed or an impact of a problem fails.
     #[error(transparent)]
-    Config(#[from] ConfigError),
-    /// A model cannot be built.
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    /// A bed cannot be prepared, or an impact cannot be run.
-    #[error(transparent)]
-    Run(#[from] RunError),
-    /// A step cannot be trusted.
-    #[error(transparent)]
-    Step(#[from] StepError),
-    /// The system gives no threads.
-    #[error(transparent)]
-    Threads(#[from] ThreadsError),
+    Impact(#[from] CampaignError),
     /// LAMMPS cannot express a problem.
     #[error(transparent)]
     Lammps(#[from] LammpsError),

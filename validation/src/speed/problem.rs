@@ -13,6 +13,8 @@ use engine::grains::{Grain, Space};
 use runner::run::{Control, Progress, prepare};
 use serde::Serialize;
 
+use runner::CampaignError;
+
 use super::SpeedError;
 use super::trial::Span;
 
@@ -105,11 +107,13 @@ impl Problem {
             let (name, text) = (self.name.to_owned(), text.to_owned());
             let source = ModelSource::Text { name, text, folder: folder.clone() };
             Model::load(source, &LoadOptions { sets, ..LoadOptions::default() })
+                .map_err(CampaignError::from)
         };
         let model = load(Vec::new())?.model;
         let grains = model.grains().ok_or_else(|| SpeedError::NoTable(folder.clone()))?;
         let clock = Instant::now();
-        let bed = prepare(grains, cache, &mut Told::default())?.ok_or(SpeedError::Stopped)?;
+        let bed = prepare(grains, cache, &mut Told::default()).map_err(CampaignError::from)?;
+        let bed = bed.ok_or(SpeedError::Stopped)?;
         let seconds = clock.elapsed().as_secs_f64();
         let time = BedTime { bed: model.run.name.clone(), cache: bed.cache, seconds };
 

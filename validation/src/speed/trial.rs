@@ -9,6 +9,8 @@ use engine::parallel::with_threads;
 use runner::run::{Control, Existing, Places, Progress, run};
 use serde::{Deserialize, Serialize};
 
+use runner::CampaignError;
+
 use super::SpeedError;
 use super::clock::{cpu_seconds, memory};
 
@@ -143,8 +145,12 @@ impl Order {
     /// If the problem cannot be read or run.
     pub fn here(&self) -> Result<Trial, SpeedError> {
         match &self.extent {
-            Extent::Run(folder) => with_threads(self.threads, || logged(self, folder))?,
-            Extent::Forces | Extent::Steps => with_threads(self.threads, || bare(self))?,
+            Extent::Run(folder) => {
+                with_threads(self.threads, || logged(self, folder)).map_err(CampaignError::from)?
+            }
+            Extent::Forces | Extent::Steps => {
+                with_threads(self.threads, || bare(self)).map_err(CampaignError::from)?
+            }
         }
     }
 }
@@ -168,7 +174,7 @@ fn read(output: &Output) -> Result<Trial, SpeedError> {
 
 fn load(path: &Path, sets: Vec<String>) -> Result<Loaded, SpeedError> {
     let options = LoadOptions { sets, ..LoadOptions::default() };
-    Ok(Model::load(ModelSource::Path(path.to_owned()), &options)?)
+    Ok(Model::load(ModelSource::Path(path.to_owned()), &options).map_err(CampaignError::from)?)
 }
 
 /// Steps alone, as a run takes them, without a log.
@@ -177,18 +183,19 @@ fn bare(order: &Order) -> Result<Trial, SpeedError> {
     let missing = || SpeedError::NoTable(order.model.clone());
     let grains = model.grains().ok_or_else(missing)?;
     let resting = grains.read_bed().ok_or_else(missing)?;
-    let mut simulation = grains.simulation(&resting, &model.conditions()[0])?;
+    let mut simulation =
+        grains.simulation(&resting, &model.conditions()[0]).map_err(CampaignError::from)?;
     // A bed has a recipe as a rule: no table of grains is there while it is stepped.
     drop((resting, model));
     if order.extent == Extent::Forces {
         simulation = simulation.without_ledger();
     }
     for _ in 0..order.span.warm_up {
-        simulation.advance()?;
+        simulation.advance().map_err(CampaignError::from)?;
     }
     let (wall, cpu) = (Instant::now(), cpu_seconds());
     for _ in 0..order.span.steps {
-        simulation.advance()?;
+        simulation.advance().map_err(CampaignError::from)?;
     }
     let (wall_s, cpu_s) = (wall.elapsed().as_secs_f64(), cpu_seconds() - cpu);
     let velocity = simulation.intruder().bodies()[0].velocity.into();
@@ -208,14 +215,14 @@ fn bare(order: &Order) -> Result<Trial, SpeedError> {
 fn logged(order: &Order, folder: &Path) -> Result<Trial, SpeedError> {
     let missing = || SpeedError::NoTable(order.model.clone());
     let model = load(&order.model, Vec::new())?.model;
-    let dt = model.grains().ok_or_else(missing)?.time_step()?;
+    let dt = model.grains().ok_or_else(missing)?.time_step().map_err(CampaignError::from)?;
     let duration = order.span.end() as f64 * dt;
     let loaded = load(&order.model, vec![format!("run.duration=\"{duration} s\"")])?;
     let n_grains = loaded.model.grains().ok_or_else(missing)?.n_grains();
     let places =
         Places { out: folder.to_owned(), cache: folder.join("cache"), existing: Existing::Replace };
     let mut laps = Laps { from: order.span.warm_up, ..Laps::default() };
-    run(&loaded.model, &loaded.original, &places, &mut laps)?;
+    run(&loaded.model, &loaded.original, &places, &mut laps).map_err(CampaignError::from)?;
     let too_short = || SpeedError::TooShort { steps: order.span.steps };
     let (Some(first), Some(last)) = (laps.first, laps.last) else { return Err(too_short()) };
     let memory = memory();

@@ -8,22 +8,19 @@ mod picture;
 mod table;
 
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
 
-use configs::{BuildError, ConfigError, LoadOptions, Loaded, Model, ModelSource, find_shipped};
+use configs::{ConfigError, LoadOptions, Loaded, Model, ModelSource, find_shipped};
 use engine::checkpoint::write_whole;
-use engine::error::{StepError, ThreadsError};
 use engine::ledger::{ChannelKind, TermKind};
 use engine::parallel::with_threads;
 use engine::simulation::Simulation;
-use runner::run::{Control, Progress, RunError, prepare, result_key};
+use runner::run::{prepare, result_key};
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
-use crate::beds::{CampaignError, Elsewhere, ModelText, Stage, Task, Watch};
+use runner::{
+    CampaignError, Elsewhere, Heed, ModelText, Stage, Task, Unattended, Watch, Workers, hexadecimal,
+};
 
 pub use picture::{depths, frictions};
 pub use table::table;
@@ -153,28 +150,6 @@ impl Energies {
     }
 }
 
-/// Why the study ends early.
-#[derive(Debug, Error)]
-#[expect(missing_docs, reason = "each says itself what it is")]
-pub enum StudyError {
-    #[error("cannot {action} {}: {source}", path.display())]
-    Io { action: &'static str, path: PathBuf, source: io::Error },
-    #[error("{} cannot be written: {source}", path.display())]
-    Unwritable { path: PathBuf, source: serde_json::Error },
-    #[error(transparent)]
-    Config(#[from] ConfigError),
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    #[error(transparent)]
-    Run(#[from] RunError),
-    #[error(transparent)]
-    Step(#[from] StepError),
-    #[error(transparent)]
-    Threads(#[from] ThreadsError),
-    #[error(transparent)]
-    Elsewhere(#[from] Box<CampaignError>),
-}
-
 /// Every impact of the study on beds of `seeds` seeds: all shapes at all speeds, then all frictions.
 #[must_use]
 pub fn cases(seeds: u64) -> Vec<Case> {
@@ -222,63 +197,62 @@ pub fn run(
     places: &Places,
     workers: usize,
     done: &(dyn Fn(&Case, &Outcome) + Sync),
-) -> Result<Vec<Outcome>, StudyError> {
+) -> Result<Vec<Outcome>, CampaignError> {
     make(&places.out)?;
-    let next = AtomicUsize::new(0);
-    let found: Vec<Mutex<Option<Result<Outcome, StudyError>>>> =
-        cases.iter().map(|_| Mutex::new(None)).collect();
-    std::thread::scope(|scope| {
-        for _ in 0..workers.max(1) {
-            scope.spawn(|| {
-                loop {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(case) = cases.get(index) else { break };
-                    let outcome = case.model().map_err(StudyError::from).and_then(|loaded| {
-                        kept_or_run(&loaded.model, &case.path(places), &places.cache)
-                    });
-                    if let Ok(outcome) = &outcome {
-                        done(case, outcome);
-                    }
-                    *found[index].lock().unwrap_or_else(PoisonError::into_inner) = Some(outcome);
-                }
-            });
-        }
-    });
-    let outcomes = found
-        .into_iter()
-        .filter_map(|slot| slot.into_inner().unwrap_or_else(PoisonError::into_inner));
-    outcomes.collect()
+    let all: Vec<usize> = (0..cases.len()).collect();
+    let workers = Workers { number: workers.max(1), watch: &Unattended };
+    workers.side_by_side(Stage::Impacts, &all, (&|_| 1.0, 0), |at, _| {
+        let case = &cases[at];
+        let outcome = kept_or_run(&case.model()?.model, &case.path(places), &places.cache)?;
+        done(case, &outcome);
+        Ok(outcome)
+    })
 }
 
 /// The outcomes of those of `cases` that are there, in their order; nothing is run.
 ///
 /// # Errors
 /// If a model does not load.
-pub fn kept(cases: &[Case], places: &Places) -> Result<Vec<Option<Outcome>>, StudyError> {
-    let key = |case: &Case| -> Result<String, StudyError> { Ok(key(&case.model()?.model)) };
+pub fn kept(cases: &[Case], places: &Places) -> Result<Vec<Option<Outcome>>, CampaignError> {
+    let key = |case: &Case| -> Result<String, CampaignError> { Ok(key(&case.model()?.model)) };
     cases.iter().map(|case| Ok(found(&case.path(places), &key(case)?))).collect()
 }
 
 /// The key of an impact of `model`, in hexadecimal.
 fn key(model: &Model) -> String {
-    result_key(&model.hash()).iter().map(|byte| format!("{byte:02x}")).collect()
+    hexadecimal(&result_key(&model.hash()))
 }
 
 /// The outcome of the impact of `model`: as it was kept in `path`, or run now.
-pub(crate) fn kept_or_run(model: &Model, path: &Path, cache: &Path) -> Result<Outcome, StudyError> {
+fn kept_or_run(model: &Model, path: &Path, cache: &Path) -> Result<Outcome, CampaignError> {
     let key = key(model);
     if let Some(outcome) = found(path, &key) {
         return Ok(outcome);
     }
     let outcome = Outcome { key, ..with_threads(1, || impact(model, cache))?? };
     let text = serde_json::to_string(&outcome)
-        .map_err(|source| StudyError::Unwritable { path: path.to_owned(), source })?;
-    write_whole(path, text.as_bytes()).map_err(|source| StudyError::Io {
+        .map_err(|source| CampaignError::Unwritable { path: path.to_owned(), source })?;
+    write_whole(path, text.as_bytes()).map_err(|source| CampaignError::Io {
         action: "write",
         path: path.to_owned(),
         source,
     })?;
     Ok(outcome)
+}
+
+/// An impact of the study that another process runs, and keeps its outcome.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", tag = "task", rename = "shape")]
+pub(crate) struct ShapeTask {
+    /// The file of its outcome.
+    outcome: PathBuf,
+    model: ModelText,
+}
+
+impl Task for ShapeTask {
+    fn run(&self, cache: &Path) -> Result<(), CampaignError> {
+        kept_or_run(&*self.model.load()?, &self.outcome, cache).map(drop)
+    }
 }
 
 /// Has those of `cases` that are not there run by `elsewhere`; `watch` is told how many are.
@@ -290,7 +264,7 @@ pub fn have_done(
     places: &Places,
     elsewhere: &Elsewhere,
     watch: &dyn Watch,
-) -> Result<(), StudyError> {
+) -> Result<(), CampaignError> {
     make(&places.out)?;
     let out = std::path::absolute(&places.out).unwrap_or_else(|_| places.out.clone());
     let (mut tasks, mut paths) = (Vec::new(), Vec::new());
@@ -299,15 +273,15 @@ pub fn have_done(
             let outcome = out.join(case.file());
             let model = ModelText::of(&case.model()?.model);
             paths.push(outcome.clone());
-            tasks.push(Task::Shape { outcome, model });
+            tasks.push(ShapeTask { outcome, model });
         }
     }
     let is_there = |at: usize| paths[at].is_file();
-    Ok(elsewhere.run(Stage::Impacts, &tasks, &places.cache, watch, &is_there).map_err(Box::new)?)
+    elsewhere.run(Stage::Impacts, &tasks, &places.cache, watch, &is_there)
 }
 
-fn make(folder: &Path) -> Result<(), StudyError> {
-    let failed = |source| StudyError::Io { action: "make", path: folder.to_owned(), source };
+fn make(folder: &Path) -> Result<(), CampaignError> {
+    let failed = |source| CampaignError::Io { action: "make", path: folder.to_owned(), source };
     fs::create_dir_all(folder).map_err(failed)
 }
 
@@ -354,9 +328,9 @@ impl Case {
 }
 
 /// Runs the one impact of `model`.
-fn impact(model: &Model, cache: &Path) -> Result<Outcome, StudyError> {
+fn impact(model: &Model, cache: &Path) -> Result<Outcome, CampaignError> {
     let grains = model.grains().expect("the models of the study are beds of grains");
-    let prepared = prepare(grains, cache, &mut Unattended)?;
+    let prepared = prepare(grains, cache, &mut Heed { stop: &|| false, warn: &|_| () })?;
     let resting = prepared.expect("nobody stops an unattended preparation").resting;
     let mut simulation = grains.simulation(&resting, &model.conditions()[0])?;
     let every = (SAMPLE / simulation.clock().dt).round().max(1.0) as u64;
@@ -393,19 +367,6 @@ fn impact(model: &Model, cache: &Path) -> Result<Outcome, StudyError> {
         fall_m: start - height(&simulation),
         energies: energies.counted_from_start(simulation.impact_energy()),
     })
-}
-
-/// Nobody watches and nobody stops it.
-struct Unattended;
-
-impl Control for Unattended {
-    fn progress(&mut self, _: &Progress) {}
-
-    fn warn(&mut self, _: &str) {}
-
-    fn wants_to_stop(&self) -> bool {
-        false
-    }
 }
 
 /// Mean and standard error of `values`; the error is 0 for a single one.

@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use measurements::Role;
-use validation::beds::{
-    CampaignError, Impacts, Job, Place, Progress, Record, Stand, Unattended, Variation, Watch,
-};
+use runner::beds::{Impacts, Job, Place, Record};
+use runner::{CampaignError, Progress, Unattended, Watch};
+use validation::beds::{Stand, Variation};
 
 use crate::world::{condition, empty_set, model};
 

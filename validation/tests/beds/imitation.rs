@@ -4,7 +4,8 @@
 use configs::engine::bed::random;
 use configs::{BedSource, GrainModel};
 use rand::RngExt;
-use validation::beds::{CampaignError, Impacts, Job, Outstanding, Record};
+use runner::CampaignError;
+use runner::beds::{Impacts, Job, Outstanding, Record};
 
 /// Step of its integration (s).
 const STEP: f64 = 5e-5;

@@ -1,11 +1,10 @@
 //! What is hidden in a bed, and what a diagnosis made of it.
 
+use runner::beds::Impacts;
 use serde::{Deserialize, Serialize};
 
 use super::world::{campaign, measure, model};
-use crate::beds::{
-    BedError, Impacts, Plan, SWITCHES, Stand, Variation, Wish, diagnose_bed, unaffordable,
-};
+use crate::beds::{BedError, Plan, SWITCHES, Stand, Variation, Wish, diagnose_bed, unaffordable};
 use crate::observed::Observed;
 use crate::verdict::{Diagnosis, Verdict};
 

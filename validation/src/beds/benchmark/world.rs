@@ -7,9 +7,11 @@ use measurements::{
     Role, Run, StatedError, StopDefinition,
 };
 use rand::Rng;
+use runner::beds::Impacts;
+use runner::beds::Record;
 
-use crate::beds::record::Record;
-use crate::beds::{BedError, Impacts, Stand, Variation};
+use crate::beds::observables::at;
+use crate::beds::{BedError, Stand, Variation};
 
 /// The analyst's model of the bed.
 const MODEL: &str = include_str!("model.toml");
@@ -134,7 +136,7 @@ fn seen(
     let frames = FLIGHT + (end * RATE).ceil() as usize + STILL;
     let times: Vec<f64> = (0..frames).map(|frame| (frame as f64 - FLIGHT as f64) / RATE).collect();
     let of_set = &set.conditions[condition];
-    let path = times.iter().map(|&time| record.at(time, of_set, set.bed.gravity));
+    let path = times.iter().map(|&time| at(record, time, of_set, set.bed.gravity));
     let deepest = record.deepest + CAMERA * normal(&mut random);
     let seen = times.iter().zip(path).map(|(&t, (z, x))| Frame {
         t,

@@ -1,9 +1,10 @@
 //! Numbers of an impact over its speed, one curve per angle: fitted as the article fits them, and held
 //! against its curves and its coefficients.
 
+use runner::beds::Record;
+
 use super::matrix::{self, Cell, READINGS, Reading};
 use super::tables::Published;
-use crate::beds::Record;
 use crate::published::check::{Band, Check, Estimate, Known, Verdict};
 use crate::published::plot::{Panel, Plot, Points};
 use crate::published::regression::{self, Fitted};

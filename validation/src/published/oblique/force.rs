@@ -4,9 +4,10 @@
 //! A path is sampled every 0.5 ms; by Newton's law its second difference is the mean force around a sample,
 //! over about as long as the article's window of ±1 mm takes at 2 m/s.
 
+use runner::beds::Record;
+
 use super::matrix::{Cell, GRAVITY, MASS};
 use super::tables::ForceLaw;
-use crate::beds::Record;
 use crate::published::check::Estimate;
 use crate::published::regression;
 

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use configs::{ConfigError, LoadOptions, Model, ModelSource, find_shipped};
+use runner::beds::{Job, Record};
 
 use super::tables::{Published, published};
-use crate::beds::{Job, Record};
 use crate::published::laboratory::{Effort, Laboratory, Missing};
 use crate::published::row::PublishedError;
 

@@ -1,8 +1,9 @@
 //! Records of impacts for tests.
 
+use runner::beds::Record;
+
 use super::matrix::{Cell, GRAVITY, MASS, READINGS};
 use super::tables::published;
-use crate::beds::Record;
 
 /// An impact along `range` and `depth` (m), sampled every `interval` (s), that stops with its last sample.
 pub(crate) fn record(interval: f64, range: Vec<f64>, depth: Vec<f64>) -> Record {

@@ -2,8 +2,8 @@
 
 use configs::{LoadOptions, Medium, Model, ModelSource};
 use resistive::Trajectory;
+use runner::beds::Record;
 
-use crate::beds::Record;
 use crate::published::check::{Band, Check, Estimate, or_endless};
 use crate::published::laboratory::Laboratory;
 use crate::published::oblique::force::{Component, Separated, separate};

@@ -1,7 +1,8 @@
 //! The part of E10 that needs beds: trends of impacts beside walls, over a floor and without friction, on a small
 //! planar bed.
 
-use crate::beds::Record;
+use runner::beds::Record;
+
 use crate::published::check::{Band, Check, Estimate, Verdict};
 use crate::published::laboratory::Laboratory;
 use crate::published::planar::{self, Bed, DIAMETER, Fall};

@@ -1,6 +1,7 @@
 //! E11: the course of oblique impacts: regimes of the motion, paths, force peaks, and what governs the stop.
 
-use crate::beds::Record;
+use runner::beds::Record;
+
 use crate::published::check::{Band, Check, Estimate, Verdict};
 use crate::published::laboratory::Laboratory;
 use crate::published::oblique::matrix::{self, Cell, READINGS, Reading};

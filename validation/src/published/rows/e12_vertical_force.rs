@@ -1,6 +1,7 @@
 //! E12: the force of vertical impacts over v² and depth, its coefficients and the plateau beside other scales.
 
-use crate::beds::Record;
+use runner::beds::Record;
+
 use crate::published::check::{Band, Check, Estimate, Known};
 use crate::published::laboratory::Laboratory;
 use crate::published::oblique::curves::{Form, series};

@@ -42,7 +42,6 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::beds::{Place, Unattended};
     use crate::published::check::{Band, Estimate};
     use crate::published::planar::{self, Bed, Fall};
     use crate::published::row::{Findings, PublishedError};
@@ -50,6 +49,8 @@ mod tests {
         Check, Effort, Judged, Laboratory, Missing, Verdict, markdown, to_json,
     };
     use crate::three_shapes::Places;
+    use runner::Unattended;
+    use runner::beds::Place;
 
     /// Two impacts on a bed of a thousand grains.
     static SHALLOW: Row = Row {
@@ -64,7 +65,7 @@ mod tests {
         let [left, middle, _] = Fall::everywhere(Bed::Shallow, 0.5);
         let records = planar::impacts(laboratory, &[left, middle])?;
         let band = Band { half: 0.1, reason: "more than the bed is deep" };
-        let check = |record: &crate::beds::Record| {
+        let check = |record: &runner::beds::Record| {
             let error = record.stopping_time.unwrap_or(0.0);
             Check::at_most("depth (m)", "", Estimate::new(record.deepest, error), band)
         };

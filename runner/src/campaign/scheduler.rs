@@ -5,12 +5,12 @@
 
 use std::path::PathBuf;
 
-use runner::schedulers::{Array, Scheduler, SchedulerError, Word};
+use crate::schedulers::{Array, Scheduler, SchedulerError, Word};
 use thiserror::Error;
 
-use crate::folder::{Folder, FolderError};
-use crate::plan::Planned;
-use crate::run::missing;
+use super::folder::{Folder, FolderError};
+use super::plan::Planned;
+use super::run::missing;
 
 /// The script in the folder of a campaign.
 pub const SCRIPT: &str = "point.sh";
@@ -65,7 +65,7 @@ pub fn submit(
         command.extend([Word::Plain("--allow-path"), Word::Path(path)]);
     }
     command.extend([Word::Plain("--quiet"), Word::Plain("--point")]);
-    runner::schedulers::script(folder.path(), SCRIPT, &command)?;
+    crate::schedulers::script(folder.path(), SCRIPT, &command)?;
     scheduler.submit(&Array {
         name: &planned.plan.name,
         tasks: &points,

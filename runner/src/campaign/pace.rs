@@ -14,7 +14,8 @@ use configs::engine::error::StepError;
 use configs::engine::grains::Space;
 use configs::engine::world::World;
 use configs::{BedSource, BuildError, GrainMedium, GrainModel};
-use runner::run::{bed_file, bed_key, result_key};
+
+use crate::run::{bed_file, bed_key, result_key};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 

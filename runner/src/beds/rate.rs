@@ -7,12 +7,12 @@ use std::time::{Duration, Instant};
 use configs::GrainModel;
 use engine::checkpoint::write_whole;
 
-use super::CampaignError;
 use super::record::Record;
+use crate::error::CampaignError;
 
 /// Work of settling a bed, in that of an impact on it: three to six, by the height that grains fall
 /// from and by how long the last of them roll.
-pub(super) const SETTLING: f64 = 4.0;
+pub const SETTLING: f64 = 4.0;
 
 /// Share of the pace of grains in flight at which a bed at rest runs: it has contacts.
 const AT_REST: f64 = 0.5;

@@ -1,115 +1,21 @@
-//! Many impacts side by side: each on one thread, as many at a time as there are workers, each kept as
-//! it ends. What is kept is not run again, so a campaign that was killed has lost the impacts in flight.
+//! Many impacts on beds side by side, each kept as it ends. What is kept is not run again, so a campaign that
+//! was killed has lost the impacts in flight.
 
 use std::fs;
-use std::io;
 use std::num::NonZero;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
-use std::time::Instant;
 
-use configs::{BuildError, ConfigError, GrainModel, Model};
-use engine::checkpoint::CheckpointError;
-use engine::error::{StepError, ThreadsError};
-use engine::parallel::with_threads;
-use runner::run::{Control, RunError};
-use runner::schedulers::SchedulerError;
-use thiserror::Error;
+use configs::GrainModel;
 
-use super::elsewhere::{Elsewhere, Task};
-use super::job::{Heed, Job};
+use super::job::Job;
 use super::rate::{self, Rate};
 use super::record::Record;
-use crate::three_shapes::StudyError;
-
-/// Why a campaign ends early.
-#[derive(Debug, Error)]
-#[expect(missing_docs, reason = "each says itself what it is")]
-pub enum CampaignError {
-    #[error("cannot {action} {}: {source}", path.display())]
-    Io { action: &'static str, path: PathBuf, source: io::Error },
-    #[error("`{model}` is no bed of grains")]
-    NoGrains { model: String },
-    #[error(transparent)]
-    Config(#[from] ConfigError),
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    #[error(transparent)]
-    Run(#[from] RunError),
-    #[error(transparent)]
-    Step(#[from] StepError),
-    #[error(transparent)]
-    Threads(#[from] ThreadsError),
-    #[error(transparent)]
-    Checkpoint(#[from] CheckpointError),
-    #[error(transparent)]
-    Scheduler(#[from] SchedulerError),
-    #[error(
-        "{undone} of {of} tasks have left nothing, or not all ended well; what they said is in {}, and the same \
-         command hands over again what is missing",
-        folder.display()
-    )]
-    Tasks { undone: usize, of: usize, folder: PathBuf },
-    #[error("{} has the tasks 1 to {of}, not {number}", list.display())]
-    NoTask { number: usize, of: usize, list: PathBuf },
-    #[error("this task was planned by another version of the program")]
-    OtherProgram,
-    #[error(transparent)]
-    Study(#[from] Box<StudyError>),
-    #[error("stopped before the end")]
-    Interrupted,
-}
-
-impl CampaignError {
-    pub(super) fn no_grains(model: &Model) -> Self {
-        Self::NoGrains { model: model.run.name.clone() }
-    }
-}
-
-/// How far a campaign has come.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
-    /// What is being done.
-    pub what: Stage,
-    /// Done, those that were kept counted.
-    pub done: usize,
-    /// Of how many.
-    pub of: usize,
-    /// Time that is left at the pace so far (s); `None` before there is a pace.
-    pub left: Option<f64>,
-}
-
-/// What a campaign is doing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
-    /// Beds settle.
-    Beds,
-    /// Impacts run.
-    Impacts,
-}
-
-/// Whoever watches a campaign, from several threads at once.
-pub trait Watch: Sync {
-    /// Called as often as something ends.
-    fn progress(&self, progress: &Progress);
-    /// Something that the user should know.
-    fn warn(&self, message: &str);
-    /// Whether to end; what is in flight is lost.
-    fn wants_to_stop(&self) -> bool;
-}
-
-/// Nobody watches.
-#[derive(Clone, Copy, Debug)]
-pub struct Unattended;
-
-impl Watch for Unattended {
-    fn progress(&self, _: &Progress) {}
-    fn warn(&self, _: &str) {}
-    fn wants_to_stop(&self) -> bool {
-        false
-    }
-}
+use super::task::BedTask;
+use crate::elsewhere::Elsewhere;
+use crate::error::CampaignError;
+use crate::run::{Control, bed_file};
+use crate::workers::{Stage, Watch, Workers};
 
 /// Where impacts are run and kept.
 #[derive(Clone, Copy)]
@@ -248,15 +154,13 @@ impl Place<'_> {
         let keys = jobs.iter().map(Job::key).collect::<Result<Vec<_>, _>>()?;
         let missing = first_of_each(&keys, |at| Job::kept(self.cache, &keys[at]).is_none());
         let beds = self.missing_beds(jobs, &missing)?;
-        let tasks: Vec<Task> = beds.iter().map(|&at| Task::bed(&jobs[at])).collect();
-        let files = beds
-            .iter()
-            .map(|&at| jobs[at].bed_key().map(|key| runner::run::bed_file(self.cache, &key)));
+        let tasks: Vec<BedTask> = beds.iter().map(|&at| BedTask::bed(&jobs[at])).collect();
+        let files = beds.iter().map(|&at| jobs[at].bed_key().map(|key| bed_file(self.cache, &key)));
         let files = files.collect::<Result<Vec<_>, _>>()?;
         let is_there = |at: usize| files[at].is_file();
         elsewhere.run(Stage::Beds, &tasks, self.cache, self.watch, &is_there)?;
-        let tasks: Vec<Task> =
-            missing.iter().map(|&at| Task::impact(&jobs[at], &keys[at])).collect();
+        let tasks: Vec<BedTask> =
+            missing.iter().map(|&at| BedTask::impact(&jobs[at], &keys[at])).collect();
         let is_there = |at: usize| Job::path(self.cache, &keys[missing[at]]).is_file();
         elsewhere.run(Stage::Impacts, &tasks, self.cache, self.watch, &is_there)
     }
@@ -265,80 +169,26 @@ impl Place<'_> {
     fn missing_beds(&self, jobs: &[Job], missing: &[usize]) -> Result<Vec<usize>, CampaignError> {
         let keys = missing.iter().map(|&at| jobs[at].bed_key()).collect::<Result<Vec<_>, _>>()?;
         let is_missing = |place: usize| {
-            let name = runner::run::bed_file(self.cache, &keys[place]);
+            let name = bed_file(self.cache, &keys[place]);
             !name.is_file()
                 && jobs[missing[place]].bed.grains().is_some_and(|g| g.read_bed().is_none())
         };
         Ok(first_of_each(&keys, is_missing).into_iter().map(|place| missing[place]).collect())
     }
 
-    /// Does `tasks` side by side, each on one thread; `before` of the stage have been done before, and
-    /// `work` of a task (in any unit) is what the time left is estimated by. The longest are not sorted
-    /// first, so that results come in the order in which they are asked for.
+    /// Does `tasks` side by side, as [`Workers::side_by_side`] does.
     ///
     /// # Errors
-    /// The first of any task in their order, which keeps others from being begun;
-    /// [`CampaignError::Interrupted`] if it was stopped.
+    /// As there.
     pub fn side_by_side<R: Send>(
         &self,
         what: Stage,
         tasks: &[usize],
-        (work, before): (&(dyn Fn(&usize) -> f64 + Sync), usize),
+        work: (&(dyn Fn(&usize) -> f64 + Sync), usize),
         task: impl Fn(usize, &mut dyn Control) -> Result<R, CampaignError> + Sync,
     ) -> Result<Vec<R>, CampaignError> {
-        let (next, start) = (AtomicUsize::new(0), Instant::now());
-        let all: f64 = tasks.iter().map(work).sum();
-        let done = Mutex::new((0_usize, 0.0));
-        let slots: Vec<Mutex<Option<Result<R, CampaignError>>>> =
-            tasks.iter().map(|_| Mutex::new(None)).collect();
-        let failed = AtomicUsize::new(0);
-        let stop = || self.watch.wants_to_stop() || failed.load(Ordering::Relaxed) > 0;
-        let report = |done: usize, share: f64| {
-            let left = (share > 0.0).then(|| start.elapsed().as_secs_f64() * (1.0 - share) / share);
-            self.watch.progress(&Progress {
-                what,
-                done: before + done,
-                of: before + tasks.len(),
-                left,
-            });
-        };
-        report(0, 0.0);
-        std::thread::scope(|scope| {
-            for _ in 0..self.n_workers().min(tasks.len()) {
-                scope.spawn(|| {
-                    loop {
-                        let place = next.fetch_add(1, Ordering::Relaxed);
-                        let Some(&at) = tasks.get(place) else { break };
-                        let warn = |message: &str| self.watch.warn(message);
-                        let mut heed = Heed { stop: &stop, warn: &warn };
-                        let result = match stop() {
-                            true => Err(CampaignError::Interrupted),
-                            false => with_threads(1, || task(at, &mut heed))
-                                .map_err(CampaignError::from)
-                                .flatten(),
-                        };
-                        if result.is_err() {
-                            failed.fetch_add(1, Ordering::Relaxed);
-                        }
-                        *slots[place].lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
-                        let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
-                        *done = (done.0 + 1, done.1 + work(&at));
-                        report(done.0, done.1 / all);
-                    }
-                });
-            }
-        });
-        let mut results = Vec::with_capacity(tasks.len());
-        let mut interrupted = false;
-        for slot in slots {
-            match slot.into_inner().unwrap_or_else(PoisonError::into_inner) {
-                Some(Ok(result)) => results.push(result),
-                // One that failed stops the others, and they are not to blame.
-                Some(Err(CampaignError::Interrupted)) | None => interrupted = true,
-                Some(Err(error)) => return Err(error),
-            }
-        }
-        if interrupted { Err(CampaignError::Interrupted) } else { Ok(results) }
+        let workers = Workers { number: self.n_workers(), watch: self.watch };
+        workers.side_by_side(what, tasks, work, task)
     }
 }
 

@@ -8,10 +8,11 @@ use std::time::{Duration, Instant};
 
 use configs::{Condition, Model, StartX};
 use engine::checkpoint;
-use runner::run::{Control, Progress, bed_key, prepare, result_key};
 
-use super::CampaignError;
 use super::record::{Record, Recorder};
+use crate::error::CampaignError;
+use crate::hexadecimal;
+use crate::run::{Control, bed_key, prepare, result_key};
 
 /// Time between two looks at whether to stop while another process runs the same impact.
 const WAIT: Duration = Duration::from_millis(50);
@@ -29,24 +30,6 @@ pub struct Job {
     pub bed: Arc<Model>,
     /// How long it is expected to take, as simulated time (s).
     pub expected: f64,
-}
-
-/// What a worker of a campaign heeds.
-pub(super) struct Heed<'a> {
-    pub(super) stop: &'a (dyn Fn() -> bool + Sync),
-    pub(super) warn: &'a (dyn Fn(&str) + Sync),
-}
-
-impl Control for Heed<'_> {
-    fn progress(&mut self, _: &Progress) {}
-
-    fn warn(&mut self, message: &str) {
-        (self.warn)(message);
-    }
-
-    fn wants_to_stop(&self) -> bool {
-        (self.stop)()
-    }
 }
 
 impl Job {
@@ -157,8 +140,4 @@ fn lock(path: &Path, heed: &dyn Control) -> Result<Option<File>, CampaignError> 
             Err(TryLockError::Error(source)) => return Err(io("lock")(source)),
         }
     }
-}
-
-pub(super) fn hexadecimal(key: &[u8; 32]) -> String {
-    key.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -1,8 +1,8 @@
 //! Points that are drawn: shares of ranges, each between 0 and 1.
 
+use super::file::{Sample, SampleMethod};
 use rand::RngExt;
 use rand_pcg::Pcg64;
-use runner::campaign::file::{Sample, SampleMethod};
 
 /// The shares of every point: one per range.
 pub(crate) fn shares(sample: &Sample) -> Vec<Vec<f64>> {
@@ -42,7 +42,7 @@ fn sobol(sample: &Sample) -> Vec<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use runner::campaign::file::{SampledRange, Scale};
+    use crate::campaign::file::{SampledRange, Scale};
 
     use super::*;
 

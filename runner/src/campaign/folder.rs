@@ -9,8 +9,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 
-use crate::done::Done;
-use crate::plan::Plan;
+use super::done::Done;
+use super::plan::Plan;
 
 /// The file with the plan.
 pub const PLAN: &str = "points.json";

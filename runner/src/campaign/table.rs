@@ -2,14 +2,34 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use exchange::table::{Cells, TableColumn};
-
-use crate::done::Headline;
-use crate::plan::split;
-use crate::results::{Outcome, Results};
+use super::done::Headline;
+use super::plan::split;
+use super::results::{Outcome, Results};
 
 /// Name of the table in the folder of a campaign.
 pub const FILE: &str = "results.parquet";
+
+/// A column under its name, which has its unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableColumn {
+    /// Its name.
+    pub name: String,
+    /// Its cells, as many as every other column has.
+    pub cells: Cells,
+}
+
+/// What a column holds; a cell without a value is empty.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cells {
+    /// Quantities.
+    Numbers(Vec<Option<f64>>),
+    /// Whole numbers.
+    Counts(Vec<Option<i64>>),
+    /// Texts.
+    Texts(Vec<Option<String>>),
+    /// Yes or no.
+    Flags(Vec<Option<bool>>),
+}
 
 /// A key of the models that is not the same at all points, and its values.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,21 +4,22 @@
 //! A task leaves its bed or its record in the cache as an impact of this process would, so that whoever asked
 //! for it finds it there. What was handed over and not waited for is found likewise, later.
 
-mod task;
-
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use configs::{BedSource, ConfigError, LoadOptions, Medium, Model, ModelSource};
 use engine::checkpoint::write_whole;
-use runner::run::result_key;
-use runner::schedulers::{Array, Scheduler, Word, script};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
-use super::campaign::{CampaignError, Progress, Stage, Watch};
-use super::job::hexadecimal;
-
-pub(crate) use task::{ModelText, Task};
+use crate::error::CampaignError;
+use crate::hexadecimal;
+use crate::run::result_key;
+use crate::schedulers::{Array, Scheduler, Word, script};
+use crate::workers::{Progress, Stage, Watch};
 
 /// The folder of lists, scripts and logs in a cache.
 const FOLDER: &str = "tasks";
@@ -28,6 +29,54 @@ pub const WORD: &str = "task";
 
 /// Time between two looks at how far the tasks are.
 const LOOK: Duration = Duration::from_millis(500);
+
+/// One thing to be done by another process, on one thread.
+pub trait Task: Serialize + DeserializeOwned {
+    /// Does it, unless it is done; what it leaves is in `cache`, or where the task says.
+    ///
+    /// # Errors
+    /// If what it needs or leaves cannot be read, prepared or written.
+    fn run(&self, cache: &Path) -> Result<(), CampaignError>;
+}
+
+/// A model, complete, as another process reads it.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct ModelText {
+    toml: String,
+    /// The folder of its table of grains.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    table: Option<PathBuf>,
+}
+
+impl ModelText {
+    /// That of `model`.
+    #[must_use]
+    pub fn of(model: &Model) -> Self {
+        let table = match &model.medium {
+            Medium::Grains(medium) => match &medium.bed.source {
+                BedSource::Csv(table) => table.file.parent().map(Path::to_owned),
+                BedSource::Settle(_) => None,
+            },
+            Medium::Resistive(_) => None,
+        };
+        Self { toml: model.resolved_toml().to_owned(), table }
+    }
+
+    /// The model again.
+    ///
+    /// # Errors
+    /// If its table of grains cannot be read.
+    pub fn load(&self) -> Result<Arc<Model>, ConfigError> {
+        let source = ModelSource::Text {
+            name: "the model of a task".to_owned(),
+            text: self.toml.clone(),
+            folder: PathBuf::from("."),
+        };
+        let allow_paths = self.table.iter().cloned().collect();
+        let options = LoadOptions { allow_paths, ..LoadOptions::default() };
+        Ok(Arc::new(Model::load(source, &options)?.model))
+    }
+}
 
 /// A scheduler, and a program of ours that it starts.
 #[derive(Clone, Debug)]
@@ -51,10 +100,10 @@ impl Elsewhere {
     /// # Errors
     /// If they cannot be handed over, or not all end well; [`CampaignError::Interrupted`] if `watch` wants
     /// to stop.
-    pub(crate) fn run(
+    pub fn run<T: Task>(
         &self,
         what: Stage,
-        tasks: &[Task],
+        tasks: &[T],
         cache: &Path,
         watch: &dyn Watch,
         is_there: &dyn Fn(usize) -> bool,
@@ -108,10 +157,10 @@ impl Elsewhere {
 ///
 /// # Errors
 /// If there is no such task, or what it needs or leaves cannot be read, prepared or written.
-pub fn work(list: &Path, cache: &Path, number: usize) -> Result<(), CampaignError> {
+pub fn work<T: Task>(list: &Path, cache: &Path, number: usize) -> Result<(), CampaignError> {
     let unreadable = |source| CampaignError::Io { action: "read", path: list.to_owned(), source };
     let text = fs::read_to_string(list).map_err(unreadable)?;
-    let tasks: Vec<Task> =
+    let tasks: Vec<T> =
         serde_json::from_str(&text).map_err(|error| unreadable(std::io::Error::from(error)))?;
     let task = number.checked_sub(1).and_then(|at| tasks.get(at));
     let none = || CampaignError::NoTask { number, of: tasks.len(), list: list.to_owned() };

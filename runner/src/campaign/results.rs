@@ -2,9 +2,9 @@
 
 use serde_json::{Value, json};
 
-use crate::done::{Done, Headline, Status};
-use crate::folder::{Folder, FolderError};
-use crate::plan::{Plan, Point};
+use super::done::{Done, Headline, Status};
+use super::folder::{Folder, FolderError};
+use super::plan::{Plan, Point};
 
 /// The plan of a campaign and what came of its points so far.
 #[derive(Clone, Debug, PartialEq)]

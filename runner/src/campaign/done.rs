@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use runner::run::Summary;
+use crate::run::Summary;
 use serde::{Deserialize, Serialize};
 
 /// `done.json` of a point: there once the point is done, and not before.

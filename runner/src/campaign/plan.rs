@@ -6,11 +6,12 @@ use std::path::PathBuf;
 
 use configs::estimate::Estimate;
 use configs::{ConfigError, Diagnostic, LoadOptions, Loaded, Model};
-use runner::campaign::file::{Campaign, CampaignModel, Setting};
-use runner::run::{bed_key, result_key};
+
+use super::file::{Campaign, CampaignModel, Setting};
+use crate::run::{bed_key, result_key};
 use serde::{Deserialize, Serialize};
 
-use crate::sampling::shares;
+use super::sampling::shares;
 
 /// Work of an impact on a resistive medium, in that of grain-steps: some milliseconds.
 const RESISTIVE: f64 = 5e4;

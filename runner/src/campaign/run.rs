@@ -5,12 +5,13 @@ use std::fs;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use runner::run::{Control, Existing, Places, RunError};
-use validation::beds::{CampaignError, Place, Stage};
+use crate::beds::Place;
+use crate::run::{Control, Existing, Places, RunError};
+use crate::{CampaignError, Stage};
 
-use crate::done::Done;
-use crate::folder::{Folder, FolderError};
-use crate::plan::{Need, Planned, Point};
+use super::done::Done;
+use super::folder::{Folder, FolderError};
+use super::plan::{Need, Planned, Point};
 
 /// The logs of a run, and what one that failed has left of them.
 const LOGS: [&str; 6] = [
@@ -119,7 +120,7 @@ fn beds(
         let (Some(grains), Some(key)) = (model.grains(), planned.needs[index].bed) else {
             return Ok(());
         };
-        match runner::run::prepare(grains, place.cache, control) {
+        match crate::run::prepare(grains, place.cache, control) {
             Ok(Some(_)) => Ok(()),
             Ok(None) => Err(CampaignError::Interrupted),
             Err(error) if is_of_the_point(&error) => {
@@ -152,10 +153,10 @@ fn point(
         existing: Existing::Resume,
     };
     let start = Instant::now();
-    match runner::run::run(&loaded.model, &loaded.original, &places, control) {
-        Ok(runner::run::Outcome::One(summary)) => Ok(Done::of(hash, &summary)),
-        Ok(runner::run::Outcome::Interrupted) => Err(CampaignError::Interrupted),
-        Ok(runner::run::Outcome::List(_)) => {
+    match crate::run::run(&loaded.model, &loaded.original, &places, control) {
+        Ok(crate::run::Outcome::One(summary)) => Ok(Done::of(hash, &summary)),
+        Ok(crate::run::Outcome::Interrupted) => Err(CampaignError::Interrupted),
+        Ok(crate::run::Outcome::List(_)) => {
             Ok(Done::failed(hash, "it lists conditions of its own".to_owned(), 0.0))
         }
         Err(error) if is_of_the_point(&error) => {

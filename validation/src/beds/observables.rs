@@ -1,0 +1,101 @@
+//! The observables that a set asks of an impact on a bed of grains.
+
+use measurements::{Condition, FinalDefinition, MeasurementSet, StopDefinition};
+use nalgebra::DVector;
+use runner::beds::Record;
+
+use crate::observable::Layout;
+
+/// Depth and range (m) at `time` (s): before contact those of the free fall under `condition`,
+/// behind the end the last ones.
+pub(super) fn at(record: &Record, time: f64, condition: &Condition, gravity: f64) -> (f64, f64) {
+    if time < 0.0 {
+        let (sine, cosine) = libm::sincos(condition.angle_deg.to_radians());
+        let down = condition.speed * sine * time + 0.5 * gravity * time * time;
+        return (down, condition.speed * cosine * time);
+    }
+    record.since_contact(time)
+}
+
+/// The observables that `layout` asks for, as `set` defines them.
+pub(super) fn observables(
+    record: &Record,
+    layout: &Layout,
+    condition: &Condition,
+    set: &MeasurementSet,
+) -> DVector<f64> {
+    let frames: Vec<(f64, f64)> =
+        layout.times.iter().map(|&time| at(record, time, condition, set.bed.gravity)).collect();
+    let mut numbers: Vec<f64> = frames.iter().map(|(depth, _)| *depth).collect();
+    if layout.along_x {
+        numbers.extend(frames.iter().map(|(_, range)| *range));
+    }
+    let stop = match set.stop {
+        StopDefinition::ComponentZero => record.stopping_time,
+        StopDefinition::SpeedFivePercent => record.slow_time,
+    };
+    let (depth, range) = match set.last {
+        FinalDefinition::Deepest => (record.deepest, record.reached),
+        FinalDefinition::Resting => at(record, record.end, condition, set.bed.gravity),
+    };
+    let scalars = [
+        (layout.stop_time, stop.unwrap_or(record.end)),
+        (layout.final_z, depth),
+        (layout.final_x, range),
+    ];
+    numbers.extend(scalars.iter().filter(|(there, _)| *there).map(|(_, value)| *value));
+    DVector::from_vec(numbers)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_sets::{condition, set};
+    use measurements::Kind;
+
+    fn record() -> Record {
+        Record {
+            interval: 0.01,
+            depth: vec![0.0, 0.01, 0.018],
+            range: vec![0.0, 0.005, 0.006],
+            stopping_time: Some(0.019),
+            slow_time: Some(0.017),
+            deepest: 0.0181,
+            reached: 0.0061,
+            end: 0.03,
+            impact_energy: 1.0,
+            closure: 0.0,
+            ledger: vec![("dissipated_sliding_J".into(), 0.4), ("elastic_spring_J".into(), 0.1)],
+            grains: 1,
+            steps: 1,
+            wall: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_path_is_linear_between_samples_free_before_contact_and_still_at_the_end() {
+        let (record, condition) = (record(), condition(1.0, 90.0));
+        // Sums and products of a few rounded decimals.
+        let close = |found: (f64, f64), expected: (f64, f64)| {
+            (found.0 - expected.0).abs() < 1e-15 && (found.1 - expected.1).abs() < 1e-15
+        };
+        assert!(close(at(&record, 0.015, &condition, 9.81), (0.014, 0.0055)));
+        assert!(close(at(&record, 1.0, &condition, 9.81), (0.018, 0.006)));
+        let flight = at(&record, -0.1, &condition, 9.81);
+        assert!((flight.0 + 0.1 - 0.04905).abs() < 1e-15 && flight.1.abs() < 1e-16, "{flight:?}");
+    }
+
+    #[test]
+    fn scalars_follow_the_definitions_of_the_set() {
+        let condition = condition(1.0, 45.0);
+        let mut set = set(Kind::Scalar, vec![condition.clone()], Vec::new());
+        let layout = Layout { stop_time: true, final_z: true, final_x: true, ..Layout::default() };
+        let found = observables(&record(), &layout, &condition, &set);
+        assert_eq!(found.as_slice(), [0.017, 0.018, 0.006]);
+        set.stop = StopDefinition::ComponentZero;
+        set.last = FinalDefinition::Deepest;
+        let found = observables(&record(), &layout, &condition, &set);
+        assert_eq!(found.as_slice(), [0.019, 0.0181, 0.0061]);
+        assert_eq!(record().dissipated().collect::<Vec<_>>(), [("sliding", 0.4)]);
+    }
+}
