@@ -2,23 +2,23 @@
 //!
 //! Each [`Target`] reads bytes as the program would and panics where something does not hold: a panic of
 //! the reader, an accepted model that prints as another one, a recovered log that needs recovery.
-//! `cargo xtask fuzz` tries changes of files that ship, led by answers that it has not had before. What broke a
-//! reader, or the program behind it, is kept in `found/`, and `tests/found.rs` tries it again.
+//! `tests/readers.rs` tries changes of files that ship, by bolero. What broke a reader, or the program behind it, is
+//! kept in `found/`, and `tests/found.rs` tries it again.
 
 pub mod checkpoint;
+pub mod edit;
 pub mod formula;
 pub mod log;
 pub mod model;
-pub mod mutation;
 pub mod seeds;
 pub mod set;
 
 /// Something that reads bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
-    /// Its name, as on the command line.
+    /// Its name.
     pub name: &'static str,
-    /// Reads bytes and says in words what came of it, so that what is new can be told from what is not.
+    /// Reads bytes and says in words what came of it.
     ///
     /// It panics where something does not hold.
     pub outcome: fn(&[u8]) -> String,

@@ -1,15 +1,9 @@
-//! What ships, a few changes of it, and what was found once, against every reader.
+//! What ships gets behind the checks of form, and what was found once breaks no reader again.
 
 use std::fs;
 use std::path::Path;
 
-use fuzz::mutation::changed;
 use fuzz::{TARGETS, Target, seeds};
-use rand::RngExt;
-use rand_pcg::Pcg64;
-
-/// Changes that are tried here; `cargo xtask fuzz` tries many more.
-const CHANGES: usize = 200;
 
 fn here() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -20,21 +14,7 @@ fn seeds_of(target: &Target) -> Vec<Vec<u8>> {
 }
 
 #[test]
-fn what_ships_breaks_no_reader_and_neither_does_a_change_of_it() {
-    for target in &TARGETS {
-        let seeds = seeds_of(target);
-        assert!(!seeds.is_empty(), "{}", target.name);
-        seeds.iter().for_each(|seed| drop((target.outcome)(seed)));
-        let mut random = Pcg64::new(7, 0);
-        for _ in 0..CHANGES {
-            let [one, other] = [(); 2].map(|()| &seeds[random.random_range(0..seeds.len())]);
-            drop((target.outcome)(&changed(one, other, &mut random)));
-        }
-    }
-}
-
-#[test]
-fn the_changed_inputs_reach_behind_the_checks_of_form() {
+fn inputs_to_start_from_reach_behind_the_checks_of_form() {
     let accepted = |name: &str, what: &str| {
         let target = TARGETS.iter().find(|target| target.name == name).expect("a target");
         let reaches = |seed: &Vec<u8>| (target.outcome)(seed).contains(what);

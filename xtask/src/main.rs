@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
-use lexopt::Arg;
+use lexopt::{Arg, ValueExt as _};
 use xshell::{Cmd, Shell, cmd};
 
 const HELP: &str = "\
@@ -31,7 +31,9 @@ Usage: cargo xtask <task>
                      the same on small beds of grains
   mutants [NUMBER]...
                      wrong lines, one at a time in a copy of the sources: which of them no test notices
-  fuzz [ARG]...      changed files against every reader; the arguments go to the program
+  fuzz [READER] [--minutes N]
+                     changed files against every reader, or those with this word in the name of their
+                     test: model, formula, set, log, checkpoint; 10 minutes each
   three-shapes [ARG]...
                      cylinder, hemisphere and cone on beds of grains, in release; the same
   validate [ARG]...  the published results, run again in release, and the page of them; the arguments
@@ -42,13 +44,13 @@ Exit status: 0 done, 1 something was found, 2 the command line was not understoo
 ";
 
 /// What the command line asks for.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug, PartialEq)]
 enum Task {
     Bench(Vec<OsString>),
     BenchBeds(Vec<OsString>),
     BenchDiagnosis(Vec<OsString>),
     BenchResistive,
-    Fuzz(Vec<OsString>),
+    Fuzz(Hunt),
     Help,
     Lint,
     Mutants(Vec<u32>),
@@ -80,7 +82,7 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
         Arg::Short('h') | Arg::Long("help") => return Ok(Task::Help),
         Arg::Value(name) => match name.to_str() {
             Some("bench") => return benchmark(parser.raw_args()?.collect()),
-            Some("fuzz") => return Ok(Task::Fuzz(parser.raw_args()?.collect())),
+            Some("fuzz") => return hunt(parser),
             Some("help") => Task::Help,
             Some("lint") => Task::Lint,
             Some("mutants") => return mutants(parser),
@@ -100,7 +102,6 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
 
 /// Mutants by their numbers.
 fn mutants(mut parser: lexopt::Parser) -> Result<Task, lexopt::Error> {
-    use lexopt::ValueExt as _;
     let mut numbers = Vec::new();
     while let Some(arg) = parser.next()? {
         match arg {
@@ -110,6 +111,35 @@ fn mutants(mut parser: lexopt::Parser) -> Result<Task, lexopt::Error> {
         }
     }
     Ok(Task::Mutants(numbers))
+}
+
+/// What `fuzz` is asked for.
+#[derive(Debug, PartialEq)]
+struct Hunt {
+    reader: Option<String>,
+    minutes: f64,
+}
+
+fn hunt(mut parser: lexopt::Parser) -> Result<Task, lexopt::Error> {
+    let mut hunt = Hunt { reader: None, minutes: 10.0 };
+    while let Some(arg) = parser.next()? {
+        match arg {
+            Arg::Long("minutes") => hunt.minutes = parser.value()?.parse()?,
+            Arg::Short('h') | Arg::Long("help") => return Ok(Task::Help),
+            Arg::Value(reader) if hunt.reader.is_none() => hunt.reader = Some(reader.string()?),
+            other => return Err(other.unexpected()),
+        }
+    }
+    Ok(Task::Fuzz(hunt))
+}
+
+/// Tries changed files for some minutes. Not in release: arithmetic that overflows is something to be found.
+fn fuzz(sh: &Shell, Hunt { reader, minutes }: &Hunt) -> Result<ExitCode> {
+    let time = format!("{:.0}", 60e3 * minutes);
+    let most = u32::MAX.to_string();
+    let tests =
+        cmd!(sh, "cargo test --locked -p fuzz --test readers -- --test-threads=1 {reader...}");
+    start(tests.env("BOLERO_RANDOM_TEST_TIME_MS", time).env("BOLERO_RANDOM_ITERATIONS", most))
 }
 
 /// The benchmark that the first of `args` names; without a name, that of beds of grains.
@@ -156,8 +186,7 @@ fn run(task: Task) -> Result<ExitCode> {
         Task::BenchBeds(args) => study(&sh, "beds", &args),
         Task::BenchDiagnosis(args) => study(&sh, "diagnosis", &args),
         Task::BenchResistive => study(&sh, "bench", &[]),
-        // Not in release: arithmetic that overflows is something to be found.
-        Task::Fuzz(args) => start(cmd!(sh, "cargo run --quiet --locked -p fuzz -- {args...}")),
+        Task::Fuzz(hunt) => fuzz(&sh, &hunt),
         Task::ThreeShapes(args) => study(&sh, "three_shapes", &args),
         Task::Validate(args) => validate(&sh, &args),
     }
