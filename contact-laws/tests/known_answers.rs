@@ -8,7 +8,7 @@ use engine::grains::Space;
 use engine::lanes::MOST_LANES;
 use engine::math::Vec3;
 use engine::params::{Default as Given, ParamTable};
-use engine::stage::{Batch, ContactStage, Histories, Sweep};
+use engine::stage::{Batch, ContactStage, Histories};
 
 /// (kg).
 const MASS: f64 = 1e-4;

@@ -240,7 +240,7 @@ pub trait ContactLaw: Send + Sync + 'static {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Quat, Vec3};
+    use crate::math::{Vec3, cayley};
 
     #[test]
     fn a_spring_turns_with_its_contact_plane_and_keeps_its_length() {
@@ -261,7 +261,7 @@ mod tests {
         // The plane turns about the spring's own direction, which leaves it, and about the one across, which takes
         // it along.
         let spring = Vec3::new(3e-6, 0.0, 0.0);
-        let about = |axis: Vec3| Quat::from_scaled_axis(axis * 0.3);
+        let about = |axis: Vec3| cayley(axis * 0.3);
         for axis in [Vec3::x(), Vec3::y()] {
             let turned = contact(about(axis) * Vec3::z()).turn(spring);
             // A root and a quotient of numbers near one.
