@@ -49,10 +49,10 @@ fn one(reader: &Reader<'_>, condition: &Condition, places: &ConditionPlaces) {
     let help = match likely {
         Some((size, grams, question)) => {
             let mut lines = Vec::new();
-            if *size != 1.0 {
+            if *size < 1.0 {
                 lines.push(format!("diameter = {}", significant(size * diameter)));
             }
-            if *grams != 1.0 {
+            if *grams < 1.0 {
                 lines.push(format!("mass = {}", significant(grams * mass)));
             }
             format!("{question} then write {}", lines.join(" and "))

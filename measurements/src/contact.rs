@@ -243,7 +243,7 @@ impl Fits {
     fn between(&self) -> [f64; 2] {
         let mut between = [f64::INFINITY, f64::NEG_INFINITY];
         for power in self.all.iter().map(|fit| fit.power) {
-            let own = || self.all.iter().filter(|fit| fit.power == power);
+            let own = || self.all.iter().filter(|fit| fit.power.total_cmp(&power).is_eq());
             let best = own().fold(f64::INFINITY, |best, fit| best.min(fit.misfit));
             for fit in own().filter(|fit| fit.misfit <= best + POSSIBLE * self.excess) {
                 between = [between[0].min(fit.contact), between[1].max(fit.contact)];

@@ -345,7 +345,7 @@ impl Sums {
         }
         let value = if bottom > 0.0 { top / bottom } else { 0.0 };
         let miss = |point: &Point| ((point.depth - value * slope(point)) / point.error).powi(2);
-        Self { value, se: bottom.powf(-0.5), misfit: points.iter().map(miss).sum() }
+        Self { value, se: 1.0 / bottom.sqrt(), misfit: points.iter().map(miss).sum() }
     }
 
     /// `None` where the velocities do not differ.

@@ -65,7 +65,7 @@ const ONLY: [(&str, &[&str]); 38] = [
     ("lexopt", &["validation", "xtask"]),
     ("mcap", &["engine", "exchange"]),
     // The fits of `validation` speak the version that `levenberg-marquardt` is built on.
-    ("nalgebra", &["engine", "resistive", "validation"]),
+    ("nalgebra", &["engine", "resistive", "measurements", "validation"]),
     ("num-traits", &["engine"]),
     ("parquet", &["exchange"]),
     ("parry3d-f64", &["intruders"]),
