@@ -176,7 +176,10 @@ pub(crate) fn diagnose(
         results.write(&files)?;
         return match flags.json {
             true => output::to_stdout(&text),
-            false => output::to_stdout(&as_text(&model.name, (&diagnosis, &object), [0, 0])),
+            false => {
+                let n = [plan.fit.len(), plan.confirm.len()];
+                output::to_stdout(&as_text(&model.name, (&diagnosis, &object), n))
+            }
         };
     }
     let found = diagnose_bed(&stand, &measured.observed, &place, plan, flags.seed);

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use comfy_table::CellAlignment;
 use configs::edit::add_effects;
 use serde_json::Value;
 use validation::bench::Bench;
 use validation::diagnose::diagnose;
+use validation::forward::Bound;
+use validation::held_out::{Fails, LeftOut, Unit};
 use validation::next::recommend;
-use validation::verdict::{Diagnosis, RankedEffect, Verdict};
+use validation::verdict::{Diagnosis, RankedEffect, Status, Verdict};
 use validation::where_it_fails::WhereItFails;
 
 use crate::add::from_diagnosis;
@@ -104,10 +105,12 @@ pub(crate) fn as_text(
     (diagnosis, object): (&Diagnosis, &Value),
     [n_fit, n_holdout]: [usize; 2],
 ) -> String {
-    let mut text = format!(
-        "Model {model}: {n_fit} conditions to fit, {n_holdout} held out. Errors {}.\n",
-        noise_words(&diagnosis.noise)
-    );
+    let mut text = format!("Model {model}: {n_fit} conditions to fit, {n_holdout} held out.");
+    // Nothing was fitted where there is none.
+    if !diagnosis.noise.is_null() {
+        text.push_str(&format!(" Errors {}.", noise_words(&diagnosis.noise)));
+    }
+    text.push('\n');
     if let (Some(p1), Some(p_lof)) = (diagnosis.p1, diagnosis.p_lof) {
         let explained = diagnosis.verdict == Verdict::NothingDetected;
         text.push_str(&format!(
@@ -117,12 +120,17 @@ pub(crate) fn as_text(
             probability(p_lof)
         ));
     }
-    text.push('\n');
-    text.push_str(&ranking(diagnosis));
+    if !diagnosis.ranking.is_empty() {
+        text.push('\n');
+        text.push_str(&ranking(diagnosis));
+    }
     if let Some(p) = diagnosis.p_lof_with {
         text.push_str(&format!("\nLack of fit with the best: p {}.\n", probability(p)));
     }
     text.push_str(&format!("\nVERDICT  {}\n", reports::verdict_in_words(object)));
+    if let Some(strength) = reports::strength_in_words(object) {
+        text.push_str(&format!("{strength}\n"));
+    }
     if !diagnosis.unexplained.hint.is_empty() {
         text.push_str(&format!("{}.\n", diagnosis.unexplained.hint));
     }
@@ -147,33 +155,47 @@ fn in_unit(effect: &RankedEffect) -> String {
 }
 
 fn ranking(diagnosis: &Diagnosis) -> String {
-    let header = ["effect", "q", "se", "delta", "behind", "ranked first if there", "limit", ""];
+    let header = ["effect", "q", "se", "delta", "behind", "ranked first if there", "limit"];
     let mut table = table(&header);
     let best = diagnosis.ranking.first().and_then(|effect| effect.delta).unwrap_or(0.0);
     let number = |value: Option<f64>, digits: usize| {
         value.map_or("-".to_owned(), |value| format!("{value:.digits$}"))
     };
-    for effect in diagnosis.ranking.iter().filter(|effect| effect.testable) {
+    let ranked = || diagnosis.ranking.iter().filter(|effect| effect.status == Status::Ranked);
+    for effect in ranked() {
+        let q = number(effect.q, 4);
+        let (q, se) = match effect.at_bound {
+            Some(Bound::Lower) => (format!("at most {q}"), "end of the range".to_owned()),
+            Some(Bound::Upper) => (format!("at least {q}"), "end of the range".to_owned()),
+            None => (q, number(effect.se, 4)),
+        };
         table.add_row([
             in_unit(effect),
-            number(effect.q, 4),
-            number(effect.se, 4),
+            q,
+            se,
             number(effect.delta, 1),
             number(effect.delta.map(|delta| best - delta), 1),
             number(effect.predicted_top1, 2),
             number(effect.detection_limit, 4),
-            match effect.note.as_str() {
-                "" => String::new(),
-                note => format!("separable {note}"),
-            },
         ]);
     }
-    if let Some(column) = table.column_mut(header.len() - 1) {
-        column.set_cell_alignment(CellAlignment::Left);
-    }
     let mut text = lines(&table);
-    for effect in diagnosis.ranking.iter().filter(|effect| !effect.testable) {
-        text.push_str(&format!(" not testable: {} ({})\n", effect.id, effect.note));
+    let alike = |effect: &&RankedEffect| diagnosis.not_separable.contains(&effect.id);
+    for effect in ranked().filter(alike).filter(|effect| !effect.note.is_empty()) {
+        text.push_str(&format!(" separable: {} {}\n", effect.id, effect.note));
+    }
+    for effect in diagnosis.ranking.iter().filter(|effect| effect.status != Status::Ranked) {
+        let what = match effect.status {
+            Status::NotIntegrated => "could not be computed",
+            Status::Imitated => "not told from the parameters",
+            Status::NotTestable | Status::NotTested | Status::Ranked => "not testable",
+        };
+        text.push_str(&format!(" {what}: {} ({})\n", effect.id, effect.note));
+    }
+    for effect in ranked().filter(|effect| effect.unusual && effect.delta > Some(0.0)) {
+        let (q, [least, most]) = (effect.q.unwrap_or(0.0), effect.usual_range.unwrap_or_default());
+        let id = &effect.id;
+        text.push_str(&format!(" unusual: {id} of {q:.4}, where {least} to {most} is usual\n"));
     }
     text
 }
@@ -183,19 +205,32 @@ fn held_out(diagnosis: &Diagnosis) -> String {
         return String::new();
     };
     let shown = |error: f64| match held_out.unit {
-        validation::held_out::Unit::Position => format!("{:.3} mm", 1e3 * error),
-        validation::held_out::Unit::Relative => format!("{:.1} %", 1e2 * error),
+        Unit::Position => format!("{:.3} mm", 1e3 * error),
+        Unit::Relative => format!("{:.1} %", 1e2 * error),
     };
     let which = match held_out.conditions {
-        validation::held_out::LeftOut::Holdout => "held-out conditions",
-        validation::held_out::LeftOut::OneAtATime => {
-            "conditions left out one at a time (the set holds out none)"
-        }
+        LeftOut::Holdout => "held-out conditions",
+        LeftOut::OneAtATime => "conditions left out one at a time (the set holds out none)",
     };
-    format!(
-        "Error on {which}: {} before, {} after (noise of the means {}).\n",
-        shown(held_out.before),
-        shown(held_out.after),
-        shown(held_out.noise_floor)
-    )
+    let errors = (held_out.before, held_out.after, held_out.noise_floor);
+    let mut text = match errors {
+        (Some(before), Some(after), Some(floor)) => format!(
+            "Error on {which}: {} before, {} after (noise of the means {}).\n",
+            shown(before),
+            shown(after),
+            shown(floor)
+        ),
+        _ => format!("No error on {which}: none could be predicted both without and with it.\n"),
+    };
+    let all = held_out.conditions_judged + held_out.not_predicted.len();
+    for one in &held_out.not_predicted {
+        let by = match one.by {
+            Fails::Before => "without it",
+            Fails::After => "with it",
+            Fails::Both => "either way",
+        };
+        let (id, why) = (&one.condition, &one.why);
+        text.push_str(&format!("Not predicted {by}, 1 of {all} and in no error: {id} ({why}).\n"));
+    }
+    text
 }

@@ -3,7 +3,7 @@
 use super::contradictions::Contradiction;
 use super::document::Document;
 use super::findings::Findings;
-use super::{Kind, MeasurementSet, Run, magnitudes, signs};
+use super::{Kind, MeasurementSet, Run, magnitudes, ranges, signs};
 
 impl MeasurementSet {
     /// Whether the set states the error of any number that it compares: of readings, if it has
@@ -30,6 +30,10 @@ pub(super) fn check(
     document: &Document,
     findings: &mut Findings,
 ) -> Vec<Contradiction> {
+    ranges::check(set, &document.places, findings);
+    if findings.errors() > 0 {
+        return Vec::new();
+    }
     signs::check(set, &document.places, findings);
     let contradictions = magnitudes::check(set, &document.places, findings);
     if !document.is_exported {

@@ -3,7 +3,7 @@
 //!
 //! [`MeasurementSet::load`] reads a set, [`MeasurementSet::write`] writes one. `document` knows
 //! `measurement.toml` and `conditions` its conditions; `lines`, `dialect`, `columns`, `header`, `row`,
-//! `cells` and `table` read a table, `runs` and `trajectories` know the two tables there are; `checks`, `signs`
+//! `cells` and `table` read a table, `runs` and `trajectories` know the two tables there are; `checks`, `ranges`, `signs`
 //! and `magnitudes` look at the whole; `smooth`, `contact`, `zeros`, `stops` and `definitions` hold what
 //! it states against its frames, and `contradictions` says where they do not agree.
 
@@ -27,6 +27,7 @@ mod lines;
 mod load;
 mod magnitudes;
 mod order;
+mod ranges;
 mod reading;
 mod row;
 mod runs;

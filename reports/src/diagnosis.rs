@@ -17,20 +17,61 @@ const CARDS: usize = 6;
 /// The verdict of a diagnosis, the object of its `diagnosis.json`, in a sentence.
 #[must_use]
 pub fn verdict_in_words(diagnosis: &Value) -> String {
-    let suggested = if diagnosis["strength"] == "suggested" { " (suggested)" } else { "" };
     let effects = texts(&diagnosis["effects"]);
     match diagnosis["verdict"].as_str().unwrap_or_default() {
         "nothing-detected" => "nothing detected: the data are explained".to_owned(),
-        "supported" => format!("supported: {}{suggested}", effects.join(", ")),
+        "supported" => format!("supported: {}", effects.join(", ")),
         "not-separable" => format!(
-            "one of {{{}}}{suggested}: these data cannot tell them apart",
+            "one of {{{}}}: these data cannot tell them apart",
             texts(&diagnosis["not_separable"]).join(", ")
         ),
         "pair" => {
-            format!("pair: {}{suggested}, or one effect outside the list", effects.join(" + "))
+            format!("pair: {}, or one effect outside the list", effects.join(" + "))
         }
         "none-of-the-candidates" => "none of the candidates".to_owned(),
         _ => "cannot tell".to_owned(),
+    }
+}
+
+/// What the verdict of a diagnosis rests on, in a sentence; none where nothing is named.
+#[must_use]
+pub fn strength_in_words(diagnosis: &Value) -> Option<String> {
+    let names = matches!(
+        diagnosis["verdict"].as_str(),
+        Some("supported" | "not-separable" | "pair" | "none-of-the-candidates")
+    );
+    match diagnosis["strength"].as_str().filter(|_| names)? {
+        "suggested" => {
+            let reasons = texts(&diagnosis["strength_reasons"]);
+            let words: Vec<&str> = reasons.iter().map(|reason| reason_in_words(reason)).collect();
+            Some(match words.is_empty() {
+                true => "Suggested only.".to_owned(),
+                false => format!("Suggested only, because {}.", words.join("; ")),
+            })
+        }
+        _ => Some("Confirmed: by the scatter of repeats and by what was held out.".to_owned()),
+    }
+}
+
+/// One of the `strength_reasons` in words.
+fn reason_in_words(reason: &str) -> &str {
+    match reason {
+        "stated-errors" => "the errors are stated and not seen in repeats",
+        "assumed-scatter" => "nothing was repeated, and the scatter from run to run is assumed",
+        "few-repeats" => "the repeats give fewer than 8 independent deviations",
+        "held-out-no-better" => "what was held out is not predicted better by more than chance",
+        "held-out-not-judged" => {
+            "nothing that was held out could be predicted both without and with it"
+        }
+        "conditions-not-predicted" => {
+            "with it, conditions that were held out cannot be predicted that can be without it"
+        }
+        "amplitude-outside-usual-range" => "its amplitude is outside of its usual range",
+        "small-plan" => "the plan of impacts is too small to confirm anything",
+        "fresh-beds-no-nearer" => {
+            "impacts with it, on fresh beds, are no nearer to what was held out"
+        }
+        other => other,
     }
 }
 
@@ -96,13 +137,8 @@ fn headline(diagnosis: &Value) -> Vec<Number> {
 
 fn verdict(diagnosis: &Value) -> Vec<Part> {
     let mut parts = vec![Part::Answer(verdict_in_words(diagnosis))];
-    if diagnosis["strength"] == "suggested" && diagnosis["verdict"] != "nothing-detected" {
-        parts.push(Part::Text(
-            "Suggested, not supported: it rests on stated errors, on few repeats, or on predictions \
-             of held-out conditions that did not become better by more than chance."
-                .to_owned(),
-        ));
-    }
+    parts.extend(strength_in_words(diagnosis).map(Part::Text));
+    parts.extend(not_predicted(diagnosis).map(Part::Text));
     let unexplained = &diagnosis["unexplained"];
     let hint = text(&unexplained["hint"]);
     if !hint.is_empty() {
@@ -123,6 +159,41 @@ fn verdict(diagnosis: &Value) -> Vec<Part> {
     parts
 }
 
+/// Which conditions that were held out are in no error, in a sentence; none if all are judged.
+fn not_predicted(diagnosis: &Value) -> Option<String> {
+    let held_out = &diagnosis["holdout"];
+    let one = |one: &Value| {
+        let by = match one["by"].as_str() {
+            Some("before") => "without it",
+            Some("after") => "with it",
+            _ => "either way",
+        };
+        format!("{} cannot be predicted {by} ({})", text(&one["condition"]), text(&one["why"]))
+    };
+    let conditions: Vec<String> = list(&held_out["not_predicted"]).iter().map(one).collect();
+    let judged = four_digits(&held_out["conditions_judged"]);
+    (!conditions.is_empty()).then(|| {
+        format!("The error held out is of {judged} conditions alone: {}.", conditions.join("; "))
+    })
+}
+
+/// An amplitude with its standard error, or as the end of its range.
+fn amplitude(of: &Value) -> String {
+    let q = four_digits(&of["q"]);
+    match of["at_bound"].as_str() {
+        Some("lower") => format!("at most {q}, the end of the range"),
+        Some("upper") => format!("at least {q}, the end of the range"),
+        _ => format!("{q} \u{b1} {}", four_digits(&of["se"])),
+    }
+}
+
+/// What is usual of an effect whose amplitude is not.
+fn usual(effect: &Value) -> Option<String> {
+    let range = effect["usual_range"].as_array().filter(|_| effect["unusual"] == true)?;
+    let [least, most] = [range.first()?, range.get(1)?].map(four_digits);
+    Some(format!("{least} to {most}, and this is outside of it"))
+}
+
 /// The name of an effect, with the unit of its amplitude where that is no pure number.
 fn in_unit(effect: &Value) -> String {
     match effect["unit"].as_str() {
@@ -132,7 +203,7 @@ fn in_unit(effect: &Value) -> String {
 }
 
 fn testable(diagnosis: &Value) -> impl Iterator<Item = &Value> {
-    list(&diagnosis["ranking"]).iter().filter(|effect| effect["testable"] == true)
+    list(&diagnosis["ranking"]).iter().filter(|effect| effect["status"] == "ranked")
 }
 
 fn effects(diagnosis: &Value) -> Vec<Part> {
@@ -150,9 +221,9 @@ fn card(at: usize, effect: &Value, named: &[String]) -> Card {
     let id = text(&effect["id"]);
     let law = find_resistance(&id);
     let unit = effect["unit"].as_str().filter(|unit| *unit != "1").unwrap_or_default();
-    let amplitude =
-        format!("{} \u{b1} {} {unit}", four_digits(&effect["q"]), four_digits(&effect["se"]));
+    let amplitude = format!("{} {unit}", amplitude(effect));
     let mut facts = vec![("amplitude", amplitude.trim_end().to_owned())];
+    facts.extend(usual(effect).map(|usual| ("usual", usual)));
     facts.extend([
         ("fall of \u{3c7}\u{b2}", fixed(effect["delta"].as_f64(), 1)),
         ("ranked first if there", fixed(effect["predicted_top1"].as_f64(), 2)),
@@ -175,8 +246,7 @@ fn card(at: usize, effect: &Value, named: &[String]) -> Card {
 }
 
 fn ranking(diagnosis: &Value) -> Vec<Part> {
-    let head =
-        ["effect", "q", "se", "fall of \u{3c7}\u{b2}", "behind", "ranked first if there", "limit"];
+    let head = ["effect", "q", "fall of \u{3c7}\u{b2}", "behind", "ranked first if there", "limit"];
     let mut table = Table::new(&head);
     let best = testable(diagnosis).next().and_then(|effect| effect["delta"].as_f64());
     for effect in testable(diagnosis) {
@@ -184,8 +254,7 @@ fn ranking(diagnosis: &Value) -> Vec<Part> {
         let behind = best.zip(delta).map(|(best, delta)| best - delta);
         table.rows.push(vec![
             in_unit(effect),
-            four_digits(&effect["q"]),
-            four_digits(&effect["se"]),
+            amplitude(effect),
             fixed(delta, 1),
             fixed(behind, 1),
             fixed(effect["predicted_top1"].as_f64(), 2),
@@ -196,11 +265,18 @@ fn ranking(diagnosis: &Value) -> Vec<Part> {
     if !table.rows.is_empty() {
         parts.push(Part::Table(table));
     }
-    let mut refused = Table::new(&["not testable with these data", "why"]);
-    let not_testable = list(&diagnosis["ranking"]).iter().filter(|one| one["testable"] != true);
-    refused.rows.extend(not_testable.map(|one| vec![text(&one["id"]), text(&one["note"])]));
-    if !refused.rows.is_empty() {
-        parts.push(Part::Table(refused));
+    for (status, heading) in [
+        ("not-testable", "not testable with these data"),
+        ("not-tested", "not tested"),
+        ("imitated", "not told from the parameters of the model"),
+        ("not-integrated", "could not be computed"),
+    ] {
+        let mut refused = Table::new(&[heading, "why"]);
+        let of_status = list(&diagnosis["ranking"]).iter().filter(|one| one["status"] == status);
+        refused.rows.extend(of_status.map(|one| vec![text(&one["id"]), text(&one["note"])]));
+        if !refused.rows.is_empty() {
+            parts.push(Part::Table(refused));
+        }
     }
     parts
 }
@@ -234,8 +310,8 @@ fn next(diagnosis: &Value) -> Vec<Part> {
     let Some(best) = list(&diagnosis["next"]).first() else { return Vec::new() };
     let runs = four_digits(&best["repeats"]);
     let intro = match best["expected_delta"].as_f64() {
-        // Odds of 20 to 1.
-        Some(delta) if delta >= 6.0 => format!("One of these conditions, {runs} runs of it:"),
+        // Odds of 100 to 1.
+        Some(delta) if delta >= 9.2 => format!("One of these conditions, {runs} runs of it:"),
         _ => format!(
             "No feasible condition separates {} with {runs} runs; the best would be:",
             texts(&best["separates"]).join(" and ")
@@ -249,6 +325,11 @@ fn corrected(diagnosis: &Value) -> Vec<Part> {
     for amplitude in list(&diagnosis["amplitudes"]) {
         let name = format!("{}, amplitude", text(&amplitude["id"]));
         let (q, se) = (four_digits(&amplitude["q"]), four_digits(&amplitude["se"]));
+        let (q, se) = match amplitude["at_bound"].as_str() {
+            Some("lower") => (format!("at most {q}"), "end of the range".to_owned()),
+            Some("upper") => (format!("at least {q}"), "end of the range".to_owned()),
+            _ => (q, se),
+        };
         table.rows.push(vec![name, q, se, String::new()]);
     }
     for (name, entry) in diagnosis["parameters"].as_object().into_iter().flatten() {
@@ -269,14 +350,27 @@ mod tests {
         let effect = |id: &str, delta: f64| {
             json!({
                 "id": id, "q": 0.5, "se": 0.1, "unit": "1", "delta": delta, "predicted_top1": 0.5,
-                "testable": true, "detection_limit": 0.2, "note": "from the other by depth"
+                "status": "ranked", "testable": true, "detection_limit": 0.2, "note": "from the other by depth"
             })
         };
-        let hidden = json!({ "id": "magnus", "testable": false, "note": "no run spins" });
+        let hidden = json!({
+            "id": "magnus", "status": "not-testable", "testable": false, "note": "no run spins"
+        });
+        let failed = json!({
+            "id": "tilt", "status": "not-integrated", "testable": true, "note": "it never stops"
+        });
+        let bounded = json!({
+            "id": "camera-scale", "q": -0.25, "se": null, "at_bound": "lower", "unit": "1",
+            "usual_range": [-0.05, 0.05], "unusual": true, "delta": 1.0, "predicted_top1": 0.0,
+            "status": "ranked", "testable": true, "detection_limit": 0.2, "note": ""
+        });
         let diagnosis = json!({
             "verdict": "not-separable", "strength": "suggested", "effects": ["janssen"],
+            "strength_reasons": ["stated-errors", "held-out-no-better"],
             "not_separable": ["janssen", "depth-exponent"],
-            "ranking": [effect("janssen", 30.0), effect("depth-exponent", 29.0), hidden],
+            "ranking": [
+                effect("janssen", 30.0), effect("depth-exponent", 29.0), bounded, hidden, failed
+            ],
             "p1": 1e-5, "p_lof": 1e-6, "p_lof_with": 0.4,
             "holdout": { "before": 0.1, "after": 0.02, "noise_floor": 0.06, "unit": "1" },
             "unexplained": { "depends_on": [], "hint": "" },
@@ -294,7 +388,16 @@ mod tests {
     #[test]
     fn a_diagnosis_shows_its_whole_set_and_what_it_could_not_test() {
         let html = page(&texts_of_a_diagnosis()).expect("a page");
-        assert!(html.contains("one of {janssen, depth-exponent} (suggested)"), "{html}");
+        assert!(html.contains("one of {janssen, depth-exponent}: these data"), "{html}");
+        let strength = "Suggested only, because the errors are stated and not seen in repeats; what was \
+                        held out is not predicted better by more than chance.";
+        assert!(html.contains(strength), "{html}");
+        assert!(html.contains("at most -0.25, the end of the range"), "{html}");
+        assert!(html.contains("-0.05 to 0.05, and this is outside of it"), "{html}");
+        assert!(
+            html.contains("could not be computed") && html.contains("it never stops"),
+            "{html}"
+        );
         assert_eq!(html.matches("<article class=\"named\">").count(), 2, "a card for both");
         assert!(html.contains("no run spins"), "{html}");
         assert!(html.contains("10.0 % \u{2192} 2.0 %"), "{html}");

@@ -16,8 +16,9 @@ use events::{Before, COMPONENTS, FORWARD, Fired, SINKING, SLOW, SLOWING, STOPPIN
 /// Below this share of √(gD) a component of the velocity is what the integration has left of zero.
 const STILL: f64 = 1e-6;
 
-/// More changes of mode than any impact has.
-const MOST_STRETCHES: usize = 10_000;
+/// Changes of mode one after another at one time: a body of [`PARTS`] parts has some ten events at once, and then
+/// moves on.
+const MOST_AT_ONCE: usize = 100;
 
 /// A tip this near to the surface touches it (m).
 const TOUCH: f64 = 1e-12;
@@ -29,6 +30,22 @@ pub struct Tolerance {
     pub relative: f64,
     /// Absolute (m, m/s, rad, rad/s).
     pub absolute: f64,
+}
+
+/// How much an integration may cost before it is given up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effort {
+    /// Steps that are tried, over the whole impact.
+    pub steps: usize,
+    /// Changes of mode.
+    pub changes: usize,
+}
+
+impl Default for Effort {
+    /// More than any impact takes: most need some twenty steps and fewer changes.
+    fn default() -> Self {
+        Self { steps: 200_000, changes: 10_000 }
+    }
 }
 
 impl Default for Tolerance {
@@ -65,9 +82,22 @@ pub enum ImpactError {
         time: f64,
     },
     /// The body chatters between two modes.
-    #[error("the motion changes its mode without end after {time:e} s")]
+    #[error(
+        "{time:.3e} s after the start the body sticks and slides in turn without getting on: a resistance is so large \
+         that it stops the body within a step, or changes its sign where the body stops"
+    )]
     Chatter {
-        /// Where (s).
+        /// When (s).
+        time: f64,
+    },
+    /// The integration costs more than it may.
+    #[error(
+        "after {steps} steps of the solver only {time:.3e} s are integrated: a force changes too fast to be followed"
+    )]
+    TooMuchWork {
+        /// Steps that were tried.
+        steps: usize,
+        /// How far it has come (s).
         time: f64,
     },
 }
@@ -79,6 +109,7 @@ pub struct Impact {
     bed: Surroundings,
     start: State,
     tolerance: Tolerance,
+    effort: Effort,
 }
 
 /// When and where a part stopped, as the literature defines it ([`engine::stopping::Stopping`]).
@@ -148,6 +179,8 @@ struct Progress {
     /// Whether friction holds the body.
     held: bool,
     steps: u64,
+    /// Steps that were tried, in stretches that are over.
+    tried: usize,
 }
 
 impl Impact {
@@ -159,7 +192,21 @@ impl Impact {
         bed: Surroundings,
         start: State,
     ) -> Self {
-        Self { assembly, laws, bed, start, tolerance: Tolerance::default() }
+        Self {
+            assembly,
+            laws,
+            bed,
+            start,
+            tolerance: Tolerance::default(),
+            effort: Effort::default(),
+        }
+    }
+
+    /// The same, given up after another effort.
+    #[must_use]
+    pub fn with_effort(mut self, effort: Effort) -> Self {
+        self.effort = effort;
+        self
     }
 
     /// The same, integrated to another tolerance.
@@ -206,14 +253,20 @@ impl Impact {
         let (mut time, mut state) = (0.0, self.start);
         let mut progress = self.begin(&system);
         let mut hint = 0.0;
-        for _ in 0..MOST_STRETCHES {
+        let (mut last_time, mut at_once) = (-1.0, 0);
+        for _ in 0..self.effort.changes {
             if time >= duration || self.is_over(&progress) {
                 observer.end(time, &state);
                 return Ok(self.ending(time, &state, progress));
             }
+            at_once = if time > last_time { 0 } else { at_once + 1 };
+            last_time = time;
+            if at_once > MOST_AT_ONCE {
+                break;
+            }
             let modes = progress.modes;
             let broken = |fault| system.broken(fault, &modes, time);
-            let plan = Plan { from: time, to: duration, first_step: hint };
+            let plan = self.plan((time, duration), hint, progress.tried);
             let mut solver =
                 Solver::start(&system, &modes, plan, &state, &self.tolerance).map_err(broken)?;
             let mut before =
@@ -224,7 +277,7 @@ impl Impact {
                     Some(rest) => rest,
                     None => {
                         let Some((from, to)) = solver.step() else {
-                            return Err(system.broken(solver.fault(), &modes, time));
+                            return Err(self.given_up(&system, &solver, &modes, time));
                         };
                         hint = to - from;
                         progress.steps += 1;
@@ -254,8 +307,28 @@ impl Impact {
                     break;
                 }
             }
+            progress.tried = solver.tried();
         }
         Err(ImpactError::Chatter { time })
+    }
+
+    /// From one time to another (s), by a first step of length `hint`, after `tried` steps.
+    fn plan(&self, (from, to): (f64, f64), hint: f64, tried: usize) -> Plan {
+        Plan { from, to, first_step: hint, tried, most: self.effort.steps }
+    }
+
+    /// Why `solver` takes no step after `time` (s).
+    fn given_up(
+        &self,
+        system: &System<'_>,
+        solver: &Solver<'_>,
+        modes: &Modes,
+        time: f64,
+    ) -> ImpactError {
+        match solver.tried() < self.effort.steps {
+            true => system.broken(solver.fault(), modes, time),
+            false => ImpactError::TooMuchWork { steps: solver.tried(), time },
+        }
     }
 
     /// States at `times` (s), all before first contact and in falling order: the flight that led to it.
@@ -266,7 +339,7 @@ impl Impact {
         let system = self.system();
         let Some(&last) = times.last() else { return Ok(Vec::new()) };
         let modes = Modes::at(&system, &self.start, [false; PARTS], [[false; 2]; PARTS]);
-        let plan = Plan { from: 0.0, to: last, first_step: 0.0 };
+        let plan = self.plan((0.0, last), 0.0, 0);
         let mut solver = Solver::start(&system, &modes, plan, &self.start, &self.tolerance)
             .map_err(|fault| system.broken(fault, &modes, 0.0))?;
         let mut states = Vec::with_capacity(times.len());
@@ -274,7 +347,7 @@ impl Impact {
         for &time in times {
             while reached > time {
                 let Some((_, to)) = solver.step() else {
-                    return Err(system.broken(solver.fault(), &modes, time));
+                    return Err(self.given_up(&system, &solver, &modes, time));
                 };
                 reached = to;
             }
@@ -329,6 +402,7 @@ impl Impact {
             rest: None,
             held: false,
             steps: 0,
+            tried: 0,
         }
     }
 

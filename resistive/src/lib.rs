@@ -20,7 +20,7 @@ use engine::ledger::Channel;
 use engine::math::Vec3;
 
 pub use assembly::{Assembly, Compact, Part, PartLoad, State};
-pub use impact::{Ending, Impact, ImpactError, PartStop, Tolerance};
+pub use impact::{Effort, Ending, Impact, ImpactError, PartStop, Tolerance};
 pub use laws::{
     Acts, Coefficients, Direction, Draft, Effect, Expression, Facts, ForceError, Needs, OwnEffect,
     OwnEffectError, OwnParameter, RESISTANCE_LAWS, ResistanceEntry, Role, STATE_VARIABLES,

@@ -21,9 +21,6 @@ const NUMBERS: usize = 2 * COORDINATES;
 
 type Flat = [f64; NUMBERS];
 
-/// More steps than any impact takes: beyond, the equations are stiffer than this method.
-const MOST_STEPS: usize = 200_000;
-
 /// Shortest step that may be tried after one that failed (s).
 const SHORTEST: f64 = 1e-18;
 
@@ -52,12 +49,15 @@ impl From<State> for Flat {
     }
 }
 
-/// From when to when (s), forward or backward, and how long a step to try first; 0 to find one.
+/// From when to when (s), forward or backward, how long a step to try first, 0 to find one, and how many steps
+/// were tried before and may be tried in all.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
     pub(super) from: f64,
     pub(super) to: f64,
     pub(super) first_step: f64,
+    pub(super) tried: usize,
+    pub(super) most: usize,
 }
 
 /// An integration that is under way in one mode.
@@ -68,7 +68,9 @@ pub(super) struct Solver<'a> {
     end: f64,
     /// Length of the next step, negative backward (s).
     next: f64,
-    steps: usize,
+    /// Steps that were tried, and that may be.
+    tried: usize,
+    most: usize,
     /// Length (s) and error of the last step.
     accepted: Option<(f64, f64)>,
     /// Start and end of the last step (s), and the numbers there.
@@ -102,7 +104,8 @@ impl<'a> Solver<'a> {
             tolerance: *tolerance,
             end: plan.to,
             next: plan.first_step,
-            steps: 0,
+            tried: plan.tried,
+            most: plan.most,
             accepted: None,
             times: (plan.from, plan.from),
             before: numbers,
@@ -126,6 +129,11 @@ impl<'a> Solver<'a> {
         self.fault.get()
     }
 
+    /// Steps that were tried so far, those before it began among them.
+    pub(super) fn tried(&self) -> usize {
+        self.tried
+    }
+
     /// Takes a step; its start and end (s). Nothing if no step is small enough.
     pub(super) fn step(&mut self) -> Option<(f64, f64)> {
         self.beyond_cubic = None;
@@ -136,8 +144,8 @@ impl<'a> Solver<'a> {
         self.before = self.after;
         self.slopes[0] = self.slopes[END];
         let mut largest_ratio = RATIOS.1;
-        while self.steps < MOST_STEPS {
-            self.steps += 1;
+        while self.tried < self.most {
+            self.tried += 1;
             let left = self.end - from;
             let last = self.next.abs() >= left.abs();
             let step = if last { left } else { self.next };

@@ -46,10 +46,10 @@ pub enum BenchError {
     #[error(transparent)]
     Predict(#[from] PredictError),
     /// A prediction does not have the layout of its condition.
-    #[error("condition {condition}: the model predicts {found} numbers; {expected} were measured")]
+    #[error("condition `{id}`: the model predicts {found} numbers; {expected} were measured")]
     Layout {
-        /// Index of the condition.
-        condition: usize,
+        /// The condition.
+        id: String,
         /// Length of the prediction.
         found: usize,
         /// Length of the layout.
@@ -69,10 +69,13 @@ pub enum BenchError {
         free: usize,
     },
     /// The noise of a condition has no inverse.
-    #[error("condition {condition}: the errors of its numbers are not finite")]
+    #[error(
+        "condition `{id}`: the errors of its numbers are not finite, or so large or small that they have no inverse; \
+         compare its numbers and their errors with those of the other conditions"
+    )]
     Singular {
-        /// Index of the condition.
-        condition: usize,
+        /// The condition.
+        id: String,
     },
 }
 
@@ -98,7 +101,11 @@ impl Bench<'_> {
     pub fn fit_from(&self, start: &Point, noise: &Noise) -> Result<Fitted, BenchError> {
         let mut fitted = self.fit_once(start, noise)?;
         for _ in 1..ROUNDS {
-            fitted = self.fit_once(&fitted.fit.point, &fitted.noise)?;
+            fitted = match self.fit_once(&fitted.fit.point, &fitted.noise) {
+                // The scatter has no derivatives around this fit: the weights stay those of where it began.
+                Err(BenchError::Predict(_)) => break,
+                other => other?,
+            };
         }
         Ok(fitted)
     }
@@ -130,7 +137,7 @@ impl Bench<'_> {
         let (found, expected) = (sensitivity.mean.len(), observed.layout.len());
         match found == expected {
             true => Ok(sensitivity),
-            false => Err(BenchError::Layout { condition, found, expected }),
+            false => Err(BenchError::Layout { id: observed.id.clone(), found, expected }),
         }
     }
 
@@ -159,8 +166,9 @@ impl Bench<'_> {
         noise: &Noise,
     ) -> Result<Weight, BenchError> {
         let own = self.forward.own_covariance(condition, &point.effects);
-        Weight::new(&self.observed.conditions[condition], sensitivity, noise, own)
-            .ok_or(BenchError::Singular { condition })
+        Weight::new(&self.observed.conditions[condition], sensitivity, noise, own).ok_or_else(
+            || BenchError::Singular { id: self.observed.conditions[condition].id.clone() },
+        )
     }
 
     fn weigh(&self, point: &Point, noise: &Noise) -> Result<(Vec<Weight>, Noise), BenchError> {

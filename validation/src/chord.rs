@@ -24,8 +24,8 @@ pub(crate) struct Extended {
     /// Parameters and amplitudes, those of the effects last.
     pub(crate) point: Point,
     pub(crate) chi2: f64,
-    /// Of the last amplitude; 0 at a bound.
-    pub(crate) standard_error: f64,
+    /// Of the last amplitude; none at a bound.
+    pub(crate) standard_error: Option<f64>,
 }
 
 /// Refits `fit` with the effects `added`, as (index of the candidate, whitened derivative of the
@@ -158,16 +158,13 @@ impl Search {
         }
     }
 
-    fn standard_error(&self) -> f64 {
+    fn standard_error(&self) -> Option<f64> {
         let last = self.free.len() - 1;
-        let (Some(amplitude), Some((least, greatest))) = (self.unknowns.last(), self.bounds.last())
-        else {
-            return 0.0;
-        };
+        let (amplitude, (least, greatest)) = (self.unknowns.last()?, self.bounds.last()?);
         if amplitude <= least || amplitude >= greatest {
-            return 0.0;
+            return None;
         }
-        let inverse = Cholesky::new(self.jacobian.tr_mul(&self.jacobian)).map(|f| f.inverse());
-        inverse.map_or(0.0, |inverse| inverse[(last, last)].sqrt() * self.units[last])
+        let inverse = Cholesky::new(self.jacobian.tr_mul(&self.jacobian))?.inverse();
+        Some(inverse[(last, last)].sqrt() * self.units[last]).filter(|se| se.is_finite())
     }
 }

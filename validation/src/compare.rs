@@ -9,10 +9,11 @@ use crate::bench::{Bench, BenchError, Fitted};
 use crate::errors::Errors;
 use crate::fit::Fit;
 use crate::force_error::ForceError;
-use crate::forward::Forward;
+use crate::forward::{Bound, Forward};
 use crate::lack_of_fit::lack_of_fit;
 use crate::noise::{Noise, NoiseSource};
 use crate::observed::Observed;
+use crate::residual::{Unpredicted, predictable};
 use crate::rounding::{rounded, six_digits, six_digits_or_null};
 use crate::sensitivity::Point;
 use crate::where_it_fails::Failing;
@@ -26,6 +27,12 @@ pub struct Revision<'a> {
     pub forward: &'a dyn Forward,
 }
 
+impl<'a> Revision<'a> {
+    fn bench(&self, set: &'a MeasurementSet, observed: &'a Observed) -> Bench<'a> {
+        Bench { set, observed, forward: self.forward }
+    }
+}
+
 /// Every model of a comparison, in the order asked for.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
@@ -35,6 +42,10 @@ pub struct Comparison {
     pub models: Vec<ModelComparison>,
     /// Noise under the model that fits best.
     pub noise: Value,
+    /// Held-out conditions that all models predict: errors held out are over these.
+    pub conditions_judged: usize,
+    /// The others, with the models that cannot.
+    pub not_predicted: Vec<Unpredicted>,
     /// What was left aside or assumed, in sentences.
     #[serde(skip)]
     pub notes: Vec<String>,
@@ -98,26 +109,47 @@ pub fn compare(
     revisions: &[Revision<'_>],
     seed: u64,
 ) -> Result<Comparison, CompareError> {
-    let mut models = Vec::with_capacity(revisions.len());
+    let of = |revision: &Revision<'_>| {
+        let model = revision.name.to_owned();
+        move |error| CompareError { model, error }
+    };
+    let mut all_fitted = Vec::with_capacity(revisions.len());
     for revision in revisions {
-        let bench = Bench { set, observed, forward: revision.forward };
-        let model = compare_one(&bench, revision.name, seed)
-            .map_err(|error| CompareError { model: revision.name.to_owned(), error })?;
-        models.push(model);
+        all_fitted.push(fitted(&revision.bench(set, observed), seed).map_err(of(revision))?);
+    }
+    let asked: Vec<_> = revisions
+        .iter()
+        .zip(&all_fitted)
+        .map(|(revision, (fitted, _))| (revision.bench(set, observed), &fitted.fit.point))
+        .collect();
+    let (holdout, not_predicted) = predictable(&asked);
+    let mut models = Vec::with_capacity(revisions.len());
+    for (revision, fitted) in revisions.iter().zip(all_fitted) {
+        let model =
+            compare_one(&revision.bench(set, observed), revision.name, (fitted, &holdout), seed);
+        models.push(model.map_err(of(revision))?);
     }
     let best = models.iter().min_by(|a, b| a.chi2_per_n.total_cmp(&b.chi2_per_n));
     let noise = best.map_or(Value::Null, |best| best.fitted.noise.to_json(&set.instrument));
+    let unpredicted = not_predicted.iter().map(|one| {
+        let Unpredicted { model, condition, why } = one;
+        let name = revisions[*model].name;
+        format!("{name} cannot predict the held-out condition `{condition}`, which no error counts: {why}")
+    });
     let mut notes: Vec<String> = set.notes.iter().chain(&observed.notes).cloned().collect();
+    notes.extend(unpredicted);
     if observed.holdout.is_empty() {
         notes.push("the set holds out no condition: nothing here was predicted unseen".to_owned());
     }
     if models.iter().any(|model| model.fitted.noise.source == NoiseSource::Assumed) {
         notes.push("neither repeats nor stated errors: 5 % of every number is assumed".to_owned());
     }
-    Ok(Comparison { set: set.id.clone(), models, noise, notes })
+    let conditions_judged = holdout.len();
+    Ok(Comparison { set: set.id.clone(), models, noise, conditions_judged, not_predicted, notes })
 }
 
-fn compare_one(bench: &Bench<'_>, name: &str, seed: u64) -> Result<ModelComparison, BenchError> {
+/// The model of `bench` fitted, with its probability of a lack of fit.
+fn fitted(bench: &Bench<'_>, seed: u64) -> Result<(Fitted, Option<f64>), BenchError> {
     let start = Point::start(bench.forward);
     let fitted = match bench.fit(&start) {
         Err(BenchError::NoErrors) => bench.fit_from(&start, &Noise::assumed()),
@@ -129,7 +161,16 @@ fn compare_one(bench: &Bench<'_>, name: &str, seed: u64) -> Result<ModelComparis
             lack_of_fit(bench, &fitted, seed)?
         }
     };
-    let failing = Failing::of(bench, name, &fitted, seed)?;
+    Ok((fitted, p_lof))
+}
+
+fn compare_one(
+    bench: &Bench<'_>,
+    name: &str,
+    ((fitted, p_lof), holdout): ((Fitted, Option<f64>), &[usize]),
+    seed: u64,
+) -> Result<ModelComparison, BenchError> {
+    let failing = Failing::of(bench, (name, &fitted), holdout, seed)?;
     let json = |errors: &Option<Errors>| errors.as_ref().map_or(Value::Null, Errors::to_json);
     Ok(ModelComparison {
         model: name.to_owned(),
@@ -143,14 +184,20 @@ fn compare_one(bench: &Bench<'_>, name: &str, seed: u64) -> Result<ModelComparis
     })
 }
 
-/// Value, standard error and unit of every free parameter.
+/// Value, standard error and unit of every free parameter; no error of one that is held at the end of its range.
 #[must_use]
 pub fn parameters(forward: &dyn Forward, fit: &Fit) -> Map<String, Value> {
     let values = forward.parameters().iter().zip(&fit.point.parameters).enumerate();
     values
         .map(|(at, (parameter, value))| {
-            let se = rounded(fit.standard_error(at));
-            let entry = json!({ "value": rounded(*value), "se": se, "unit": parameter.unit });
+            let se = fit.standard_error(at).map_or(Value::Null, rounded);
+            let at_bound = Bound::at(*value, parameter.min, parameter.max);
+            let entry = json!({
+                "value": rounded(*value),
+                "se": se,
+                "unit": parameter.unit,
+                "at_bound": at_bound,
+            });
             (parameter.name.clone(), entry)
         })
         .collect()

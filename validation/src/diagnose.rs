@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::compare::parameters;
 use crate::force_error::ForceErrors;
-use crate::forward::Forward;
+use crate::forward::{Candidate, Forward};
 use crate::held_out::HeldOut;
 use crate::lack_of_fit::lack_of_fit;
 use crate::marginal::marginals;
@@ -19,7 +19,9 @@ use crate::rounding::rounded;
 use crate::score::Ranking;
 use crate::sensitivity::Point;
 use crate::suggestion::suggestion;
-use crate::verdict::{Amplitude, Diagnosis, RankedEffect, Strength, Unexplained, Verdict};
+use crate::verdict::{
+    Amplitude, Diagnosis, RankedEffect, Status, Strength, StrengthReason, Unexplained, Verdict,
+};
 
 /// Probability of error at which something counts as found, or a model as rejected.
 pub const ALPHA: f64 = 0.01;
@@ -180,18 +182,17 @@ impl Judge<'_> {
             .enumerate()
             .map(|(at, &(index, q))| {
                 let se = proposed.fit.standard_error(proposed.fit.point.parameters.len() + at);
-                Amplitude { id: self.name(index), q, se }
+                let candidate = &bench.forward.candidates()[index];
+                let (at_bound, unusual) = (candidate.bound_at(q), candidate.is_unusual(q, se));
+                Amplitude { id: self.name(index), q, se, at_bound, unusual }
             })
             .collect();
         let held_out = HeldOut::of(bench, before, proposed)?;
-        let confirmed = bench.observed.contrasts() >= CONTRASTS
-            && (amplitudes.is_empty() || held_out.confirms());
+        let strength_reasons = doubts(bench, proposed, &amplitudes, &held_out);
         Ok(Diagnosis {
             verdict,
-            strength: match proposed.noise.source {
-                NoiseSource::Repeats if confirmed => Strength::Supported,
-                _ => Strength::Suggested,
-            },
+            strength: strength(&strength_reasons),
+            strength_reasons,
             effects: amplitudes.iter().map(|amplitude| amplitude.id.clone()).collect(),
             not_separable,
             leaders,
@@ -216,6 +217,38 @@ impl Judge<'_> {
     }
 }
 
+/// Why a verdict that names `amplitudes`, in the fit `proposed`, is only suggested; nothing where it is confirmed.
+///
+/// Confirmed is what rests on the scatter of repeats, from [`CONTRASTS`] independent deviations at least, and, where
+/// an effect is named, has amplitudes that are no more than two standard errors outside of the usual range of their
+/// effects, and predicts better what it has not seen without leaving out a condition that the model predicts without
+/// it.
+fn doubts(
+    bench: &Bench<'_>,
+    proposed: &Fitted,
+    amplitudes: &[Amplitude],
+    held_out: &HeldOut,
+) -> Vec<StrengthReason> {
+    let few = bench.observed.contrasts() < CONTRASTS;
+    let mut doubts: Vec<StrengthReason> = match proposed.noise.source {
+        NoiseSource::Repeats => few.then_some(StrengthReason::FewRepeats).into_iter().collect(),
+        NoiseSource::Stated => vec![StrengthReason::StatedErrors],
+        NoiseSource::AssumedScatter | NoiseSource::Assumed => vec![StrengthReason::AssumedScatter],
+    };
+    if amplitudes.is_empty() {
+        return doubts;
+    }
+    if amplitudes.iter().any(|amplitude| amplitude.unusual) {
+        doubts.push(StrengthReason::AmplitudeOutsideUsualRange);
+    }
+    doubts.extend(held_out.doubt());
+    doubts
+}
+
+fn strength(doubts: &[StrengthReason]) -> Strength {
+    if doubts.is_empty() { Strength::Confirmed } else { Strength::Suggested }
+}
+
 /// Takes back what `diagnosis` names, since `why`: what is left is whether the model as it is explains the data.
 ///
 /// # Errors
@@ -231,8 +264,12 @@ pub(crate) fn withdraw(
         true => Verdict::NothingDetected,
         false => Verdict::NoneOfTheCandidates,
     };
+    let mut strength_reasons = diagnosis.strength_reasons;
+    strength_reasons.retain(|reason| reason.is_of_measurements());
     Ok(Diagnosis {
         verdict,
+        strength: strength(&strength_reasons),
+        strength_reasons,
         unexplained: unexplained(bench, verdict, baseline, (why, seed))?,
         effects: Vec::new(),
         not_separable: Vec::new(),
@@ -275,7 +312,7 @@ fn correlation(fitted: &Fitted) -> Option<f64> {
     if fitted.fit.point.effects.len() != 2 {
         return None;
     }
-    let (a, b) = (fitted.fit.standard_error(first), fitted.fit.standard_error(first + 1));
+    let (a, b) = (fitted.fit.standard_error(first)?, fitted.fit.standard_error(first + 1)?);
     Some(fitted.fit.covariance[(first, first + 1)] / (a * b)).filter(|c| c.is_finite())
 }
 
@@ -301,13 +338,19 @@ fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
         .iter()
         .map(|score| {
             let candidate = &candidates[score.candidate()];
+            let (q, se) = (score.amplitude(), score.standard_error);
+            let at_bound = candidate.bound_at(q);
             RankedEffect {
                 id: candidate.id.clone(),
-                q: Some(score.amplitude()),
-                se: Some(score.standard_error),
+                q: Some(q),
+                se: se.filter(|_| at_bound.is_none()),
+                at_bound,
+                usual_range: candidate.usual,
+                unusual: candidate.is_unusual(q, se),
                 unit: candidate.unit.clone(),
                 delta: Some(score.delta),
                 predicted_top1: Some(score.ranked_first),
+                status: Status::Ranked,
                 testable: true,
                 detection_limit: Some(score.signature.detection_limit()),
                 parameters: values(bench.forward, &score.point),
@@ -318,29 +361,41 @@ fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
         .collect();
     let not_ranked = (0..candidates.len())
         .filter(|index| scores.iter().all(|score| score.candidate() != *index))
-        .map(|index| RankedEffect {
-            id: candidates[index].id.clone(),
-            q: None,
-            se: None,
-            unit: candidates[index].unit.clone(),
-            delta: None,
-            predicted_top1: None,
-            testable: false,
-            detection_limit: None,
-            parameters: Map::new(),
-            note: candidates[index].not_testable.clone().unwrap_or_else(|| why_not(ranking, index)),
-            point: None,
+        .map(|index| {
+            let (status, note) = why_not(&candidates[index], ranking, index);
+            RankedEffect {
+                id: candidates[index].id.clone(),
+                q: None,
+                se: None,
+                at_bound: None,
+                usual_range: candidates[index].usual,
+                unusual: false,
+                unit: candidates[index].unit.clone(),
+                delta: None,
+                predicted_top1: None,
+                status,
+                testable: status == Status::NotIntegrated,
+                detection_limit: None,
+                parameters: Map::new(),
+                note,
+                point: None,
+            }
         });
     list.extend(not_ranked);
     list
 }
 
-/// Why candidate `index`, which the data could show, was not ranked.
-fn why_not(ranking: Option<&Ranking>, index: usize) -> String {
-    let Some(ranking) = ranking else { return "not tested".to_owned() };
-    let failed = ranking.failed.iter().find(|(candidate, _)| *candidate == index);
-    failed.map_or_else(
-        || "in these data the parameters of the model do the same".to_owned(),
-        |(_, error)| error.to_string(),
-    )
+/// Why `candidate`, which is number `index`, was not ranked.
+fn why_not(candidate: &Candidate, ranking: Option<&Ranking>, index: usize) -> (Status, String) {
+    if let Some(why) = &candidate.not_testable {
+        return (Status::NotTestable, why.clone());
+    }
+    let Some(ranking) = ranking else { return (Status::NotTested, "not tested".to_owned()) };
+    match ranking.failed.iter().find(|(candidate, _)| *candidate == index) {
+        Some((_, error)) => (Status::NotIntegrated, error.to_string()),
+        None => {
+            let why = "in these data the parameters of the model do the same".to_owned();
+            (Status::Imitated, why)
+        }
+    }
 }

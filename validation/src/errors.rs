@@ -35,7 +35,7 @@ impl Errors {
             let predicted = point.predict(bench.forward, condition)?;
             if predicted.len() != observed.mean.len() {
                 let (found, expected) = (predicted.len(), observed.mean.len());
-                return Err(BenchError::Layout { condition, found, expected });
+                return Err(BenchError::Layout { id: observed.id.clone(), found, expected });
             }
             sums.add(&observed.layout.kinds(), &observed.mean, &(&observed.mean - predicted));
         }

@@ -17,6 +17,13 @@ use crate::weights::Weight;
 /// Where the search ends: relative change of χ² and of the unknowns.
 const TOLERANCE: f64 = 1e-6;
 
+/// Most evaluations per unknown, and one more: a search that converges takes a tenth of them.
+const PATIENCE: usize = 30;
+
+/// By how much what cannot be integrated misses, in units of the best that was tried: the search turns back from it
+/// and takes a tenth of the step.
+const REFUSED: f64 = 1e3;
+
 /// Share of a parameter by which it is moved for a derivative.
 const STEP: f64 = 1e-3;
 
@@ -71,10 +78,10 @@ impl Fit {
         self.covariance.select_rows(&self.free).select_columns(&self.free)
     }
 
-    /// Standard error of unknown `index`, parameters first; 0 when it is held at a bound.
+    /// Standard error of unknown `index`, parameters first; none when it is held at a bound, or nothing depends on it.
     #[must_use]
-    pub fn standard_error(&self, index: usize) -> f64 {
-        self.covariance[(index, index)].max(0.0).sqrt()
+    pub fn standard_error(&self, index: usize) -> Option<f64> {
+        Some(self.covariance[(index, index)]).filter(|own| *own > 0.0).map(f64::sqrt)
     }
 }
 
@@ -112,7 +119,10 @@ impl Data<'_> {
             let unknowns = unknowns(&point, scales);
             let best = RefCell::new((f64::INFINITY, unknowns.clone()));
             let search = Search { data: self, scales, held: &held, like: start, unknowns, best };
-            let solver = LevenbergMarquardt::new().with_ftol(TOLERANCE).with_xtol(TOLERANCE);
+            let solver = LevenbergMarquardt::new()
+                .with_ftol(TOLERANCE)
+                .with_xtol(TOLERANCE)
+                .with_patience(PATIENCE);
             // The best that was tried, since the search may end where the model cannot be integrated.
             let (_, unknowns) = solver.minimize(search).0.best.into_inner();
             point = point_of(&unknowns, scales, start);
@@ -167,7 +177,15 @@ impl Data<'_> {
                 *value_mut(&mut point, at) += by;
                 self.residual(&point)
             };
-            jacobian.set_column(column, &((moved(-step)? - moved(step)?) / (2.0 * step)));
+            // To one side where the model cannot be integrated on the other.
+            let slope = match (moved(-step), moved(step)) {
+                (Ok(less), Ok(more)) => (less - more) / (2.0 * step),
+                (Ok(less), Err(_)) => (less - self.residual(point)?) / step,
+                (Err(_), Ok(more)) => (self.residual(point)? - more) / step,
+                // What cannot be moved at all is where it is, as at a bound.
+                (Err(_), Err(_)) => continue,
+            };
+            jacobian.set_column(column, &slope);
         }
         Ok(jacobian)
     }
@@ -323,9 +341,13 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        let residual = self.residual_at(&self.unknowns)?;
-        let chi2 = residual.norm_squared();
         let mut best = self.best.borrow_mut();
+        let Some(residual) = self.residual_at(&self.unknowns) else {
+            let rows = self.data.weights.iter().map(|weight| weight.shift.len()).sum::<usize>();
+            let size = REFUSED * (best.0.max(1.0) / rows.max(1) as f64).sqrt();
+            return size.is_finite().then(|| DVector::from_element(rows, size));
+        };
+        let chi2 = residual.norm_squared();
         if chi2 < best.0 {
             *best = (chi2, self.unknowns.clone());
         }
@@ -338,9 +360,14 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
             let mut unknowns = self.unknowns.clone();
             let step = self.scales[at].unknown_step();
             unknowns[at] += step;
-            Some((self.residual_at(&unknowns)? - &here) / step)
+            if let Some(there) = self.residual_at(&unknowns) {
+                return (there - &here) / step;
+            }
+            unknowns[at] -= 2.0 * step;
+            let there = self.residual_at(&unknowns);
+            there.map_or_else(|| &here * 0.0, |there| (&here - there) / step)
         };
-        let columns: Option<Vec<_>> = self.free().into_iter().map(column).collect();
-        columns.map(|columns| DMatrix::from_columns(&columns))
+        let columns: Vec<_> = self.free().into_iter().map(column).collect();
+        Some(DMatrix::from_columns(&columns))
     }
 }

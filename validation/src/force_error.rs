@@ -163,3 +163,16 @@ fn believed(p: impl Iterator<Item = f64>) -> Vec<bool> {
 fn p_value(value: f64, se: f64) -> f64 {
     if se > 0.0 { libm::erfc((value / se).abs() / std::f64::consts::SQRT_2) } else { 1.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::p_value;
+
+    #[test]
+    fn an_error_of_1_96_standard_errors_of_either_sign_happens_once_in_twenty() {
+        for value in [1.959964, -1.959964] {
+            assert!((p_value(value, 1.0) - 0.05).abs() < 1e-6);
+        }
+        assert!((p_value(0.0, 1.0) - 1.0).abs() < 1e-12 && p_value(1.0, 0.0) > 0.99);
+    }
+}

@@ -4,6 +4,7 @@
 //! number is finite, and says how far off it may be for that.
 
 use nalgebra::DMatrix;
+use serde::Serialize;
 use thiserror::Error;
 
 /// A model that predicts the observables of every condition of a measurement set.
@@ -52,8 +53,14 @@ pub trait Forward: Sync {
     }
 }
 
-/// Odds of 20 to 1, in χ²: enough where a model says exactly what an effect does.
-pub(crate) const SEPARATE: f64 = 6.0;
+/// Odds of 100 to 1, in χ²: as rare as an error that a verdict allows itself.
+pub(crate) const SEPARATE: f64 = 9.2;
+
+/// At a bound is what differs from it by less than this share of it.
+const AT_BOUND: f64 = 1e-6;
+
+/// An amplitude that is farther than so many standard errors outside of its usual range is outside of it.
+const OUTSIDE: f64 = 2.0;
 
 /// Where a prediction is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -92,6 +99,8 @@ pub struct Candidate {
     pub min: f64,
     /// Greatest allowed amplitude.
     pub max: f64,
+    /// Least and greatest amplitude that one would expect; `None` where nobody says it.
+    pub usual: Option<[f64; 2]>,
     /// A small amplitude, for derivatives at zero.
     pub step: f64,
     /// Why these data cannot show it at all; `None` if they can.
@@ -101,6 +110,44 @@ pub struct Candidate {
     /// Ids of the candidates that these data cannot tell it from, because they lack what it takes; each
     /// of them has it likewise.
     pub unresolved: Vec<String>,
+}
+
+/// An end of the range of an amplitude.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Bound {
+    /// The least allowed value: the data ask for it or less.
+    Lower,
+    /// The greatest allowed value: the data ask for it or more.
+    Upper,
+}
+
+impl Bound {
+    /// The end of the range from `min` to `max` at which `value` is held, if it is.
+    pub(crate) fn at(value: f64, min: f64, max: f64) -> Option<Self> {
+        let is_at = |bound: f64| (value - bound).abs() <= AT_BOUND * bound.abs();
+        match (is_at(min), is_at(max)) {
+            (true, _) => Some(Self::Lower),
+            (_, true) => Some(Self::Upper),
+            _ => None,
+        }
+    }
+}
+
+impl Candidate {
+    /// The end of its range at which amplitude `q` is held, if it is.
+    #[must_use]
+    pub fn bound_at(&self, q: f64) -> Option<Bound> {
+        Bound::at(q, self.min, self.max)
+    }
+
+    /// Whether amplitude `q` is outside of what one would expect, by more than two of its standard errors `se`; none
+    /// count where none is known, as at a bound.
+    #[must_use]
+    pub fn is_unusual(&self, q: f64, se: Option<f64>) -> bool {
+        let margin = OUTSIDE * se.unwrap_or(0.0);
+        self.usual.is_some_and(|[least, greatest]| q + margin < least || q - margin > greatest)
+    }
 }
 
 /// Run-level random inputs: all zero for the run of the mean bed.
@@ -138,10 +185,12 @@ impl Scatter {
 
 /// Why a model could not predict.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[error("the model cannot be integrated for condition {condition}: {why}")]
+#[error("the model cannot be integrated for the condition `{id}`: {why}")]
 pub struct PredictError {
     /// Index of the condition.
     pub condition: usize,
+    /// Its name in the set.
+    pub id: String,
     /// What went wrong.
     pub why: String,
 }

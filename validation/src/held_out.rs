@@ -9,28 +9,56 @@ use crate::errors::{Errors, Sums};
 use crate::fit::Data;
 use crate::noise::log_determinant;
 use crate::observed::{Observed, ObservedCondition};
-use crate::rounding::six_digits;
+use crate::rounding::{six_digits, six_digits_or_null};
+use crate::strength::StrengthReason;
 
 /// Errors on held-out conditions without and with what is proposed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HeldOut {
-    /// Of the model as it is.
-    #[serde(serialize_with = "six_digits")]
-    pub before: f64,
+    /// Of the model as it is; none if no condition is judged.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub before: Option<f64>,
     /// With what is proposed; as before, if nothing is.
-    #[serde(serialize_with = "six_digits")]
-    pub after: f64,
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub after: Option<f64>,
     /// What means of so many runs would miss the truth by.
-    #[serde(serialize_with = "six_digits")]
-    pub noise_floor: f64,
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub noise_floor: Option<f64>,
     /// What the three are root mean squares of.
     pub unit: Unit,
     /// Which conditions were left out.
     pub conditions: LeftOut,
+    /// How many of them both models predict: the errors are over these.
+    pub conditions_judged: usize,
+    /// The others, which no error counts.
+    pub not_predicted: Vec<NotPredicted>,
     /// How much the logarithm of the predictive density rises by what is proposed, over the
     /// conditions that can be predicted both with and without it.
     #[serde(serialize_with = "six_digits")]
     pub log_density_gain: f64,
+}
+
+/// A condition that was left out and that a model cannot predict.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NotPredicted {
+    /// Its name in the set.
+    pub condition: String,
+    /// Which model cannot.
+    pub by: Fails,
+    /// Why not.
+    pub why: String,
+}
+
+/// Which of two models fails.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fails {
+    /// The model as it is.
+    Before,
+    /// The model with what is proposed.
+    After,
+    /// Either.
+    Both,
 }
 
 /// Unit of an error over several kinds of numbers.
@@ -80,48 +108,77 @@ impl HeldOut {
             LeftOut::Holdout => Predicted::unseen(bench, after, fitted, judged),
             LeftOut::OneAtATime => Predicted::left_out(bench, after, fitted),
         };
-        let both = in_both(judged, predict(before)?, predict(after)?);
+        let (both, not_predicted) =
+            in_both(bench.observed, judged, predict(before)?, predict(after)?);
         let error = |which: fn(&(usize, Predicted, Predicted)) -> (usize, &Predicted)| {
             let mut sums = Sums::default();
             for (condition, predicted) in both.iter().map(which) {
                 let observed = &bench.observed.conditions[condition];
                 sums.add(&observed.layout.kinds(), &observed.mean, &predicted.error);
             }
-            pick(&sums.errors()).unwrap_or(0.0)
+            pick(&sums.errors())
         };
         let compared: Vec<usize> = both.iter().map(|(condition, ..)| *condition).collect();
         Ok(Self {
             before: error(|(condition, before, _)| (*condition, before)),
             after: error(|(condition, _, after)| (*condition, after)),
-            noise_floor: pick(&noise_floor(bench.observed, &compared)).unwrap_or(0.0),
+            noise_floor: pick(&noise_floor(bench.observed, &compared)),
             unit,
             conditions,
+            conditions_judged: compared.len(),
+            not_predicted,
             log_density_gain: both.iter().map(|(_, b, a)| a.log_density - b.log_density).sum(),
         })
     }
 
-    /// Whether what is proposed predicts better what it has not seen, errors weighed by their noise.
+    /// What keeps the errors from confirming what is proposed, if anything does: it has to predict what it has not seen
+    /// better, errors weighed by their noise, and nothing less than the model without it does.
     #[must_use]
-    pub fn confirms(&self) -> bool {
-        self.log_density_gain > 0.0
+    pub fn doubt(&self) -> Option<StrengthReason> {
+        let worse = |one: &NotPredicted| one.by == Fails::After;
+        if self.not_predicted.iter().any(worse) {
+            Some(StrengthReason::ConditionsNotPredicted)
+        } else if self.conditions_judged == 0 {
+            Some(StrengthReason::HeldOutNotJudged)
+        } else {
+            (self.log_density_gain <= 0.0).then_some(StrengthReason::HeldOutNoBetter)
+        }
     }
 
     /// Whether it predicts that worse, by more than chance excuses: means of few runs under few
     /// conditions have errors that hang together, so the density alone refutes some true effects.
     #[must_use]
     pub fn refutes(&self) -> bool {
-        self.log_density_gain < -REFUTED && self.after >= self.before
+        let no_nearer = self.before.zip(self.after).is_some_and(|(before, after)| after >= before);
+        self.log_density_gain < -REFUTED && no_nearer
     }
 }
 
-/// Those of `conditions` that were predicted both before and after, with both predictions.
+/// A condition as a model predicts it, or why it does not.
+type Attempt = Result<Predicted, String>;
+
+/// Those of `conditions` that were predicted both before and after, with both predictions; and the others.
 fn in_both(
+    observed: &Observed,
     conditions: &[usize],
-    before: Vec<Option<Predicted>>,
-    after: Vec<Option<Predicted>>,
-) -> Vec<(usize, Predicted, Predicted)> {
-    let pairs = conditions.iter().zip(before.into_iter().zip(after));
-    pairs.filter_map(|(&condition, (before, after))| Some((condition, before?, after?))).collect()
+    before: Vec<Attempt>,
+    after: Vec<Attempt>,
+) -> (Vec<(usize, Predicted, Predicted)>, Vec<NotPredicted>) {
+    let (mut both, mut others) = (Vec::new(), Vec::new());
+    for (&condition, pair) in conditions.iter().zip(before.into_iter().zip(after)) {
+        let (by, why) = match pair {
+            (Ok(before), Ok(after)) => {
+                both.push((condition, before, after));
+                continue;
+            }
+            (Err(why), Ok(_)) => (Fails::Before, why),
+            (Ok(_), Err(why)) => (Fails::After, why),
+            (Err(why), Err(_)) => (Fails::Both, why),
+        };
+        let condition = observed.conditions[condition].id.clone();
+        others.push(NotPredicted { condition, by, why });
+    }
+    (both, others)
 }
 
 /// A condition predicted by a fit that has not seen it.
@@ -139,33 +196,32 @@ impl Predicted {
         noisy: &Fitted,
         fitted: &Fitted,
         conditions: &[usize],
-    ) -> Result<Vec<Option<Self>>, BenchError> {
-        let weights = bench.weights(&noisy.fit.point, &noisy.noise, conditions)?;
-        let data = Data { conditions, ..bench.data(&weights) };
-        let residual = data.residual(&fitted.fit.point)?;
-        let jacobian = data.jacobian(&fitted.fit)?;
+    ) -> Result<Vec<Attempt>, BenchError> {
         let parameters = fitted.fit.free_covariance();
-        let mut predicted = Vec::with_capacity(conditions.len());
-        let mut start = 0;
-        for (&condition, weight) in conditions.iter().zip(&weights) {
-            let observed = &bench.observed.conditions[condition];
-            let rows = observed.mean.len();
-            let residual = residual.rows(start, rows).into_owned();
-            let jacobian = jacobian.rows(start, rows).into_owned();
-            start += rows;
+        let one = |condition: usize| -> Result<Self, BenchError> {
+            let conditions = [condition];
+            let weights = bench.weights(&noisy.fit.point, &noisy.noise, &conditions)?;
+            let data = Data { conditions: &conditions, ..bench.data(&weights) };
+            let residual = data.residual(&fitted.fit.point)?;
+            let jacobian = data.jacobian(&fitted.fit)?;
             let log_density = density(&residual, &(&jacobian * &parameters * jacobian.transpose()));
-            predicted.push(Some(Self { error: weight.colour(&residual), log_density }));
-        }
-        Ok(predicted)
+            Ok(Self { error: weights[0].colour(&residual), log_density })
+        };
+        let attempt = |&condition: &usize| match one(condition) {
+            Ok(predicted) => Ok(Ok(predicted)),
+            Err(BenchError::Predict(error)) => Ok(Err(error.why)),
+            Err(other) => Err(other),
+        };
+        conditions.iter().map(attempt).collect()
     }
 
     /// Every condition that was fitted to, by one Gauss-Newton step without it from the fit of
-    /// `fitted`, under the noise of `noisy`; `None` where one alone fixes a parameter.
+    /// `fitted`, under the noise of `noisy`; none where one alone fixes a parameter.
     fn left_out(
         bench: &Bench<'_>,
         noisy: &Fitted,
         fitted: &Fitted,
-    ) -> Result<Vec<Option<Self>>, BenchError> {
+    ) -> Result<Vec<Attempt>, BenchError> {
         let fit = bench.data(&noisy.weights).fit(&fitted.fit.point)?;
         let all = fit.jacobian.tr_mul(&fit.jacobian);
         let mut predicted = Vec::with_capacity(noisy.weights.len());
@@ -177,13 +233,13 @@ impl Predicted {
             let jacobian = fit.jacobian.rows(start, rows).into_owned();
             start += rows;
             let Some(others) = Cholesky::new(&all - jacobian.tr_mul(&jacobian)) else {
-                predicted.push(None);
+                predicted.push(Err("it alone fixes a parameter".to_owned()));
                 continue;
             };
             let residual = &residual + &jacobian * others.solve(&jacobian.tr_mul(&residual));
             let log_density =
                 density(&residual, &(&jacobian * others.solve(&jacobian.transpose())));
-            predicted.push(Some(Self { error: weight.colour(&residual), log_density }));
+            predicted.push(Ok(Self { error: weight.colour(&residual), log_density }));
         }
         Ok(predicted)
     }
@@ -232,15 +288,50 @@ pub(crate) fn standard_errors(observed: &ObservedCondition) -> DVector<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_sets::{condition, scalar_run, set};
 
     #[test]
-    fn a_condition_that_only_one_model_predicts_is_left_out_of_both() {
-        let predicted = |log_density| Some(Predicted { error: DVector::zeros(1), log_density });
-        let before = vec![predicted(-1.0), predicted(-20.0), None];
-        let after = vec![predicted(-2.0), None, predicted(-30.0)];
-        let both = in_both(&[4, 5, 6], before, after);
+    fn a_condition_that_only_one_model_predicts_is_left_out_of_both_and_reported() {
+        let speeds = [1.0, 1.5, 2.0];
+        let runs = (0..3).map(|at| scalar_run(at, [Some(0.1), None, None])).collect();
+        let conditions = speeds.map(|speed| condition(speed, 90.0)).into();
+        let observed = Observed::of(&set(Kind::Scalar, conditions, runs));
+        let predicted = |log_density| Ok(Predicted { error: DVector::zeros(1), log_density });
+        let fails = || Err("it never stops".to_owned());
+        let before = vec![predicted(-1.0), predicted(-20.0), fails()];
+        let after = vec![predicted(-2.0), fails(), fails()];
+        let (both, others) = in_both(&observed, &[0, 1, 2], before, after);
         let kept: Vec<_> =
             both.iter().map(|(c, b, a)| (*c, b.log_density, a.log_density)).collect();
-        assert_eq!(kept, [(4, -1.0, -2.0)]);
+        assert_eq!(kept, [(0, -1.0, -2.0)]);
+        let left: Vec<_> = others.iter().map(|one| (one.condition.as_str(), one.by)).collect();
+        assert_eq!(left, [("1.5 m/s at 90", Fails::After), ("2 m/s at 90", Fails::Both)]);
+    }
+
+    fn held_out(judged: usize, by: Option<Fails>, gain: f64) -> HeldOut {
+        let error = (judged > 0).then_some(1e-3);
+        let one = |by| NotPredicted { condition: "a".into(), by, why: "it never stops".into() };
+        HeldOut {
+            before: error,
+            after: error,
+            noise_floor: error,
+            unit: Unit::Position,
+            conditions: LeftOut::Holdout,
+            conditions_judged: judged,
+            not_predicted: by.map(one).into_iter().collect(),
+            log_density_gain: gain,
+        }
+    }
+
+    #[test]
+    fn what_an_effect_cannot_predict_is_no_gain_of_it() {
+        let doubt = |judged, by, gain| held_out(judged, by, gain).doubt();
+        assert_eq!(doubt(2, None, 4.0), None);
+        assert_eq!(doubt(2, Some(Fails::Before), 4.0), None);
+        let after = doubt(2, Some(Fails::After), 4.0);
+        assert_eq!(after, Some(StrengthReason::ConditionsNotPredicted));
+        assert_eq!(doubt(0, Some(Fails::Both), 0.0), Some(StrengthReason::HeldOutNotJudged));
+        assert_eq!(doubt(2, None, 0.0), Some(StrengthReason::HeldOutNoBetter));
+        assert!(!held_out(0, None, -9.0).refutes(), "no error is larger than none");
     }
 }

@@ -46,7 +46,7 @@ pub fn lack_of_fit(
     }
     if fitted.noise.source != NoiseSource::Repeats {
         let freedom = (residual.len() - fitted.fit.n_free()) as f64;
-        return Ok(ChiSquared::new(freedom).ok().map(|chi2| chi2.sf(fitted.fit.chi2)));
+        return Ok(at_least(fitted.fit.chi2, freedom));
     }
     let reach = observed.fit.iter().fold(0.0_f64, |r, &c| r.max(observed.conditions[c].reach));
     let grain = bench.set.bed.grain_diameter.unwrap_or(0.0);
@@ -69,6 +69,11 @@ pub fn lack_of_fit(
     let drawn: Vec<Vec<f64>> = (0..DRAWS).map(|_| directions.sizes(&noise.draw())).collect();
     let measured = directions.sizes(&directions.of(residual));
     Ok(Some(smallest_probability(&measured, &drawn)))
+}
+
+/// Probability that χ² with so many degrees of freedom is `chi2` or more: a misfit that is too small is none.
+fn at_least(chi2: f64, freedom: f64) -> Option<f64> {
+    ChiSquared::new(freedom).ok().map(|distribution| distribution.sf(chi2))
 }
 
 /// Whitened directions that are no lack of fit: what the parameters and amplitudes of `fitted` can do,
@@ -147,6 +152,17 @@ mod tests {
         // Twenty are expected; the standard deviation is 4.4, here three of those.
         let rejected = rejected.count();
         assert!((7..=33).contains(&rejected), "{rejected}");
+    }
+
+    #[test]
+    fn a_misfit_is_as_rare_as_tables_of_chi_squared_say() {
+        // Abramowitz & Stegun, table 26.8, to its digits.
+        for (chi2, freedom, p) in
+            [(3.84146, 1.0, 0.05), (18.3070, 10.0, 0.05), (2.55821, 10.0, 0.99)]
+        {
+            let found = at_least(chi2, freedom).expect("freedom is positive");
+            assert!((found - p).abs() < 1e-5, "{chi2}: {found}");
+        }
     }
 
     #[test]

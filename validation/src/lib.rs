@@ -61,6 +61,7 @@ mod signature;
 mod significance;
 pub mod speed;
 pub mod spheres;
+mod strength;
 pub mod suggestion;
 #[cfg(test)]
 mod test_sets;

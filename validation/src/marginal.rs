@@ -26,8 +26,8 @@ pub(crate) struct Marginal {
     pub(crate) candidate: usize,
     /// Parameters and amplitude.
     pub(crate) point: Point,
-    /// Standard error of the amplitude; 0 at a bound.
-    pub(crate) standard_error: f64,
+    /// Standard error of the amplitude; none at a bound.
+    pub(crate) standard_error: Option<f64>,
     /// Fall of twice the negative logarithm of the likelihood.
     pub(crate) fall: f64,
 }
@@ -166,6 +166,7 @@ mod tests {
                 unit: "1".to_owned(),
                 min: 0.0,
                 max: 4.0,
+                usual: None,
                 step: 1e-3,
                 not_testable: None,
                 separable_from: String::new(),
@@ -234,6 +235,7 @@ mod tests {
         // To depth and range alike, (10 x 10 + 11 x 8) / (10² + 8²), and known to 1.5 mm in 12.8.
         let q = point.effects[0].1;
         assert!((q - 1.146).abs() < 0.05, "{q}");
+        let standard_error = standard_error.expect("no bound is near");
         assert!((0.09..0.16).contains(&standard_error), "{standard_error}");
         assert!(fall > 100.0, "{fall}");
         // Under the weights of the model as it is, the little that range gains on depth is all that counts.

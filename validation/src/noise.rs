@@ -11,7 +11,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::observed::{Observed, ObservedCondition, POSITION_FLOOR};
+use crate::observed::{Observed, ObservedCondition, least_position_error, position_error};
 use crate::rounding::rounded;
 use crate::sensitivity::{Sensitivity, Spread};
 
@@ -123,7 +123,7 @@ impl Noise {
     /// As JSON for a report.
     #[must_use]
     pub fn to_json(&self, instrument: &Instrument) -> Value {
-        let position = instrument.position_sigma.unwrap_or(0.0).max(POSITION_FLOOR);
+        let position = position_error(instrument);
         json!({
             "source": self.source,
             "position_sigma_m": rounded(self.reading * position),
@@ -177,8 +177,8 @@ fn scaled_columns(matrix: &DMatrix<f64>, scale: &DVector<f64>) -> DMatrix<f64> {
 
 fn from_logarithms(at: &[f64], instrument: &Instrument) -> Noise {
     let (low, high) = SPREAD_BOUNDS;
-    let position = instrument.position_sigma.unwrap_or(0.0).max(POSITION_FLOOR);
-    let reading = libm::exp(at[0]).clamp(POSITION_FLOOR / position, READING_MOST);
+    let least = least_position_error(instrument) / position_error(instrument);
+    let reading = libm::exp(at[0]).clamp(least, READING_MOST);
     let [coefficient, path] = [at[1], at[2]].map(|log| libm::exp(log).clamp(low, high));
     let spread = Spread::new(coefficient, path, instrument);
     Noise { source: NoiseSource::Repeats, reading, spread }

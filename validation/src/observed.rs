@@ -1,15 +1,34 @@
 //! What a measurement set says about the observables: the vectors of its runs, condition by condition.
 
-use measurements::{Condition, Frame, Kind, MeasurementSet, Role, Run, StatedError};
+use measurements::{Condition, Frame, Instrument, Kind, MeasurementSet, Role, Run, StatedError};
 use nalgebra::DVector;
 use runner::beds::STOPPED;
 
 use crate::observable::{Layout, Observable};
 use crate::resampling::{common_grid, depth_and_range, stopped_at};
 
-/// Least error that a reading of a position is credited with (m): below it the error of models and
-/// of their integration shows, and better cameras do not help.
-pub const POSITION_FLOOR: f64 = 1e-4;
+/// Error that a reading of a position is credited with where the set states none (m).
+const UNSTATED: f64 = 1e-4;
+
+/// Least error that a stated one counts as (m): below, predictions are no better, since derivatives of impacts that
+/// are integrated to some 1e-9 m are differences. A note says where a set states less.
+const LEAST: f64 = 1e-6;
+
+/// Root mean square error of one reading of a position (m) by `instrument`.
+pub(crate) fn position_error(instrument: &Instrument) -> f64 {
+    instrument.position_sigma.map_or(UNSTATED, counted)
+}
+
+/// What a stated error of a reading counts as (m).
+fn counted(stated: f64) -> f64 {
+    stated.max(LEAST)
+}
+
+/// Least error of readings that repeats may show (m): what a set states better is not doubted, what it states worse
+/// may be as good as where nothing is stated.
+pub(crate) fn least_position_error(instrument: &Instrument) -> f64 {
+    position_error(instrument).min(UNSTATED)
+}
 
 /// Most frames of the penetration that are compared; neighbours in time tell the same.
 pub(crate) const PENETRATION_FRAMES: usize = 24;
@@ -37,6 +56,8 @@ pub struct Observed {
 /// The observables of one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObservedCondition {
+    /// Its name in the set.
+    pub id: String,
     /// What the numbers are.
     pub layout: Layout,
     /// One vector per run, in an order that their values alone decide.
@@ -77,6 +98,7 @@ impl Observed {
                 .collect::<Vec<_>>()
         };
         let (fit, holdout) = (with_role(Role::Fit), with_role(Role::Holdout));
+        notes.extend(note_readings(set));
         let mut observed = Self { conditions, fit, holdout, notes };
         let assumed = set.kind == Kind::Trajectory
             && set.states_errors()
@@ -198,6 +220,7 @@ impl ObservedCondition {
         let mean = mean(&vectors, layout.len());
         let kinds = layout.kinds();
         Self {
+            id: condition.id.clone(),
             reading: reading(set, &layout, condition, &frames.sigma),
             stated: kinds.iter().map(|kind| stated(&set.stated, *kind)).collect(),
             reach: reach(&kinds, &mean, condition),
@@ -218,6 +241,7 @@ impl ObservedCondition {
         let kept: Vec<usize> = of_frames.chain(tracks..self.layout.len()).collect();
         let pick = |numbers: &DVector<f64>| numbers.select_rows(&kept);
         Self {
+            id: self.id.clone(),
             layout: Layout {
                 times: times.iter().map(|&time| self.layout.times[time]).collect(),
                 ..self.layout.clone()
@@ -236,6 +260,27 @@ impl ObservedCondition {
     pub fn deviation(&self, run: usize) -> DVector<f64> {
         &self.runs[run] - &self.mean
     }
+}
+
+/// What the errors of readings count as, where that is not what the set states.
+fn note_readings(set: &MeasurementSet) -> Option<String> {
+    if set.kind != Kind::Trajectory {
+        return None;
+    }
+    let frames = || set.runs.iter().flat_map(|run| &run.frames);
+    let stated = || frames().filter_map(|frame| frame.sigma).chain(set.instrument.position_sigma);
+    if set.instrument.position_sigma.is_none() && frames().any(|frame| frame.sigma.is_none()) {
+        return Some(format!(
+            "readings without a stated error count as known to {} mm",
+            1e3 * UNSTATED
+        ));
+    }
+    stated().any(|sigma| sigma < LEAST).then(|| {
+        format!(
+            "stated errors of readings below {} µm count as {0} µm: predictions are no better",
+            1e6 * LEAST
+        )
+    })
 }
 
 /// Readings of all runs of a condition at the same times.
@@ -336,7 +381,7 @@ pub(crate) fn reading(
     condition: &Condition,
     frames: &[Option<f64>],
 ) -> DVector<f64> {
-    let position = set.instrument.position_sigma.unwrap_or(0.0).max(POSITION_FLOOR);
+    let position = position_error(&set.instrument);
     // A stop is seen to a frame; without a rate, to the time in which the intruder, at the speed that
     // counts as stopped, moves by the error of a reading.
     let own_speed = (set.bed.gravity * condition.diameter).sqrt();
@@ -344,7 +389,7 @@ pub(crate) fn reading(
         set.instrument.rate.map_or(position / (STOPPED * condition.speed.max(own_speed)), |rate| {
             1.0 / (rate * 12.0_f64.sqrt())
         });
-    let frame = |at: usize| frames[at].map_or(position, |sigma| sigma.max(POSITION_FLOOR));
+    let frame = |at: usize| frames[at].map_or(position, counted);
     let n = layout.times.len();
     let kinds = layout.kinds();
     DVector::from_iterator(

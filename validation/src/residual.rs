@@ -1,5 +1,7 @@
 //! What a model leaves over, number by number, for plots and tables.
 
+use serde::Serialize;
+
 use crate::bench::{Bench, BenchError};
 use crate::noise::Noise;
 use crate::observable::Observable;
@@ -22,7 +24,40 @@ pub struct Residual {
     pub standard_error: f64,
 }
 
-/// All numbers of all conditions, held-out ones included, for the model at `point` under `noise`.
+/// A held-out condition that a model cannot predict.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Unpredicted {
+    /// Which model: its place among those that were asked.
+    #[serde(skip)]
+    pub model: usize,
+    /// Name of the condition in the set.
+    pub condition: String,
+    /// Why not.
+    pub why: String,
+}
+
+/// The held-out conditions that all of several models predict, each at its point, and the others: errors of models are
+/// compared over the same conditions.
+#[must_use]
+pub fn predictable(models: &[(Bench<'_>, &Point)]) -> (Vec<usize>, Vec<Unpredicted>) {
+    let Some((first, _)) = models.first() else { return (Vec::new(), Vec::new()) };
+    let mut unpredicted = Vec::new();
+    let mut is_predicted = |&condition: &usize| {
+        let before = unpredicted.len();
+        for (model, (bench, point)) in models.iter().enumerate() {
+            if let Err(error) = point.predict(bench.forward, condition) {
+                let condition = bench.observed.conditions[condition].id.clone();
+                unpredicted.push(Unpredicted { model, condition, why: error.why });
+            }
+        }
+        unpredicted.len() == before
+    };
+    let judged: Vec<usize> =
+        first.observed.holdout.iter().copied().filter(|one| is_predicted(one)).collect();
+    (judged, unpredicted)
+}
+
+/// All numbers of the conditions that were fitted to and of those of `holdout`, for the model at `point` under `noise`.
 ///
 /// The differences between two points are what an effect does once the parameters have compensated.
 ///
@@ -32,9 +67,9 @@ pub fn residuals(
     bench: &Bench<'_>,
     point: &Point,
     noise: &Noise,
+    holdout: &[usize],
 ) -> Result<Vec<Residual>, BenchError> {
-    let mut conditions: Vec<usize> =
-        bench.observed.fit.iter().chain(&bench.observed.holdout).copied().collect();
+    let mut conditions: Vec<usize> = bench.observed.fit.iter().chain(holdout).copied().collect();
     conditions.sort_unstable();
     let weights = bench.weights(point, noise, &conditions)?;
     let mut all = Vec::new();

@@ -11,8 +11,8 @@ use crate::significance::{NullScores, leads_again};
 /// How many of the best are refitted with derivatives of their own.
 const POLISHED: usize = 3;
 
-/// Nor are those that would be mistaken for one another more often than once in twenty.
-const CONFUSED: f64 = 0.95;
+/// Twins whose signatures have at least this cosine are one force under these conditions.
+const SAME: f64 = 0.999;
 
 /// A model with one more effect.
 #[derive(Clone, Debug)]
@@ -20,8 +20,8 @@ pub(crate) struct Score {
     pub(crate) signature: Signature,
     /// Parameters and amplitudes, that of the effect last.
     pub(crate) point: Point,
-    /// Standard error of its amplitude, enlarged as the fall of χ² is reduced; 0 at a bound.
-    pub(crate) standard_error: f64,
+    /// Standard error of its amplitude, enlarged as the fall of χ² is reduced; none at a bound.
+    pub(crate) standard_error: Option<f64>,
     /// Fall of χ², or of twice the negative logarithm of a likelihood, over the variance that the repeats show along the signature of the best effect, where
     /// that is larger than one.
     pub(crate) delta: f64,
@@ -124,7 +124,7 @@ impl Ranking {
         });
         for score in &mut scores {
             score.delta /= scale;
-            score.standard_error *= scale.sqrt();
+            score.standard_error = score.standard_error.map(|se| se * scale.sqrt());
             score.strength = score.amplitude().abs() * score.signature.norm / scale.sqrt();
         }
         let mut scores: Vec<Option<Score>> = scores.into_iter().map(Some).collect();
@@ -141,20 +141,26 @@ impl Ranking {
         self.p = self.scores.first().map_or(1.0, |best| self.null.family_wise_p(best.delta));
     }
 
-    /// Places of the effects that cannot be told from the best, itself included: by the numbers, or
-    /// because the data lack what would tell them apart.
+    /// Places of the effects that cannot be told from the best, itself included: those that help, and whose fall is
+    /// within the odds of the model. A twin farther behind, which the data lack the means to tell from the best, is
+    /// one of them only where both are one force under these conditions and no end of its range holds it back:
+    /// what explains less by more than the odds is told apart by that.
     pub(crate) fn not_separable(&self, bench: &Bench<'_>) -> Vec<usize> {
         let candidates = bench.forward.candidates();
         let Some(best) = self.scores.first() else { return Vec::new() };
         let twins = &candidates[best.candidate()].unresolved;
-        let least = bench.forward.separation();
-        let confused = |place: usize| {
-            let other = &self.scores[place];
-            twins.contains(&candidates[other.candidate()].id)
-                || best.delta - other.delta < least
-                || self.null.beats(self.rows[0], self.rows[place], best.strength) < CONFUSED
+        let within = bench.forward.separation();
+        let confused = |other: &Score| {
+            let candidate = &candidates[other.candidate()];
+            let is_same = || {
+                twins.contains(&candidate.id)
+                    && candidate.bound_at(other.amplitude()).is_none()
+                    && best.signature.unit.dot(&other.signature.unit).abs() >= SAME
+            };
+            other.delta > 0.0 && (best.delta - other.delta < within || is_same())
         };
-        (0..self.scores.len()).filter(|&place| place == 0 || confused(place)).collect()
+        let others = (1..self.scores.len()).filter(|&place| confused(&self.scores[place]));
+        std::iter::once(0).chain(others).collect()
     }
 }
 

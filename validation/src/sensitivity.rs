@@ -101,10 +101,11 @@ pub struct Sensitivity {
 }
 
 impl Sensitivity {
-    /// By central differences around the run of the mean bed at `point`; a path goes to `reach` (m).
+    /// By central differences around the run of the mean bed at `point`; a path goes to `reach` (m). Zero for an input
+    /// that the model can be integrated with on neither side.
     ///
     /// # Errors
-    /// If the model cannot be integrated there.
+    /// If the model cannot be integrated at `point` itself.
     pub fn at(
         point: &Point,
         forward: &dyn Forward,
@@ -129,9 +130,17 @@ impl Sensitivity {
             let run = |by: f64| {
                 point.predict_run(forward, condition, &input.scatter(by, coefficients, reach))
             };
-            let (more, less) = (run(step)?, run(-step)?);
-            slope.set_column(column, &((&more - &less) / (2.0 * step)));
-            curvature.set_column(column, &((more + less - 2.0 * &mean) / (step * step)));
+            match (run(step), run(-step)) {
+                (Ok(more), Ok(less)) => {
+                    slope.set_column(column, &((&more - &less) / (2.0 * step)));
+                    curvature.set_column(column, &((more + less - 2.0 * &mean) / (step * step)));
+                }
+                // To one side where the model cannot be integrated on the other; of no curvature.
+                (Ok(more), Err(_)) => slope.set_column(column, &((more - &mean) / step)),
+                (Err(_), Ok(less)) => slope.set_column(column, &((&mean - less) / step)),
+                // An input with which it cannot be integrated at all scatters nothing.
+                (Err(_), Err(_)) => (),
+            }
         }
         Ok(Self { inputs, mean, slope, curvature })
     }
@@ -204,10 +213,10 @@ pub enum Direction {
 }
 
 /// Change of the observables by a force around each of `nodes` equally spaced depths from the surface
-/// to `reach` (m), in units of the resistance; one column per node.
+/// to `reach` (m), in units of the resistance; one column per node, zero where the model cannot be integrated with it.
 ///
 /// # Errors
-/// If the model cannot be integrated there.
+/// If the model cannot be integrated at `point` itself.
 pub fn force_response(
     point: &Point,
     forward: &dyn Forward,
@@ -222,12 +231,16 @@ pub fn force_response(
     let mean = point.predict(forward, condition)?;
     let mut columns = Vec::with_capacity(nodes);
     for node in 0..nodes {
-        let force = (0..nodes).map(|k| if k == node { STEP } else { 0.0 }).collect();
-        let scatter = match direction {
-            Direction::Along => Scatter { along: force, ..still.clone() },
-            Direction::Sideways => Scatter { sideways: force, ..still.clone() },
+        let moved = |by: f64| {
+            let force = (0..nodes).map(|k| if k == node { by } else { 0.0 }).collect();
+            let scatter = match direction {
+                Direction::Along => Scatter { along: force, ..still.clone() },
+                Direction::Sideways => Scatter { sideways: force, ..still.clone() },
+            };
+            Ok((point.predict_run(forward, condition, &scatter)? - &mean) / by)
         };
-        columns.push((point.predict_run(forward, condition, &scatter)? - &mean) / STEP);
+        let column = moved(STEP).or_else(|_: PredictError| moved(-STEP));
+        columns.push(column.unwrap_or_else(|_| DVector::zeros(mean.len())));
     }
     Ok(DMatrix::from_columns(&columns))
 }

@@ -4,9 +4,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::bench::Fitted;
+use crate::forward::Bound;
 use crate::held_out::HeldOut;
 use crate::rounding::{six_digits, six_digits_or_null};
 use crate::sensitivity::Point;
+pub use crate::strength::{Strength, StrengthReason};
 
 /// The answer to "which effect is missing?".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -26,14 +28,20 @@ pub enum Verdict {
     CannotTell,
 }
 
-/// What a verdict rests on.
+/// What became of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Strength {
-    /// The scatter of repeats, and better predictions of what was not fitted to.
-    Supported,
-    /// Stated errors, an assumed scatter, or predictions that did not become better by more than chance.
-    Suggested,
+pub enum Status {
+    /// It was fitted and has its place.
+    Ranked,
+    /// The data lack what would show it.
+    NotTestable,
+    /// The model with it could not be integrated.
+    NotIntegrated,
+    /// In these data the parameters of the model do the same.
+    Imitated,
+    /// Nothing was tested.
+    NotTested,
 }
 
 /// A diagnosis of one model by one measurement set.
@@ -43,6 +51,8 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// What it rests on.
     pub strength: Strength,
+    /// Why it is only suggested; empty where it is confirmed.
+    pub strength_reasons: Vec<StrengthReason>,
     /// The one effect (of a pair, the two) that the verdict names.
     pub effects: Vec<String>,
     /// All that cannot be told apart, the leader first; empty under other verdicts.
@@ -93,9 +103,15 @@ pub struct RankedEffect {
     /// Fitted amplitude.
     #[serde(serialize_with = "six_digits_or_null")]
     pub q: Option<f64>,
-    /// Its standard error; 0 where the amplitude is held at a bound.
+    /// Its standard error; none where the amplitude is held at a bound.
     #[serde(serialize_with = "six_digits_or_null")]
     pub se: Option<f64>,
+    /// The end of its range at which the amplitude is held: the data ask for as much or more, or for as little or less.
+    pub at_bound: Option<Bound>,
+    /// Least and greatest amplitude that one would expect, where that is known.
+    pub usual_range: Option<[f64; 2]>,
+    /// Whether the amplitude is outside of that by more than two standard errors.
+    pub unusual: bool,
     /// Unit of the amplitude; 1 where it has none.
     pub unit: String,
     /// Fall of χ² by adding it; of twice the negative logarithm of the likelihood, where what effects do is known from
@@ -105,7 +121,9 @@ pub struct RankedEffect {
     /// Probability that it would be ranked first, were it there with this amplitude.
     #[serde(serialize_with = "six_digits_or_null")]
     pub predicted_top1: Option<f64>,
-    /// Whether the data can show it at all.
+    /// What became of it.
+    pub status: Status,
+    /// Whether the data can show it at all; one with which the model could not be integrated they may.
     pub testable: bool,
     /// The smallest amplitude that the data would show.
     #[serde(serialize_with = "six_digits_or_null")]
@@ -113,7 +131,7 @@ pub struct RankedEffect {
     /// Parameters of the model with it alone, with their units.
     #[serde(skip_serializing_if = "Map::is_empty")]
     pub parameters: Map<String, Value>,
-    /// Why it cannot be tested, or what it takes to tell it from its twins.
+    /// Why it is not ranked, or what it takes to tell it from its twins.
     pub note: String,
     /// The model with it, fitted.
     #[serde(skip)]
@@ -128,9 +146,13 @@ pub struct Amplitude {
     /// Amplitude.
     #[serde(serialize_with = "six_digits")]
     pub q: f64,
-    /// Its standard error; 0 where the amplitude is held at a bound.
-    #[serde(serialize_with = "six_digits")]
-    pub se: f64,
+    /// Its standard error; none where the amplitude is held at a bound.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub se: Option<f64>,
+    /// The end of its range at which it is held.
+    pub at_bound: Option<Bound>,
+    /// Whether it is outside of what one would expect of its effect, by more than two standard errors.
+    pub unusual: bool,
 }
 
 /// What remains.
@@ -151,6 +173,7 @@ impl Diagnosis {
         Self {
             verdict: Verdict::CannotTell,
             strength: Strength::Suggested,
+            strength_reasons: Vec::new(),
             effects: Vec::new(),
             not_separable: Vec::new(),
             leaders: Vec::new(),

@@ -20,7 +20,7 @@ use crate::force_error::ForceErrors;
 use crate::held_out::noise_floor;
 use crate::observed::Observed;
 use crate::picture;
-use crate::residual::{Residual, residuals};
+use crate::residual::{Residual, predictable, residuals};
 use crate::verdict::Diagnosis;
 
 /// Names of all files that there may be.
@@ -82,23 +82,24 @@ pub enum FilesError {
 }
 
 impl Failing {
-    /// Of `fitted`, called `model`; orders of runs are drawn with `seed`.
+    /// Of `fitted`, called `model`, with the held-out conditions `holdout`, which it can predict; orders of runs are drawn
+    /// with `seed`.
     ///
     /// # Errors
     /// If the model fails.
     pub fn of(
         bench: &Bench<'_>,
-        model: &str,
-        fitted: &Fitted,
+        (model, fitted): (&str, &Fitted),
+        holdout: &[usize],
         seed: u64,
     ) -> Result<Self, BenchError> {
         let point = &fitted.fit.point;
         Ok(Self {
             model: model.to_owned(),
             force_errors: ForceErrors::of(bench, fitted, seed)?,
-            residuals: residuals(bench, point, &fitted.noise)?,
+            residuals: residuals(bench, point, &fitted.noise, holdout)?,
             fit: Errors::at(bench, point, &bench.observed.fit)?,
-            holdout: Errors::at(bench, point, &bench.observed.holdout)?,
+            holdout: Errors::at(bench, point, holdout)?,
         })
     }
 }
@@ -130,12 +131,18 @@ impl<'a> WhereItFails<'a> {
         let Some(baseline) = &diagnosis.baseline else {
             return Ok(Self { set, observed, models: Vec::new(), signatures: Vec::new() });
         };
-        let mut models = vec![Failing::of(bench, name, baseline, seed)?];
-        if let (Some(proposed), false) = (&diagnosis.proposed, diagnosis.effects.is_empty()) {
+        let proposed = diagnosis.proposed.as_ref().filter(|_| !diagnosis.effects.is_empty());
+        let points = [Some(baseline), proposed].into_iter().flatten();
+        let asked: Vec<_> = points.map(|fitted| (*bench, &fitted.fit.point)).collect();
+        // What is not predicted stands in the diagnosis.
+        let (holdout, _) = predictable(&asked);
+        let mut models = vec![Failing::of(bench, (name, baseline), &holdout, seed)?];
+        if let Some(proposed) = proposed {
             let name = format!("{name} + {}", diagnosis.effects.join(" + "));
-            models.push(Failing::of(bench, &name, proposed, seed)?);
+            models.push(Failing::of(bench, (&name, proposed), &holdout, seed)?);
         }
-        let signatures = signature::best_two(bench, baseline, &models[0].residuals, diagnosis);
+        let signatures =
+            signature::best_two(bench, baseline, (&models[0].residuals, &holdout), diagnosis);
         Ok(Self { set, observed, models, signatures })
     }
 

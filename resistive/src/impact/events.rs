@@ -16,6 +16,9 @@ const ALMOST_REST: f64 = 1e-4;
 /// Events this near to each other are one (s).
 const SIMULTANEOUS: f64 = 1e-12;
 
+/// How often a step is halved to see what happens right after its start: down to 1e-12 of it.
+const HALVINGS: usize = 40;
+
 /// What can happen between two steps, as indices of [`Margins`].
 pub(super) const N_MARGINS: usize = 5 * PARTS + 3;
 pub(super) const SURFACE: usize = 0;
@@ -120,7 +123,8 @@ impl Impact {
             let start = if before.fresh { start.max(0.0) } else { start };
             let value = |state: &State| self.margins(system, state, progress)[which];
             if start >= 0.0 && halfway[which] < 0.0 {
-                roots[which] = solver.root((from, start), (middle, halfway[which]), value);
+                let begin = above_zero(solver, (from, start), middle, value);
+                roots[which] = solver.root(begin, (middle, halfway[which]), value);
             } else if halfway[which] >= 0.0 && after[which] < 0.0 {
                 roots[which] = solver.root((middle, halfway[which]), (to, after[which]), value);
             }
@@ -131,6 +135,29 @@ impl Impact {
             .then(|| Fired { time, which: roots.map(|root| root <= time + SIMULTANEOUS) });
         (after, fired)
     }
+}
+
+/// Where a margin that is `start` at `from` is first seen above zero before `to`, and what it is there; `from`, if it
+/// nowhere is. What has just been let go begins at zero and may come back to it much sooner than the step ends: that
+/// is what happens next, and not where it began.
+fn above_zero(
+    solver: &mut Solver<'_>,
+    (from, start): (f64, f64),
+    to: f64,
+    value: impl Fn(&State) -> f64,
+) -> (f64, f64) {
+    let mut time = to;
+    for _ in 0..HALVINGS {
+        if start > 0.0 {
+            break;
+        }
+        time = from + 0.5 * (time - from);
+        let margin = value(&solver.at(time));
+        if margin > 0.0 {
+            return (time, margin);
+        }
+    }
+    (from, start)
 }
 
 /// The speed of the first part, negative beyond a reversal: along a line, or along the component

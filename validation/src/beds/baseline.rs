@@ -128,6 +128,7 @@ fn observed(
     let mean = sum / vectors.len().max(1) as f64;
     let kinds = layout.kinds();
     ObservedCondition {
+        id: condition.id.clone(),
         reading: reading(set, &layout, condition, &vec![None; layout.times.len()]),
         stated: vec![None; kinds.len()],
         reach: reach(&kinds, &mean, condition),

@@ -12,7 +12,7 @@ use super::stand::Stand;
 use super::workflow::BedError;
 use crate::bench::BenchError;
 use crate::errors::{Errors, Sums};
-use crate::held_out::{HeldOut, LeftOut, Unit, standard_errors};
+use crate::held_out::{Fails, HeldOut, LeftOut, NotPredicted, Unit, standard_errors};
 use crate::observed::Observed;
 use crate::rounding::rounded;
 use crate::sensitivity::Point;
@@ -49,7 +49,7 @@ impl Confirmation {
         (conditions, runs): (&[usize], [&[Option<Record>]; 2]),
     ) -> Result<Self, BedError> {
         let mut sums = [Sums::default(), Sums::default(), Sums::default()];
-        let mut gain = 0.0;
+        let (mut gain, mut judged, mut not_predicted) = (0.0, 0, Vec::new());
         for (at, &condition) in conditions.iter().enumerate() {
             let observed = &measured.conditions[condition];
             let of_set = &stand.set.conditions[condition];
@@ -63,7 +63,14 @@ impl Confirmation {
                     Mean::of(&numbers.collect::<Vec<_>>())
                 })
                 .collect();
-            let [Some(plain), Some(with)] = &means[..] else { continue };
+            let (plain, with) = match &means[..] {
+                [Some(plain), Some(with)] => (plain, with),
+                means => {
+                    not_predicted.push(without_impacts(&of_set.id, means));
+                    continue;
+                }
+            };
+            judged += 1;
             let apparatus =
                 forward.apparatus(condition, &point.effects).map_err(BenchError::from)?;
             let errors = [&observed.mean - &plain.mean, &observed.mean - &with.mean - apparatus];
@@ -83,14 +90,15 @@ impl Confirmation {
             Unit::Position => errors.position,
             Unit::Relative => errors.relative,
         };
-        let [before, after, noise_floor] =
-            sums.map(|sums| pick(&sums.errors()).unwrap_or(f64::NAN));
+        let [before, after, noise_floor] = sums.map(|sums| pick(&sums.errors()));
         let held_out = HeldOut {
             before,
             after,
             noise_floor,
             unit,
             conditions: LeftOut::Holdout,
+            conditions_judged: judged,
+            not_predicted,
             // Numbers of one condition hang together: each condition counts as one.
             log_density_gain: gain,
         };
@@ -106,6 +114,18 @@ impl Confirmation {
         });
         Value::Object(channels.collect())
     }
+}
+
+/// A condition under which two impacts at least did not end, of the model as it is (the first of `means`) or of that
+/// with what is proposed.
+fn without_impacts(id: &str, means: &[Option<Mean>]) -> NotPredicted {
+    let by = match means {
+        [Some(_), None] => Fails::After,
+        [None, Some(_)] => Fails::Before,
+        _ => Fails::Both,
+    };
+    let why = "fewer than two impacts under it ended".to_owned();
+    NotPredicted { condition: id.to_owned(), by, why }
 }
 
 /// Mean of runs, and its standard error.

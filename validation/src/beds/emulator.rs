@@ -250,6 +250,7 @@ impl Screened {
             unit: "1".to_owned(),
             min,
             max,
+            usual: None,
             step: STEP * self.switch.screen,
             not_testable: self.not_testable.clone(),
             separable_from: self.switch.separable_from.to_owned(),
@@ -272,8 +273,12 @@ impl Forward for BedForward {
     }
 
     fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError> {
-        let missing = || PredictError { condition, why: "no impact was run under it".to_owned() };
         let observed = &self.baseline.observed.conditions[condition];
+        let missing = || PredictError {
+            condition,
+            id: observed.id.clone(),
+            why: "no impact was run under it".to_owned(),
+        };
         if observed.runs.is_empty() {
             return Err(missing());
         }
@@ -300,11 +305,6 @@ impl Forward for BedForward {
             Some(response.covariance_at(q, spread))
         });
         Some(of_effects.fold(spread / runs as f64, |sum, one| sum + one))
-    }
-
-    /// Odds of 100 to 1: what an effect does is known from a few runs.
-    fn separation(&self) -> f64 {
-        9.2
     }
 
     fn ways_of_scatter(&self, condition: usize) -> Option<&DMatrix<f64>> {

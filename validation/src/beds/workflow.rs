@@ -27,7 +27,7 @@ use crate::observable::Layout;
 use crate::observed::Observed;
 use crate::rounding::rounded;
 use crate::sensitivity::Point;
-use crate::verdict::{Diagnosis, Strength, Verdict};
+use crate::verdict::{Diagnosis, Status, Strength, StrengthReason, Verdict};
 
 /// Where they correlate more than this, effects are screened one at a time: what each does alone is worth
 /// more than what half of the runs of a design would save.
@@ -349,12 +349,19 @@ impl Work<'_> {
         forward: &BedForward,
         Confirmation { held_out, .. }: &Confirmation,
     ) -> Result<Diagnosis, BedError> {
-        let HeldOut { before, after, noise_floor, .. } = *held_out;
-        let no_nearer = after >= before;
         if self.plan.held_out || diagnosis.holdout.is_none() {
             diagnosis.holdout = Some(held_out.clone());
         }
-        if !self.plan.supports || !no_nearer {
+        let HeldOut {
+            before: Some(before),
+            after: Some(after),
+            noise_floor: Some(noise_floor),
+            ..
+        } = *held_out
+        else {
+            return Ok(diagnosis);
+        };
+        if !self.plan.supports || after < before {
             return Ok(diagnosis);
         }
         if after <= WITHIN * noise_floor {
@@ -370,19 +377,28 @@ impl Work<'_> {
             before / noise_floor,
         );
         diagnosis.holdout =
-            Some(HeldOut { after: before, log_density_gain: 0.0, ..held_out.clone() });
+            Some(HeldOut { after: Some(before), log_density_gain: 0.0, ..held_out.clone() });
         let bench = Bench { set: self.stand.set, observed: &self.observed, forward };
         Ok(withdraw(&bench, diagnosis, why, self.seed)?)
     }
 
     /// How much the verdict weighs.
     fn weigh(&self, diagnosis: &mut Diagnosis, confirmation: Option<&Confirmation>) {
-        let nearer = |one: &Confirmation| one.held_out.after < one.held_out.before;
-        let confirmed = self.plan.supports && confirmation.is_none_or(nearer);
-        if !confirmed {
+        let nearer = |one: &Confirmation| {
+            let errors = one.held_out.before.zip(one.held_out.after);
+            errors.is_some_and(|(before, after)| after < before)
+        };
+        let reasons = &mut diagnosis.strength_reasons;
+        if !self.plan.supports {
+            reasons.push(StrengthReason::SmallPlan);
+        }
+        if !confirmation.is_none_or(nearer) {
+            reasons.push(StrengthReason::FreshBedsNoNearer);
+        }
+        if !reasons.is_empty() {
             diagnosis.strength = Strength::Suggested;
         }
-        let lost = |effect: &crate::verdict::RankedEffect| !effect.testable;
+        let lost = |effect: &crate::verdict::RankedEffect| effect.status != Status::Ranked;
         if diagnosis.verdict == Verdict::CannotTell && diagnosis.ranking.iter().all(lost) {
             let why = diagnosis.ranking.iter().map(|effect| effect.note.as_str());
             diagnosis.unexplained.hint = why.max_by_key(|why| why.len()).unwrap_or("").to_owned();

@@ -22,7 +22,7 @@ use crate::pair::best_pair;
 use crate::resistive::ResistiveForward;
 use crate::score::Ranking;
 use crate::sensitivity::Point;
-use crate::verdict::{Diagnosis, RankedEffect, Verdict};
+use crate::verdict::{Diagnosis, RankedEffect, Status, Verdict};
 
 /// The model that every set is diagnosed with.
 const BASELINE: &str = "two-term-vector";
@@ -182,14 +182,14 @@ impl Answer {
         let ids = |of: fn(&&RankedEffect) -> bool| {
             diagnosis.ranking.iter().filter(of).map(|effect| effect.id.clone()).collect()
         };
-        let first = diagnosis.ranking.first().filter(|effect| effect.testable);
+        let first = diagnosis.ranking.first().filter(|effect| effect.status == Status::Ranked);
         Self {
             verdict: diagnosis.verdict,
             p1: diagnosis.p1,
             p_lof: diagnosis.p_lof,
             p_lof_with: diagnosis.p_lof_with,
-            ranked: ids(|effect| effect.testable),
-            refused: ids(|effect| !effect.testable),
+            ranked: ids(|effect| effect.status == Status::Ranked),
+            refused: ids(|effect| effect.status != Status::Ranked),
             predicted_first: first.and_then(|effect| effect.predicted_top1),
             amplitude: first
                 .and_then(|effect| effect.q.zip(effect.se))

@@ -100,6 +100,7 @@ impl ObservedCondition {
         let frames = vec![None; layout.times.len()];
         let kinds: Vec<Observable> = layout.kinds();
         Self {
+            id: condition.id.clone(),
             reading: crate::observed::reading(set, &layout, condition, &frames),
             stated: kinds.iter().map(|kind| crate::observed::stated(&set.stated, *kind)).collect(),
             reach: crate::observed::reach(&kinds, &mean, condition),

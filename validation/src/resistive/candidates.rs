@@ -38,6 +38,7 @@ fn candidate(effect: &Effect, set: &MeasurementSet) -> Candidate {
         unit: effect.unit(),
         min: spec.allowed.min,
         max: spec.allowed.max,
+        usual: Some([spec.plausible.min, spec.plausible.max]),
         step: STEP * spec.plausible.max,
         not_testable: (!lacks.is_empty()).then(|| format!("needs {}", lacks.join(" and "))),
         separable_from: twins(effect.name()).map(from).collect::<Vec<_>>().join(", "),

@@ -201,9 +201,10 @@ impl Forward for ResistiveForward {
         for (&index, &value) in self.active.iter().zip(at.parameters) {
             values[index] = value;
         }
-        self.conditions[condition]
+        let prepared = &self.conditions[condition];
+        prepared
             .predict(&values, &added, at.scatter, &self.scattering)
-            .map_err(|why| PredictError { condition, why })
+            .map_err(|why| PredictError { condition, id: prepared.id().to_owned(), why })
     }
 }
 

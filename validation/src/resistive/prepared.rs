@@ -10,7 +10,9 @@ use engine::params::{Default, ParamTable};
 use intruders::{Casting, ShapeEntry};
 use measurements::{Condition, FinalDefinition, Geometry, MeasurementSet, StopDefinition};
 use resistive::{Coefficients, Effect, Expression, ResistanceEntry};
-use resistive::{Ending, Impact, ResistanceLaw, Space, State, Surroundings, Tolerance, Trajectory};
+use resistive::{
+    Effort, Ending, Impact, ResistanceLaw, Space, State, Surroundings, Tolerance, Trajectory,
+};
 
 use super::ForwardError;
 use super::bent::Bent;
@@ -24,12 +26,17 @@ const DURATION: f64 = 10.0;
 /// Errors near 1e-9 m, far below any camera and small beside every difference that is taken.
 const TOLERANCE: Tolerance = Tolerance { relative: 1e-10, absolute: 1e-12 };
 
+/// An impact takes some twenty steps and a few changes of mode; a fit that wanders to where it takes a hundred times
+/// as many has left what the model can describe, and must not wait there.
+const EFFORT: Effort = Effort { steps: 4_000, changes: 400 };
+
 /// How many predictions of a condition are kept: a derivative by one parameter leaves most conditions
 /// as they were.
 const KEPT: usize = 4;
 
 /// A condition with the model's law for it.
 pub(super) struct Prepared {
+    id: String,
     recent: Mutex<VecDeque<(Inputs, Vec<f64>)>>,
     layout: Layout,
     stop: StopDefinition,
@@ -217,6 +224,7 @@ impl Prepared {
         };
         let there = ResistiveMedium { bulk_density: bed.bulk_density, ..medium.clone() };
         Ok(Self {
+            id: condition.id.clone(),
             recent: Mutex::new(VecDeque::with_capacity(KEPT + 1)),
             layout: layout.clone(),
             stop: set.stop,
@@ -231,6 +239,11 @@ impl Prepared {
             bed,
             law: Law::new(&there, free, (angle, condition.speed)),
         })
+    }
+
+    /// Name of the condition in the set.
+    pub(super) fn id(&self) -> &str {
+        &self.id
     }
 
     /// The observables, in the order of the layout.
@@ -333,7 +346,9 @@ impl Prepared {
             velocity: Vec3::new(speed * cosine, 0.0, -speed * sine),
             spin: self.spin,
         });
-        Impact::new(made.assembly, laws, self.bed, made.start).with_tolerance(TOLERANCE)
+        Impact::new(made.assembly, laws, self.bed, made.start)
+            .with_tolerance(TOLERANCE)
+            .with_effort(EFFORT)
     }
 }
 

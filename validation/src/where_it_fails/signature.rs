@@ -22,14 +22,14 @@ pub struct Signature {
 pub(super) fn best_two(
     bench: &Bench<'_>,
     baseline: &Fitted,
-    found: &[Residual],
+    (found, holdout): (&[Residual], &[usize]),
     diagnosis: &Diagnosis,
 ) -> Vec<Signature> {
     let ranked =
         diagnosis.ranking.iter().filter_map(|effect| Some((effect, effect.point.as_ref()?)));
     ranked
         .filter_map(|(effect, point)| {
-            let with = residuals(bench, point, &baseline.noise).ok()?;
+            let with = residuals(bench, point, &baseline.noise, holdout).ok()?;
             let pairs = with.iter().zip(found);
             let change = pairs.map(|(with, without)| with.predicted - without.predicted).collect();
             Some(Signature { effect: effect.id.clone(), change })

@@ -65,7 +65,7 @@ fn the_json_has_the_keys_that_users_rely_on_and_no_others() {
         let object = value.as_object().expect("an object");
         object.keys().cloned().collect::<Vec<_>>()
     };
-    assert_eq!(keys(&json), ["set", "models", "noise"]);
+    assert_eq!(keys(&json), ["set", "models", "noise", "conditions_judged", "not_predicted"]);
     let model = &json["models"][0];
     assert_eq!(keys(model), ["model", "parameters", "chi2_per_n", "p_lof", "rms", "fails"]);
     assert_eq!(keys(&model["parameters"]["drag"]), ["value", "se", "unit"]);

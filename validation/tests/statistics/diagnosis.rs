@@ -5,7 +5,7 @@ use validation::bench::{Bench, DEFAULT_SEED};
 use validation::diagnose::diagnose;
 use validation::held_out::LeftOut;
 use validation::observed::Observed;
-use validation::verdict::{Diagnosis, RankedEffect, Strength, Verdict};
+use validation::verdict::{Diagnosis, RankedEffect, Status, Strength, StrengthReason, Verdict};
 
 use crate::laboratory::Laboratory;
 use crate::world::{Effect, TwoTerm};
@@ -122,12 +122,13 @@ fn held_out_conditions_do_not_reach_the_ranking() {
 fn without_held_out_conditions_each_is_left_out_in_turn() {
     let laboratory = Laboratory { holdout: 0, ..Laboratory::hiding(Effect::Lift, 0.1) };
     let found = diagnosis(&laboratory, &laboratory.measure(1));
-    assert_eq!((found.verdict, found.strength), (Verdict::Supported, Strength::Supported));
+    assert_eq!((found.verdict, found.strength), (Verdict::Supported, Strength::Confirmed));
     let held_out = found.holdout.expect("something was fitted");
     assert_eq!(held_out.conditions, LeftOut::OneAtATime);
     assert!(held_out.after < held_out.before, "{held_out:?}");
     // Means of five with the right model miss by their noise, and by what the fit adds to it.
-    assert!(held_out.after < 1.5 * held_out.noise_floor, "{held_out:?}");
+    let [after, floor] = [held_out.after, held_out.noise_floor].map(|error| error.expect("judged"));
+    assert!(after < 1.5 * floor, "{held_out:?}");
 }
 
 #[test]
@@ -154,6 +155,7 @@ fn an_effect_that_the_data_cannot_show_is_listed_and_not_ranked() {
     let found = diagnose(&bench, DEFAULT_SEED).expect("spheres stop");
     let last = found.ranking.last().expect("there are effects");
     assert_eq!((last.id.as_str(), last.testable), ("buoyancy", false));
+    assert_eq!(last.status, Status::NotTestable);
     assert_eq!((last.q, last.delta, last.note.as_str()), (None, None, "only vertical runs"));
     assert!(found.ranking.iter().rev().skip(1).all(|entry| entry.testable));
     assert!(!found.effects.contains(&"buoyancy".to_owned()));
@@ -164,7 +166,7 @@ fn scalars_with_repeats_name_a_strong_effect() {
     let hidden = vec![(Effect::Lift, 0.2)];
     let laboratory = Laboratory { kind: Kind::Scalar, hidden, ..Laboratory::default() };
     let found = diagnosis(&laboratory, &laboratory.measure(1));
-    assert_eq!((found.verdict, found.strength), (Verdict::Supported, Strength::Supported));
+    assert_eq!((found.verdict, found.strength), (Verdict::Supported, Strength::Confirmed));
     assert_eq!(found.effects, ["lift"]);
 }
 
@@ -188,6 +190,7 @@ fn stated_errors_suggest_and_nothing_stated_cannot_tell() {
     set.stated = StatedError { stop_time: error, final_z: error, final_x: error };
     let found = diagnosis(&laboratory, &set);
     assert_eq!((found.verdict, found.strength), (Verdict::Supported, Strength::Suggested));
+    assert_eq!(found.strength_reasons[0], StrengthReason::StatedErrors);
     assert_eq!(found.effects, ["lift"]);
 }
 
@@ -196,6 +199,7 @@ fn trajectories_without_repeats_suggest_under_an_assumed_scatter() {
     let laboratory = Laboratory { repeats: 1, ..Laboratory::hiding(Effect::Lift, 0.4) };
     let found = diagnosis(&laboratory, &laboratory.measure(1));
     assert_eq!(found.strength, Strength::Suggested);
+    assert_eq!(found.strength_reasons[0], StrengthReason::AssumedScatter);
     assert_eq!(found.noise["source"], "assumed");
     assert_eq!((found.verdict, found.effects), (Verdict::Supported, vec!["lift".to_owned()]));
 }
@@ -224,17 +228,23 @@ fn an_effect_that_uses_up_all_that_was_measured_is_not_named() {
 fn the_keys_of_the_json_are_those_that_users_rely_on() {
     let laboratory = Laboratory::hiding(Effect::Buoyancy, 3.0);
     let json = diagnosis(&laboratory, &laboratory.measure(1)).to_json().expect("it has JSON");
+    assert!(json["strength_reasons"].as_array().is_some_and(Vec::is_empty), "{json}");
     for key in ["verdict", "strength", "effects", "not_separable", "ranking", "p1", "p_lof"] {
         assert!(!json[key].is_null(), "{key}");
     }
+    assert_eq!(json["ranking"][0]["status"], "ranked");
     for key in ["id", "q", "se", "unit", "delta", "predicted_top1", "testable", "detection_limit"] {
         assert!(!json["ranking"][0][key].is_null(), "{key}");
     }
+    assert!(
+        json["holdout"]["conditions_judged"].is_u64()
+            && json["holdout"]["not_predicted"].is_array()
+    );
     for key in ["before", "after", "noise_floor"] {
         assert!(json["holdout"][key].is_f64(), "{key}");
     }
     assert_eq!(json["verdict"], "supported");
-    assert_eq!(json["strength"], "supported");
+    assert_eq!(json["strength"], "confirmed");
     assert!(json["noise"]["path_force_sd"].is_f64());
     assert!(json["unexplained"]["depends_on"].is_array());
     assert_eq!(json["next"], serde_json::json!([]));

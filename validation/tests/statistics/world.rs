@@ -241,6 +241,7 @@ impl TwoTerm {
                 unit: "1".into(),
                 min,
                 max,
+                usual: None,
                 step,
                 not_testable: None,
                 separable_from: "from others by more runs".into(),
@@ -296,7 +297,10 @@ impl Forward for TwoTerm {
             sideways,
             reach: *reach,
         };
-        let path = impact.path(5e-4).map_err(|why| PredictError { condition, why })?;
+        let path = impact.path(5e-4).map_err(|why| {
+            let id = format!("setting {condition}");
+            PredictError { condition, id, why }
+        })?;
         Ok(observables(&self.layouts[condition], &path))
     }
 }

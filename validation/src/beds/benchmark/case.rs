@@ -188,7 +188,8 @@ impl Case {
             wrong,
             predicted: own.and_then(|effect| effect.predicted_top1),
             first: truth.is_some() && leader.map(|effect| effect.id.as_str()) == truth,
-            held_out: held_out.map(|errors| [errors.before, errors.after, errors.noise_floor]),
+            held_out: held_out
+                .and_then(|errors| Some([errors.before?, errors.after?, errors.noise_floor?])),
             named,
             impacts,
             seconds,

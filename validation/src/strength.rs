@@ -1,0 +1,45 @@
+//! What a verdict rests on, and why it is no more than suggested.
+
+use serde::Serialize;
+
+/// What a verdict rests on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Strength {
+    /// The scatter of repeats, amplitudes that one would expect, and better predictions of what was not fitted to.
+    Confirmed,
+    /// Less than that: each [`StrengthReason`] says what is missing.
+    Suggested,
+}
+
+/// Why a verdict is only suggested.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StrengthReason {
+    /// Errors are stated and not seen in repeats.
+    StatedErrors,
+    /// Nothing was repeated, and the scatter from run to run is assumed.
+    AssumedScatter,
+    /// The repeats give fewer than eight independent deviations, so that the scatter is known to no better than a
+    /// quarter.
+    FewRepeats,
+    /// What was held out is not predicted better by more than chance.
+    HeldOutNoBetter,
+    /// Nothing that was held out could be predicted both without and with what is named.
+    HeldOutNotJudged,
+    /// What is named cannot predict a condition that the model without it predicts.
+    ConditionsNotPredicted,
+    /// An amplitude of what is named lies outside of the usual range of its effect, by more than two standard errors.
+    AmplitudeOutsideUsualRange,
+    /// The plan of impacts was too small to confirm anything.
+    SmallPlan,
+    /// Impacts with it, on fresh beds, are no nearer to what was held out.
+    FreshBedsNoNearer,
+}
+
+impl StrengthReason {
+    /// Whether it is of the measurements, whatever effect is named.
+    pub(crate) fn is_of_measurements(self) -> bool {
+        matches!(self, Self::StatedErrors | Self::AssumedScatter | Self::FewRepeats)
+    }
+}
