@@ -6,16 +6,16 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 use configs::engine::units::{self, Dimension};
-use runner::beds::{Impacts, Place};
-use runner::{CampaignError, Elsewhere};
-use serde_json::{Value, json};
-use validation::beds::{
+use diagnosis::beds::{
     BedDiagnosis, BedError, BedForward, Plan, Stand, Wish, bed_forward, compare_jobs, diagnose_bed,
     unaffordable,
 };
-use validation::bench::Bench;
-use validation::compare::Comparison;
-use validation::where_it_fails::WhereItFails;
+use diagnosis::bench::Bench;
+use diagnosis::compare::Comparison;
+use diagnosis::where_it_fails::WhereItFails;
+use runner::beds::{Impacts, Place};
+use runner::{CampaignError, Elsewhere};
+use serde_json::{Value, json};
 
 use crate::common::{On, cache_folder, of_scheduler};
 use crate::compare::{lines, table};

@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
+use diagnosis::compare::{Comparison, ModelComparison, Revision, compare};
+use diagnosis::forward::Forward;
+use diagnosis::observable::Observable;
+use diagnosis::picture;
+use diagnosis::residual::Residual;
+use diagnosis::where_it_fails::WhereItFails;
 use measurements::MeasurementSet;
 use serde_json::{Value, json};
-use validation::compare::{Comparison, ModelComparison, Revision, compare};
-use validation::forward::Forward;
-use validation::observable::Observable;
-use validation::picture;
-use validation::residual::Residual;
-use validation::where_it_fails::WhereItFails;
 
 use crate::beds::{self, Beds, Workshop};
 use crate::compare_runs::{self, Found};

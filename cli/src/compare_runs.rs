@@ -5,12 +5,12 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
+use diagnosis::runs::{Change, PathDifference, StopDifference, Track, TrackPoint, Values};
 use exchange::read::{BodyStates, Keep, read_run};
 use exchange::run_files::{RunFiles, is_log};
 use reports::run::Course;
 use runner::run::Summary;
 use serde_json::{Map, Value, json};
-use validation::runs::{Change, PathDifference, StopDifference, Track, TrackPoint, Values};
 
 use crate::compare::{lines, table};
 use crate::output::{self, CommandError, CommandResult};

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use configs::edit::add_effects;
+use diagnosis::bench::Bench;
+use diagnosis::diagnose::diagnose;
+use diagnosis::forward::Bound;
+use diagnosis::held_out::{Fails, LeftOut, Unit};
+use diagnosis::next::recommend;
+use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Verdict};
+use diagnosis::where_it_fails::WhereItFails;
 use serde_json::Value;
-use validation::bench::Bench;
-use validation::diagnose::diagnose;
-use validation::forward::Bound;
-use validation::held_out::{Fails, LeftOut, Unit};
-use validation::next::recommend;
-use validation::verdict::{Diagnosis, RankedEffect, Status, Verdict};
-use validation::where_it_fails::WhereItFails;
 
 use crate::add::from_diagnosis;
 use crate::beds::{self, Beds};

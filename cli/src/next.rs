@@ -1,8 +1,8 @@
 //! What `plunge diagnose` says of the next experiment.
 
 use comfy_table::Cell;
-use validation::next::Recommendation;
-use validation::verdict::{Diagnosis, Verdict};
+use diagnosis::next::Recommendation;
+use diagnosis::verdict::{Diagnosis, Verdict};
 
 use crate::compare::{lines, table};
 

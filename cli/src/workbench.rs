@@ -7,11 +7,11 @@ use std::path::{Component, Path, PathBuf};
 use clap::Args;
 use configs::engine::checkpoint;
 use configs::{LoadOptions, Loaded, Model, ModelSource};
+use diagnosis::bench::BenchError;
+use diagnosis::observed::Observed;
+use diagnosis::resistive::ResistiveForward;
+use diagnosis::where_it_fails;
 use measurements::{ContradictionKind, MeasurementSet, SetError};
-use validation::bench::BenchError;
-use validation::observed::Observed;
-use validation::resistive::ResistiveForward;
-use validation::where_it_fails;
 
 use crate::output::{self, CommandError, CommandResult, stderr_color};
 

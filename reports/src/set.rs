@@ -1,7 +1,7 @@
 //! The page of a measurement set as it was understood.
 
+use diagnosis::picture;
 use measurements::{Kind, Loaded, Role};
-use validation::picture;
 
 use crate::ReportError;
 use crate::figure::figure;

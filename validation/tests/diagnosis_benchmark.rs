@@ -1,15 +1,15 @@
 //! A few worlds of the benchmark of the diagnosis, with claims that can fail.
 
+use diagnosis::bench::{Bench, DEFAULT_SEED};
+use diagnosis::diagnose::diagnose;
+use diagnosis::observed::Observed;
+use diagnosis::resistive::ResistiveForward;
+use diagnosis::verdict::Verdict;
 use measurements::MeasurementSet;
-use validation::bench::{Bench, DEFAULT_SEED};
 use validation::benchmark::design::Design;
 use validation::benchmark::hidden::Hidden;
 use validation::benchmark::plan::{Plan, Row, Seeds, Size};
 use validation::benchmark::trial::{Answer, Trial, baseline, draw};
-use validation::diagnose::diagnose;
-use validation::observed::Observed;
-use validation::resistive::ResistiveForward;
-use validation::verdict::Verdict;
 
 /// The answers to the first `most` sets of `row` that `wanted` picks.
 fn answers(row: Row, most: usize, wanted: impl Fn(&[Hidden], f64) -> bool) -> Vec<(Trial, Answer)> {

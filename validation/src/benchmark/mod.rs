@@ -8,6 +8,7 @@
 //! [`plan`] lists the worlds of every row, [`trial`] has one diagnosed, [`kept`] keeps what came of it, [`scores`] and
 //! [`calibration`] say how often it was right, [`table`] and [`json`] write that down.
 
+pub mod beds;
 pub mod calibration;
 pub mod chance;
 pub mod design;

@@ -2,6 +2,12 @@
 //! drawn from the same grid.
 
 use configs::Model;
+use diagnosis::bench::{Bench, DEFAULT_SEED};
+use diagnosis::diagnose::diagnose;
+use diagnosis::next::{Recommendation, judged};
+use diagnosis::observed::Observed;
+use diagnosis::resistive::ResistiveForward;
+use diagnosis::verdict::{Diagnosis, Verdict};
 use measurements::{Condition, MeasurementSet};
 use serde::{Deserialize, Serialize};
 
@@ -10,12 +16,6 @@ use super::design::Design;
 use super::forces::Setting;
 use super::laboratory::{Nature, measure};
 use super::plan::Plan;
-use crate::bench::{Bench, DEFAULT_SEED};
-use crate::diagnose::diagnose;
-use crate::next::{Recommendation, judged};
-use crate::observed::Observed;
-use crate::resistive::ResistiveForward;
-use crate::verdict::{Diagnosis, Verdict};
 
 /// Conditions that are added, one after the other.
 const ADDED: usize = 2;

@@ -1,11 +1,12 @@
 //! Rows of the tables: what was measured beside what is asked for.
 
+use diagnosis::diagnose::ALPHA;
+use diagnosis::verdict::Verdict;
+
 use super::interval::{Share, interval_of_median, mcnemar, quantile};
 use super::next::Resolved;
 use super::plan::{CAMERAS, Row, STRENGTHS};
 use super::trial::{Answer, Trial};
-use crate::diagnose::ALPHA;
-use crate::verdict::Verdict;
 
 /// A row of a table.
 #[derive(Clone, Debug, PartialEq)]

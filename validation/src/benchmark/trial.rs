@@ -3,6 +3,14 @@
 use std::time::Instant;
 
 use configs::{ConfigError, LoadOptions, Model, ModelSource, find_shipped};
+use diagnosis::bench::{Bench, BenchError, DEFAULT_SEED, Fitted};
+use diagnosis::diagnose::diagnose;
+use diagnosis::observable::Observable;
+use diagnosis::observed::Observed;
+use diagnosis::pair::best_two;
+use diagnosis::resistive::ResistiveForward;
+use diagnosis::sensitivity::Point;
+use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Verdict};
 use measurements::MeasurementSet;
 use nalgebra::DVector;
 use resistive::find_resistance;
@@ -14,15 +22,6 @@ use super::next::Resolved;
 use super::path::WorldError;
 use super::plan::{Plan, Row};
 use super::strength::amplitude;
-use crate::bench::{Bench, BenchError, DEFAULT_SEED, Fitted};
-use crate::diagnose::diagnose;
-use crate::observable::Observable;
-use crate::observed::Observed;
-use crate::pair::best_pair;
-use crate::resistive::ResistiveForward;
-use crate::score::Ranking;
-use crate::sensitivity::Point;
-use crate::verdict::{Diagnosis, RankedEffect, Status, Verdict};
 
 /// The model that every set is diagnosed with.
 const BASELINE: &str = "two-term-vector";
@@ -211,12 +210,8 @@ fn pair_found(bench: &Bench<'_>) -> Result<Option<Vec<String>>, BenchError> {
     let candidates = bench.forward.candidates();
     let testable: Vec<usize> =
         (0..candidates.len()).filter(|&at| candidates[at].not_testable.is_none()).collect();
-    let singles = Ranking::of(bench, &baseline, &testable, DEFAULT_SEED);
-    let pair = best_pair(bench, &baseline, &singles, DEFAULT_SEED)?;
-    Ok(pair.map(|pair| {
-        let effects = &pair.fitted.fit.point.effects;
-        effects.iter().map(|&(index, _)| candidates[index].id.to_string()).collect()
-    }))
+    let pair = best_two(bench, &baseline, &testable, DEFAULT_SEED)?;
+    Ok(pair.map(|pair| pair.iter().map(|&index| candidates[index].id.to_string()).collect()))
 }
 
 /// Errors of the resting points `rest` (m) of held-out conditions, without and with what is named.

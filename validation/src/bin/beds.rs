@@ -7,13 +7,13 @@ use std::num::NonZero;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use diagnosis::beds::Wish;
 use engine::checkpoint::write_whole;
 use lexopt::Parser;
 use lexopt::prelude::{Long, Short, ValueExt};
 use runner::beds::Place;
 use runner::{Elsewhere, Unattended};
-use validation::beds::Wish;
-use validation::beds::benchmark::{Case, Outcome, all, quick, table};
+use validation::benchmark::beds::{Case, Outcome, all, quick, table};
 use validation::command::{conclude, on};
 
 const HELP: &str = "\

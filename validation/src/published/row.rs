@@ -1,6 +1,8 @@
 //! A row: a published result, how it is run again, and what came of it.
 
 use configs::ConfigError;
+use diagnosis::bench::BenchError;
+use diagnosis::compare::CompareError;
 use engine::error::ThreadsError;
 use plots::PictureError;
 use resistive::ImpactError;
@@ -10,8 +12,6 @@ use thiserror::Error;
 
 use super::check::{Check, Verdict};
 use super::laboratory::Laboratory;
-use crate::bench::BenchError;
-use crate::compare::CompareError;
 
 /// A published result that is run again and judged.
 pub struct Row {

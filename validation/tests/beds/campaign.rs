@@ -4,10 +4,10 @@ use std::num::NonZero;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
+use diagnosis::beds::{Stand, Variation};
 use measurements::Role;
 use runner::beds::{Impacts, Job, Place, Record};
 use runner::{CampaignError, Progress, Unattended, Watch};
-use validation::beds::{Stand, Variation};
 
 use crate::world::{condition, empty_set, model};
 

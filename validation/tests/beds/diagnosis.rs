@@ -1,7 +1,7 @@
 //! The diagnosis of a bed, with impacts that take no time.
 
-use validation::beds::Wish;
-use validation::beds::benchmark::{Case, Hidden, Outcome};
+use diagnosis::beds::Wish;
+use validation::benchmark::beds::{Case, Hidden, Outcome};
 
 use crate::imitation::Imitation;
 

@@ -4,13 +4,13 @@
 use std::path::PathBuf;
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
+use diagnosis::forward::{Forward, Request, Scatter};
+use diagnosis::observable::Layout;
+use diagnosis::resistive::ResistiveForward;
 use measurements::{
     Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
     Role, Run, StatedError, StopDefinition,
 };
-use validation::forward::{Forward, Request, Scatter};
-use validation::observable::Layout;
-use validation::resistive::ResistiveForward;
 
 use super::rig::{BED, DIAMETER, MASS};
 

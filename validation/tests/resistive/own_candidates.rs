@@ -1,18 +1,18 @@
 //! A candidate of a model file in a diagnosis.
 
 use configs::{LoadOptions, Model, ModelSource};
+use diagnosis::bench::{Bench, DEFAULT_SEED};
+use diagnosis::diagnose::diagnose;
+use diagnosis::forward::{Forward, Request, Scatter};
+use diagnosis::observed::Observed;
+use diagnosis::resistive::ResistiveForward;
+use diagnosis::verdict::Verdict;
 use measurements::{
     Bed, Condition, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role, Run,
     StatedError, StopDefinition,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
-use validation::bench::{Bench, DEFAULT_SEED};
-use validation::diagnose::diagnose;
-use validation::forward::{Forward, Request, Scatter};
-use validation::observed::Observed;
-use validation::resistive::ResistiveForward;
-use validation::verdict::Verdict;
 
 use super::late_drag;
 

@@ -1,10 +1,10 @@
 //! Several revisions of a model side by side.
 
+use diagnosis::bench::DEFAULT_SEED;
+use diagnosis::compare::{Comparison, Revision, compare};
+use diagnosis::observed::Observed;
 use measurements::Kind;
 use serde_json::Value;
-use validation::bench::DEFAULT_SEED;
-use validation::compare::{Comparison, Revision, compare};
-use validation::observed::Observed;
 
 use crate::laboratory::Laboratory;
 use crate::world::{Effect, TwoTerm};

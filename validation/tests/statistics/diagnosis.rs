@@ -1,11 +1,11 @@
 //! The verdicts.
 
+use diagnosis::bench::{Bench, DEFAULT_SEED};
+use diagnosis::diagnose::diagnose;
+use diagnosis::held_out::LeftOut;
+use diagnosis::observed::Observed;
+use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Strength, StrengthReason, Verdict};
 use measurements::{Kind, MeasurementSet, StatedError};
-use validation::bench::{Bench, DEFAULT_SEED};
-use validation::diagnose::diagnose;
-use validation::held_out::LeftOut;
-use validation::observed::Observed;
-use validation::verdict::{Diagnosis, RankedEffect, Status, Strength, StrengthReason, Verdict};
 
 use crate::laboratory::Laboratory;
 use crate::world::{Effect, TwoTerm};

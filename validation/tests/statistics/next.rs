@@ -1,13 +1,13 @@
 //! The next experiment.
 
+use diagnosis::bench::{Bench, DEFAULT_SEED};
+use diagnosis::diagnose::diagnose;
+use diagnosis::next::{Recommendation, judged, recommend};
+use diagnosis::observed::Observed;
+use diagnosis::resistive::ResistiveForward;
+use diagnosis::verdict::{Diagnosis, Verdict};
 use measurements::{Feasible, MeasurementSet};
-use validation::bench::{Bench, DEFAULT_SEED};
 use validation::benchmark::trial::baseline;
-use validation::diagnose::diagnose;
-use validation::next::{Recommendation, judged, recommend};
-use validation::observed::Observed;
-use validation::resistive::ResistiveForward;
-use validation::verdict::{Diagnosis, Verdict};
 
 use crate::laboratory::Laboratory;
 use crate::world::{Effect, Setting};

@@ -1,9 +1,9 @@
 //! What is learned from repeats.
 
-use validation::bench::Bench;
-use validation::noise::Noise;
-use validation::observed::Observed;
-use validation::sensitivity::{Point, Spread};
+use diagnosis::bench::Bench;
+use diagnosis::noise::Noise;
+use diagnosis::observed::Observed;
+use diagnosis::sensitivity::{Point, Spread};
 
 use crate::laboratory::Laboratory;
 use crate::world::{Effect, TRUTH, TwoTerm};

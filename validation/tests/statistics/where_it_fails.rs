@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use diagnosis::bench::{Bench, DEFAULT_SEED};
+use diagnosis::compare::{Comparison, Revision, compare};
+use diagnosis::diagnose::diagnose;
+use diagnosis::force_error::{ForceCell, ForceErrors, Trend};
+use diagnosis::observed::Observed;
+use diagnosis::where_it_fails::{FILES, WhereItFails};
 use measurements::{Kind, MeasurementSet};
 use serde_json::Value;
-use validation::bench::{Bench, DEFAULT_SEED};
-use validation::compare::{Comparison, Revision, compare};
-use validation::diagnose::diagnose;
-use validation::force_error::{ForceCell, ForceErrors, Trend};
-use validation::observed::Observed;
-use validation::where_it_fails::{FILES, WhereItFails};
 
 use crate::laboratory::Laboratory;
 use crate::world::{Effect, TwoTerm};

@@ -31,7 +31,7 @@ const fn test(package: &'static str, target: &'static str, filter: &'static str)
 
 const LAWS: &[Suite] = &[lib("contact-laws", ""), test("contact-laws", "known_answers", "")];
 const TWO_GRAINS: &[Suite] = &[test("contact-laws", "two_grains", "")];
-const STATISTICS: &[Suite] = &[lib("validation", ""), test("validation", "statistics", "")];
+const STATISTICS: &[Suite] = &[lib("diagnosis", ""), test("validation", "statistics", "")];
 
 const LINEAR: &str = "contact-laws/src/linear_spring_dashpot.rs";
 const HERTZ: &str = "contact-laws/src/hertz/constants.rs";
@@ -100,7 +100,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 7,
         what: "the lack of fit is two-sided",
-        file: "validation/src/lack_of_fit.rs",
+        file: "diagnosis/src/lack_of_fit.rs",
         edits: &[(
             "chi2.sf(fitted.fit.chi2)",
             "2.0 * chi2.sf(fitted.fit.chi2).min(1.0 - chi2.sf(fitted.fit.chi2))",
@@ -110,7 +110,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 8,
         what: "conditions that were held out take part in the fit",
-        file: "validation/src/observed.rs",
+        file: "diagnosis/src/observed.rs",
         edits: &[(
             "condition.role == role && !observed",
             "(condition.role == role || role == Role::Fit) && !observed",
@@ -130,14 +130,14 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 10,
         what: "repeats weigh no more than one run",
-        file: "validation/src/weights.rs",
+        file: "diagnosis/src/weights.rs",
         edits: &[("let runs = condition.runs.len().max(1) as f64;", "let runs = 1.0;")],
         suites: STATISTICS,
     },
     Mutant {
         number: 11,
         what: "all repeats fall on one bed",
-        file: "validation/src/beds/stand.rs",
+        file: "diagnosis/src/beds/stand.rs",
         edits: &[("(first + at % beds) as u64", "(first + 0 * (at % beds)) as u64")],
         suites: &[test("validation", "beds", "campaign")],
     },
@@ -202,7 +202,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 18,
         what: "the resampled lack of fit is too improbable",
-        file: "validation/src/lack_of_fit.rs",
+        file: "diagnosis/src/lack_of_fit.rs",
         edits: &[("rarest(sizes) <= own + 1", "rarest(sizes) < own")],
         suites: STATISTICS,
     },
@@ -223,7 +223,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 21,
         what: "the error of held-out conditions is halved once an effect is named",
-        file: "validation/src/held_out.rs",
+        file: "diagnosis/src/held_out.rs",
         edits: &[(
             "after: error(|(condition, _, after)| (*condition, after)),",
             "after: 0.5 * error(|(condition, _, after)| (*condition, after)),",
@@ -250,7 +250,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 24,
         what: "the probability of naming any effect is that of naming the first",
-        file: "validation/src/significance.rs",
+        file: "diagnosis/src/significance.rs",
         edits: &[(
             "draw.iter().any(|score| score * score >= delta)",
             "draw.iter().take(1).any(|score| score * score >= delta)",
@@ -260,7 +260,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 25,
         what: "probabilities of force errors are one-sided",
-        file: "validation/src/force_error.rs",
+        file: "diagnosis/src/force_error.rs",
         edits: &[("{ libm::erfc((value / se)", "{ 0.5 * libm::erfc((value / se)")],
         suites: STATISTICS,
     },

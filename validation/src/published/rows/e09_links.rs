@@ -1,17 +1,17 @@
 //! E9: the free link against its measured stopping times, and the two-link chain against what is stated of it.
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
+use diagnosis::compare::{Revision, compare};
+use diagnosis::forward::{Forward, Request, Scatter};
+use diagnosis::observed::Observed;
+use diagnosis::resistive::ResistiveForward;
 use measurements::MeasurementSet;
 
-use crate::compare::{Revision, compare};
-use crate::forward::{Forward, Request, Scatter};
-use crate::observed::Observed;
 use crate::published::check::{Band, Check, Estimate};
 use crate::published::laboratory::Laboratory;
 use crate::published::links::{ANGLES, LinkCourse, SPEEDS, chain};
 use crate::published::plot::{Panel, Plot, Points};
 use crate::published::row::{Findings, PublishedError, Row, Table};
-use crate::resistive::ResistiveForward;
 
 pub(super) static ROW: Row = Row {
     id: "E9",

@@ -27,6 +27,21 @@ pub(crate) struct Pair {
     pub(crate) p: f64,
 }
 
+/// Indices of the two of `candidates` that together explain most of what `baseline` leaves over, if any pair does.
+///
+/// # Errors
+/// If a pair cannot be fitted.
+pub fn best_two(
+    bench: &Bench<'_>,
+    baseline: &Fitted,
+    candidates: &[usize],
+    seed: u64,
+) -> Result<Option<Vec<usize>>, BenchError> {
+    let singles = Ranking::of(bench, baseline, candidates, seed);
+    let pair = best_pair(bench, baseline, &singles, seed)?;
+    Ok(pair.map(|pair| pair.fitted.fit.point.effects.iter().map(|&(index, _)| index).collect()))
+}
+
 /// The best pair of the effects of `singles`, which add to `baseline`.
 pub(crate) fn best_pair(
     bench: &Bench<'_>,

@@ -174,7 +174,9 @@ impl Against<'_> {
 mod tests {
     use super::*;
     use crate::beds::SWITCHES;
-    use crate::beds::benchmark::{campaign, model};
+    use crate::test_sets;
+    use configs::{LoadOptions, Model, ModelSource};
+    use measurements::{Geometry, Kind};
 
     /// Depths (mm) of the model as it stands, on four beds.
     const BEDS: [f64; 4] = [29.0, 31.0, 29.0, 31.0];
@@ -201,8 +203,15 @@ mod tests {
     /// The response at the amplitude that is screened (mm), and its variance in that of a run, where the switch
     /// makes depths `with` (mm) of [`BEDS`].
     fn found(with: [f64; 4]) -> (f64, f64) {
-        let model = model(1).unwrap();
-        let set = campaign(&model);
+        let source = ModelSource::Text {
+            name: "a small bed".to_owned(),
+            text: include_str!("../../../validation/src/benchmark/beds/model.toml").to_owned(),
+            folder: ".".into(),
+        };
+        let model = Model::load(source, &LoadOptions::default()).unwrap().model;
+        let one = test_sets::condition(1.0, 90.0);
+        let mut set = test_sets::set(Kind::Scalar, vec![one], Vec::new());
+        set.bed.geometry = Geometry::Planar;
         let stand = Stand::new(&model, &set).unwrap();
         let layouts =
             vec![Layout { final_z: true, ..Layout::default() }; stand.set.conditions.len()];

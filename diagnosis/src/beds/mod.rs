@@ -4,13 +4,12 @@
 //! [`Place`](runner::beds::Place) runs them.
 
 mod baseline;
-pub mod benchmark;
 mod confirmation;
 mod design;
 mod emulator;
 mod line_search;
 mod modes;
-mod observables;
+pub mod observables;
 mod plan;
 mod response;
 mod screening;

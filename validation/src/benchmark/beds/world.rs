@@ -10,8 +10,8 @@ use rand::Rng;
 use runner::beds::Impacts;
 use runner::beds::Record;
 
-use crate::beds::observables::at;
-use crate::beds::{BedError, Stand, Variation};
+use diagnosis::beds::observables::at;
+use diagnosis::beds::{BedError, Stand, Variation};
 
 /// The analyst's model of the bed.
 const MODEL: &str = include_str!("model.toml");
@@ -156,7 +156,7 @@ fn seen(
     }
 }
 
-/// A normal number, as in [`crate::random`], from random numbers of the world's own.
+/// A normal number, as in [`diagnosis::random`], from random numbers of the world's own.
 fn normal(random: &mut impl Rng) -> f64 {
     use rand::RngExt;
     let radius = (-2.0 * libm::log(1.0 - random.random::<f64>())).sqrt();

@@ -8,7 +8,8 @@ use crate::observable::Layout;
 
 /// Depth and range (m) at `time` (s): before contact those of the free fall under `condition`,
 /// behind the end the last ones.
-pub(super) fn at(record: &Record, time: f64, condition: &Condition, gravity: f64) -> (f64, f64) {
+#[must_use]
+pub fn at(record: &Record, time: f64, condition: &Condition, gravity: f64) -> (f64, f64) {
     if time < 0.0 {
         let (sine, cosine) = libm::sincos(condition.angle_deg.to_radians());
         let down = condition.speed * sine * time + 0.5 * gravity * time * time;
@@ -18,7 +19,8 @@ pub(super) fn at(record: &Record, time: f64, condition: &Condition, gravity: f64
 }
 
 /// The observables that `layout` asks for, as `set` defines them.
-pub(super) fn observables(
+#[must_use]
+pub fn observables(
     record: &Record,
     layout: &Layout,
     condition: &Condition,

@@ -1,12 +1,14 @@
 //! What is hidden in a bed, and what a diagnosis made of it.
 
+use diagnosis::beds::{
+    BedError, Plan, SWITCHES, Stand, Variation, Wish, diagnose_bed, unaffordable,
+};
+use diagnosis::observed::Observed;
+use diagnosis::verdict::{Diagnosis, Verdict};
 use runner::beds::Impacts;
 use serde::{Deserialize, Serialize};
 
 use super::world::{campaign, measure, model};
-use crate::beds::{BedError, Plan, SWITCHES, Stand, Variation, Wish, diagnose_bed, unaffordable};
-use crate::observed::Observed;
-use crate::verdict::{Diagnosis, Verdict};
 
 /// Runs of every condition.
 const REPEATS: usize = 10;
@@ -147,7 +149,7 @@ impl Case {
     /// If the impacts cannot be run.
     pub fn run(&self, place: &dyn Impacts, wish: &Wish) -> Result<Outcome, BedError> {
         let start = std::time::Instant::now();
-        let model = model(1 + 1000 * self.seed).map_err(crate::beds::BaselineError::from)?;
+        let model = model(1 + 1000 * self.seed).map_err(diagnosis::beds::BaselineError::from)?;
         let empty = campaign(&model);
         let world = Stand::new(&model, &empty)?;
         let set = measure(&world, &self.hidden.variation(&world), (REPEATS, self.seed), place)?;

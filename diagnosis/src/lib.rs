@@ -1,0 +1,57 @@
+//! What is missing in a model of impacts: measurements held against it, and the effect that would explain them.
+//!
+//! A [`measurements::MeasurementSet`] is what was measured; a [`forward::Forward`] is a model that predicts it: a force
+//! law ([`mod@resistive`]) or a bed of grains ([`beds`]). What the two have to do with each other is said in these
+//! steps:
+//!
+//! 1. [`observed`] makes vectors of the runs, one [`observable::Layout`] per condition;
+//! 2. [`sensitivity`], [`noise`] and [`weights`] learn from repeats how much they scatter;
+//! 3. [`mod@bench`] fits a model under that noise, by [`fit`];
+//! 4. [`compare::compare`] says how wrong each revision of a model is and where
+//!    ([`errors`], [`lack_of_fit`], [`force_error`], [`residual`]), and [`where_it_fails`] writes that
+//!    as tables and [`mod@picture`]s;
+//! 5. [`diagnose::diagnose`] says which effect is missing, as a [`verdict`];
+//! 6. [`next::recommend`] says what to measure next where several effects remain.
+//!
+//! [`runs`] holds a run against a run.
+
+pub mod beds;
+pub mod bench;
+mod chord;
+pub mod compare;
+pub mod covariate;
+pub mod diagnose;
+mod directions;
+mod discovery;
+pub mod errors;
+pub mod fit;
+pub mod force_error;
+pub mod forward;
+pub mod held_out;
+pub mod lack_of_fit;
+mod marginal;
+pub mod next;
+pub mod noise;
+pub mod observable;
+pub mod observed;
+pub mod pair;
+pub mod picture;
+mod projection;
+mod random;
+mod redraw;
+mod resampling;
+pub mod residual;
+pub mod resistive;
+mod rounding;
+pub mod runs;
+mod score;
+pub mod sensitivity;
+mod signature;
+mod significance;
+mod strength;
+pub mod suggestion;
+#[cfg(test)]
+mod test_sets;
+pub mod verdict;
+pub mod weights;
+pub mod where_it_fails;
