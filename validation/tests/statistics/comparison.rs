@@ -68,7 +68,7 @@ fn the_json_has_the_keys_that_users_rely_on_and_no_others() {
     assert_eq!(keys(&json), ["set", "models", "noise", "conditions_judged", "not_predicted"]);
     let model = &json["models"][0];
     assert_eq!(keys(model), ["model", "parameters", "chi2_per_n", "p_lof", "rms", "fails"]);
-    assert_eq!(keys(&model["parameters"]["drag"]), ["value", "se", "unit"]);
+    assert_eq!(keys(&model["parameters"]["drag"]), ["value", "se", "unit", "at_bound"]);
     assert_eq!(
         keys(&model["rms"]["fit"]),
         ["z_m", "x_m", "stop_time_s", "final_z_m", "final_x_m", "rms_relative"]
