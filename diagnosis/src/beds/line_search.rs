@@ -175,8 +175,8 @@ mod tests {
     use super::*;
     use crate::beds::SWITCHES;
     use crate::test_sets;
-    use configs::{LoadOptions, Model, ModelSource};
-    use measurements::{Geometry, Kind};
+    use configs::{LoadOptions, Model, ModelSource, find_shipped};
+    use measurements::{FinalDefinition, Geometry, Kind};
 
     /// Depths (mm) of the model as it stands, on four beds.
     const BEDS: [f64; 4] = [29.0, 31.0, 29.0, 31.0];
@@ -203,15 +203,12 @@ mod tests {
     /// The response at the amplitude that is screened (mm), and its variance in that of a run, where the switch
     /// makes depths `with` (mm) of [`BEDS`].
     fn found(with: [f64; 4]) -> (f64, f64) {
-        let source = ModelSource::Text {
-            name: "a small bed".to_owned(),
-            text: include_str!("../../../validation/src/benchmark/beds/model.toml").to_owned(),
-            folder: ".".into(),
-        };
-        let model = Model::load(source, &LoadOptions::default()).unwrap().model;
+        let shipped = ModelSource::Shipped(find_shipped("vertical-2d").unwrap());
+        let model = Model::load(shipped, &LoadOptions::default()).unwrap().model;
         let one = test_sets::condition(1.0, 90.0);
         let mut set = test_sets::set(Kind::Scalar, vec![one], Vec::new());
         set.bed.geometry = Geometry::Planar;
+        set.last = FinalDefinition::Deepest;
         let stand = Stand::new(&model, &set).unwrap();
         let layouts =
             vec![Layout { final_z: true, ..Layout::default() }; stand.set.conditions.len()];
