@@ -20,7 +20,7 @@ use crate::registry::{ActsOn, LawEntry};
 ///
 /// Channels: as `hertz-mindlin`.
 ///
-/// Source: eqs 1–4 of the three-shape study; Brilliantov, Spahn, Hertzsch & Pöschel, Phys. Rev. E 53,
+/// Source: eqs 1–4 of the three-shape manuscript; Brilliantov, Spahn, Hertzsch & Pöschel, Phys. Rev. E 53,
 /// 5382 (1996). Differs from the former in K_n, printed with 3/4, in G* = G/(2(2 − ν)), printed with
 /// 1 − ν, and in that nothing attracts.
 pub(crate) type HertzMindlinViscous = hertz::Law<Viscous>;

@@ -1,7 +1,7 @@
 //! Where models fail, as tables and pictures: what `plunge compare` and `plunge diagnose` write.
 //!
 //! A [`Failing`] is one model, [`WhereItFails`] all models of a report; its `files` are listed in
-//! `docs/where-it-fails.md`.
+//! `docs/output-files.md`.
 
 mod json;
 mod signature;

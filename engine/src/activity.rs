@@ -7,7 +7,7 @@ const CALM_SHARE: f64 = 0.01;
 
 /// Follows the motion of a bed through one impact.
 ///
-/// The three-shape study relates the two numbers that come of it to the energy which the bed was given:
+/// The three-shape manuscript relates the two numbers that come of it to the energy which the bed was given:
 /// T γ = ζ ln E + c (eq. 24). It defines neither exactly; here γ is the largest share of the grains that
 /// move at one time ([`GrainBed::moving_share`](crate::grain_bed::GrainBed::moving_share)), and T the time
 /// from which on the kinetic energy of the grains stays below 1 % of its greatest.

@@ -14,7 +14,7 @@ pub struct Footprint {
     /// moves a grain's diameter, and took nothing back: m* v_n²/(2 r) along the normal (N). Times
     /// 1 + e, it is the collisional estimate.
     ///
-    /// Source: the three-shape study, eqs 8–10, with the contacts that there are in place of k dS/r²;
+    /// Source: the three-shape manuscript, eqs 8–10, with the contacts that there are in place of k dS/r²;
     /// v_n = v cos α, and only where the surface moves towards the grain.
     pub collisional_force: Vec3,
     /// Sum of the magnitudes of the same (N): what eq. 11 prints, which has one cos α less than the drag

@@ -424,7 +424,7 @@ impl GrainBed {
     }
 
     /// Share of the grains that move: whose kinetic energy would lift them by more than a hundredth of
-    /// their diameter (–). It is γ of the three-shape study, the share that takes part in dissipation.
+    /// their diameter (–). It is γ of the three-shape manuscript, the share that takes part in dissipation.
     #[must_use]
     pub fn moving_share(&self) -> f64 {
         // Without weight nothing has to be lifted: then every grain with any energy moves.

@@ -39,7 +39,7 @@ pub struct ShapeEntry {
     /// Volume (m³), or area (m²) in a planar medium, from SI values that fill `params`.
     pub volume: fn(&ParamTable, Space) -> f64,
     /// Area (m²), or length (m) in a planar medium, that a body standing upright has below the surface
-    /// when its lowest point is so deep (m); of a chain, one of its links. The three-shape study, eqs
+    /// when its lowest point is so deep (m); of a chain, one of its links. The three-shape manuscript, eqs
     /// 13–16: with the side of a cylinder and without flat tops.
     pub contact_area: fn(&ParamTable, Space, f64) -> f64,
     /// Makes it for a resistive medium.

@@ -14,27 +14,6 @@ fn every_row_of_every_case_holds() {
     assert!(failures.is_empty(), "{failures:#?}");
 }
 
-/// What `docs/contact-benchmarks.md` shows.
-const CONTACT_BENCHMARKS: [&str; 5] = [
-    "hertz-collisions",
-    "hertz-mindlin-oblique",
-    "hertz-mindlin-spin",
-    "viscoelastic-restitution",
-    "adhesion",
-];
-
-#[test]
-fn the_document_of_the_contact_benchmarks_shows_what_comes_out() {
-    let document = include_str!("../../docs/contact-benchmarks.md");
-    let missing: Vec<String> = with_threads(1, || {
-        let shown = CASES.iter().filter(|case| CONTACT_BENCHMARKS.contains(&case.name));
-        let rows = shown.flat_map(|case| (case.run)());
-        rows.map(|row| row.markdown()).filter(|line| !document.contains(line)).collect()
-    })
-    .expect("one thread");
-    assert!(missing.is_empty(), "regenerate it as it says: {missing:#?}");
-}
-
 #[test]
 fn every_case_has_a_name_of_its_own_a_claim_and_reasons() {
     for (k, case) in CASES.iter().enumerate() {

@@ -70,7 +70,7 @@ fn as_text(run: &Path, files: &[Served], urls: &[String]) -> String {
          Rerun        python viewers/rerun_impact.py {run}\n  \
          PlotJuggler  File > Load\n  \
          Python       python examples/read_log.py {log}\n\
-         \ndocs/viewers.md has what each of them needs.\n",
+         \ndocs/output-files.md has what each of them needs.\n",
         log = files[0].path.display()
     ));
     text

@@ -13,7 +13,7 @@ use super::two_term_vector::ACCOUNTS;
 ///
 /// h (kg/m) and β (N) are numbers or expressions of `depth` (m).
 ///
-/// Source: the three-shape study, eq. 18; its closed forms (eqs 20–22) are checked for constant h, β.
+/// Source: the three-shape manuscript, eq. 18; its closed forms (eqs 20–22) are checked for constant h, β.
 struct Poncelet {
     inertial: OfDepth,
     resistance: OfDepth,
@@ -26,7 +26,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     summary: "Poncelet's law: a drag with the square of the speed and a resistance, constant or of depth.",
     formula: "M a = M g - h(z) v^2 - beta(z)",
     signature: "depth grows with the logarithm of the impact energy",
-    source: "Poncelet, Cours de mecanique industrielle (1829); Hertz-Mindlin study of three shapes, eqs 18-22",
+    source: "Poncelet, Cours de mecanique industrielle (1829); three-shape manuscript, eqs 18-22",
     params: &[
         ParamSpec {
             key: "inertial",

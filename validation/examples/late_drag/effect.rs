@@ -1,4 +1,4 @@
-//! The effect of `docs/own-effects.md` as a Rust type: what would be one new file in
+//! The effect of `docs/user-effects.md` as a Rust type: what would be one new file in
 //! `resistive/src/laws` and one line in the table there.
 
 use configs::{LoadOptions, Model, ModelSource};

@@ -34,7 +34,7 @@ Usage: cargo xtask bench diagnosis [--seeds development|release] [--only ROW]...
   --keep FILE    outcomes so far, one JSON object per line; those that are there are not diagnosed again. They
                  are of one program: a changed diagnosis wants another file
   --json         one JSON object, every set in it
-  --write        the tables to docs/diagnosis-benchmark.md, the picture to docs/diagnosis-calibration.svg
+  --write        the tables to docs/validation.md, the picture to docs/diagnosis-calibration.svg
   --export DIR   writes the first set of what is asked for to DIR, and diagnoses nothing
 
 Exit status: 0 done, 1 failed, 2 the command line was not understood.
@@ -146,7 +146,7 @@ fn work(wish: &Wish, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
         false => writeln!(out, "{report}")?,
     }
     if wish.write {
-        let path = "docs/diagnosis-benchmark.md";
+        let path = "docs/validation.md";
         let page = fs::read_to_string(path).map_err(|error| format!("{path}: {error}"))?;
         let page =
             document::with_tables(&page, &[("worlds", &table::worlds()), ("results", &report)])?;

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fs;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use lexopt::Parser;
@@ -15,27 +15,22 @@ use validation::three_shapes::{Places, cases, depths, frictions, have_done, run,
 const HELP: &str = "\
 Cylinder, hemisphere and cone at equal mass, radius and speed; and the hemisphere without and with friction.
 
-Usage: cargo xtask three-shapes [--seeds N] [--threads N] [--on WHERE] [--out DIR] [--cache DIR] [--write]
+Usage: cargo xtask three-shapes [--seeds N] [--threads N] [--on WHERE] [--out DIR] [--cache DIR]
 
   --seeds N    beds per condition (3)
   --threads N  impacts at a time (one per core)
   --on WHERE   where impacts are run: local (default), slurm or hyperqueue, which are waited for
-  --out DIR    where results are kept (runs/three-shapes); those that are there are not run again
+  --out DIR    folder of results and pictures (runs/three-shapes); finished impacts are not run again
   --cache DIR  where prepared beds are kept (runs/.cache)
-  --write      the table to docs/three-shapes.md below its mark, the pictures beside it
 
 Exit status: 0 done, 1 failed, 2 the command line was not understood.
 ";
-
-/// Everything below this line of the document is written by the program.
-const MARK: &str = "<!-- written by cargo xtask three-shapes --write -->";
 
 struct Wish {
     seeds: u64,
     threads: usize,
     elsewhere: Option<Elsewhere>,
     places: Places,
-    write: bool,
 }
 
 fn main() -> ExitCode {
@@ -49,7 +44,6 @@ fn parse(mut parser: Parser) -> Result<Option<Wish>, lexopt::Error> {
         threads: std::thread::available_parallelism().map_or(1, usize::from),
         elsewhere: None,
         places: Places { out: "runs/three-shapes".into(), cache: "runs/.cache".into() },
-        write: false,
     };
     while let Some(argument) = parser.next()? {
         match argument {
@@ -58,7 +52,6 @@ fn parse(mut parser: Parser) -> Result<Option<Wish>, lexopt::Error> {
             Long("on") => wish.elsewhere = on(&mut parser)?,
             Long("out") => wish.places.out = PathBuf::from(parser.value()?),
             Long("cache") => wish.places.cache = PathBuf::from(parser.value()?),
-            Long("write") => wish.write = true,
             Short('h') | Long("help") => return Ok(None),
             other => return Err(other.unexpected()),
         }
@@ -82,13 +75,10 @@ fn study(wish: &Wish, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
     let results: Vec<_> = cases.into_iter().zip(outcomes).collect();
     let text = table(&results);
     write!(out, "{text}")?;
-    if wish.write {
-        let path = Path::new("docs/three-shapes.md");
-        let before = fs::read_to_string(path)?;
-        let (kept, _) = before.split_once(MARK).ok_or("docs/three-shapes.md has lost its mark")?;
-        fs::write(path, format!("{kept}{MARK}\n\n{text}"))?;
-        fs::write("docs/three-shapes-depth.svg", depths(&results)?)?;
-        fs::write("docs/three-shapes-friction.svg", frictions(&results)?)?;
+    for (name, picture) in
+        [("depth.svg", depths(&results)?), ("friction.svg", frictions(&results)?)]
+    {
+        fs::write(wish.places.out.join(name), picture)?;
     }
     Ok(ExitCode::SUCCESS)
 }

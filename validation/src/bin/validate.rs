@@ -15,7 +15,7 @@ use lexopt::prelude::{Long, Short, ValueExt};
 use runner::beds::Place;
 use runner::{Elsewhere, Progress, Stage, Watch};
 use validation::published::{
-    Effort, Judged, Laboratory, Missing, ROWS, Row, Verdict, markdown, tally, to_json,
+    Effort, Judged, Laboratory, Missing, ROWS, Row, Verdict, checks_csv, markdown, tally, to_json,
 };
 use validation::{CASES, Case, command, three_shapes};
 
@@ -30,7 +30,7 @@ Usage: cargo xtask validate [--quick | --full] [--so-far] [--only ID[,ID]...]...
   --full       what the sources ran: hours; impacts that are there are not run again
   --so-far     runs no impact: judges those that are there, while others are still being run
   --only ID    these rows only; may be given several times
-  --out DIR    where validation.json, REPORT.md and figures are written (target/validation)
+  --out DIR    where validation.json, checks.csv, REPORT.md and figures are written (target/validation)
   --cache DIR  where beds and impacts are kept (else $PLUNGE_CACHE, else runs/.cache)
   --threads N  impacts at a time (one per core)
   --on WHERE   where impacts are run: local (default), slurm or hyperqueue, which are waited for
@@ -245,6 +245,8 @@ fn write(folder: &Path, judged: &[Judged], effort: Effort) -> std::io::Result<()
         fs::write(folder.join(&figure.file), &figure.svg)?;
     }
     fs::write(folder.join("validation.json"), format!("{:#}\n", to_json(judged, effort)))?;
+    let checks = checks_csv(judged).map_err(std::io::Error::other)?;
+    fs::write(folder.join("checks.csv"), checks)?;
     fs::write(folder.join("REPORT.md"), markdown(judged, effort))
 }
 

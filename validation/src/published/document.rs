@@ -89,6 +89,26 @@ pub fn markdown(judged: &[Judged], effort: Effort) -> String {
     text
 }
 
+/// Every check as a line of CSV: `row, check, published, ours, band, verdict, cause`.
+///
+/// # Errors
+/// None that a string can cause.
+pub fn checks_csv(judged: &[Judged]) -> Result<String, csv::Error> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    table.write_record(["row", "check", "published", "ours", "band", "verdict", "cause"])?;
+    for one in judged {
+        for check in one.findings.iter().flat_map(|findings| &findings.checks) {
+            let Check { what, published, ours, band, verdict, cause, .. } = check;
+            let numbers = [published.to_string(), ours.to_string()];
+            let [published, ours] = &numbers;
+            table.write_record([one.row.id, what, published, ours, band, verdict.name(), cause])?;
+        }
+    }
+    table.flush()?;
+    let bytes = table.into_inner().map_err(|error| error.into_error())?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
 fn word(effort: Effort) -> &'static str {
     match effort {
         Effort::Quick => "quick",
@@ -239,37 +259,46 @@ mod tests {
         assert!(text.find("at a glance") < text.find("## E0"), "{text}");
     }
 
-    /// The verdicts in the bold cells of `text`, which end its lines or come before a cause.
-    fn verdicts(text: &str) -> Vec<Verdict> {
-        let words =
-            text.lines().filter_map(|line| Some(line.rsplit_once("| **")?.1.split_once("**")?.0));
-        let named = |word: &str| Verdict::ALL.into_iter().find(|verdict| verdict.name() == word);
-        words.map(|word| named(word).unwrap_or_else(|| panic!("{word}"))).collect()
-    }
-
     #[test]
-    fn the_kept_report_and_the_pages_that_speak_of_it_count_the_rows_alike() {
+    fn the_kept_checks_and_the_pages_that_speak_of_them_count_the_rows_alike() {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
         let read = |path: &str| {
             std::fs::read_to_string(root.join(path))
                 .unwrap_or_else(|error| panic!("{path}: {error}"))
         };
-        let report = read("validation/REPORT.md");
-        let (head, _) = report.split_once("\n## E1:").expect("rows");
-        let rows = verdicts(head);
-        assert_eq!(rows.len(), crate::published::ROWS.len());
-        for (row, verdict) in crate::published::ROWS.iter().zip(&rows) {
-            let (_, own) = report.split_once(&format!("\n## {}: ", row.id)).expect(row.id);
-            let own = own.split_once("\n## E").map_or(own, |(own, _)| own);
-            assert!(own.starts_with(row.title), "{}", row.id);
-            assert_eq!(verdicts(own).into_iter().max().as_ref(), Some(verdict), "{}", row.id);
+        let kept = read("validation/results/published.csv");
+        let mut worst = std::collections::BTreeMap::new();
+        for check in csv::Reader::from_reader(kept.as_bytes()).deserialize() {
+            let KeptCheck { row, verdict } = check.expect("a check");
+            let named = Verdict::ALL.into_iter().find(|own| own.name() == verdict);
+            let verdict = named.unwrap_or_else(|| panic!("{verdict}"));
+            worst
+                .entry(row)
+                .and_modify(|own: &mut Verdict| *own = verdict.max(*own))
+                .or_insert(verdict);
         }
-        let count = |verdict| rows.iter().filter(|own| **own == verdict).count();
-        let counts = Verdict::ALL.map(|verdict| (verdict, count(verdict)));
-        let tally = tally_of(rows.len(), &counts);
-        for path in ["validation/REPORT.md", "README.md", "docs/published-impacts.md"] {
+        assert!(crate::published::ROWS.iter().all(|row| worst.contains_key(row.id)));
+        assert_eq!(worst.len(), crate::published::ROWS.len());
+        let count = |verdict| worst.values().filter(|own| **own == verdict).count();
+        let tally = tally_of(worst.len(), &Verdict::ALL.map(|verdict| (verdict, count(verdict))));
+        for path in ["README.md", "docs/validation.md"] {
             assert!(read(path).contains(&tally), "{path} does not say: {tally}");
         }
+    }
+
+    #[derive(serde::Deserialize)]
+    struct KeptCheck {
+        row: String,
+        verdict: String,
+    }
+
+    #[test]
+    fn a_check_is_a_line_of_a_table() {
+        let text = checks_csv(&[judged(2.0)]).expect("a table");
+        assert_eq!(
+            text,
+            "row,check,published,ours,band,verdict,cause\nE0,n,1,2,± 0.1000: a|b,fail,\n"
+        );
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Impacts of the two-link chain under the resistive-force law, of which the article states trends alone.
 //!
-//! Sizes, mass, speeds, angles and two of four coefficients are assumed (`docs/two-link-chain.md`).
+//! Sizes, mass, speeds, angles and two of four coefficients are assumed (`docs/validation.md`).
 
 use configs::{LoadOptions, Model, ModelSource};
 use resistive::{Assembly, Recorder, State};
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn the_chain_is_that_of_the_document() {
-        // The first line of docs/two-link-chain.md, as it is rounded there.
+        // The first line of docs/validation.md, as it is rounded there.
         let course = chain(ANGLES[0], SPEEDS[0]).expect("an impact");
         assert!((course.links[0].depth - 0.0424).abs() < 5e-5, "{course:?}");
         assert!((course.links[1].time - 0.0409).abs() < 5e-5, "{course:?}");

@@ -19,7 +19,7 @@ pub mod shapes;
 pub mod signatures;
 
 pub use check::{Check, Estimate, Verdict};
-pub use document::{Judged, markdown, tally, to_json};
+pub use document::{Judged, checks_csv, markdown, tally, to_json};
 pub use laboratory::{Effort, Laboratory, Missing};
 pub use row::{Findings, PublishedError, Row};
 pub use rows::ROWS;

@@ -105,12 +105,7 @@ static SIGNATURES: &[Signature] = &[
         E9,
     ),
     signature("free link", "the stopping time falls with inclination", "Marghitu & Lee 2013", E9),
-    signature(
-        "two-link chain",
-        "time falls and depth grows with speed",
-        "article on the chain",
-        E9,
-    ),
+    signature("two-link chain", "time falls and depth grows with speed", "two-link manuscript", E9),
     signature(
         "disc, planar, oblique",
         "the stopping time falls to a plateau above 30°",
@@ -132,13 +127,13 @@ static SIGNATURES: &[Signature] = &[
     signature(
         "cylinder, hemisphere, cone",
         "cylinder < hemisphere < cone in depth",
-        "three-shape study",
+        "three-shape manuscript",
         E6,
     ),
     signature(
         "hemisphere",
         "friction of intruder and grains does not matter",
-        "three-shape study",
+        "three-shape manuscript",
         E7,
     ),
     signature("sphere near a side wall", "less deep, within a diameter", "Seguin et al. 2008", E10),

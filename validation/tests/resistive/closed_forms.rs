@@ -1,4 +1,4 @@
-//! Poncelet's law has closed forms: eqs 18–22 of the three-shape study, restored.
+//! Poncelet's law has closed forms: eqs 18–22 of the three-shape manuscript, restored.
 
 use resistive::Trajectory;
 

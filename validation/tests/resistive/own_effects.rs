@@ -145,7 +145,7 @@ fn the_formula_and_the_type_of_the_docs_are_one_effect() {
 
 #[test]
 fn the_docs_show_the_example_as_it_is_compiled() {
-    let docs = include_str!("../../../docs/own-effects.md");
+    let docs = include_str!("../../../docs/user-effects.md");
     let example = include_str!("../../examples/late_drag/effect.rs");
     let blocks = docs.split("```rust\n").skip(1).filter_map(|rest| rest.split("```").next());
     let mut shown = 0;

@@ -93,7 +93,7 @@ const DEPTH_COEFFICIENT: f64 = 0.6;
 /// How deep (m) the shock of the fastest impact reaches, D = κ √(M H/10³), with the mass M in kg and the
 /// height of fall H = v²/2g in m; `None` without gravity.
 ///
-/// Source: three-shape study, eq. 5, a rule of dynamic compaction. At laboratory masses it asks for
+/// Source: three-shape manuscript, eq. 5, a rule of dynamic compaction. At laboratory masses it asks for
 /// millimetres, so it is no more than a first bound.
 fn required_depth(model: GrainModel<'_>) -> Option<f64> {
     let impacts = model.model.conditions();

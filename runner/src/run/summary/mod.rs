@@ -114,7 +114,7 @@ pub struct BedSummary {
     pub warnings: Vec<String>,
 }
 
-/// How much of the bed took part in the impact, and for how long: γ and T of the three-shape study, eq. 24.
+/// How much of the bed took part in the impact, and for how long: γ and T of the three-shape manuscript, eq. 24.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
 pub struct ActivitySummary {

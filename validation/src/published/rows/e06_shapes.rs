@@ -13,7 +13,7 @@ use crate::three_shapes::{Case, SHAPES, mean_and_error};
 pub(super) static ROW: Row = Row {
     id: "E6",
     title: "Cylinder < hemisphere and hemisphere < cone in depth, logarithmic in the energy",
-    source: "three-shape study, eqs 17, 22, Fig. 13",
+    source: "three-shape manuscript, eqs 17, 22, Fig. 13",
     how: [
         "3 shapes × 5 speeds on one bed of 3 000 spheres, 2.6 diameters across",
         "3 shapes × 8 speeds × 3 beds of 8 000 spheres, 3.6 diameters across",
@@ -22,7 +22,7 @@ pub(super) static ROW: Row = Row {
 };
 
 /// What depths of one shape scatter by from bed to bed, as a share, in the order of the shapes: the root mean square over
-/// eight speeds on three beds each, by the full run of this row (`validation/REPORT.md`). For impacts on one bed, which do
+/// eight speeds on three beds each, by the full run of this row (`validation/results/published.csv`). For impacts on one bed, which do
 /// not tell.
 const SCATTER: [f64; 3] = [0.100, 0.070, 0.059];
 

@@ -10,7 +10,7 @@ use crate::three_shapes::{FRICTIONS, RUBBED};
 pub(super) static ROW: Row = Row {
     id: "E7",
     title: "Friction of hemisphere and grains does not change the hemisphere's velocity",
-    source: "three-shape study, Fig. 6",
+    source: "three-shape manuscript, Fig. 6",
     how: [
         "friction 0 and 0.8 on one bed of 3 000 spheres",
         "friction 0 and 0.8 on three beds of 8 000 spheres",

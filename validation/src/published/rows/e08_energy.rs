@@ -11,7 +11,7 @@ use crate::three_shapes::Outcome;
 pub(super) static ROW: Row = Row {
     id: "E8",
     title: "Energy in three parts with a constant sum; T γ = ζ ln E + c",
-    source: "three-shape study, eqs 23–24, Figs 14–15",
+    source: "three-shape manuscript, eqs 23–24, Figs 14–15",
     how: ["the hemisphere of E6", "the hemisphere of E6"],
     judge,
 };

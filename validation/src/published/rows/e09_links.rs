@@ -16,7 +16,7 @@ use crate::published::row::{Findings, PublishedError, Row, Table};
 pub(super) static ROW: Row = Row {
     id: "E9",
     title: "Free link: measured stopping times; two-link chain: deeper and sooner at rest with speed",
-    source: "Marghitu & Lee 2013, Table 1; article on the two-link chain, Tables 2, 5",
+    source: "Marghitu & Lee 2013, Table 1; two-link manuscript, Tables 2, 5",
     how: ["nine impacts fitted, six of the chain, on a resistive medium", "the same"],
     judge,
 };

@@ -10,7 +10,7 @@ use crate::three_shapes::{Outcome, mean_and_error};
 pub(super) static ROW: Row = Row {
     id: "E13",
     title: "Hemisphere: falling force peaks, transfer of energy to the grains and its maximum",
-    source: "three-shape study, Figs 3–5, 8, 9, 12, 14, 15",
+    source: "three-shape manuscript, Figs 3–5, 8, 9, 12, 14, 15",
     how: ["the hemisphere of E6", "the hemisphere of E6"],
     judge,
 };

@@ -8,7 +8,7 @@ use crate::published::row::{Findings, PublishedError, Row};
 pub(super) static ROW: Row = Row {
     id: "E14",
     title: "Chain: static force at the stop, later overtaking with speed, energies and their halves",
-    source: "article on the two-link chain, §4, Figs 4–8",
+    source: "two-link manuscript, §4, Figs 4–8",
     how: ["six impacts of the chain on a resistive medium", "the same"],
     judge,
 };
@@ -37,7 +37,7 @@ fn judge(_: &Laboratory<'_>) -> Result<Findings, PublishedError> {
         }
     }
     findings.notes.push(
-        "Sizes, mass, speeds, angles and η_d, η_h of the article are lost: those of docs/two-link-chain.md are \
+        "Sizes, mass, speeds, angles and η_d, η_h of the article are lost: those of docs/validation.md are \
          assumed, and trends alone are judged. Of the 81 sets of coefficients that may be assumed, 29 overtake later in \
          milliseconds, all as a share of the stopping time: an own study, which excuses nothing."
             .to_owned(),

@@ -124,7 +124,7 @@ mod tests {
         });
         let failing = checks.filter(|check: &Check| check.verdict > Verdict::Pass);
         let failing: Vec<String> = failing.map(|check| check.what).collect();
-        // The article on the chain says that the static force overtakes later at higher speed.
+        // The two-link manuscript says that the static force overtakes later at higher speed.
         let overtakes = |angles| format!("{angles}: static force overtakes (ms after contact)");
         assert_eq!(failing, ["30° and -30°", "20° and -40°"].map(overtakes));
     }
