@@ -15,14 +15,14 @@ use validation::benchmark::interval::quantile;
 use validation::benchmark::kept::Kept;
 use validation::benchmark::plan::{Row, Seeds, Size};
 use validation::benchmark::trial::{Trial, baseline, draw};
-use validation::benchmark::{document, json, run, table};
+use validation::benchmark::{json, run, table};
 use validation::command::conclude;
 
 const HELP: &str = "\
 Worlds in which something is hidden, measured and diagnosed blindly: how often is it found?
 
 Usage: cargo xtask bench diagnosis [--seeds development|release] [--only ROW]... [--sets N] [--quick]
-                                   [--threads N] [--keep FILE] [--json] [--write] [--export DIR]
+                                   [--threads N] [--keep FILE] [--json] [--out DIR] [--export DIR]
 
   --seeds WHICH  random numbers for work on the diagnosis (default), or those of the tables
   --only ROW     one row; may be given several times
@@ -34,7 +34,7 @@ Usage: cargo xtask bench diagnosis [--seeds development|release] [--only ROW]...
   --keep FILE    outcomes so far, one JSON object per line; those that are there are not diagnosed again. They
                  are of one program: a changed diagnosis wants another file
   --json         one JSON object, every set in it
-  --write        the tables to docs/validation.md, the picture to docs/diagnosis-calibration.svg
+  --out DIR      writes the worlds and tables as results.md and the calibration as calibration.svg to DIR
   --export DIR   writes the first set of what is asked for to DIR, and diagnoses nothing
 
 Exit status: 0 done, 1 failed, 2 the command line was not understood.
@@ -50,7 +50,7 @@ struct Wish {
     threads: usize,
     keep: Option<PathBuf>,
     json: bool,
-    write: bool,
+    out: Option<PathBuf>,
     export: Option<PathBuf>,
 }
 
@@ -62,7 +62,7 @@ fn main() -> ExitCode {
 fn parse(mut args: Parser) -> Result<Option<Wish>, lexopt::Error> {
     let (mut seeds, mut size, mut only, mut draws) =
         (Seeds::Development, Size::full(), Vec::new(), None);
-    let (mut threads, mut json, mut write) = (0, false, false);
+    let (mut threads, mut json, mut out) = (0, false, None);
     let (mut keep, mut export) = (None, None);
     while let Some(arg) = args.next()? {
         match arg {
@@ -79,7 +79,7 @@ fn parse(mut args: Parser) -> Result<Option<Wish>, lexopt::Error> {
             Long("quick") => size = Size::quick(),
             Long("keep") => keep = Some(PathBuf::from(args.value()?)),
             Long("json") => json = true,
-            Long("write") => write = true,
+            Long("out") => out = Some(PathBuf::from(args.value()?)),
             Long("export") => export = Some(PathBuf::from(args.value()?)),
             Short('h') | Long("help") => return Ok(None),
             other => return Err(other.unexpected()),
@@ -89,7 +89,7 @@ fn parse(mut args: Parser) -> Result<Option<Wish>, lexopt::Error> {
         size.rows = only;
     }
     size.draws = draws.unwrap_or(size.draws);
-    Ok(Some(Wish { seeds, size, threads, keep, json, write, export }))
+    Ok(Some(Wish { seeds, size, threads, keep, json, out, export }))
 }
 
 fn row(name: &str) -> Result<Row, String> {
@@ -145,13 +145,10 @@ fn work(wish: &Wish, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
         true => writeln!(out, "{:#}", json::report(&trials, &bins))?,
         false => writeln!(out, "{report}")?,
     }
-    if wish.write {
-        let path = "docs/validation.md";
-        let page = fs::read_to_string(path).map_err(|error| format!("{path}: {error}"))?;
-        let page =
-            document::with_tables(&page, &[("worlds", &table::worlds()), ("results", &report)])?;
-        fs::write(path, page)?;
-        fs::write("docs/diagnosis-calibration.svg", picture(&bins)?)?;
+    if let Some(folder) = &wish.out {
+        fs::create_dir_all(folder)?;
+        fs::write(folder.join("results.md"), format!("{}\n{report}", table::worlds()))?;
+        fs::write(folder.join("calibration.svg"), picture(&bins)?)?;
     }
     Ok(ExitCode::SUCCESS)
 }
