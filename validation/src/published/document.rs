@@ -297,7 +297,7 @@ mod tests {
         let text = checks_csv(&[judged(2.0)]).expect("a table");
         assert_eq!(
             text,
-            "row,check,published,ours,band,verdict,cause\nE0,n,1,2,± 0.1000: a|b,fail,\n"
+            "row,check,published,ours,band,verdict,cause\nE0,n,1.000,2.000,± 0.1000: a|b,fail,\n"
         );
     }
 
