@@ -218,8 +218,11 @@ mod tests {
         rest.split('"').next()?.parse().ok()
     }
 
-    /// Points of the dashed line, and places of the readings in their order (pixels).
-    fn drawn(speed: f64, path: impl Fn(f64) -> f64) -> (Vec<(f64, f64)>, Vec<(f64, f64)>) {
+    /// Places in a drawing (pixels).
+    type Places = Vec<(f64, f64)>;
+
+    /// Points of the dashed line, and places of the readings in their order.
+    fn drawn(speed: f64, path: impl Fn(f64) -> f64) -> (Places, Places) {
         let run = trajectory_run(0, |t| (path(t), 0.0));
         let set = set(Kind::Trajectory, vec![condition(speed, 90.0)], vec![run]);
         let svg = measured(&set).expect("a drawing");
@@ -231,7 +234,7 @@ mod tests {
                 let (x, y) = text.split_once(',')?;
                 Some((x.parse().ok()?, y.parse().ok()?))
             };
-            Some(points.split_whitespace().filter_map(point).collect::<Vec<(f64, f64)>>())
+            Some(points.split_whitespace().filter_map(point).collect::<Places>())
         };
         let panel = svg.lines().filter(|line| line.contains("polyline") && line.contains(&red));
         let points = panel.filter_map(ends).flatten();

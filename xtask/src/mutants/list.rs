@@ -102,8 +102,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
         what: "the lack of fit is two-sided",
         file: "diagnosis/src/lack_of_fit.rs",
         edits: &[(
-            "chi2.sf(fitted.fit.chi2)",
-            "2.0 * chi2.sf(fitted.fit.chi2).min(1.0 - chi2.sf(fitted.fit.chi2))",
+            "distribution.sf(chi2)",
+            "2.0 * distribution.sf(chi2).min(1.0 - distribution.sf(chi2))",
         )],
         suites: STATISTICS,
     },
