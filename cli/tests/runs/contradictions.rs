@@ -38,7 +38,9 @@ fn write_set(folder: &Path, (clock, surface): (f64, f64), more: &str) {
                     t if t < stop => speed * t - 0.5 * speed / stop * t * t,
                     _ => end,
                 };
-                let noise = 0.05 * f64::sin(f64::from(frame * 37 + repeat * 11) + 3.0 * speed);
+                // Multiples of the golden section spread evenly between 0 and 1.
+                let spread = (0.618_034 * f64::from(frame + 150 * repeat) + speed).fract();
+                let noise = 0.05 * (2.0 * spread - 1.0);
                 let (ms, mm) = (1e3 * t + clock, 1e3 * z + surface + noise);
                 let _ = writeln!(rows, "c{at}-{repeat},{ms:.3},{mm:.3},0");
             }
