@@ -76,14 +76,14 @@ fn json_is_one_object() {
 #[test]
 fn a_bed_that_no_machine_holds_is_refused_unless_forced() {
     let folder = tempfile::tempdir().expect("a folder");
-    let set = "bed.grains.0.count=1000000000000";
-    let refused = plunge(folder.path(), &["check", "vertical-2d", "--quiet", "--set", set]);
+    let sets = ["--set", "bed.grains.0.count=1000000000000", "--set", "container.width=\"1e8 m\""];
+    let check = ["check", "vertical-2d", "--quiet"];
+    let refused = plunge(folder.path(), &[&check[..], &sets].concat());
     if configs::estimate::available_memory_bytes().is_some() {
         assert_eq!(refused.status.code(), Some(2));
         assert!(text(&refused.stderr).contains("--force"));
     }
-    let forced =
-        plunge(folder.path(), &["check", "vertical-2d", "--quiet", "--force", "--set", set]);
+    let forced = plunge(folder.path(), &[&check[..], &["--force"], &sets].concat());
     assert_eq!(forced.status.code(), Some(0));
 }
 
