@@ -184,7 +184,7 @@ fn run(task: Task) -> Result<ExitCode> {
         }
         Task::Bench(args) => study(&sh, "speed", &args),
         Task::BenchBeds(args) => study(&sh, "beds", &args),
-        Task::BenchDiagnosis(args) => study(&sh, "diagnosis", &args),
+        Task::BenchDiagnosis(args) => study(&sh, "accuracy", &args),
         Task::BenchResistive => study(&sh, "bench", &[]),
         Task::Fuzz(hunt) => fuzz(&sh, &hunt),
         Task::ThreeShapes(args) => study(&sh, "three_shapes", &args),
