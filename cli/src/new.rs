@@ -45,7 +45,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
     if name.is_empty() || name.len() > 64 || !name.chars().all(fits) {
         return Err(CommandError::bad_input(format!(
-            "`{name}` is not usable as a name: 1 to 64 of a-z, 0-9, - and _ are wanted"
+            "`{name}` is not a valid name: use 1 to 64 of a-z, 0-9, - and _"
         )));
     }
     let shipped = find_shipped(&args.from).ok_or_else(|| unknown(&args.from))?;

@@ -282,11 +282,11 @@ mod tests {
         let message = |text| parse(text, Dimension::LENGTH).expect_err("not a length").to_string();
         assert_eq!(
             message("3 kg"),
-            "\"3 kg\" is a mass, a length is wanted; write \"3 mm\", \"3 cm\" or \"3 m\""
+            "\"3 kg\" is a mass, expected a length; write \"3 mm\", \"3 cm\" or \"3 m\""
         );
         assert_eq!(
             message("25,4 mm"),
-            "\"25,4 mm\" has a decimal comma, a length is wanted; write \"25.4 mm\", with a decimal point"
+            "\"25,4 mm\" has a decimal comma, expected a length; write \"25.4 mm\", with a decimal point"
         );
         assert!(message("3 px").contains("scale of the camera"));
         assert!(message("3").starts_with("\"3\" has no unit"));

@@ -119,7 +119,7 @@ fn renamed(table: TableReader<'_>, spec: &ColumnSpec, span: Option<Span>) -> Opt
             if sign.value.abs() < 1.0 {
                 table.reader.report(
                     Diagnostic::error("`sign` is neither 1 nor -1")
-                        .at(sign.span, "1 or -1 is wanted")
+                        .at(sign.span, "expected 1 or -1")
                         .help("the unit is the place for a factor"),
                 );
             }
@@ -138,7 +138,7 @@ fn check_unit(table: &TableReader<'_>, unit: &str, span: Option<Span>, dimension
     if let Err(error) = units::parse(&format!("1 {unit}"), dimension) {
         table.reader.report(
             Diagnostic::error(format!("`unit`: {}", error.reason()))
-                .at(span, format!("the unit of {} is wanted", dimension.name()))
+                .at(span, format!("expected the unit of {}", dimension.name()))
                 .help(format!("write unit = \"{}\", or another unit of it", dimension.si_unit())),
         );
     }

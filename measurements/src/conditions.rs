@@ -43,7 +43,7 @@ pub(super) fn read(
         if let Some(first) = conditions.iter().position(|other| other.id == condition.id) {
             let id = shorten(&condition.id);
             reader.report(
-                Diagnostic::error(format!("the condition `{id}` stands twice"))
+                Diagnostic::error(format!("the condition `{id}` is listed twice"))
                     .at(place.id, "again here")
                     .with(places[first].id, "first here"),
             );
@@ -77,7 +77,7 @@ fn condition(table: TableReader<'_>, absent: &mut Absent) -> Option<(Condition, 
     // Cells of the tables are without blanks around them too.
     let id = id.map(|id| Found { value: id.value.trim().to_owned(), ..id });
     if let Some(id) = id.as_ref().filter(|id| id.value.is_empty()) {
-        let diagnostic = Diagnostic::error("`id` is empty").at(id.span, "a name is wanted");
+        let diagnostic = Diagnostic::error("`id` is empty").at(id.span, "expected a name");
         table.reader.report(diagnostic);
     }
     let places = ConditionPlaces {

@@ -67,8 +67,8 @@ fn speed(table: &TableReader<'_>) -> Option<[f64; 2]> {
         [from, to] if 0.0 < from && from <= to => Some([from, to]),
         _ => {
             table.reader.report(
-                Diagnostic::error("`speed` is no range")
-                    .at(table.span_of("speed"), "the least and the greatest speed are wanted")
+                Diagnostic::error("`speed` is not a range")
+                    .at(table.span_of("speed"), "expected the least and the greatest speed")
                     .help("both above 0, the smaller one first: speed = [0.5, 3.0]"),
             );
             None

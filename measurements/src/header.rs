@@ -71,7 +71,7 @@ fn refuse_repeated(row: &Row, found: &[String], findings: &mut Findings) {
             let range = row.range(first);
             let first = Span { start: range.start, end: range.end, ..again };
             findings.report(
-                Diagnostic::error(format!("the column `{}` stands twice", shorten(name)))
+                Diagnostic::error(format!("the column `{}` is listed twice", shorten(name)))
                     .at(again, "again here")
                     .with(first, "first here"),
             );

@@ -77,19 +77,19 @@ pub(super) fn read(
         if let Some(first) = lines.get(&run) {
             let span = table.place(&row, RUN, findings);
             findings.report(
-                Diagnostic::error(format!("the run `{}` stands twice", shorten(&run)))
-                    .at(span, format!("it stands on line {first} too")),
+                Diagnostic::error(format!("the run `{}` is listed twice", shorten(&run)))
+                    .at(span, format!("it is also on line {first}")),
             );
         }
         if run.is_empty() {
             let span = table.place(&row, RUN, findings);
-            findings.report(Diagnostic::error("a run without a name").at(span, "a name is wanted"));
+            findings.report(Diagnostic::error("a run without a name").at(span, "expected a name"));
         }
         if let Some(value) = stop_time.filter(|value| *value < 0.0) {
             let span = table.place(&row, STOP_TIME, findings);
             findings.report(
                 Diagnostic::error(format!("a stopping time of {value} s"))
-                    .at(span, "0 s or more is wanted, counted from first contact"),
+                    .at(span, "expected 0 s or more, counted from first contact"),
             );
         }
         lines.insert(run.clone(), row.line);

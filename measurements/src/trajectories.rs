@@ -69,7 +69,7 @@ pub(super) fn read(
         let (Some(run), Some(t), Some(z), Some(x)) = (run, t, z, x) else { continue };
         if sigma.is_some_and(|sigma| sigma < 0.0) {
             let span = table.place(&row, SIGMA, findings);
-            let wanted = "above 0 is wanted; leave it empty when it is not known";
+            let wanted = "expected a number above 0; leave it empty if it is not known";
             findings.report(Diagnostic::error("a negative error").at(span, wanted));
         }
         zeros += usize::from(sigma == Some(0.0));

@@ -67,7 +67,7 @@ pub enum ReportError {
         summary: PathBuf,
     },
     /// A file of results that is not what its name says.
-    #[error("{file} cannot be understood: {why}")]
+    #[error("{file} cannot be read: {why}")]
     Misunderstood {
         /// The file.
         file: String,

@@ -17,7 +17,7 @@ use crate::schedulers::SchedulerError;
 pub enum CampaignError {
     #[error("cannot {action} {}: {source}", path.display())]
     Io { action: &'static str, path: PathBuf, source: io::Error },
-    #[error("`{model}` is no bed of grains")]
+    #[error("`{model}` has no bed of grains")]
     NoGrains { model: String },
     #[error(transparent)]
     Config(#[from] ConfigError),

@@ -223,7 +223,7 @@ fn what_is_wrong_with_a_campaign_is_said_at_its_place() {
         (("seeds = [1, 2]", "seds = [1, 2]"), ":4:1", "did you mean `seeds`?"),
         (("impact.speed", "impact.sped"), ":7:16", "did you mean `speed`?"),
         (("\"2 m/s\"", "\"2 kg\""), ":7:26", "is not a setting that two-term-vector takes"),
-        (("[\"1 m/s\", \"2 m/s\", \"3 m/s\"]", "\"1 m/s\""), ":7:16", "a list of values is wanted"),
+        (("[\"1 m/s\", \"2 m/s\", \"3 m/s\"]", "\"1 m/s\""), ":7:16", "expected a list of values"),
         (
             ("[product]", "[set]\nimpact.speed = \"1 m/s\"\n[product]"),
             ":9:17",

@@ -104,8 +104,10 @@ fn explain(message: &str, text: &str, span: Span) -> Diagnostic {
     if message == "duplicate key" {
         let (first, is_table) = first_spelling(text, span);
         let diagnostic = match is_table {
-            true => Diagnostic::error("this table stands twice").help("join the two into one"),
-            false => Diagnostic::error("this key stands twice").help("keep one of the two lines"),
+            true => Diagnostic::error("this table is listed twice").help("join the two into one"),
+            false => {
+                Diagnostic::error("this key is listed twice").help("keep one of the two lines")
+            }
         };
         return diagnostic.at(span, "again here").with(first, "first here");
     }

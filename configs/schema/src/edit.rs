@@ -34,7 +34,7 @@ pub struct AddedEffect {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum EditError {
     /// It is no TOML.
-    #[error("the model is no TOML: {0}")]
+    #[error("the model is not valid TOML: {0}")]
     Toml(String),
     /// There is no such effect.
     #[error("there is no effect `{name}` for a {medium} medium{}; there are: {}", hint(near.as_deref()), known.join(", "))]

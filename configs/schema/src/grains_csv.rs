@@ -233,7 +233,7 @@ impl Columns {
         let mut warnings = Vec::new();
         for (at, name) in names.iter().enumerate() {
             if names[..at].contains(name) {
-                fault(format!("the column `{}` stands twice", shorten(name)));
+                fault(format!("the column `{}` is listed twice", shorten(name)));
             } else if *name == "z_m" && space == Space::Planar {
                 warnings.push("the column `z_m` is ignored: the bed is planar".to_owned());
             } else if !KNOWN.contains(name) && warnings.len() < FAULTS {
@@ -292,7 +292,7 @@ impl Columns {
                 .ok()
                 .filter(|value| value.is_finite() && (!positive || *value > 0.0))
                 .ok_or_else(|| {
-                    fault(column, format!("found \"{}\"; {wanted} is wanted", shorten(text)))
+                    fault(column, format!("found \"{}\"; expected {wanted}", shorten(text)))
                 })
         };
         let x = number(self.x, "x_m", false)?;
@@ -384,8 +384,8 @@ mod tests {
         let header = "x_m,y_m,radius_m,mass_kg\n";
         assert_eq!(
             faults(&format!("{header}0.5,0.1,0.01,1e-3\n0.5,0.1,-0.01,1e-3\n0.5,nan,0.01,1\n")),
-            "line 3: column radius_m: found \"-0.01\"; a positive number is wanted\n\
-             line 4: column y_m: found \"nan\"; a number is wanted\n"
+            "line 3: column radius_m: found \"-0.01\"; expected a positive number\n\
+             line 4: column y_m: found \"nan\"; expected a number\n"
         );
         assert_eq!(
             faults(&format!("{header}2.5,0.1,0.01,1e-3\n0.5,0.1\n")),

@@ -34,7 +34,7 @@ const EXPECTED: f64 = 0.5;
 #[derive(Debug, Error)]
 pub enum StandError {
     /// It is of the other kind.
-    #[error("`{model}` is no bed of grains")]
+    #[error("`{model}` has no bed of grains")]
     NoGrains {
         /// Name of the model.
         model: String,

@@ -25,7 +25,7 @@ const PROBE: f64 = 1e-2;
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ForwardError {
     /// A grain bed.
-    #[error("`{model}` is a bed of grains, and no force law")]
+    #[error("`{model}` is a bed of grains, not a force law")]
     Grains {
         /// Name of the model.
         model: String,
@@ -51,7 +51,7 @@ pub enum ForwardError {
         key: &'static str,
     },
     /// A shape that the set's geometry does not have.
-    #[error("condition {condition}: a {shape} is no intruder of a {space} bed")]
+    #[error("condition {condition}: a {shape} cannot be the intruder of a {space} bed")]
     WrongSpace {
         /// Id of the condition.
         condition: String,

@@ -64,7 +64,7 @@ const PREFIXES: &[(char, char, i32)] = &[
 
 /// Why a text is not the quantity that is wanted.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("{}, {} is wanted; {}", self.reason(), self.wanted.name(), self.advice())]
+#[error("{}, expected {}; {}", self.reason(), self.wanted.name(), self.advice())]
 pub struct UnitError {
     /// The text, shortened when it is long.
     pub found: String,

@@ -168,7 +168,7 @@ mod tests {
         );
         assert_eq!(
             dimension("v^z", Dimension::SPEED),
-            "the exponent `z` is a length (m); a pure number is wanted"
+            "the exponent `z` is a length (m); expected a pure number"
         );
         assert_eq!(
             dimension("(1 + v / v)^(z / z) * v^(v / v)", Dimension::SPEED),
@@ -176,7 +176,7 @@ mod tests {
         );
         assert_eq!(
             dimension("v * z", Dimension::FORCE),
-            "this is a quantity in m^2*s^-1; a force (N) is wanted"
+            "this is a quantity in m^2*s^-1; expected a force (N)"
         );
     }
 

@@ -36,7 +36,7 @@ pub enum DimensionError {
         argument_is: String,
     },
     /// An exponent that is no pure number.
-    #[error("the exponent `{exponent}` is {exponent_is}; a pure number is wanted")]
+    #[error("the exponent `{exponent}` is {exponent_is}; expected a pure number")]
     Exponent {
         /// The exponent.
         exponent: String,
@@ -54,7 +54,7 @@ pub enum DimensionError {
         exponent: String,
     },
     /// The whole is something else than what is wanted.
-    #[error("this is {found}; {wanted} is wanted")]
+    #[error("this is {found}; expected {wanted}")]
     Whole {
         /// Its dimension, in words.
         found: String,

@@ -39,7 +39,7 @@ pub const FUNCTIONS: &[(&str, usize)] = &[
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SyntaxError {
     /// There is nothing.
-    #[error("a formula is wanted")]
+    #[error("expected a formula")]
     Empty,
     /// A character that no formula has.
     #[error("`{0}` has no meaning here")]
@@ -372,7 +372,7 @@ mod tests {
     #[test]
     fn the_character_that_is_wrong_is_pointed_at() {
         for (text, at, what) in [
-            ("  ", 0..2, "a formula is wanted"),
+            ("  ", 0..2, "expected a formula"),
             ("v + ", 4..4, "a value is missing"),
             ("v * / z", 4..5, "a value is missing"),
             ("2 v", 2..3, "an operator is missing"),

@@ -66,7 +66,7 @@ pub enum FolderError {
         folder: PathBuf,
     },
     /// A file that is not what its name says.
-    #[error("{} cannot be understood: {why}", path.display())]
+    #[error("{} cannot be read: {why}", path.display())]
     Misunderstood {
         /// The file.
         path: PathBuf,

@@ -151,7 +151,7 @@ impl GrainChecks<'_> {
                 self.common.reader.report(
                     Diagnostic::error(format!("the periodic box is too narrow for {why}"))
                         .at(span, format!("{} {which}", metres(length)))
-                        .help(format!("at least {} is wanted", metres(needed))),
+                        .help(format!("expected at least {}", metres(needed))),
                 );
             };
             if length < GRAINS_ACROSS * grain {

@@ -1,4 +1,4 @@
-//! Whether the formulas of a model's own effects are forces in the states that its impacts pass.
+//! Whether the formulas of a model's user-defined effects are forces in the states that its impacts pass.
 
 use engine::math::Vec3;
 use engine::units::{Dimension, format_si};
@@ -14,7 +14,7 @@ use crate::model::{Condition, ResistiveModel};
 const DEPTHS: [f64; 3] = [0.0, 1.0, 10.0];
 const SPEEDS: [f64; 3] = [1.0, 0.5, 0.0];
 
-/// Reports every own effect whose force is not what it is said to be.
+/// Reports every user-defined effect whose force is not what it is said to be.
 pub(super) fn check(resistive: &ResistiveModel<'_>, common: &Common<'_>) {
     let medium = resistive.medium;
     let own = medium.effects.iter().filter_map(|choice| match &choice.effect {

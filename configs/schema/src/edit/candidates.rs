@@ -42,7 +42,7 @@ pub(super) fn adopt(document: &mut DocumentMut, effect: &AddedEffect) -> Result<
     Ok(true)
 }
 
-/// Gives the parameter `key` of an own effect a new SI value, in its own unit; `None` if it is not there.
+/// Gives the parameter `key` of a user-defined effect a new SI value, in its own unit; `None` if it is not there.
 pub(super) fn set_value(effect: &mut dyn TableLike, key: &str, si: f64) -> Option<()> {
     let parameters = effect.get_mut("parameters")?.as_table_like_mut()?;
     let parameter = parameters.get_mut(key)?;

@@ -66,7 +66,7 @@ fn settle(
     if grains.iter().all(|kind| kind.count == 0) {
         table.reader.report(
             Diagnostic::error("the bed has no grains: every `count` is 0")
-                .at(table.header(), "at least one grain is wanted"),
+                .at(table.header(), "expected at least one grain"),
         );
         return None;
     }

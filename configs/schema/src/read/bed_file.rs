@@ -69,7 +69,7 @@ pub(crate) fn csv_bed(
     if let Some(expected) = expected.filter(|expected| expected.value != blake3) {
         table.reader.report(
             Diagnostic::error("the table of grains is not the one this model was made with")
-                .at(expected.span, "the content that is wanted")
+                .at(expected.span, "the expected content")
                 .with(named.span, "has another content")
                 .help(format!("to accept the file as it is now: file_blake3 = \"{blake3}\"")),
         );

@@ -32,7 +32,7 @@ pub(super) fn in_grains(
         let with_top = names(&with_top.copied().collect::<Vec<_>>());
         reader.report(
             Diagnostic::error(format!("the shape `{}` has no top plane", intruder.shape.name))
-                .at(wall_span, "a recessive wall stands on the top plane of the intruder")
+                .at(wall_span, "a recessive wall needs a flat top of the intruder")
                 .help(format!("shapes with one: {}", with_top.join(", "))),
         );
         return None;
@@ -240,7 +240,7 @@ fn several<const N: usize>(table: &TableReader<'_>, spec: &ParamSpec) -> Option<
     };
     table.reader.report(
         Diagnostic::error(format!("`{}` is not a list of {count} {kind}", spec.key))
-            .at(*span, format!("{count} {kind} are wanted"))
+            .at(*span, format!("expected {count} {kind}"))
             .help(format!("write {} = [{example}]", spec.key)),
     );
     None

@@ -51,7 +51,7 @@ pub(crate) struct Places {
     pub(crate) positions: Option<Span>,
     pub(crate) interval: Option<Span>,
     pub(crate) coefficients: Vec<Option<Span>>,
-    /// The formulas of own effects, by their names.
+    /// The formulas of user-defined effects, by their names.
     pub(crate) own_forces: Vec<(String, Option<Span>)>,
 }
 

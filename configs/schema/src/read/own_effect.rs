@@ -86,7 +86,7 @@ fn explain(
             says("this cannot be the name of an effect").at(id.span, error.to_string())
         }
         OwnEffectError::Formula(fault) => formula_fault(table, force, fault)
-            .help(format!("variables: {}; beside them the parameters", variables())),
+            .help(format!("variables: {}; and the parameters", variables())),
         OwnEffectError::Dimension(_) => {
             says("this formula is not a force").at(force.span, error.to_string()).help(format!(
                 "variables: {}; `plunge effects expression` has their units",
@@ -210,7 +210,7 @@ impl Declaration<'_> {
 
     fn read(&self) -> Option<OwnParameter> {
         let Value::Table(own) = &self.entry.node.value else {
-            let what = format!("this is {}; a table is wanted", self.entry.node.value.kind());
+            let what = format!("this is {}; expected a table", self.entry.node.value.kind());
             let help = "write { value = 0.2, unit = \"1\", range = [0, 5] }";
             return self.fail(self.entry.node.span, what, help);
         };
@@ -262,7 +262,7 @@ impl Declaration<'_> {
 
     fn unit(&self, own: &Table) -> Option<(String, Dimension)> {
         let Some(entry) = own.get("unit") else { return Some(("1".to_owned(), Dimension::NONE)) };
-        let help = "a unit such as \"1\", \"N\", \"kg/m\" or \"1/s\" is wanted";
+        let help = "expected a unit such as \"1\", \"N\", \"kg/m\" or \"1/s\"";
         match &entry.node.value {
             Value::Text(unit) => match units::dimension_of(unit) {
                 Some(dimension) => Some((unit.clone(), dimension)),
@@ -285,7 +285,7 @@ impl Declaration<'_> {
             return self.fail(span, format!("this is {}", entry.node.value.kind()), help);
         };
         let [min, max] = bounds.as_slice() else {
-            return self.fail(span, "two numbers are wanted", help);
+            return self.fail(span, "expected two numbers", help);
         };
         let min = self.in_si(min.span, &min.value, unit, dimension)?;
         let max = self.in_si(max.span, &max.value, unit, dimension)?;
@@ -306,7 +306,7 @@ impl Declaration<'_> {
         };
         match units::parse(&format!("{number:?} {unit}"), dimension) {
             Ok(value) => Some(value),
-            Err(_) => self.fail(span, "this number cannot be taken", "a finite number is wanted"),
+            Err(_) => self.fail(span, "this number cannot be taken", "expected a finite number"),
         }
     }
 

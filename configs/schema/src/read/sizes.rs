@@ -118,7 +118,7 @@ fn list(table: &TableReader<'_>) -> Option<SizeDistribution> {
                 diameters.len(),
                 weights.len()
             ))
-            .at(table.span_of("weights"), "one for each diameter is wanted")
+            .at(table.span_of("weights"), "expected one for each diameter")
             .with(table.span_of("diameters"), "the diameters"),
         );
         return None;
@@ -126,7 +126,7 @@ fn list(table: &TableReader<'_>) -> Option<SizeDistribution> {
     if weights.iter().all(|weight| *weight == 0.0) {
         table.reader.report(
             Diagnostic::error("every weight is 0")
-                .at(table.span_of("weights"), "at least one share above 0 is wanted"),
+                .at(table.span_of("weights"), "expected at least one share above 0"),
         );
         return None;
     }

@@ -65,7 +65,7 @@ impl TableReader<'_> {
         let (Some(angles), Some(values)) = (angles?, values?) else {
             self.reader.report(
                 Diagnostic::error("a table over the impact angle needs `angle` and `value`")
-                    .at(self.header(), "a list of each is wanted")
+                    .at(self.header(), "expected a list of each")
                     .help(format!(
                         "write {{ angle = [\"30 deg\", \"90 deg\"], value = [{0}, {0}] }}",
                         self.example(spec)
@@ -76,7 +76,7 @@ impl TableReader<'_> {
         if angles.len() != values.len() {
             self.reader.report(
                 Diagnostic::error(format!("{} angles have {} values", angles.len(), values.len()))
-                    .at(self.span_of("value"), "one value per angle is wanted")
+                    .at(self.span_of("value"), "expected one value per angle")
                     .with(self.span_of("angle"), "the angles"),
             );
             return None;

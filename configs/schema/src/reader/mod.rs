@@ -176,8 +176,8 @@ impl<'a> TableReader<'a> {
     fn wrong_kind(&self, entry: &Entry, wanted: &str, example: &str) {
         let found = entry.node.value.kind();
         self.reader.report(
-            Diagnostic::error(format!("`{}` is {found}; {wanted} is wanted", entry.key))
-                .at(entry.node.span, format!("{wanted} is wanted"))
+            Diagnostic::error(format!("`{}` is {found}; expected {wanted}", entry.key))
+                .at(entry.node.span, format!("expected {wanted}"))
                 .help(format!("write {} = {example}", entry.key)),
         );
     }

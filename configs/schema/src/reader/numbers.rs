@@ -120,7 +120,7 @@ impl TableReader<'_> {
         if nodes.is_empty() || nodes.len() > limits::CONDITIONS {
             self.reader.report(
                 Diagnostic::error(format!("`{}` has {} values", spec.key, nodes.len()))
-                    .at(entry.node.span, format!("from 1 to {} are wanted", limits::CONDITIONS)),
+                    .at(entry.node.span, format!("expected 1 to {}", limits::CONDITIONS)),
             );
             return None;
         }
@@ -147,7 +147,7 @@ impl TableReader<'_> {
                 Err(error) => {
                     self.reader.report(
                         Diagnostic::error(format!("`{}`: {}", spec.key, error.reason()))
-                            .at(node.span, format!("{} is wanted", spec.dimension.name()))
+                            .at(node.span, format!("expected {}", spec.dimension.name()))
                             .help(self.unit_help(spec, &error)),
                     );
                     return None;
@@ -163,7 +163,7 @@ impl TableReader<'_> {
                 let shown = if finite { number.as_str() } else { "3" };
                 self.reader.report(
                     Diagnostic::error(format!("`{}` has no unit", spec.key))
-                        .at(node.span, format!("{} is wanted", spec.dimension.name()))
+                        .at(node.span, format!("expected {}", spec.dimension.name()))
                         .help(format!(
                             "write it in quotes, with its unit: {}",
                             spec.dimension.examples(shown)
@@ -175,11 +175,11 @@ impl TableReader<'_> {
                 let wanted = spec.dimension.name();
                 self.reader.report(
                     Diagnostic::error(format!(
-                        "`{}` is {}; {wanted} is wanted",
+                        "`{}` is {}; expected {wanted}",
                         spec.key,
                         other.kind()
                     ))
-                    .at(node.span, format!("{wanted} is wanted"))
+                    .at(node.span, format!("expected {wanted}"))
                     .help(format!(
                         "write {} = {}",
                         spec.key,
@@ -232,7 +232,7 @@ impl TableReader<'_> {
         };
         self.reader.report(
             Diagnostic::error(format!("`{}` is a string; {what}", spec.key))
-                .at(span, "a bare number is wanted, without unit and quotes")
+                .at(span, "expected a bare number, without unit and quotes")
                 .help(format!("write {} = {value}", spec.key)),
         );
     }

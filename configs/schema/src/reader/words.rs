@@ -27,7 +27,7 @@ impl TableReader<'_> {
                 let Value::Integer(value) = entry.node.value else {
                     self.reader.report(
                         Diagnostic::error(format!("`{key}` is not a whole number"))
-                            .at(entry.node.span, "a whole number is wanted")
+                            .at(entry.node.span, "expected a whole number")
                             .help(format!("`{key}` is {meaning}")),
                     );
                     return None;
@@ -157,7 +157,7 @@ impl TableReader<'_> {
         }
         self.reader.report(
             Diagnostic::error(format!("`{key}` is not usable as a name"))
-                .at(found.span, "1 to 64 of a-z, 0-9, - and _ are wanted")
+                .at(found.span, "expected 1 to 64 of a-z, 0-9, - and _")
                 .help(format!("write {key} = {}", quoted(&proposal))),
         );
         None

@@ -1,4 +1,4 @@
-//! An own effect as a term of the force.
+//! A user-defined effect as a term of the force.
 
 use std::sync::Arc;
 

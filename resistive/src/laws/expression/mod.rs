@@ -1,4 +1,4 @@
-//! A user's own effect: a force along a named direction, as a formula in a model file.
+//! A user-defined effect: a force along a named direction, as a formula in a model file.
 
 mod law;
 mod variables;
@@ -20,10 +20,10 @@ use variables::{Seen, find};
 /// The amplitude of every effect.
 const AMPLITUDE: &str = "q";
 
-/// Longest name of an own effect (byte).
+/// Longest name of a user-defined effect (byte).
 const ID_BYTES: usize = 64;
 
-/// Along what the force of an own effect acts, and whether it holds a body at rest.
+/// Along what the force of a user-defined effect acts, and whether it holds a body at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// Against the motion, and gone at rest: a drag.
@@ -42,7 +42,7 @@ pub enum Direction {
     Normal,
 }
 
-/// Where the force of an own effect acts.
+/// Where the force of a user-defined effect acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Acts {
     /// On what is in the bed.
@@ -51,7 +51,7 @@ pub enum Acts {
     Everywhere,
 }
 
-/// A parameter that an own effect declares.
+/// A parameter that a user-defined effect declares.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OwnParameter {
     /// As the formula spells it.
@@ -64,7 +64,7 @@ pub struct OwnParameter {
     pub range: Range,
 }
 
-/// What a model file says of an own effect.
+/// What a model file says of a user-defined effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draft {
     /// Its name, kebab-case.
@@ -87,7 +87,7 @@ pub struct Draft {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum OwnEffectError {
     /// The name is not of the right form.
-    #[error("`{0}` is no name of an effect: small letters, digits and hyphens are wanted")]
+    #[error("invalid effect name `{0}`: use lowercase letters, digits and hyphens")]
     Id(String),
     /// The name is that of something else.
     #[error(
@@ -359,7 +359,7 @@ fn check_name(name: &str) -> Result<(), OwnEffectError> {
     let fits = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let why = match name {
         _ if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(fits) => {
-            "letters, digits and underscores are wanted, a letter first"
+            "expected letters, digits and underscores, a letter first"
         }
         _ if is_reserved(name) => {
             "it is a function or a number of formulas, or begins with min or max"

@@ -157,7 +157,7 @@ fn what_is_no_effect_is_refused_by_its_reason() {
     let mut never = good();
     never.parameters[0].range = Range::closed(1.0, 2.0);
     assert!(message(never).contains("leaves out 0"));
-    assert!(message(draft("q * rho * A * v", Direction::Up)).contains("a force (N) is wanted"));
+    assert!(message(draft("q * rho * A * v", Direction::Up)).contains("expected a force (N)"));
     assert!(message(draft("q * rho * A * vv", Direction::Up)).contains("`vv` is not known here"));
 }
 

@@ -5,7 +5,7 @@ use engine::units::Dimension;
 
 use super::super::facts::Needs;
 
-/// Something that the force of an own effect may depend on.
+/// Something that the force of a user-defined effect may depend on.
 pub struct StateVariable {
     /// As it is written.
     pub name: &'static str,

@@ -119,11 +119,11 @@ pub(super) fn axis(reader: &Reader<'_>, key: String, entry: &Entry) -> Option<Ax
                 if matches!(other, Value::Array(_)) { "an empty list" } else { other.kind() };
             reader.report(
                 Diagnostic::error(format!(
-                    "`{}` is {found}; a list of values is wanted",
+                    "`{}` is {found}; expected a list of values",
                     shorten(&key)
                 ))
-                .at(entry.node.span, "a list of values is wanted")
-                .help("one value for all points stands in [set]"),
+                .at(entry.node.span, "expected a list of values")
+                .help("put one value for all points into [set]"),
             );
             None
         }

@@ -105,10 +105,7 @@ fn required_depth(model: GrainModel<'_>) -> Option<f64> {
 
 fn too_shallow(report: &BedReport, model: GrainModel<'_>) -> Option<String> {
     let required = required_depth(model).filter(|required| report.height < *required)?;
-    Some(format!(
-        "the bed is {:.4} m deep; for this impact {required:.4} m are wanted",
-        report.height
-    ))
+    Some(format!("the bed is {:.4} m deep; this impact needs {required:.4} m", report.height))
 }
 
 /// Mean grain diameters that are left below an intruder that the floor has not stopped.
@@ -125,7 +122,7 @@ pub(in crate::run) fn near_the_floor(
     (left < wanted).then(|| {
         format!(
             "the intruder ended {left:.4} m above the floor, which is felt from about {wanted:.4} m; \
-             a deeper bed is wanted"
+             use a deeper bed"
         )
     })
 }
