@@ -414,6 +414,6 @@ mod tests {
     fn a_diagnosis_that_is_no_json_is_named() {
         let texts = Texts::from([(RESULT.to_owned(), "{".to_owned())]);
         let error = page(&texts).expect_err("no page").to_string();
-        assert!(error.starts_with("diagnosis.json cannot be understood"), "{error}");
+        assert!(error.starts_with("diagnosis.json cannot be read"), "{error}");
     }
 }

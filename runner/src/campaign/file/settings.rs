@@ -154,11 +154,11 @@ pub(super) fn range(reader: &Reader<'_>, key: String, entry: &Entry) -> Option<S
                 _ => return refuse("the scale is neither \"linear\" nor \"logarithmic\""),
             };
             let (Some(from), Some(to)) = (value("from"), value("to")) else {
-                return refuse("this is no range");
+                return refuse("this is not a range");
             };
             ([from, to], scale)
         }
-        _ => return refuse("this is no range"),
+        _ => return refuse("this is not a range"),
     };
     let [Some((from, unit)), Some((to, other))] = ends.map(quantity) else {
         return refuse("an end is no number");
