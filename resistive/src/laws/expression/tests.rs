@@ -132,8 +132,8 @@ fn what_is_no_effect_is_refused_by_its_reason() {
     };
     let good = || draft("q * rho * A * v^2", Direction::AgainstMotion);
     for (id, what) in [
-        ("Late Drag", "small letters"),
-        ("-a", "small letters"),
+        ("Late Drag", "lowercase letters"),
+        ("-a", "lowercase letters"),
         ("janssen", "comes with"),
         ("inertial-drag", "account of energy"),
         ("expression", "comes with"),
