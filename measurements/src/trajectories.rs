@@ -76,7 +76,9 @@ pub(super) fn read(
         if let Some((before, line)) = last[run].filter(|(before, _)| *before >= t) {
             let what = match before > t {
                 true => format!("the time runs back in the run `{}`", shorten(&runs[run].name)),
-                false => format!("a time is listed twice in the run `{}`", shorten(&runs[run].name)),
+                false => {
+                    format!("a time is listed twice in the run `{}`", shorten(&runs[run].name))
+                }
             };
             let span = table.place(&row, T, findings);
             findings

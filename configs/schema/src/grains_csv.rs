@@ -204,7 +204,7 @@ fn too_high(grains: &[CsvGrain], lines: &[u64], room: Room) -> Vec<CsvFault> {
         line: *line,
         column: Some(Names::of(room.space).up.to_owned()),
         message: format!(
-            "the grain at {} m is far above the bed: all {} grains on top of each other are {stacked:.3} m high",
+            "the grain at {:?} m is far above the bed: all {} grains on top of each other are {stacked:.3} m high",
             grain.z,
             grains.len()
         ),
