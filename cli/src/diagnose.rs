@@ -106,7 +106,7 @@ pub(crate) fn as_text(
     [n_fit, n_holdout]: [usize; 2],
 ) -> String {
     let mut text = format!("Model {model}: {n_fit} conditions to fit, {n_holdout} held out.");
-    // Nothing was fitted where there is none.
+    // Without a held-out error nothing was fitted.
     if !diagnosis.noise.is_null() {
         text.push_str(&format!(" Errors {}.", noise_words(&diagnosis.noise)));
     }

@@ -71,7 +71,7 @@ pub fn lack_of_fit(
     Ok(Some(smallest_probability(&measured, &drawn)))
 }
 
-/// Probability that χ² with so many degrees of freedom is `chi2` or more: a misfit that is too small is none.
+/// Upper tail of the χ² distribution at `chi2`: only a large misfit is evidence against the model.
 fn at_least(chi2: f64, freedom: f64) -> Option<f64> {
     ChiSquared::new(freedom).ok().map(|distribution| distribution.sf(chi2))
 }

@@ -51,23 +51,6 @@ impl Footprint {
 mod tests {
     use super::*;
 
-    fn contact(normal: Vec3) -> Contact {
-        Contact {
-            normal,
-            overlap: 1e-6,
-            overlap_rate: 0.0,
-            overlap_step: 0.0,
-            slip_velocity: Vec3::zeros(),
-            slip_step: Vec3::zeros(),
-            relative_spin: Vec3::zeros(),
-            relative_turn: Vec3::zeros(),
-            inverse_radius_eff: 1e3,
-            inverse_radius_eff_before: 1e3,
-            inverse_mass_eff: 1e5,
-            rolling_mobility: 1e9,
-        }
-    }
-
     /// Grains evenly over a dome of radius R that moves straight down: the sums become the integrals
     /// ∫cos² dS = 2πR²/3 and ∫cos³ dS = πR²/2.
     #[test]
@@ -84,7 +67,7 @@ mod tests {
                     libm::sincos(2.0 * std::f64::consts::PI * f64::from(k) / f64::from(n_around));
                 let normal = Vec3::new(sin * c, sin * s, -cos);
                 let velocity = Vec3::new(0.0, 0.0, -speed);
-                footprint.add_grain(&contact(normal), radius, 1e-6, velocity);
+                footprint.add_grain(&Contact::pressed(normal), radius, 1e-6, velocity);
             }
         }
         let n = f64::from(n_rings * n_around);
@@ -100,7 +83,7 @@ mod tests {
     #[test]
     fn a_surface_that_leaves_a_grain_behind_collides_with_nothing() {
         let mut footprint = Footprint::default();
-        footprint.add_grain(&contact(-Vec3::z()), 1e-3, 1e-6, Vec3::z());
+        footprint.add_grain(&Contact::pressed(-Vec3::z()), 1e-3, 1e-6, Vec3::z());
         assert_eq!(footprint.collisional_force, Vec3::zeros());
         assert_eq!(footprint.collisional_magnitudes.to_bits(), 0.0_f64.to_bits());
     }

@@ -175,7 +175,7 @@ fn stretch(bytes: &[u8], at: Place, length: u8) -> Range<usize> {
     start..bytes.len().min(start + usize::from(length))
 }
 
-/// Where the next number at or after `at` stands; nowhere, at the end, if there is none.
+/// The range of the next number at or after `at`; empty and at the end without one.
 fn number_from(bytes: &[u8], at: usize) -> Range<usize> {
     let is_digit = |byte: &u8| byte.is_ascii_digit();
     let start = bytes[at..].iter().position(is_digit).map_or(bytes.len(), |found| at + found);

@@ -1,7 +1,7 @@
 //! Pictures of a report, as SVG: the same input gives the same bytes.
 //!
-//! [`svg`] makes a picture of what is drawn on a [`Canvas`]; a [`Hover`] is a place of it that says its value to
-//! whoever points at it, and [`legend`] explains signs and colours.
+//! [`svg`] renders what is drawn on a [`Canvas`]; a [`Hover`] is a place that shows its value under the pointer, and
+//! [`legend`] explains signs and colours.
 
 mod canvas;
 pub mod legend;

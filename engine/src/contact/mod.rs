@@ -238,36 +238,44 @@ pub trait ContactLaw: Send + Sync + 'static {
 }
 
 #[cfg(test)]
+impl Contact {
+    /// One of 1 µm overlap at rest, along `normal`, between grains of some millimetres.
+    pub(crate) fn pressed(normal: crate::math::Vec3) -> Self {
+        let still = crate::math::Vec3::zeros();
+        Self {
+            normal,
+            overlap: 1e-6,
+            overlap_rate: 0.0,
+            overlap_step: 0.0,
+            slip_velocity: still,
+            slip_step: still,
+            relative_spin: still,
+            relative_turn: still,
+            inverse_radius_eff: 1e3,
+            inverse_radius_eff_before: 1e3,
+            inverse_mass_eff: 1e5,
+            rolling_mobility: 1e9,
+        }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::math::{Vec3, cayley};
 
     #[test]
     fn a_spring_turns_with_its_contact_plane_and_keeps_its_length() {
-        let contact = |normal: Vec3| Contact {
-            normal,
-            overlap: 1e-6,
-            overlap_rate: 0.0,
-            overlap_step: 0.0,
-            slip_velocity: Vec3::zeros(),
-            slip_step: Vec3::zeros(),
-            relative_spin: Vec3::zeros(),
-            relative_turn: Vec3::zeros(),
-            inverse_radius_eff: 1e3,
-            inverse_radius_eff_before: 1e3,
-            inverse_mass_eff: 1e5,
-            rolling_mobility: 1e9,
-        };
         // The plane turns about the spring's own direction, which leaves it, and about the one across, which takes
         // it along.
         let spring = Vec3::new(3e-6, 0.0, 0.0);
         let about = |axis: Vec3| cayley(axis * 0.3);
         for axis in [Vec3::x(), Vec3::y()] {
-            let turned = contact(about(axis) * Vec3::z()).turn(spring);
+            let turned = Contact::pressed(about(axis) * Vec3::z()).turn(spring);
             // A root and a quotient of numbers near one.
             assert!((turned - about(axis) * spring).norm() < 1e-15 * 3e-6 * 10.0, "{turned:?}");
         }
         // Along the normal nothing is left to turn.
-        assert_eq!(contact(Vec3::x()).turn(spring), Vec3::zeros());
+        assert_eq!(Contact::pressed(Vec3::x()).turn(spring), Vec3::zeros());
     }
 }

@@ -35,7 +35,7 @@ struct Line {
 }
 
 impl Kept {
-    /// What the file at `path` has, which is made where there is none. A last line that was cut off by a kill is left out.
+    /// Reads the file at `path`, or creates it. A last line that a kill has cut off is left out.
     ///
     /// # Errors
     /// If it cannot be read or written, or has another line that is no outcome.

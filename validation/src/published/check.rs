@@ -224,6 +224,24 @@ impl Check {
         }
     }
 
+    /// A number of ours against words of the source; `band` says what decides.
+    fn in_words(
+        what: impl Into<String>,
+        published: impl Into<String>,
+        ours: Estimate,
+        band: String,
+        passes: bool,
+    ) -> Self {
+        Self {
+            what: what.into(),
+            published: Side::Words(published.into()),
+            ours: Side::Number(ours),
+            band,
+            verdict: if passes { Verdict::Pass } else { Verdict::Fail },
+            cause: String::new(),
+        }
+    }
+
     /// A number that the source has positive, known to within `band`: it passes where it is positive all through the band and
     /// fails where it is negative all through it; between, it is undecided.
     #[must_use]
@@ -235,14 +253,8 @@ impl Check {
     ) -> Self {
         let band = Band { half: or_endless(band.half), ..band };
         let half = Estimate::new(band.half, 0.0);
-        let check = Self {
-            what: what.into(),
-            published: Side::Words(published.into()),
-            ours: Side::Number(ours),
-            band: format!("positive by {half}: {}", band.reason),
-            verdict: if ours.value > band.half { Verdict::Pass } else { Verdict::Fail },
-            cause: String::new(),
-        };
+        let decides = format!("positive by {half}: {}", band.reason);
+        let check = Self::in_words(what, published, ours, decides, ours.value > band.half);
         check.undecided_if(ours.value.abs() <= band.half)
     }
 
@@ -258,14 +270,8 @@ impl Check {
     ) -> Self {
         let band = Band { half: or_endless(band.half), ..band };
         let half = Estimate::new(band.half, 0.0);
-        let check = Self {
-            what: what.into(),
-            published: Side::Words(published.into()),
-            ours: Side::Number(ours),
-            band: format!("zero to {half}: {}", band.reason),
-            verdict: if ours.value.abs() <= band.half { Verdict::Pass } else { Verdict::Fail },
-            cause: String::new(),
-        };
+        let decides = format!("zero to {half}: {}", band.reason);
+        let check = Self::in_words(what, published, ours, decides, ours.value.abs() <= band.half);
         let within = check.verdict == Verdict::Pass;
         check.undecided_if(within && band.half >= contrary.abs())
     }
