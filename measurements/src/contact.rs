@@ -69,6 +69,19 @@ const EARLY: usize = 4;
 /// Squared distance, in standard errors, up to which a fit is possible.
 const POSSIBLE: f64 = 16.0;
 
+impl Contact {
+    /// First contact in `frames` of a body of this `shape` that does not spin: times in s on any clock, depths in m
+    /// downward on any scale, readings good to `sigma` (m), under `gravity` (m/s²). `None` where they do not show
+    /// it: fewer than five frames near contact, no fall before it, or a shape whose lowest point does not fall
+    /// freely.
+    #[must_use]
+    pub fn of_frames(frames: &[Frame], shape: &str, gravity: f64, sigma: f64) -> Option<Self> {
+        let power = power_of(shape)?;
+        let all = velocity_window(frames, sigma, NEAR).filter(|all| all.len() >= FEWEST)?;
+        Some(fit(all, (gravity, sigma), power).1)
+    }
+}
+
 /// The contact of `run` under `condition`, with readings that are good to `sigma` (m), the depth of free
 /// fall at the time `zero` (s) of the table; `None` where the frames do not show it, or the lowest point
 /// of the intruder is no mass that falls freely.
@@ -84,30 +97,39 @@ pub(super) fn read(
     if all.len() < FEWEST {
         return coarse(&run.frames, sigma, (condition, gravity, zero));
     }
+    let (fits, contact) = fit(all, (gravity, sigma), power);
+    let [first, last] = fits.ends;
+    let reaches_zero = first <= zero + 1.5 * contact.step && zero <= last;
+    let is_whole = all[0].t <= run.frames[0].t;
+    let depth_at_zero = match reaches_zero {
+        true => Some(fits.mean(|fit| fits.free(fit, zero))),
+        false if is_whole => back_to_zero(all, condition, gravity, zero),
+        false => None,
+    };
+    Some(Contact { depth_at_zero, ..contact })
+}
+
+/// The fits to the frames `all` near contact, and what they say of it.
+fn fit(all: &[Frame], (gravity, sigma): (f64, f64), power: f64) -> (Fits, Contact) {
     let step = (all[all.len() - 1].t - all[0].t) / (all.len() - 1) as f64;
     let (frames, sigma) = blocks(all, MOST, sigma);
     let fits = Fits::of(&frames, (gravity, sigma), power);
     let time = fits.mean(|fit| (fit.contact, 0.0));
-    let reaches_zero = frames[0].t <= zero + 1.5 * step && zero <= frames[frames.len() - 1].t;
-    let is_whole = all[0].t <= run.frames[0].t;
     // Behind the contact the bed brakes the forward motion too.
     let before = frames.iter().filter(|frame| frame.t <= time.value + step).count();
     let before = &frames[..before.clamp(3, frames.len())];
     let forward = slope(before.iter().map(|frame| (frame.t, frame.x)), sigma);
-    Some(Contact {
+    let contact = Contact {
         time,
         between: fits.between(),
-        depth_at_zero: match reaches_zero {
-            true => Some(fits.mean(|fit| fits.free(fit, zero))),
-            false if is_whole => back_to_zero(all, condition, gravity, zero),
-            false => None,
-        },
+        depth_at_zero: None,
         depth: fits.mean(|fit| fits.free(fit, fit.contact)),
         sinking: fits.mean(|fit| fits.velocity(fit, fit.contact)),
         forward,
         first: all[0].t,
         step,
-    })
+    };
+    (fits, contact)
 }
 
 /// Of few frames: the depth at `zero` alone, on the chord beside it.
@@ -172,8 +194,12 @@ fn back_to_zero(
 /// fall like a mass.
 fn power(condition: &Condition) -> Option<f64> {
     let round = matches!(condition.shape.as_str(), "sphere" | "disc");
-    match condition.shape.as_str() {
-        _ if condition.spin != 0.0 && !round => None,
+    power_of(&condition.shape).filter(|_| condition.spin == 0.0 || round)
+}
+
+/// The same of a shape that does not spin.
+fn power_of(shape: &str) -> Option<f64> {
+    match shape {
         "sphere" | "hemisphere" => Some(3.0),
         "disc" => Some(2.5),
         "cylinder" => Some(2.0),

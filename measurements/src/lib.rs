@@ -3,7 +3,8 @@
 //!
 //! [`MeasurementSet::load`] reads a set, [`MeasurementSet::write`] writes one. `document` knows
 //! `measurement.toml` and `conditions` its conditions; `lines`, `dialect`, `columns`, `header`, `row`,
-//! `cells` and `table` read a table, `runs` and `trajectories` know the two tables there are; `checks`, `ranges`, `signs`
+//! `cells` and `table` read a table, `runs` and `trajectories` know the two tables there are, `several` finds
+//! more than one of the latter; `speeds` reads speeds that are not stated; `checks`, `ranges`, `signs`
 //! and `magnitudes` look at the whole; `smooth`, `contact`, `zeros`, `stops` and `definitions` hold what
 //! it states against its frames, and `contradictions` says where they do not agree.
 
@@ -31,8 +32,10 @@ mod ranges;
 mod reading;
 mod row;
 mod runs;
+mod several;
 mod signs;
 mod smooth;
+mod speeds;
 mod stops;
 mod table;
 mod template;

@@ -21,10 +21,12 @@ use unknown::Unknown;
 pub enum FileKind {
     /// A model: quantities are strings with their unit.
     Model,
-    /// A measurement set: quantities are bare SI numbers.
+    /// A measurement set: quantities are bare SI numbers, or strings with their unit.
     MeasurementSet,
     /// A campaign: keys of models, with values as models write them.
     Campaign,
+    /// An import: options of a command as strings.
+    Import,
 }
 
 impl FileKind {
@@ -34,6 +36,7 @@ impl FileKind {
             Self::Model => "a model",
             Self::MeasurementSet => "a measurement set",
             Self::Campaign => "a campaign",
+            Self::Import => "an import",
         }
     }
 }
