@@ -22,8 +22,10 @@ pub struct Contact {
     pub between: [f64; 2],
     /// Depth (m) that free fall has at time zero, where the frames reach that far.
     pub depth_at_zero: Option<Reading>,
-    /// Depth (m) that free fall has at `time`.
+    /// Depth (m) that free fall has where the path departs from it, with the error of `time` in it.
     pub depth: Reading,
+    /// Depth (m) that free fall has at just the value of `time`.
+    pub at_time: Reading,
     /// Downward velocity (m/s) at `time`.
     pub sinking: Reading,
     /// Forward velocity (m/s) at `time`.
@@ -51,11 +53,17 @@ impl Contact {
 /// Share of its greatest velocity above which a path is near its contact.
 const NEAR: f64 = 0.7;
 
+/// The same of the fall before it, where nothing else is known of a path.
+const FALLING: f64 = 0.4;
+
 /// Fewest frames near the contact that a path can be read from.
 const FEWEST: usize = 5;
 
 /// Most frames, or means of neighbouring ones, that are fitted to.
 const MOST: usize = 48;
+
+/// The same with the fall before it.
+const MOST_OF_FALL: usize = 200;
 
 /// Places of the contact that are tried between two frames.
 const BETWEEN_FRAMES: usize = 4;
@@ -77,8 +85,13 @@ impl Contact {
     #[must_use]
     pub fn of_frames(frames: &[Frame], shape: &str, gravity: f64, sigma: f64) -> Option<Self> {
         let power = power_of(shape)?;
-        let all = velocity_window(frames, sigma, NEAR).filter(|all| all.len() >= FEWEST)?;
-        Some(fit(all, (gravity, sigma), power).1)
+        let near = velocity_window(frames, sigma, NEAR)?;
+        // Nothing is known of the zeros: more of the fall has to tell.
+        let (start, end) = (velocity_window(frames, sigma, FALLING)?[0].t, near[near.len() - 1].t);
+        let from = frames.partition_point(|frame| frame.t < start);
+        let to = frames.partition_point(|frame| frame.t <= end);
+        let all = Some(&frames[from..to]).filter(|all| all.len() >= FEWEST)?;
+        Some(fit(all, MOST_OF_FALL, (gravity, sigma), power).1)
     }
 }
 
@@ -97,7 +110,7 @@ pub(super) fn read(
     if all.len() < FEWEST {
         return coarse(&run.frames, sigma, (condition, gravity, zero));
     }
-    let (fits, contact) = fit(all, (gravity, sigma), power);
+    let (fits, contact) = fit(all, MOST, (gravity, sigma), power);
     let [first, last] = fits.ends;
     let reaches_zero = first <= zero + 1.5 * contact.step && zero <= last;
     let is_whole = all[0].t <= run.frames[0].t;
@@ -110,9 +123,9 @@ pub(super) fn read(
 }
 
 /// The fits to the frames `all` near contact, and what they say of it.
-fn fit(all: &[Frame], (gravity, sigma): (f64, f64), power: f64) -> (Fits, Contact) {
+fn fit(all: &[Frame], most: usize, (gravity, sigma): (f64, f64), power: f64) -> (Fits, Contact) {
     let step = (all[all.len() - 1].t - all[0].t) / (all.len() - 1) as f64;
-    let (frames, sigma) = blocks(all, MOST, sigma);
+    let (frames, sigma) = blocks(all, most, sigma);
     let fits = Fits::of(&frames, (gravity, sigma), power);
     let time = fits.mean(|fit| (fit.contact, 0.0));
     // Behind the contact the bed brakes the forward motion too.
@@ -124,6 +137,7 @@ fn fit(all: &[Frame], (gravity, sigma): (f64, f64), power: f64) -> (Fits, Contac
         between: fits.between(),
         depth_at_zero: None,
         depth: fits.mean(|fit| fits.free(fit, fit.contact)),
+        at_time: fits.mean(|fit| fits.free(fit, time.value)),
         sinking: fits.mean(|fit| fits.velocity(fit, fit.contact)),
         forward,
         first: all[0].t,
@@ -162,6 +176,7 @@ fn coarse(
         between: [f64::NEG_INFINITY, f64::INFINITY],
         depth_at_zero: Some(depth),
         depth,
+        at_time: depth,
         sinking: Reading { value: velocity, se: change },
         forward: unknown,
         first: frames[0].t,
