@@ -1,11 +1,8 @@
 //! The level of the surface on the axes of the tables, and with it contact time and speed of each run.
 
-use measurements::{Contact, Reading};
+use measurements::{Contact, Departure, Reading, common_level};
 
 use super::fault::Fault;
-
-/// Times the error that levels may scatter by and still be one.
-const AGREE: f64 = 2.0;
 
 /// Distance (m) and times its error beyond which a level that is stated is not where the contact is.
 const OFF: (f64, f64) = (1e-3, 5.0);
@@ -16,7 +13,7 @@ const LEAST: f64 = 1e-5;
 /// What is known of one run.
 pub(super) struct Seen {
     pub(super) name: String,
-    pub(super) contact: Contact,
+    pub(super) departure: Departure,
     /// Depth (m) that the tracked point has at contact by what the user says, with the size of the body there.
     pub(super) stated: Option<f64>,
     /// How far the lowest point is below the centre (m), if that is known.
@@ -58,24 +55,29 @@ pub(super) fn touches(runs: &[Seen], gravity: f64) -> Result<(Level, Vec<Touch>)
         }
         let at = |run: &Seen| {
             let level = Reading { value: run.stated.unwrap_or_default(), se: LEAST };
-            Touch::at(&run.contact, level, gravity)
+            Touch::at(&run.departure.contact, level, gravity)
         };
         return Ok((Level::Stated, runs.iter().map(at).collect()));
     }
-    match common(runs) {
+    let departures: Vec<&Departure> = runs.iter().map(|run| &run.departure).collect();
+    match common_level(&departures) {
         Some(level) => {
-            let touches = runs.iter().map(|run| Touch::at(&run.contact, level, gravity)).collect();
+            let level = Reading { se: level.se.max(LEAST), ..level };
+            let touches =
+                runs.iter().map(|run| Touch::at(&run.departure.contact, level, gravity)).collect();
             Ok((Level::Common(level), touches))
         }
-        None => Ok((Level::Own, runs.iter().map(|run| Touch::own(&run.contact)).collect())),
+        None => {
+            Ok((Level::Own, runs.iter().map(|run| Touch::own(&run.departure.contact)).collect()))
+        }
     }
 }
 
 impl Touch {
     /// Where the path crosses `level` (m).
     fn at(contact: &Contact, level: Reading, gravity: f64) -> Self {
-        let Contact { time, at_time, sinking, .. } = contact;
-        let (v, ahead) = (sinking.value, level.value - at_time.value);
+        let Contact { time, at_time, falling, .. } = contact;
+        let (v, ahead) = (falling.value, level.value - at_time.value);
         let root = (v * v + 2.0 * gravity * ahead).max(0.0).sqrt();
         let later = 2.0 * ahead / (v + root).max(f64::MIN_POSITIVE);
         let se = libm::hypot(level.se, at_time.se) / v;
@@ -84,7 +86,7 @@ impl Touch {
             level,
             sinking: Reading {
                 value: v + gravity * later,
-                se: libm::hypot(sinking.se, gravity * se),
+                se: libm::hypot(falling.se, gravity * se),
             },
         }
     }
@@ -95,24 +97,9 @@ impl Touch {
     }
 }
 
-/// The level (m) of all runs, if theirs scatter no more than their errors allow.
-fn common(runs: &[Seen]) -> Option<Reading> {
-    let weight = |run: &Seen| run.contact.depth.se.max(LEAST).powi(-2);
-    let total: f64 = runs.iter().map(weight).sum();
-    let level = runs.iter().map(|run| weight(run) * run.contact.depth.value).sum::<f64>() / total;
-    let square = |run: &Seen| weight(run) * (run.contact.depth.value - level).powi(2);
-    let n = runs.len() as f64;
-    let scatter = (runs.iter().map(square).sum::<f64>() / (n - 1.0).max(1.0)).sqrt();
-    // Half of the error of a contact is how a path departs from free fall, which all runs share.
-    let least = runs.iter().map(|run| run.contact.depth.se).fold(f64::INFINITY, f64::min);
-    let se = scatter.max(1.0) / total.sqrt();
-    (scatter <= AGREE)
-        .then_some(Reading { value: level, se: libm::hypot(se, 0.5 * least).max(LEAST) })
-}
-
 /// What is wrong where the contact is not at the level that is stated.
 fn off(run: &Seen) -> Option<Fault> {
-    let depth = run.contact.depth;
+    let depth = run.departure.contact.depth;
     let miss = depth.value - run.stated?;
     if miss.abs() <= OFF.0.max(OFF.1 * depth.se) {
         return None;
