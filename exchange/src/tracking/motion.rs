@@ -329,10 +329,14 @@ pub(super) fn contact(
         .ok_or("too few frames are near the greatest speed to see a contact")?;
     let contact = &departure.contact;
     let time = contact.time;
-    let last = frames.last();
+    let end = &frames[frames.len().saturating_sub(6)..];
+    let speed = match end {
+        [first, .., last] => (last.z - first.z) / (last.t - first.t),
+        _ => f64::INFINITY,
+    };
     let error = (2.0 * time.se).max(2.0 * contact.step);
     match () {
-        () if last.is_none_or(|last| last.t < time.value + error) => {
+        () if speed > BRAKED * contact.falling.value => {
             Err("the body is never braked: the frames behind contact are missing")
         }
         () if time.value - error < contact.first => Err(
@@ -341,6 +345,9 @@ pub(super) fn contact(
         () => Ok(departure),
     }
 }
+
+/// Share of the speed at contact that is left at the end of a clip that shows the body braked.
+const BRAKED: f64 = 0.7;
 
 /// Frames that are kept after the body has come to rest.
 const AT_REST: usize = 10;

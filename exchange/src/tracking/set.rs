@@ -240,6 +240,7 @@ fn finish(
     let ids =
         conditions::group(&members, settings.pattern.as_ref()).map_err(|fault| vec![fault])?;
     for ((run, words), id) in runs.iter_mut().zip(&mut understood).zip(ids) {
+        words.speed = run.speed;
         words.condition.clone_from(&id);
         run.condition = id;
     }
