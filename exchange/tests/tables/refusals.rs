@@ -176,3 +176,58 @@ fn what_no_table_holds_is_asked_for() {
         &["no table says the diameter of the body", "write --diameter 25.4mm", "--bodies"],
     );
 }
+
+#[test]
+fn whatever_stands_in_a_table_the_answer_is_a_set_or_a_message() {
+    let drops = formats::two();
+    let texts = [
+        ("a.txt", formats::tracker(&drops[0])),
+        ("a.txt", formats::tracker_multi(&drops)),
+        ("a.csv", formats::trackmate(&drops)),
+        ("a.txt", formats::manual_tracking(&drops)),
+        ("a.csv", formats::dltdv(&drops)),
+        ("a.txt", formats::kinovea(&drops)),
+        ("a.txt", formats::loggerpro(&drops[0])),
+        ("a.csv", formats::loggerpro_table(&drops)),
+        ("a.lvm", formats::labview(&drops[0])),
+        ("a.csv", formats::deeplabcut(&drops[0])),
+        ("a.csv", formats::long(&drops)),
+        ("a.csv", formats::wide(&drops)),
+    ];
+    let here = tempfile::tempdir().expect("a folder");
+    let mut options = crate::contact::ball();
+    [SCALE, RATE].into_iter().for_each(|(key, value)| options.set(key, value));
+    let mut noise = crate::world::Noise(5);
+    for (name, text) in &texts {
+        let bytes = text.as_bytes();
+        let at =
+            |noise: &mut crate::world::Noise, most: usize| (noise.uniform() * most as f64) as usize;
+        for round in 0..12 {
+            let mut changed = bytes.to_vec();
+            match round % 4 {
+                // The head alone, a hole, a few other bytes, lines in another order.
+                0 => changed.truncate(at(&mut noise, 700)),
+                1 => {
+                    let from = at(&mut noise, 400);
+                    changed.drain(from..from + at(&mut noise, 200));
+                }
+                2 => {
+                    for _ in 0..6 {
+                        let (place, byte) = (at(&mut noise, 500), at(&mut noise, 256));
+                        changed[place] = byte as u8;
+                    }
+                }
+                _ => {
+                    let mut lines: Vec<&[u8]> = bytes.split(|byte| *byte == b'\n').collect();
+                    let (a, b) = (at(&mut noise, 6), at(&mut noise, lines.len()));
+                    lines.swap(a, b);
+                    changed = lines.join(&b'\n');
+                }
+            }
+            // A set or a message: nothing ends the program.
+            let path = here.path().join(name);
+            std::fs::write(&path, &changed).expect("a table");
+            let _ = exchange::tracking::import(&[path], &options, here.path());
+        }
+    }
+}
