@@ -126,6 +126,20 @@ impl Departure {
         };
         Some(Self { contact, trials: fits.all.iter().map(trial).collect() })
     }
+
+    /// The same with depths counted from `level` (m).
+    #[must_use]
+    pub fn below(&self, level: f64) -> Self {
+        let from = |depth: Reading| Reading { value: depth.value - level, ..depth };
+        let contact = Contact {
+            depth_at_zero: self.contact.depth_at_zero.map(from),
+            depth: from(self.contact.depth),
+            at_time: from(self.contact.at_time),
+            ..self.contact
+        };
+        let trial = |trial: &Trial| Trial { depth: trial.depth - level, ..*trial };
+        Self { contact, trials: self.trials.iter().map(trial).collect() }
+    }
 }
 
 /// The contact of `run` under `condition`, with readings that are good to `sigma` (m), the depth of free

@@ -5,7 +5,7 @@ use measurements::{Contact, Departure, Reading, common_level};
 use super::fault::Fault;
 
 /// Distance (m) and times its error beyond which a level that is stated is not where the contact is.
-const OFF: (f64, f64) = (1e-3, 5.0);
+const OFF: (f64, f64) = (1e-3, 3.5);
 
 /// Least error of a level (m).
 const LEAST: f64 = 1e-5;
@@ -49,7 +49,7 @@ pub(super) enum Level {
 pub(super) fn touches(runs: &[Seen], gravity: f64) -> Result<(Level, Vec<Touch>), Vec<Fault>> {
     let is_stated = runs.iter().all(|run| run.stated.is_some());
     if is_stated {
-        let faults: Vec<Fault> = runs.iter().filter_map(off).collect();
+        let faults = off(runs);
         if !faults.is_empty() {
             return Err(faults);
         }
@@ -97,30 +97,44 @@ impl Touch {
     }
 }
 
-/// What is wrong where the contact is not at the level that is stated.
-fn off(run: &Seen) -> Option<Fault> {
-    let depth = run.departure.contact.depth;
-    let miss = depth.value - run.stated?;
-    if miss.abs() <= OFF.0.max(OFF.1 * depth.se) {
+/// What is wrong where the contacts are not at the levels that are stated: of all runs together where they agree, else
+/// of each.
+fn off(runs: &[Seen]) -> Vec<Fault> {
+    let below = |run: &Seen| Some(run.departure.below(run.stated?));
+    let all: Vec<Departure> = runs.iter().filter_map(below).collect();
+    match common_level(&all.iter().collect::<Vec<_>>()) {
+        Some(miss) => one_off("the runs are", miss, runs[0].below_centre).into_iter().collect(),
+        None => {
+            let of = |(run, one): (&Seen, &Departure)| {
+                one_off(&format!("the run {} is", run.name), one.contact.depth, run.below_centre)
+            };
+            runs.iter().zip(&all).filter_map(of).collect()
+        }
+    }
+}
+
+/// What is wrong with a level that contacts miss by `miss` (m).
+fn one_off(who: &str, miss: Reading, below_centre: Option<f64>) -> Option<Fault> {
+    let error = OFF.1 * miss.se;
+    if miss.value.abs() <= OFF.0.max(error) {
         return None;
     }
-    let near = |wanted: f64| (miss - wanted).abs() <= (OFF.1 * depth.se).max(0.1 * wanted.abs());
-    let right = match run.below_centre {
+    let near = |wanted: f64| (miss.value - wanted).abs() <= error.max(0.1 * wanted.abs());
+    let half = "this is half of the body: was its";
+    let right = match below_centre {
         Some(below) if near(-below) => {
-            "this is half of the body: was its centre tracked? then write --tracked centre"
-                .to_owned()
+            format!("{half} centre tracked? then write --tracked centre")
         }
         Some(below) if near(below) => {
-            "this is half of the body: was its lowest point tracked? then write --tracked lowest"
-                .to_owned()
+            format!("{half} lowest point tracked? then write --tracked lowest")
         }
-        _ => "leave --surface out, and the level is taken from the contact".to_owned(),
+        _ => "leave --surface out, and the level is taken from the contacts".to_owned(),
     };
-    let (what, side) = (1e3 * miss.abs(), if miss < 0.0 { "above" } else { "below" });
+    let side = if miss.value < 0.0 { "above" } else { "below" };
     let what = format!(
-        "{}: the body is braked {what:.2} ± {:.2} mm {side} the stated surface",
-        run.name,
-        1e3 * depth.se
+        "{who} braked {:.2} ± {:.2} mm {side} the stated surface",
+        1e3 * miss.value.abs(),
+        1e3 * miss.se
     );
     Some(Fault::new("--surface", what, right))
 }

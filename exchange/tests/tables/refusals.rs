@@ -134,12 +134,7 @@ fn surfaces_names_and_paths() {
     let message = told("a.csv", &wide, &[("surface", "17.13 cm")]);
     has(
         &message,
-        &[
-            "--surface: drop",
-            "the body is braked",
-            "mm above the stated surface",
-            "--tracked centre",
-        ],
+        &["--surface: the runs are braked 12.", "mm above the stated surface", "--tracked centre"],
     );
     let message = told("a.csv", &wide, &[("condition", "{body}_{repeat}")]);
     has(&message, &["the name `drop 1` does not fit {body}_{repeat}"]);
