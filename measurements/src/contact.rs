@@ -6,7 +6,7 @@
 //! `t₀` and several `p`, and what is said of the contact is the mean over these fits, each with the
 //! weight of its misfit; its error holds the spread between them. Nothing of a model of the bed is needed.
 //!
-//! Of a path whose zeros are not known ([`Departure`]) more is fitted to, and `k` may change with time.
+//! Of a path whose zeros are not known ([`super::Departure`]) more is fitted to, and `k` may change with time.
 
 use nalgebra::{Matrix5, Vector5};
 
@@ -57,20 +57,11 @@ impl Contact {
 /// Share of its greatest velocity above which a path is near its contact.
 const NEAR: f64 = 0.7;
 
-/// The same of the fall before it, where nothing else is known of a path.
-const FALLING: f64 = 0.4;
-
-/// The same behind it.
-const BEHIND: f64 = 0.55;
-
 /// Fewest frames near the contact that a path can be read from.
-const FEWEST: usize = 5;
+pub(super) const FEWEST: usize = 5;
 
 /// Most frames, or means of neighbouring ones, that are fitted to.
 const MOST: usize = 48;
-
-/// The same with the fall before it.
-const MOST_OF_FALL: usize = 200;
 
 /// Places of the contact that are tried between two frames.
 const BETWEEN_FRAMES: usize = 4;
@@ -83,64 +74,6 @@ const EARLY: usize = 4;
 
 /// Squared distance, in standard errors, up to which a fit is possible.
 const POSSIBLE: f64 = 16.0;
-
-/// First contact of a path whose zeros are not known.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Departure {
-    /// What its frames alone say.
-    pub contact: Contact,
-    /// All contacts that were tried.
-    pub(super) trials: Vec<Trial>,
-}
-
-/// A contact that was tried.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Trial {
-    /// Power of time that the path departs with.
-    pub(super) power: f64,
-    /// Depth (m) of free fall at the contact.
-    pub(super) depth: f64,
-    /// Chi-squared.
-    pub(super) misfit: f64,
-}
-
-impl Departure {
-    /// First contact in `frames` of a body of this `shape` that does not spin: times in s on any clock, depths in m
-    /// downward on any scale, readings good to `sigma` (m), under `gravity` (m/s²). `None` where they do not show
-    /// it: fewer than five frames near contact, no fall before it, or a shape whose lowest point does not fall
-    /// freely.
-    #[must_use]
-    pub fn of_frames(frames: &[Frame], shape: &str, gravity: f64, sigma: f64) -> Option<Self> {
-        let power = power_of(shape)?;
-        let near = velocity_window(frames, sigma, BEHIND)?;
-        // Nothing is known of the zeros: more of the fall has to tell.
-        let (start, end) = (velocity_window(frames, sigma, FALLING)?[0].t, near[near.len() - 1].t);
-        let from = frames.partition_point(|frame| frame.t < start);
-        let to = frames.partition_point(|frame| frame.t <= end);
-        let all = Some(&frames[from..to]).filter(|all| all.len() >= FEWEST)?;
-        let (fits, contact) = fit(all, (MOST_OF_FALL, true), (gravity, sigma), power);
-        let trial = |fit: &Fit| Trial {
-            power: fit.power,
-            depth: fits.free(fit, fit.contact).0,
-            misfit: fit.misfit / fits.excess,
-        };
-        Some(Self { contact, trials: fits.all.iter().map(trial).collect() })
-    }
-
-    /// The same with depths counted from `level` (m).
-    #[must_use]
-    pub fn below(&self, level: f64) -> Self {
-        let from = |depth: Reading| Reading { value: depth.value - level, ..depth };
-        let contact = Contact {
-            depth_at_zero: self.contact.depth_at_zero.map(from),
-            depth: from(self.contact.depth),
-            at_time: from(self.contact.at_time),
-            ..self.contact
-        };
-        let trial = |trial: &Trial| Trial { depth: trial.depth - level, ..*trial };
-        Self { contact, trials: self.trials.iter().map(trial).collect() }
-    }
-}
 
 /// The contact of `run` under `condition`, with readings that are good to `sigma` (m), the depth of free
 /// fall at the time `zero` (s) of the table; `None` where the frames do not show it, or the lowest point
@@ -170,7 +103,7 @@ pub(super) fn read(
 }
 
 /// The fits to the frames `all` near contact, and what they say of it.
-fn fit(
+pub(super) fn fit(
     all: &[Frame],
     (most, bends): (usize, bool),
     (gravity, sigma): (f64, f64),
@@ -267,7 +200,7 @@ fn power(condition: &Condition) -> Option<f64> {
 }
 
 /// The same of a shape that does not spin.
-fn power_of(shape: &str) -> Option<f64> {
+pub(super) fn power_of(shape: &str) -> Option<f64> {
     match shape {
         "sphere" | "hemisphere" => Some(3.0),
         "disc" => Some(2.5),
@@ -278,22 +211,22 @@ fn power_of(shape: &str) -> Option<f64> {
 }
 
 /// All fits of one run.
-struct Fits {
+pub(super) struct Fits {
     /// The time (s) that fits count from, and its scale.
     origin: f64,
     scale: f64,
-    all: Vec<Fit>,
+    pub(super) all: Vec<Fit>,
     /// Ends of the frames (s).
     ends: [f64; 2],
     /// How much larger than stated the squares of the residuals are in the best fit, at least 1.
-    excess: f64,
+    pub(super) excess: f64,
 }
 
 /// The path for one contact and one power.
-struct Fit {
-    contact: f64,
-    power: f64,
-    misfit: f64,
+pub(super) struct Fit {
+    pub(super) contact: f64,
+    pub(super) power: f64,
+    pub(super) misfit: f64,
     /// a, b, c, k in units of the scale of time, and what k changes by with time.
     numbers: Vector5<f64>,
     covariance: Matrix5<f64>,
@@ -359,7 +292,7 @@ impl Fits {
     }
 
     /// Depth (m) of free fall at `time`, and its variance.
-    fn free(&self, fit: &Fit, time: f64) -> (f64, f64) {
+    pub(super) fn free(&self, fit: &Fit, time: f64) -> (f64, f64) {
         let t = (time - self.origin) / self.scale;
         fit.along(Vector5::new(1.0, t, 0.5 * t * t, 0.0, 0.0))
     }

@@ -3,7 +3,7 @@
 //! A path alone does not say well with which power of time it departs, and so where. Runs into one bed share level
 //! and power: the level that fits all of them is known much better than by each.
 
-use super::contact::{Departure, Trial};
+use super::departure::{Departure, Trial};
 use super::reading::Reading;
 
 /// Levels that are tried at a time, and how often the best are looked at more closely.

@@ -4,7 +4,7 @@
 //! [`MeasurementSet::load`] reads a set, [`MeasurementSet::write`] writes one. `document` knows
 //! `measurement.toml` and `conditions` its conditions; `lines`, `dialect`, `columns`, `header`, `row`,
 //! `cells` and `table` read a table, `runs` and `trajectories` know the two tables there are, `several` finds
-//! more than one of the latter; `fall` sees the fall before contact in any units, `level` finds one surface for several runs, `speeds` reads speeds that are
+//! more than one of the latter; `fall` and `departure` see fall and contact on any scale, `level` finds one surface for several runs, `speeds` reads speeds that are
 //! not stated; `checks`, `ranges`, `signs`
 //! and `magnitudes` look at the whole; `smooth`, `contact`, `zeros`, `stops` and `definitions` hold what
 //! it states against its frames, and `contradictions` says where they do not agree.
@@ -18,6 +18,7 @@ mod conditions;
 mod contact;
 mod contradictions;
 mod definitions;
+mod departure;
 mod describe;
 mod dialect;
 mod document;
@@ -48,9 +49,10 @@ mod write;
 mod zeros;
 
 pub use agreement::Agreement;
-pub use contact::{Contact, Departure};
+pub use contact::Contact;
 pub use contradictions::{Contradiction, ContradictionKind};
 pub use definitions::{Held, Miss, Outcome, Scalar, hold};
+pub use departure::Departure;
 pub use fall::{Fall, reading_noise};
 pub use feasible::Feasible;
 pub use level::common_level;

@@ -5,21 +5,25 @@
 //! [`Options`]; these are in `import.toml` too, which makes the same set again.
 //!
 //! `text` and `spreadsheet` give the cells of a file as a `sheet`; each file below `layouts` knows one program and
-//! turns a sheet into tracks, with `heading` and `grid`; `motion` brings a track to SI and finds its contact,
-//! `surface` the level of the surface, `bodies`, `names` and `conditions` what was dropped and which runs belong
-//! together; `written` holds the files of the set.
+//! turns a sheet into tracks, with `heading` and `grid`; `begun` makes runs of them, `motion` and `scales` bring their
+//! paths to SI and find contacts, `surface` the level of the surface, `bodies`, `names` and `conditions` what was
+//! dropped and which runs belong together; `import` puts it together, and `written` holds the files of the set.
 
+mod begun;
 mod bodies;
 mod conditions;
 mod fault;
 mod grid;
 mod heading;
+mod import;
 mod import_file;
 mod inputs;
 mod layouts;
 mod motion;
 mod names;
 mod options;
+mod run;
+mod scales;
 mod set;
 mod settings;
 mod sheet;
@@ -33,9 +37,10 @@ mod written;
 use std::path::Path;
 
 pub use fault::{Fault, TrackingError};
+pub use import::import;
 pub use import_file::{IMPORT_FILE, ImportFile};
 pub use options::Options;
-pub use set::{Set, Understood, import};
+pub use set::{Set, Understood};
 
 /// Whether a file in `folder` is called like a table.
 #[must_use]

@@ -3,15 +3,14 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use configs::engine::checkpoint::write_whole;
 use configs::engine::units::Dimension;
 use configs::toml_string as quoted;
 use measurements::Reading;
 
 use super::bodies::Body;
-use super::fault::{Fault, TrackingError};
+use super::fault::Fault;
 use super::options::Options;
-use super::set::{Run, Set};
+use super::run::Run;
 use super::settings::Settings;
 use super::surface::Level;
 
@@ -22,40 +21,6 @@ pub(super) struct Known<'a> {
     pub(super) level: &'a Level,
     pub(super) runs: &'a [Run],
     pub(super) out: &'a Path,
-}
-
-impl Set {
-    /// Writes the files of the set into `folder`, which is made where it is missing; `import.toml` and
-    /// `measurement.toml` come last, so that a set that is there is whole.
-    ///
-    /// # Errors
-    /// If the system refuses.
-    pub fn write(&self, folder: &Path) -> Result<(), TrackingError> {
-        let refused = |path: &Path| {
-            let path = path.to_owned();
-            move |source| TrackingError::Write { path, source }
-        };
-        std::fs::create_dir_all(folder).map_err(refused(folder))?;
-        let last = |name: &str| name == "measurement.toml";
-        let ordered = self
-            .files
-            .iter()
-            .filter(|one| !last(one.0))
-            .chain(self.files.iter().filter(|one| last(one.0)));
-        for (name, content) in ordered {
-            let path = folder.join(name);
-            write_whole(&path, content.as_bytes()).map_err(refused(&path))?;
-        }
-        Ok(())
-    }
-
-    /// Whether `folder` holds these files already, byte for byte.
-    #[must_use]
-    pub fn is_in(&self, folder: &Path) -> bool {
-        self.files.iter().all(|(name, content)| {
-            std::fs::read(folder.join(name)).is_ok_and(|there| there == content.as_bytes())
-        })
-    }
 }
 
 /// Names and contents of the set itself.

@@ -1,0 +1,121 @@
+//! From files to runs whose paths are known, each by itself.
+
+use std::path::{Path as File, PathBuf};
+
+use super::bodies::{Bodies, Body};
+use super::fault::Fault;
+use super::motion::Path;
+use super::settings::Settings;
+use super::track::Track;
+use super::{inputs, layouts};
+
+/// A run whose path is known, and nothing of the others.
+pub(super) struct Begun {
+    pub(super) name: String,
+    pub(super) fields: Vec<(String, String)>,
+    pub(super) labels: Vec<(String, String)>,
+    pub(super) body: Body,
+    pub(super) path: Path,
+}
+
+/// The tracks of all files, with the hashes of the files.
+pub(super) fn tracks(
+    paths: &[PathBuf],
+    settings: &Settings<'_>,
+) -> Result<(Vec<Track>, Vec<String>), Vec<Fault>> {
+    let (mut all, mut hashes, mut faults) = (Vec::new(), Vec::new(), Vec::new());
+    for path in paths {
+        let read = || -> Result<(Vec<Track>, String), Fault> {
+            let bytes = inputs::bytes(path)?;
+            let mut tracks = Vec::new();
+            for sheet in inputs::sheets(path, &bytes)? {
+                let found = layouts::tracks(&sheet, &settings.columns)?;
+                tracks.extend(found.into_iter().map(|track| named(track, path)));
+            }
+            Ok((tracks, blake3::hash(&bytes).to_hex().to_string()))
+        };
+        match read() {
+            Ok((tracks, hash)) => {
+                all.extend(tracks);
+                hashes.push(hash);
+            }
+            Err(fault) => faults.push(fault),
+        }
+    }
+    if faults.is_empty() { Ok((all, hashes)) } else { Err(faults) }
+}
+
+/// A track of a sheet of its own is called by the file and the sheet.
+fn named(track: Track, path: &File) -> Track {
+    let stem = path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
+    let is_sheet = track.stem != stem;
+    match (&track.name, is_sheet) {
+        (Some(name), true) => Track { name: Some(format!("{}-{name}", track.stem)), ..track },
+        (None, true) => Track { name: Some(track.stem.clone()), ..track },
+        (_, false) => track,
+    }
+}
+
+/// Names, labels, bodies and paths of the runs.
+pub(super) fn begin(
+    tracks: Vec<Track>,
+    bodies: &Bodies,
+    settings: &Settings<'_>,
+) -> Result<Vec<Begun>, Vec<Fault>> {
+    let names = names(&tracks);
+    let (mut begun, mut faults) = (Vec::new(), Vec::new());
+    for (track, name) in tracks.into_iter().zip(names) {
+        if settings.leave_out.contains(&name) {
+            continue;
+        }
+        let one = || -> Result<Begun, Fault> {
+            let fields = fields(&track, &name, settings)?;
+            let labels: Vec<_> = fields.iter().chain(&track.labels).cloned().collect();
+            let body = bodies.of(&name, &labels, settings)?;
+            Ok(Begun { path: Path::of(track, settings)?, name, fields, labels, body })
+        };
+        match one() {
+            Ok(one) => begun.push(one),
+            Err(fault) if faults.iter().any(|other: &Fault| other.what == fault.what) => {}
+            Err(fault) => faults.push(fault),
+        }
+    }
+    match (begun.is_empty(), faults.is_empty()) {
+        (_, false) => Err(faults),
+        (true, true) => Err(vec![Fault::new("--leave-out", "no run is left", "leave out fewer")]),
+        (false, true) => Ok(begun),
+    }
+}
+
+/// Names of runs: those of the tables where no two are alike, else behind the name of their file.
+fn names(tracks: &[Track]) -> Vec<String> {
+    let short: Vec<&str> =
+        tracks.iter().map(|one| one.name.as_deref().unwrap_or(&one.stem)).collect();
+    let count = |name: &str| short.iter().filter(|other| **other == name).count();
+    let mut names: Vec<String> = Vec::new();
+    for (track, short) in tracks.iter().zip(&short) {
+        let name = match (&track.name, count(short)) {
+            (_, 1) => (*short).to_owned(),
+            (Some(name), _) => format!("{}-{name}", track.stem),
+            (None, _) => track.stem.clone(),
+        };
+        let name = name.trim().to_owned();
+        let same = names.iter().filter(|other| **other == name).count();
+        names.push(if same == 0 { name } else { format!("{name}-{}", same + 1) });
+    }
+    names
+}
+
+/// What the pattern says of a run by its name or that of its file.
+fn fields(
+    track: &Track,
+    name: &str,
+    settings: &Settings<'_>,
+) -> Result<Vec<(String, String)>, Fault> {
+    let Some(pattern) = &settings.pattern else { return Ok(Vec::new()) };
+    let names = [track.name.as_deref().unwrap_or(name), name, &track.stem];
+    names.iter().find_map(|name| pattern.fields(name)).ok_or_else(|| {
+        let what = format!("the name `{name}` does not fit {}", pattern.text());
+        Fault::new(&track.file, what, "write --condition as the names of files or runs are made")
+    })
+}

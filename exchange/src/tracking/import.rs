@@ -1,0 +1,173 @@
+//! From tables to a set.
+
+use std::path::{Path as File, PathBuf};
+
+use configs::engine::units::Dimension;
+use measurements::{Frame, Reading};
+
+use super::begun::{Begun, begin, tracks};
+use super::bodies::Bodies;
+use super::conditions::{self, Member};
+use super::fault::{Fault, TrackingError};
+use super::motion::{self, Path};
+use super::options::Options;
+use super::run::Run;
+use super::scales::Scales;
+use super::set::{Set, Understood};
+use super::settings::{Settings, Tracked};
+use super::surface::{self, Level, Seen};
+use super::{import_file, inputs, written};
+
+/// Reads `paths` under `options` into the set that is to stand in the folder `out`.
+///
+/// # Errors
+/// Everything that is wrong with the options, else with the tables, else with the runs.
+pub fn import(paths: &[PathBuf], options: &Options, out: &File) -> Result<Set, TrackingError> {
+    let settings = Settings::of(options)?;
+    let paths = inputs::expand(paths)?;
+    let bodies = match options.get("bodies") {
+        Some(path) => Bodies::read(File::new(path))?,
+        None => Bodies::default(),
+    };
+    let (tracks, hashes) = tracks(&paths, &settings)?;
+    let begun = begin(tracks, &bodies, &settings)?;
+    let (runs, understood, level) = finish(begun, &settings)?;
+    let manner = manner(&runs, &settings);
+    let notes = notes(&runs, &level, &manner, &settings);
+    let known = written::Known { options, settings: &settings, level: &level, runs: &runs, out };
+    let mut files = written::files(&known, &notes)?;
+    files.push((import_file::IMPORT_FILE, import_file::text(&paths, &hashes, options, out)));
+    Ok(Set { understood, notes, files })
+}
+
+/// Contacts, levels and conditions.
+fn finish(
+    begun: Vec<Begun>,
+    settings: &Settings<'_>,
+) -> Result<(Vec<Run>, Vec<Understood>, Level), Vec<Fault>> {
+    let paths: Vec<Path> = begun.iter().map(|one| one.path.clone()).collect();
+    let (mut faults, mut seen, mut ready) = (Vec::new(), Vec::new(), Vec::new());
+    for one in begun {
+        match see(&one, &paths, settings) {
+            Ok((found, scales, frames, noise)) => {
+                seen.push(found);
+                ready.push((one, scales, frames, noise));
+            }
+            Err(fault) if faults.iter().any(|other: &Fault| other.what == fault.what) => {}
+            Err(fault) => faults.push(fault),
+        }
+    }
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    let (level, touches) = surface::touches(&seen, settings.gravity)?;
+    let mut runs = Vec::with_capacity(ready.len());
+    let mut understood = Vec::with_capacity(ready.len());
+    for ((begun, scales, frames, noise), (seen, touch)) in
+        ready.into_iter().zip(seen.iter().zip(touches))
+    {
+        let (run, words) = Run::of(begun, (&scales, &frames, noise), seen, touch);
+        runs.push(run);
+        understood.push(words);
+    }
+    drop_heights(&mut runs, settings)?;
+    let members: Vec<Member<'_>> = runs.iter().map(member).collect();
+    let ids =
+        conditions::group(&members, settings.pattern.as_ref()).map_err(|fault| vec![fault])?;
+    for ((run, words), id) in runs.iter_mut().zip(&mut understood).zip(ids) {
+        words.speed = run.speed;
+        words.condition.clone_from(&id);
+        run.condition = id;
+    }
+    Ok((runs, understood, level))
+}
+
+fn member(run: &Run) -> Member<'_> {
+    let labels = if run.fields.is_empty() { &run.labels } else { &run.fields };
+    Member { name: &run.name, labels, body: &run.body, speed: run.speed, angle: run.angle }
+}
+
+fn manner(runs: &[Run], settings: &Settings<'_>) -> String {
+    let members: Vec<Member<'_>> = runs.iter().map(member).collect();
+    conditions::manner(&members, settings.pattern.as_ref())
+}
+
+/// What one run shows of itself: its contact, units, path in SI and noise.
+fn see(
+    one: &Begun,
+    paths: &[Path],
+    settings: &Settings<'_>,
+) -> Result<(Seen, Scales, Vec<Frame>, f64), Fault> {
+    let scales = one.path.scales(paths, settings)?;
+    let frames = scales.in_si(&one.path);
+    let noise = (one.path.noise() * scales.length.1).max(1e-6);
+    let shape = one.body.shape.as_str();
+    let departure = motion::contact(&frames, (shape, noise), settings.gravity).map_err(|why| {
+        let what = format!("the run {}: {why}", one.name);
+        Fault::new(
+            &one.path.track.file,
+            what,
+            format!("--leave-out {} goes on without it", one.name),
+        )
+    })?;
+    let below_centre = one.body.below_centre();
+    let lift = match (settings.tracked, below_centre, settings.text("surface")) {
+        (Tracked::Lowest, ..) | (_, _, None) => 0.0,
+        (Tracked::Centre, Some(below), _) => below,
+        (Tracked::Centre, None, _) => {
+            let what =
+                format!("how far the lowest point of a {shape} is below its centre is not known");
+            return Err(Fault::new(
+                "--tracked",
+                what,
+                "give the level of the tracked point at contact, or leave --surface out",
+            ));
+        }
+    };
+    let stated = settings.position("surface", &one.labels)?;
+    let stated = stated.map(|level| one.path.sign * level - lift);
+    Ok((Seen { name: one.name.clone(), departure, stated, below_centre }, scales, frames, noise))
+}
+
+/// Replaces speeds by those of stated heights of release.
+fn drop_heights(runs: &mut [Run], settings: &Settings<'_>) -> Result<(), Vec<Fault>> {
+    for run in runs {
+        let height = settings.quantity("drop_height", Dimension::LENGTH, &run.labels);
+        if let Some(height) = height.map_err(|fault| vec![fault])? {
+            let value = (2.0 * settings.gravity * height).sqrt();
+            let (seen, error) = (run.speed.value, 5.0 * run.speed.se);
+            if (seen - value).abs() > error.max(0.12 * value) {
+                let what = format!(
+                    "the run {} meets the bed at {seen:.3} m/s by its frames, and from {height} m it would at {value:.3}",
+                    run.name
+                );
+                let right = "give the height of the lowest point above the surface at release, or leave it out";
+                return Err(vec![Fault::new("--drop-height", what, right)]);
+            }
+            run.speed = Reading { value, se: 0.0 };
+        }
+    }
+    Ok(())
+}
+
+fn notes(runs: &[Run], level: &Level, manner: &str, settings: &Settings<'_>) -> Vec<String> {
+    let mut notes = Vec::new();
+    notes.push(match level {
+        Level::Stated => "Surface: as --surface states it.".to_owned(),
+        Level::Common(level) => format!(
+            "Surface: one level for all runs, from their contacts, known to {:.2} mm.",
+            1e3 * level.se
+        ),
+        Level::Own => "Surface: a level for each run, from its contact: those of the runs differ by more than their errors.".to_owned(),
+    });
+    notes.push(format!("Conditions: {manner}."));
+    if runs.iter().any(|run| run.angle < 90.0) {
+        notes.push(
+            "Some impacts are oblique: their angles are those of the paths at contact.".to_owned(),
+        );
+    }
+    if settings.rate.is_some() {
+        notes.push("Times are counted by frames at the stated rate.".to_owned());
+    }
+    notes
+}

@@ -1,0 +1,73 @@
+//! First contact of a path whose clock and depths count from anywhere.
+
+use super::Frame;
+use super::contact::{Contact, FEWEST, Fit, fit, power_of};
+use super::reading::Reading;
+use super::smooth::velocity_window;
+
+/// Share of its greatest velocity above which the fall before contact is looked at.
+const FALLING: f64 = 0.4;
+
+/// The same behind it.
+const BEHIND: f64 = 0.55;
+
+/// Most frames, or means of neighbouring ones, that are fitted to.
+const MOST_OF_FALL: usize = 200;
+
+/// First contact of a path whose zeros are not known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Departure {
+    /// What its frames alone say.
+    pub contact: Contact,
+    /// All contacts that were tried.
+    pub(super) trials: Vec<Trial>,
+}
+
+/// A contact that was tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Trial {
+    /// Power of time that the path departs with.
+    pub(super) power: f64,
+    /// Depth (m) of free fall at the contact.
+    pub(super) depth: f64,
+    /// Chi-squared.
+    pub(super) misfit: f64,
+}
+
+impl Departure {
+    /// First contact in `frames` of a body of this `shape` that does not spin: times in s on any clock, depths in m
+    /// downward on any scale, readings good to `sigma` (m), under `gravity` (m/s²). `None` where they do not show
+    /// it: fewer than five frames near contact, no fall before it, or a shape whose lowest point does not fall
+    /// freely.
+    #[must_use]
+    pub fn of_frames(frames: &[Frame], shape: &str, gravity: f64, sigma: f64) -> Option<Self> {
+        let power = power_of(shape)?;
+        let near = velocity_window(frames, sigma, BEHIND)?;
+        // Nothing is known of the zeros: more of the fall has to tell.
+        let (start, end) = (velocity_window(frames, sigma, FALLING)?[0].t, near[near.len() - 1].t);
+        let from = frames.partition_point(|frame| frame.t < start);
+        let to = frames.partition_point(|frame| frame.t <= end);
+        let all = Some(&frames[from..to]).filter(|all| all.len() >= FEWEST)?;
+        let (fits, contact) = fit(all, (MOST_OF_FALL, true), (gravity, sigma), power);
+        let trial = |fit: &Fit| Trial {
+            power: fit.power,
+            depth: fits.free(fit, fit.contact).0,
+            misfit: fit.misfit / fits.excess,
+        };
+        Some(Self { contact, trials: fits.all.iter().map(trial).collect() })
+    }
+
+    /// The same with depths counted from `level` (m).
+    #[must_use]
+    pub fn below(&self, level: f64) -> Self {
+        let from = |depth: Reading| Reading { value: depth.value - level, ..depth };
+        let contact = Contact {
+            depth_at_zero: self.contact.depth_at_zero.map(from),
+            depth: from(self.contact.depth),
+            at_time: from(self.contact.at_time),
+            ..self.contact
+        };
+        let trial = |trial: &Trial| Trial { depth: trial.depth - level, ..*trial };
+        Self { contact, trials: self.trials.iter().map(trial).collect() }
+    }
+}
