@@ -25,6 +25,9 @@ pub enum StrengthReason {
     FewRepeats,
     /// What was held out is not predicted better by more than chance.
     HeldOutNoBetter,
+    /// Held-out conditions are missed by more than the scatter of their repeats, though nothing is found: conditions
+    /// differ by more than their runs do.
+    HeldOutAboveNoise,
     /// Nothing that was held out could be predicted both without and with what is named.
     HeldOutNotJudged,
     /// What is named cannot predict a condition that the model without it predicts.

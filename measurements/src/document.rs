@@ -107,6 +107,7 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
         feasible,
         conditions,
         runs: Vec::new(),
+        keep: head.keep,
         notes,
     };
     Some(Document {
@@ -133,6 +134,7 @@ struct Head {
     phase: Option<String>,
     stop: StopDefinition,
     last: FinalDefinition,
+    keep: Vec<String>,
     notes: Option<Vec<String>>,
     definitions: [Option<Span>; 2],
     header: Option<Span>,
@@ -158,6 +160,7 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
         _ => FinalDefinition::Resting,
     });
     let notes = table.texts("notes");
+    let keep = table.texts("keep").unwrap_or_default();
     let definitions = ["stop_definition", "final"].map(|key| table.span_of(key));
     let header = table.header();
     table.finish();
@@ -182,6 +185,7 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
         phase,
         stop: stop?,
         last,
+        keep,
         notes,
         definitions,
         header,
@@ -199,6 +203,14 @@ fn instrument(table: TableReader<'_>, unstated: &mut Unstated) -> Instrument {
         position_sigma: number(&keys::POSITION_SIGMA, "instrument.position_sigma_m"),
         speed_sigma_rel: number(&keys::SPEED_SIGMA, "instrument.speed_sigma_rel"),
         level_sigma: number(&keys::LEVEL_SIGMA, "instrument.level_sigma_m"),
+        // Unlike an error of readings, none of these may be missed: zero says that it is exact.
+        time_sigma: optional(&table, &keys::TIME_SIGMA),
+        zero_sigma: optional(&table, &keys::ZERO_SIGMA),
+        speed_bias_sigma_rel: optional(&table, &keys::SPEED_BIAS_SIGMA),
+        scale_sigma_rel: optional(&table, &keys::SCALE_SIGMA),
+        mass_sigma_rel: optional(&table, &keys::MASS_SIGMA),
+        tilt_sigma_deg: optional(&table, &keys::TILT_SIGMA),
+        session_sigma_rel: optional(&table, &keys::SESSION_SIGMA),
     };
     table.finish();
     instrument

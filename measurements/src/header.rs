@@ -92,6 +92,9 @@ fn find<'a>(
     if spec.key == "run" && position(name).is_none() && position(spec.key).is_some() {
         name = spec.key;
     }
+    if spec.key == "session" && renamed.is_none() && position(name).is_none() {
+        name = "day";
+    }
     match position(name) {
         Some(at) => Ok(Some(Column {
             at,

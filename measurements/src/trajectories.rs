@@ -172,6 +172,7 @@ mod tests {
             condition: 0,
             repeat: None,
             order: None,
+            session: None,
             stop_time: None,
             final_z: None,
             final_x: None,

@@ -8,7 +8,9 @@ use serde_json::{Value, json};
 use super::baseline::Baseline;
 use super::response::Response;
 use super::switches::Switch;
-use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
+use crate::forward::{
+    Candidate, Forward, Parameter, ParameterKind, PredictError, Request, Scatter,
+};
 use crate::held_out::noise_floor;
 use crate::rounding::rounded;
 
@@ -95,7 +97,15 @@ impl BedForward {
             let one = &self.screened[at];
             let (min, max) = one.range;
             let name = one.switch.id.to_owned();
-            Parameter { name, unit: String::new(), start: 0.0, min, max }
+            Parameter {
+                name,
+                unit: String::new(),
+                start: 0.0,
+                min,
+                max,
+                prior: None,
+                kind: ParameterKind::Model,
+            }
         };
         let candidate = |source: &Source| match *source {
             Source::Switch(at) => self.screened[at].candidate(),
@@ -260,6 +270,10 @@ impl Screened {
 }
 
 impl Forward for BedForward {
+    fn is_judged_by_held_out(&self) -> bool {
+        false
+    }
+
     fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
