@@ -41,4 +41,4 @@ pub mod surface;
 pub mod units;
 pub mod world;
 
-pub use contacts::stage;
+pub use contacts::{rebound, stage};

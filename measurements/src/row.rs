@@ -96,3 +96,8 @@ mod tests {
         assert!(!row.split(&mut csv_core::Reader::new()));
     }
 }
+
+/// The last part of a path, for a note.
+pub(super) fn file_name(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
+}

@@ -8,7 +8,7 @@
 mod bench;
 mod block;
 mod pairs;
-mod rebound;
+pub mod rebound;
 pub mod stage;
 mod tally;
 

@@ -1,7 +1,6 @@
 //! Lowers a contact law to a loop over many contacts: chosen by name once per run, inlined inside.
 
 use super::pairs::Pairs;
-pub use super::rebound::restitution;
 use crate::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use crate::dimension::{Dimension, Planar, Spatial};
 use crate::grains::Space;

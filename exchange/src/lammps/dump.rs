@@ -10,7 +10,7 @@ use configs::engine::record::GrainSample;
 
 use super::GRAIN;
 use super::data::from_axes;
-use super::import::ImportError;
+use super::import::error::ImportError;
 
 /// All grains at one time.
 pub(super) struct Frame {

@@ -1,6 +1,7 @@
 //! What can happen to an impact within a step, and when.
 
-use super::super::modes::{AXES, Modes, accelerate};
+use super::super::holding::accelerate;
+use super::super::modes::{AXES, Modes};
 use super::super::motion::System;
 use super::super::solver::Solver;
 use super::{Impact, PARTS, Progress, State};
