@@ -35,6 +35,7 @@ mod prefetch;
 mod recessive;
 pub mod record;
 pub mod simulation;
+mod space;
 pub mod step;
 pub mod stopping;
 pub mod surface;

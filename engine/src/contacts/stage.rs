@@ -3,9 +3,9 @@
 use super::pairs::Pairs;
 use crate::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use crate::dimension::{Dimension, Planar, Spatial};
-use crate::grains::Space;
 use crate::lanes::{Eight, Lanes, MOST_LANES, Record, per_lane};
 use crate::ledger::Channel;
+use crate::space::Space;
 
 /// Contacts that are evaluated together, small enough to stay in the first-level cache.
 pub struct Batch<'a, R: Lanes, const N: usize> {
