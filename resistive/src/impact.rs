@@ -1,6 +1,7 @@
 //! One impact on a resistive medium, from first contact to rest.
 
 mod events;
+mod margin;
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +13,7 @@ use super::motion::System;
 use super::observe::{Observer, Stretch};
 use super::solver::{Plan, Solver, Tolerance};
 use super::{ResistanceLaw, Surroundings};
-use events::{Before, COMPONENTS, FORWARD, Fired, SINKING, SLOW, SLOWING, STOPPING, SURFACE};
+use margin::{Before, COMPONENTS, FORWARD, Fired, SINKING, SLOW, SLOWING, STOPPING, SURFACE};
 
 /// Below this share of √(gD) a component of the velocity is what the integration has left of zero.
 const STILL: f64 = 1e-6;

@@ -14,8 +14,8 @@ use resistive::{
     Effort, Ending, Impact, ResistanceLaw, Space, State, Surroundings, Tolerance, Trajectory,
 };
 
-use super::ForwardError;
 use super::bent::Bent;
+use super::error::ForwardError;
 use super::scatter::PathScatter;
 use crate::forward::Scatter;
 use crate::observable::Layout;

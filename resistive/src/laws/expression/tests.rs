@@ -3,6 +3,8 @@
 use crate::{Load, Space};
 use engine::params::ParamTable;
 
+use std::sync::Arc;
+
 use super::super::testing::{SPHERE, sinking, surroundings};
 use super::super::{Coefficients, Effect, find_resistance};
 use super::*;
