@@ -1,6 +1,6 @@
 //! Own effects against those of the table, and what is refused.
 
-use crate::{Load, Space};
+use crate::{Load, ResistanceLaw, Space};
 use engine::params::ParamTable;
 
 use std::sync::Arc;
