@@ -28,6 +28,8 @@ mod signals;
 mod sweep;
 mod table_file;
 mod task;
+mod text;
+mod verdict;
 mod view;
 mod workbench;
 

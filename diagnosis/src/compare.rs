@@ -16,7 +16,7 @@ use crate::observed::Observed;
 use crate::residual::{Unpredicted, predictable};
 use crate::rounding::{rounded, six_digits, six_digits_or_null};
 use crate::sensitivity::Point;
-use crate::where_it_fails::Failing;
+use crate::where_it_fails::{Failing, WhereItFails};
 
 /// A model under the name that a report gives it.
 #[derive(Clone, Copy)]
@@ -49,6 +49,19 @@ pub struct Comparison {
     /// What was left aside or assumed, in sentences.
     #[serde(skip)]
     pub notes: Vec<String>,
+}
+
+impl Comparison {
+    /// How every revision fails, where this is of `set` and its `observed`.
+    #[must_use]
+    pub fn where_it_fails<'a>(
+        &self,
+        set: &'a MeasurementSet,
+        observed: &'a Observed,
+    ) -> WhereItFails<'a> {
+        let models = self.models.iter().map(|model| model.failing.clone()).collect();
+        WhereItFails { set, observed, models, signatures: Vec::new() }
+    }
 }
 
 /// One model against the set.

@@ -122,12 +122,16 @@ impl Judge<'_> {
             let why = format!("with {leader} as much is free as was measured: nothing judges it");
             return Ok(cannot_tell(self.bench, why));
         }
-        if adequate(p_leader) {
-            let held_out = HeldOut::of(self.bench, &self.weighed, &self.leader)?;
+        let held_out = HeldOut::of(self.bench, &self.weighed, &self.leader)?;
+        let leader = self.name(self.ranking.scores[0].candidate());
+        // Nature does not use our formulas: what is left beside the leader counts where it can be seen in what was
+        // held out.
+        let is_of_its_form =
+            self.bench.forward.is_judged_by_held_out() && held_out.is_within_noise();
+        if adequate(p_leader) || is_of_its_form {
             if held_out.refutes() {
                 let hint = format!(
-                    "{} explains what was fitted, but predicts what was left out worse than without it",
-                    self.name(self.ranking.scores[0].candidate())
+                    "{leader} explains what was fitted, but predicts what was left out worse than without it"
                 );
                 return self.refuse((p_lof, p_leader), hint);
             }

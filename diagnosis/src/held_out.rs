@@ -99,6 +99,9 @@ pub const CLEAR: f64 = 1.5;
 /// What is named leaves at most this share of the error on held-out conditions.
 pub const NEARER: f64 = 0.75;
 
+/// An error on held-out conditions up to so many times the noise of their means is noise.
+pub const WITHIN: f64 = 1.3;
+
 /// Choices of conditions among which the share is looked at, and of how many conditions at least.
 const CHOICES: usize = 1000;
 const FEWEST: usize = 3;
@@ -188,6 +191,15 @@ impl HeldOut {
     pub fn is_nearer(&self) -> Option<bool> {
         let ratio = self.after? / self.before?;
         Some(ratio.max(self.ratio_at_most.unwrap_or(0.0)) <= NEARER)
+    }
+
+    /// Whether what is proposed leaves nothing of the error but noise, and takes half of it away at least.
+    #[must_use]
+    pub fn is_within_noise(&self) -> bool {
+        let errors = self.before.zip(self.after).zip(self.noise_floor);
+        errors.is_some_and(|((before, after), floor)| {
+            after <= WITHIN * floor && after <= 0.5 * before && self.is_nearer() == Some(true)
+        })
     }
 
     /// Whether it predicts that worse, by more than chance excuses: means of few runs under few
@@ -305,23 +317,24 @@ impl Predicted {
         noisy: &Fitted,
         fitted: &Fitted,
     ) -> Result<Vec<Attempt>, BenchError> {
-        let fit = bench.data(&noisy.weights).fit(&fitted.fit.point)?;
-        let all = fit.jacobian.tr_mul(&fit.jacobian);
+        let data = bench.data(&noisy.weights);
+        let residual = data.residual(&fitted.fit.point)?;
+        let jacobian = data.jacobian(&fitted.fit)?;
+        let (all, pull) = (jacobian.tr_mul(&jacobian), jacobian.tr_mul(&residual));
         let mut predicted = Vec::with_capacity(noisy.weights.len());
         let mut start = 0;
         for (&condition, weight) in bench.observed.fit.iter().zip(&noisy.weights) {
-            let observed = &bench.observed.conditions[condition];
-            let rows = observed.mean.len();
-            let residual = fit.residual.rows(start, rows).into_owned();
-            let jacobian = fit.jacobian.rows(start, rows).into_owned();
+            let rows = bench.observed.conditions[condition].mean.len();
+            let own = residual.rows(start, rows).into_owned();
+            let slope = jacobian.rows(start, rows).into_owned();
             start += rows;
-            let Some(others) = Cholesky::new(&all - jacobian.tr_mul(&jacobian)) else {
+            let Some(others) = Cholesky::new(&all - slope.tr_mul(&slope)) else {
                 predicted.push(Err("it alone fixes a parameter".to_owned()));
                 continue;
             };
-            let residual = &residual + &jacobian * others.solve(&jacobian.tr_mul(&residual));
-            let log_density =
-                density(&residual, &(&jacobian * others.solve(&jacobian.transpose())));
+            let step = others.solve(&(&pull - slope.tr_mul(&own)));
+            let residual = own - &slope * step;
+            let log_density = density(&residual, &(&slope * others.solve(&slope.transpose())));
             predicted.push(Ok(Self { error: weight.colour(&residual), log_density }));
         }
         Ok(predicted)

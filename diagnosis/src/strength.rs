@@ -34,6 +34,9 @@ pub enum StrengthReason {
     ConditionsNotPredicted,
     /// An amplitude of what is named lies outside of the usual range of its effect, by more than two standard errors.
     AmplitudeOutsideUsualRange,
+    /// Something is left over beside what is named, below the noise of what was held out: it is of another form than
+    /// its formula, or there is more.
+    OfAnotherForm,
     /// The plan of impacts was too small to confirm anything.
     SmallPlan,
     /// Impacts with it, on fresh beds, are no nearer to what was held out.

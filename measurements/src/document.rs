@@ -9,6 +9,7 @@ use super::columns::ColumnNames;
 use super::conditions::{self, ConditionPlaces};
 use super::dialect::{Decimal, Delimiter};
 use super::keys;
+use super::optional::optional;
 use super::table::Format;
 use super::unstated::Unstated;
 use super::{
@@ -290,11 +291,6 @@ fn files(table: TableReader<'_>, kind: Option<Kind>) -> Option<Files> {
     table.finish();
     let format = Format { delimiter, decimal, columns: ColumnNames::default() };
     Some(Files { runs: runs?, trajectories, missing, format })
-}
-
-/// A number that may be left out; what is wrong with it is reported.
-pub(super) fn optional(table: &TableReader<'_>, spec: &ParamSpec) -> Option<f64> {
-    table.optional_number(spec).flatten().map(|found| found.value)
 }
 
 fn optional_text(

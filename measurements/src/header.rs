@@ -5,8 +5,7 @@ use engine::units::{self, Dimension};
 
 use super::columns::{ColumnNames, ColumnSpec, Content, Renamed};
 use super::findings::Findings;
-use super::row::Row;
-use super::table::file_name;
+use super::row::{Row, file_name};
 
 /// Where a column stands, and how it is written.
 pub(super) struct Column {

@@ -9,8 +9,8 @@ use super::cells::Cell;
 use super::columns::TRAJECTORIES;
 use super::document::Missing;
 use super::findings::{Findings, lines_in_words, nearest_name};
-use super::row::Row;
-use super::table::{Format, Table, file_name};
+use super::row::{Row, file_name};
+use super::table::{Format, Table};
 use super::{Frame, Run};
 
 /// Most readings of a set: at 40 bytes each, and twice that while a list grows, they stay below

@@ -100,6 +100,9 @@ fn reason_in_words(reason: &str) -> &str {
             "with it, conditions that were held out cannot be predicted that can be without it"
         }
         "amplitude-outside-usual-range" => "its amplitude is outside of its usual range",
+        "of-another-form" => {
+            "something is left over beside it, below the noise: its form is another, or there is more"
+        }
         "small-plan" => "the plan of impacts is too small to confirm anything",
         "fresh-beds-no-nearer" => {
             "impacts with it, on fresh beds, are no nearer to what was held out"

@@ -14,6 +14,7 @@ pub mod document;
 pub mod edit;
 pub mod estimate;
 pub mod grains_csv;
+mod guess;
 mod launching;
 pub mod limits;
 mod load;

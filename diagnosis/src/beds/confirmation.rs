@@ -7,9 +7,9 @@ use runner::beds::Record;
 use serde_json::{Value, json};
 
 use super::emulator::BedForward;
+use super::error::BedError;
 use super::observables::observables;
 use super::stand::Stand;
-use super::workflow::BedError;
 use crate::bench::BenchError;
 use crate::errors::{Errors, Sums};
 use crate::held_out::{Fails, HeldOut, LeftOut, NotPredicted, Unit, standard_errors};

@@ -7,6 +7,7 @@ mod baseline;
 mod confirmation;
 mod design;
 mod emulator;
+mod error;
 mod line_search;
 mod modes;
 pub mod observables;
@@ -21,10 +22,9 @@ mod workflow;
 pub use baseline::BaselineError;
 pub use confirmation::{Channel, Confirmation};
 pub use emulator::BedForward;
+pub use error::BedError;
 pub use plan::{Plan, PlannedStage, SIZES, Size, Wish};
 pub use stand::{Draw, Stand, StandError};
 pub use switches::{SWITCHES, Switch};
 pub use variation::Variation;
-pub use workflow::{
-    BedDiagnosis, BedError, COMPARED, bed_forward, compare_jobs, diagnose_bed, unaffordable,
-};
+pub use workflow::{BedDiagnosis, COMPARED, bed_forward, compare_jobs, diagnose_bed, unaffordable};

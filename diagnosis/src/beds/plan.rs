@@ -4,12 +4,12 @@ use runner::beds::Job;
 use runner::beds::{Impacts, Outstanding, SETTLING};
 use serde_json::{Value, json};
 
+use super::error::BedError;
 use super::line_search;
 use super::screening::Screening;
 use super::stand::{Draw, Stand};
 use super::switches::{OF_THE_APPARATUS, SWITCHES, Switch};
 use super::variation::Variation;
-use super::workflow::BedError;
 use crate::observed::Observed;
 
 /// How many effects a line search and a confirmation take up.

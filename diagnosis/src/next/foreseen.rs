@@ -3,7 +3,7 @@
 use measurements::{Condition, Kind, MeasurementSet, Role};
 use nalgebra::DVector;
 
-use super::Designs;
+use super::designs::Designs;
 use super::rival::Rival;
 use crate::bench::Bench;
 use crate::forward::Forward;

@@ -2,6 +2,7 @@
 
 mod bent;
 mod candidates;
+mod error;
 mod needs;
 mod prepared;
 mod scatter;
@@ -11,7 +12,6 @@ use std::sync::Arc;
 
 use measurements::MeasurementSet;
 use resistive::{Effect, RESISTANCE_LAWS};
-use thiserror::Error;
 
 use crate::apparatus::Apparatus;
 use crate::forward::{
@@ -19,6 +19,7 @@ use crate::forward::{
 };
 use crate::next::Designs;
 use crate::observable::Layout;
+pub use error::ForwardError;
 use prepared::Prepared;
 
 /// By this share a parameter is moved to see whether anything depends on it.
@@ -26,59 +27,6 @@ const PROBE: f64 = 1e-2;
 
 /// Standard deviation of what is known of each change of form beforehand.
 const FORM: f64 = 0.3;
-
-/// Why a model cannot be compared with a set.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum ForwardError {
-    /// A grain bed.
-    #[error("`{model}` is a bed of grains, not a force law")]
-    Grains {
-        /// Name of the model.
-        model: String,
-    },
-    /// The set asks for a shape that is not there.
-    #[error("condition {condition}: there is no shape `{shape}`; known: {}", known.join(", "))]
-    UnknownShape {
-        /// Id of the condition.
-        condition: String,
-        /// What the set says.
-        shape: String,
-        /// What there is.
-        known: Vec<&'static str>,
-    },
-    /// A size of a shape is not given.
-    #[error("condition {condition}: a {shape} needs `{key}`, which the set does not give")]
-    MissingSize {
-        /// Id of the condition.
-        condition: String,
-        /// Name of the shape.
-        shape: &'static str,
-        /// What is missing.
-        key: &'static str,
-    },
-    /// A shape that the set's geometry does not have.
-    #[error("condition {condition}: a {shape} cannot be the intruder of a {space} bed")]
-    WrongSpace {
-        /// Id of the condition.
-        condition: String,
-        /// Name of the shape.
-        shape: &'static str,
-        /// `2d` or `3d`.
-        space: &'static str,
-    },
-    /// A size outside of what the shape can have.
-    #[error("condition {condition}: `{key}` of a {shape} cannot be {value}")]
-    BadSize {
-        /// Id of the condition.
-        condition: String,
-        /// Name of the shape.
-        shape: &'static str,
-        /// Which size.
-        key: &'static str,
-        /// (SI).
-        value: f64,
-    },
-}
 
 /// A resistive-force model before a measurement set.
 ///

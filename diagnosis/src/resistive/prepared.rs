@@ -14,8 +14,8 @@ use resistive::{
     Effort, Ending, Impact, ResistanceLaw, Space, State, Surroundings, Tolerance, Trajectory,
 };
 
-use super::ForwardError;
 use super::bent::Bent;
+use super::error::ForwardError;
 use super::scatter::PathScatter;
 use crate::forward::{Bend, Scatter};
 use crate::observable::Layout;
@@ -24,7 +24,7 @@ use crate::observable::Layout;
 const DURATION: f64 = 10.0;
 
 /// Errors near 1e-9 m, far below any camera and small beside every difference that is taken.
-const TOLERANCE: Tolerance = Tolerance { relative: 1e-10, absolute: 1e-12 };
+const TOLERANCE: Tolerance = Tolerance { relative: 1e-8, absolute: 1e-10 };
 
 /// An impact takes some twenty steps and a few changes of mode; a fit that wanders to where it takes a hundred times
 /// as many has left what the model can describe, and must not wait there.

@@ -51,7 +51,7 @@ const OF_APPARATUS: [Hidden; 4] =
     [Hidden::AddedMass, Hidden::RateFriction, Hidden::Magnus, Hidden::Layer];
 
 /// Strength of these.
-const STRONG: f64 = 0.12;
+const STRONG: f64 = 0.20;
 
 /// A row of the benchmark: one thing is varied in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -4,9 +4,9 @@ use engine::grains::Space;
 use engine::params::{Default as ParamDefault, ParamSpec};
 
 use super::bed_file::{DataFolder, csv_bed};
-use super::grains::time_step;
 use super::laws::effects;
 use super::sizes::sizes;
+use super::step::time_step;
 use super::{BodyPlaces, Places};
 use crate::diagnostics::Diagnostic;
 use crate::limits;

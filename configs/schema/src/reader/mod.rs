@@ -1,6 +1,7 @@
 //! Reads tables key by key: collects every error, and writes what it read into the resolved model.
 
 mod coefficients;
+mod kind;
 mod lists;
 mod numbers;
 mod unknown;
@@ -13,30 +14,9 @@ use crate::document::{Entry, Node, Table, Value};
 use crate::limits;
 use crate::resolved::Resolved;
 
+pub use kind::FileKind;
 pub use numbers::interval;
 use unknown::Unknown;
-
-/// What a file is, and so how it writes quantities.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FileKind {
-    /// A model: quantities are strings with their unit.
-    Model,
-    /// A measurement set: quantities are bare SI numbers.
-    MeasurementSet,
-    /// A campaign: keys of models, with values as models write them.
-    Campaign,
-}
-
-impl FileKind {
-    /// What messages call it, with its article.
-    fn noun(self) -> &'static str {
-        match self {
-            Self::Model => "a model",
-            Self::MeasurementSet => "a measurement set",
-            Self::Campaign => "a campaign",
-        }
-    }
-}
 
 /// A value that was read, and where; a default stands nowhere.
 #[derive(Clone, Copy, Debug, PartialEq)]

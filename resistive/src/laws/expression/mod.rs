@@ -3,9 +3,7 @@
 mod law;
 mod variables;
 
-use std::sync::Arc;
-
-use crate::{Immersion, Motion, ResistanceLaw, Space, Surroundings};
+use crate::{Immersion, Motion, Space, Surroundings};
 use engine::params::{Default, ParamSpec, Range};
 use engine::units::Dimension;
 use thiserror::Error;
@@ -13,7 +11,6 @@ use thiserror::Error;
 use super::facts::Needs;
 use super::{RESISTANCE_LAWS, find_resistance};
 use crate::formula::{DimensionError, Formula, FormulaError, Known, is_reserved};
-use law::Law;
 pub use variables::{STATE_VARIABLES, StateVariable};
 use variables::{Seen, find};
 
@@ -257,12 +254,6 @@ impl OwnEffect {
             let is_used = |source: &Source| matches!(source, Source::State(used) if *used == index);
             self.sources.iter().any(is_used).then_some(variable)
         })
-    }
-
-    /// The term of the force with amplitude `q` (SI) in an impact at `angle` below the horizontal (rad).
-    #[must_use]
-    pub fn build(self: &Arc<Self>, q: f64, angle: f64) -> Box<dyn ResistanceLaw> {
-        Box::new(Law { effect: Arc::clone(self), q, angle })
     }
 
     /// Whether the force in a state is of the kind that it is said to be.
