@@ -187,6 +187,7 @@ impl Data<'_> {
         scales: &[Scale],
         free: &[usize],
     ) -> Result<DMatrix<f64>, PredictError> {
+        let here = self.residual(point)?;
         let mut jacobian = DMatrix::zeros(self.rows(), free.len());
         for (column, &at) in free.iter().enumerate() {
             let step = scales[at].physical_step(value(point, at));
@@ -195,13 +196,14 @@ impl Data<'_> {
                 *value_mut(&mut point, at) += by;
                 self.residual(&point)
             };
-            // To one side where the model cannot be integrated on the other.
-            let slope = match (moved(-step), moved(step)) {
-                (Ok(less), Ok(more)) => (less - more) / (2.0 * step),
-                (Ok(less), Err(_)) => (less - self.residual(point)?) / step,
-                (Err(_), Ok(more)) => (self.residual(point)? - more) / step,
+            // To the other side where the model cannot be integrated on one.
+            let slope = match moved(step) {
+                Ok(more) => (&here - more) / step,
                 // What cannot be moved at all is where it is, as at a bound.
-                (Err(_), Err(_)) => continue,
+                Err(_) => match moved(-step) {
+                    Ok(less) => (less - &here) / step,
+                    Err(_) => continue,
+                },
             };
             jacobian.set_column(column, &slope);
         }

@@ -204,8 +204,8 @@ pub struct Scatter {
     /// Force normal to the velocity, in units of the resistance, at nodes likewise; in the plane of
     /// motion, positive out of the bed.
     pub sideways: Vec<f64>,
-    /// Relative change of the strength of every effect of the request with depth, from the surface to
-    /// [`Scatter::reach`], and with speed, from rest to the impact speed: an effect of the same kind and another form.
+    /// Relative change of the strength of every effect of the request with depth, from the surface to the greatest of the
+    /// set, and with speed, from rest to the greatest: an effect of the same kind and another form.
     pub bend: Bend,
     /// Depth of the last node (m); beyond it the last value holds.
     pub reach: f64,
@@ -238,6 +238,17 @@ impl Bend {
         let curved = |x: f64| 2.0 * x * x - 1.0;
         let terms = [u, curved(u), w, curved(w), u * w];
         1.0 + self.0.iter().zip(terms).map(|(by, term)| by * term).sum::<f64>()
+    }
+
+    /// Its derivative by the share of depth.
+    #[must_use]
+    pub fn growth(&self, depth: f64, speed: f64) -> f64 {
+        if !(0.0..1.0).contains(&depth) {
+            return 0.0;
+        }
+        let [u, w] = [depth, speed].map(|share| 2.0 * share.clamp(0.0, 1.0) - 1.0);
+        let Self([straight, curved, _, _, both]) = self;
+        2.0 * (straight + 4.0 * curved * u + both * w)
     }
 }
 

@@ -7,7 +7,7 @@ use resistive::{Account, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 /// A law whose contribution is multiplied by what depends on depth and speed.
 pub(super) struct Bent {
     pub(super) law: Box<dyn ResistanceLaw>,
-    /// By what, from the surface to [`Self::reach`] and from rest to [`Self::speed`].
+    /// By what: from the surface to [`Self::reach`] and from rest to [`Self::speed`].
     pub(super) by: Bend,
     /// (m).
     pub(super) reach: f64,
@@ -33,8 +33,12 @@ impl Bent {
             grip.negative = scale(before.negative, grip.negative);
         }
         load.couple = scale(before.couple, load.couple);
+        let moving = load.added_mass - before.added_mass;
         load.added_mass = scale(before.added_mass, load.added_mass);
         load.recruitment = scale(before.recruitment, load.recruitment);
+        // A mass that is larger deeper comes in on the way down.
+        let growth = self.by.growth(at.depth / self.reach, motion.speed.abs() / self.speed);
+        load.recruitment += moving * growth / self.reach * -motion.velocity.z;
     }
 }
 

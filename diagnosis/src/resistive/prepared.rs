@@ -79,8 +79,8 @@ struct Law {
     functions: Vec<(&'static str, Expression)>,
     effects: Vec<(Effect, Affine)>,
     angle: f64,
-    /// Impact speed (m/s).
-    speed: f64,
+    /// Greatest depth (m) and impact speed (m/s) of the set.
+    extent: [f64; 2],
 }
 
 /// A number that depends on the free parameters: a coefficient that is a table over angle is a weighted
@@ -98,7 +98,11 @@ impl Affine {
 }
 
 impl Law {
-    fn new(medium: &ResistiveMedium, free: &[FreeParameter], (angle, speed): (f64, f64)) -> Self {
+    fn new(
+        medium: &ResistiveMedium,
+        free: &[FreeParameter],
+        (angle, extent): (f64, [f64; 2]),
+    ) -> Self {
         let baseline = medium.resistance.entry;
         let here = medium.coefficients_at(angle);
         let (functions, numbers): (Vec<_>, Vec<_>) =
@@ -145,7 +149,7 @@ impl Law {
                 .collect(),
             effects,
             angle,
-            speed,
+            extent,
         }
     }
 
@@ -198,10 +202,10 @@ impl Law {
     }
 
     fn bent(&self, law: Box<dyn ResistanceLaw>, scatter: &Scatter) -> Box<dyn ResistanceLaw> {
-        let Scatter { bend, reach, .. } = *scatter;
-        match bend {
-            by if by == Bend::default() => law,
-            by => Box::new(Bent { law, by, reach, speed: self.speed }),
+        let (by, [reach, speed]) = (scatter.bend, self.extent);
+        match by == Bend::default() {
+            true => law,
+            false => Box::new(Bent { law, by, reach, speed }),
         }
     }
 }
@@ -251,7 +255,7 @@ impl Prepared {
             angle,
             spin: condition.spin,
             bed,
-            law: Law::new(&there, free, (angle, condition.speed)),
+            law: Law::new(&there, free, (angle, extent(set))),
         })
     }
 
@@ -372,6 +376,16 @@ impl Prepared {
             .with_tolerance(TOLERANCE)
             .with_effort(EFFORT)
     }
+}
+
+/// Greatest depth (m) that any run of `set` reaches, and greatest impact speed (m/s).
+fn extent(set: &MeasurementSet) -> [f64; 2] {
+    let depths =
+        set.runs.iter().flat_map(|run| run.frames.iter().map(|frame| frame.z).chain(run.final_z));
+    let widest = set.conditions.iter().map(|condition| condition.diameter).fold(0.0, f64::max);
+    let speed = set.conditions.iter().map(|condition| condition.speed).fold(0.0, f64::max);
+    // A set without depths may still have stopping times.
+    [depths.fold(widest.max(f64::MIN_POSITIVE), f64::max), speed.max(f64::MIN_POSITIVE)]
 }
 
 /// The times before first contact, in falling order, and the others.

@@ -317,7 +317,7 @@ fn apparatus(rows: &mut Vec<Score>, all: &[Answered<'_>]) {
     of_each("nothing hidden, an effect named", &is_null, is_anything_named, AtMost(0.02));
     let listed = |trial: &Trial| !is_null(trial) && !is_unlisted(trial);
     of_each(
-        "listed effect (20 %) named, among three at most",
+        "listed effect (12 %) named, among three at most",
         &listed,
         is_among_three,
         AtLeast(0.85),
