@@ -9,6 +9,7 @@ use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
 use crate::adhesion::{Bond, Energy, Pull};
+use crate::candidate::{Candidacy, Candidate, Need};
 use crate::registry::{ActsOn, FromParams, LawEntry};
 
 /// The pull of a pendular bridge of liquid, from the first touch until it ruptures.
@@ -154,6 +155,9 @@ const PARAMS: &[ParamSpec] = &[
     },
 ];
 
+/// Volume of a bridge that is looked for, in that of a grain: a bed that is wet by about a per cent.
+const WET: f64 = 0.01;
+
 /// The registry's line.
 pub(crate) const ENTRY: LawEntry = LawEntry {
     acts_on: ActsOn::ContactEffect,
@@ -163,6 +167,18 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
     signature: "A constant resistance at low water content, with loss at every rupture.",
     source: "Willett, Adams, Johnson & Seville, Langmuir 16, 9396 (2000)",
     params: PARAMS,
+    candidacy: Candidacy::Candidate(Candidate {
+        amplitude: "pull of a bridge over the weight of a mean grain",
+        screen: 5.0,
+        range: (0.0, 100.0),
+        separable_from: "from cohesion-dmt: grains that are pulled apart; from friction: slow impacts",
+        alike_below: &["rail-friction"],
+        needs: &[Need::Gravity],
+        params: |grain, q| {
+            let surface_tension = q * grain.weight / (TAU * grain.radius);
+            vec![("surface_tension", surface_tension), ("liquid_volume", WET * grain.volume)]
+        },
+    }),
     ..LawEntry::of::<CapillaryBridge>()
 };
 

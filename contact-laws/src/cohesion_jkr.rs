@@ -9,6 +9,7 @@ use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
 use crate::adhesion::{Bond, Energy, Pull};
+use crate::candidate::Candidacy;
 use crate::hertz::{Elastic, params};
 use crate::registry::{ActsOn, FromParams, LawEntry};
 
@@ -167,6 +168,10 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
     signature: "A constant resistance with hysteresis: grains stick, crater walls stand.",
     source: "Johnson, Kendall & Roberts, Proc. R. Soc. Lond. A 324, 301 (1971)",
     params: PARAMS,
+    candidacy: Candidacy::None(
+        "cohesion-dmt stands for it: grains let go at 3/2 π W R* and not 2π W R*, and depths and times do not \
+         tell the two apart",
+    ),
     ..LawEntry::of::<CohesionJkr>()
 };
 

@@ -6,6 +6,7 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
+use crate::candidate::Candidacy;
 use crate::registry::{ActsOn, FromParams, LawEntry};
 
 /// A couple against rolling that does not depend on how fast it rolls.
@@ -105,6 +106,9 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
     signature: "More depth-linear friction, as rolling-resistance, but a bed that settles for long.",
     source: "Ai, Chen, Rotter & Ooi, Powder Technol. 206, 269 (2011), model A",
     params: PARAMS,
+    candidacy: Candidacy::None(
+        "rolling-resistance stands for it: both end at μ_r R* F_n, and they differ where grains are at rest",
+    ),
     ..LawEntry::of::<RollingConstantTorque>()
 };
 

@@ -6,6 +6,7 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
+use crate::candidate::{Candidacy, Candidate};
 use crate::registry::{ActsOn, FromParams, LawEntry};
 
 /// A couple against rolling: a spring in the relative rotation with a dashpot, and a plastic limit.
@@ -163,6 +164,15 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
     signature: "A higher angle of repose and depth-linear friction; depth and stopping time fall together.",
     source: "Ai, Chen, Rotter & Ooi, Powder Technol. 206, 269 (2011), model C",
     params: PARAMS,
+    candidacy: Candidacy::Candidate(Candidate {
+        amplitude: "rolling_friction",
+        screen: 0.1,
+        range: (0.0, 0.5),
+        separable_from: "from grain-friction: several angles, or bed and impact by different friction",
+        alike_below: &[],
+        needs: &[],
+        params: |_, q| vec![("rolling_friction", q)],
+    }),
     ..LawEntry::of::<RollingResistance>()
 };
 

@@ -6,6 +6,7 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
+use crate::candidate::{Candidacy, Candidate, Need};
 use crate::registry::{ActsOn, FromParams, LawEntry};
 
 /// A couple along the normal against the relative rotation about it: a spring with a plastic limit.
@@ -144,6 +145,15 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
     signature: "Small: a spinning intruder and grains that spin on their contacts stop earlier.",
     source: "Luding, Granul. Matter 10, 235 (2008)",
     params: PARAMS,
+    candidacy: Candidacy::Candidate(Candidate {
+        amplitude: "twisting_friction",
+        screen: 0.1,
+        range: (0.0, 1.0),
+        separable_from: "from rolling-resistance: hardly by depths and times",
+        alike_below: &[],
+        needs: &[Need::Spheres("discs in a plane do not twist against each other")],
+        params: |_, q| vec![("twisting_friction", q)],
+    }),
     ..LawEntry::of::<TwistingResistance>()
 };
 

@@ -6,6 +6,7 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
+use crate::candidate::{Candidacy, Candidate, Need};
 use crate::hertz::{Elastic, params};
 use crate::registry::{ActsOn, FromParams, LawEntry};
 
@@ -107,6 +108,15 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
     signature: "Small: the early peak and the rebound of the bed fall with speed.",
     source: "Brilliantov, Spahn, Hertzsch & Pöschel, Phys. Rev. E 53, 5382 (1996)",
     params: PARAMS,
+    candidacy: Candidacy::Candidate(Candidate {
+        amplitude: "viscous_time (us)",
+        screen: 5.0,
+        range: (0.0, 100.0),
+        separable_from: "from restitution: a wide range of speeds",
+        alike_below: &[],
+        needs: &[Need::HertzLaw, Need::LawWithout("viscous_time")],
+        params: |_, q| vec![("viscous_time", q / 1e6)],
+    }),
     ..LawEntry::of::<VelocityRestitution>()
 };
 

@@ -58,7 +58,7 @@ pub struct ParamSpec {
     pub default: Default,
     /// The values that are accepted at all (SI).
     pub allowed: Range,
-    /// The values that one would expect (SI): a fit searches them, a value outside warns.
+    /// The values that one would expect (SI): a value outside warns.
     pub plausible: Range,
     /// One line of meaning.
     pub meaning: &'static str,

@@ -25,9 +25,9 @@ pub use assembly::{Assembly, Compact, Part, PartLoad, State};
 pub use error::ImpactError;
 pub use impact::{Effort, Ending, Impact, PartStop};
 pub use laws::{
-    Acts, Coefficients, Direction, Draft, Effect, Expression, Facts, ForceError, Needs, OwnEffect,
-    OwnEffectError, OwnParameter, RESISTANCE_LAWS, ResistanceEntry, Role, STATE_VARIABLES,
-    StateVariable, Twin, find_resistance, twins,
+    Acts, Coefficients, Direction, Draft, Effect, Expression, Facts, ForceError, Kind, Needs,
+    OwnEffect, OwnEffectError, OwnParameter, RESISTANCE_LAWS, ResistanceEntry, Role,
+    STATE_VARIABLES, StateVariable, Twin, find_resistance, twins,
 };
 pub use observe::{Observer, Stretch, Trajectory};
 pub use record::{PartSample, Recorder, Sample};

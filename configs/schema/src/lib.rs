@@ -8,6 +8,7 @@
 
 mod absorbing;
 mod build;
+mod change;
 mod checks;
 mod diagnostics;
 pub mod document;
@@ -30,6 +31,7 @@ mod specs;
 pub mod stability;
 
 pub use build::BuildError;
+pub use change::Change;
 pub use diagnostics::{
     Color, Diagnostic, Severity, SourceId, Sources, Span, nearest, printable, render_all, shorten,
 };

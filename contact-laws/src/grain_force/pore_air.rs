@@ -6,6 +6,7 @@ use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
 use super::GrainForceEntry;
+use crate::candidate::{Candidacy, Candidate};
 
 /// A drag on every grain by air at rest.
 ///
@@ -55,6 +56,15 @@ pub(super) const ENTRY: GrainForceEntry = GrainForceEntry {
     signature: "A bed that gives way later: fast impacts are stopped earlier, slow ones hardly.",
     source: "Carman, Trans. Inst. Chem. Eng. 15, 150 (1937); Ergun, Chem. Eng. Prog. 48, 89 (1952)",
     params: PARAMS,
+    candidacy: Candidacy::Candidate(Candidate {
+        amplitude: "drag_rate (1/s)",
+        screen: 5.0,
+        range: (0.0, 200.0),
+        separable_from: "from restitution: a wide range of speeds; from air-drag: flight before contact",
+        alike_below: &[],
+        needs: &[],
+        params: |_, q| vec![("drag_rate", q)],
+    }),
     build: |params: &ParamTable| Box::new(PoreAir { drag_rate: params.get("drag_rate") }),
 };
 

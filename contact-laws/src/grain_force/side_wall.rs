@@ -5,6 +5,7 @@ use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
 use super::GrainForceEntry;
+use crate::candidate::{Candidacy, Candidate, Need};
 
 /// Below this speed (m/s) the friction goes to zero with the speed, so that grains come to rest.
 const CREEP: f64 = 1e-3;
@@ -62,6 +63,15 @@ pub(super) const ENTRY: GrainForceEntry = GrainForceEntry {
     signature: "A stiffer bed: depth and stopping time fall together, more where more grains move.",
     source: "Coulomb friction; Sperl, Granul. Matter 8, 59 (2006)",
     params: PARAMS,
+    candidacy: Candidacy::Candidate(Candidate {
+        amplitude: "plate_friction",
+        screen: 0.1,
+        range: (0.0, 1.0),
+        separable_from: "from grain-friction: slow impacts, or plates of another roughness",
+        alike_below: &[],
+        needs: &[Need::Discs("spheres are not held between two plates"), Need::Gravity],
+        params: |_, q| vec![("plate_friction", q)],
+    }),
     build: |params: &ParamTable| {
         Box::new(SideWall { plate_friction: params.get("plate_friction") })
     },

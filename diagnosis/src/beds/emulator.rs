@@ -7,7 +7,8 @@ use serde_json::{Value, json};
 
 use super::baseline::Baseline;
 use super::response::Response;
-use super::switches::Switch;
+use super::switch::Switch;
+use super::switches::are_alike_below;
 use crate::forward::{
     Candidate, Forward, Parameter, ParameterKind, PredictError, Request, Scatter,
 };
@@ -20,10 +21,6 @@ const SCREENED: f64 = 4.0;
 
 /// The same for the largest amplitude of a line search.
 const SEARCHED: f64 = 1.5;
-
-/// A constant force on the intruder, and what grains do that looks like one below the surface: they differ
-/// before contact.
-const CONSTANT: [&str; 3] = ["rail-friction", "cohesion-dmt", "capillary-bridge"];
 
 /// A derivative by an amplitude is taken over this share of the one that is screened.
 const STEP: f64 = 1e-2;
@@ -117,13 +114,11 @@ impl BedForward {
         let parameters = self.free.iter().map(parameter).collect();
         let mut candidates: Vec<Candidate> = self.sources.iter().map(candidate).collect();
         if !self.flight {
-            let alike: Vec<String> = candidates
-                .iter()
-                .filter(|one| CONSTANT.contains(&one.id.as_str()) && one.not_testable.is_none())
-                .map(|one| one.id.clone())
-                .collect();
-            for one in candidates.iter_mut().filter(|one| alike.contains(&one.id)) {
-                one.unresolved = alike.iter().filter(|id| **id != one.id).cloned().collect();
+            let testable = candidates.iter().filter(|one| one.not_testable.is_none());
+            let testable: Vec<String> = testable.map(|one| one.id.clone()).collect();
+            for one in candidates.iter_mut().filter(|one| one.not_testable.is_none()) {
+                let alike = testable.iter().filter(|other| are_alike_below(&one.id, other));
+                one.unresolved = alike.cloned().collect();
             }
         }
         (self.parameters, self.candidates) = (parameters, candidates);

@@ -15,7 +15,7 @@ use super::plan::{LEADERS, Plan, SEARCHES};
 use super::response::Response;
 use super::screening::screened;
 use super::stand::{Draw, Stand};
-use super::switches::Switch;
+use super::switch::Switch;
 use super::variation::Variation;
 use crate::bench::Bench;
 use crate::compare::parameters;

@@ -7,7 +7,7 @@ use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 use intruders::Casting;
 use resistive::{Account, Flow, Immersion, Impact, Load, Motion, ResistanceLaw, Surroundings};
-use resistive::{Coefficients, Facts, Needs, ResistanceEntry, Role};
+use resistive::{Coefficients, Facts, Kind, Needs, ResistanceEntry, Role};
 
 /// F = −q ρ A v² z/D v̂   (N)
 struct LateDrag {
@@ -22,7 +22,12 @@ const ACCOUNTS: &[Account] = &[Account {
 /// The line of the table.
 pub(crate) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "late-drag",
-    role: Role::Effect(Facts { unit: "1", visible: &[Needs::Speeds], separable_from: &[] }),
+    role: Role::Effect(Facts {
+        kind: Kind::Physics,
+        unit: "1",
+        visible: &[Needs::Speeds],
+        separable_from: &[],
+    }),
     summary: "A drag with the square of the speed that grows with the depth.",
     formula: "F = -q rho A v^2 z/D v/|v|",
     signature: "fast and deep impacts end sooner; slow ones hardly",

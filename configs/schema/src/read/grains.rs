@@ -12,6 +12,7 @@ use super::{
 use crate::limits;
 use crate::model::{GrainLog, GrainMedium, LogSettings, Medium, Model, RunSettings, Stepping};
 use crate::reader::TableReader;
+use crate::resolved::Resolved;
 use crate::specs;
 
 const CONTAINER_EXAMPLE: &str =
@@ -79,6 +80,7 @@ pub(super) fn model(
         intruder: intruder?,
         impact: impact?,
         conditions: conditions?,
+        lines: Resolved::default(),
         resolved: String::new(),
         bed_key: String::new(),
         hash: String::new(),

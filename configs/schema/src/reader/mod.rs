@@ -12,7 +12,7 @@ use std::cell::RefCell;
 use crate::diagnostics::{Diagnostic, Severity, Sources, Span};
 use crate::document::{Entry, Node, Table, Value};
 use crate::limits;
-use crate::resolved::Resolved;
+use crate::resolved::{Resolved, Written};
 
 pub use kind::FileKind;
 pub use numbers::interval;
@@ -137,7 +137,7 @@ impl<'a> TableReader<'a> {
         self.table.and_then(|table| table.get(key))
     }
 
-    fn write(&self, key: &str, value: String) {
+    fn write(&self, key: &str, value: Written) {
         self.reader.resolved.borrow_mut().line(self.section, key, value);
     }
 
