@@ -1,5 +1,6 @@
 //! `measurement.toml`: everything of a set but its tables.
 
+use configs::document::Value;
 use configs::reader::TableReader;
 use configs::{Diagnostic, Span, limits};
 use engine::params::ParamSpec;
@@ -38,7 +39,8 @@ pub(super) struct Document {
 /// `[files]` and `[columns]`.
 pub(super) struct Files {
     pub(super) runs: FileName,
-    pub(super) trajectories: Option<FileName>,
+    /// Tables of trajectories, or patterns that give them; none for scalars.
+    pub(super) trajectories: Vec<FileName>,
     pub(super) missing: Missing,
     pub(super) format: Format,
 }
@@ -273,10 +275,10 @@ fn files(table: TableReader<'_>, kind: Option<Kind>) -> Option<Files> {
                     .at(table.span_of("trajectories"), "a table of trajectories")
                     .help("write kind = \"trajectory\" above, or remove this line"),
             );
-            None
+            Vec::new()
         }
-        (Some(Kind::Trajectory), _) => Some(name("trajectories", "the table of trajectories")?),
-        _ => None,
+        (Some(Kind::Trajectory), _) => trajectories(&table)?,
+        _ => Vec::new(),
     };
     let missing = match optional_choice(&table, "missing", &["error", "drop"]) {
         Some("drop") => Missing::Drop,
@@ -291,6 +293,26 @@ fn files(table: TableReader<'_>, kind: Option<Kind>) -> Option<Files> {
     table.finish();
     let format = Format { delimiter, decimal, columns: ColumnNames::default() };
     Some(Files { runs: runs?, trajectories, missing, format })
+}
+
+/// One table of trajectories, or a list of them.
+fn trajectories(table: &TableReader<'_>) -> Option<Vec<FileName>> {
+    const KEY: &str = "trajectories";
+    let is_list = table.node(KEY).is_some_and(|node| matches!(node.value, Value::Array(_)));
+    if !is_list {
+        let found = table.text(KEY, None, "trajectories.csv", "the table of trajectories")?;
+        return Some(vec![FileName { name: found.value, span: found.span }]);
+    }
+    let names = table.raw_texts(KEY, "drop-1.csv")??;
+    if names.is_empty() {
+        table.reader.report(
+            Diagnostic::error("`trajectories` is an empty list")
+                .at(table.span_of(KEY), "a table at least")
+                .help("write trajectories = [\"drop-1.csv\", \"drop-2.csv\"] or \"drop-*.csv\""),
+        );
+        return None;
+    }
+    Some(names.into_iter().map(|one| FileName { name: one.value, span: one.span }).collect())
 }
 
 fn optional_text(

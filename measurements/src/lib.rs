@@ -3,7 +3,9 @@
 //!
 //! [`MeasurementSet::load`] reads a set, [`MeasurementSet::write`] writes one. `document` knows
 //! `measurement.toml` and `conditions` its conditions; `lines`, `dialect`, `columns`, `header`, `row`,
-//! `cells` and `table` read a table, `runs` and `trajectories` know the two tables there are; `checks`, `ranges`, `signs`
+//! `cells` and `table` read a table, `runs` and `trajectories` know the two tables there are, `several` finds
+//! more than one of the latter; `fall` sees the fall before contact in any units, `speeds` reads speeds that are
+//! not stated; `checks`, `ranges`, `signs`
 //! and `magnitudes` look at the whole; `smooth`, `contact`, `zeros`, `stops` and `definitions` hold what
 //! it states against its frames, and `contradictions` says where they do not agree.
 
@@ -19,6 +21,7 @@ mod definitions;
 mod describe;
 mod dialect;
 mod document;
+mod fall;
 mod feasible;
 mod findings;
 mod header;
@@ -32,8 +35,10 @@ mod ranges;
 mod reading;
 mod row;
 mod runs;
+mod several;
 mod signs;
 mod smooth;
+mod speeds;
 mod start;
 mod stops;
 mod strays;
@@ -48,6 +53,7 @@ pub use agreement::Agreement;
 pub use contact::Contact;
 pub use contradictions::{Contradiction, ContradictionKind};
 pub use definitions::{Held, Miss, Outcome, Scalar, hold};
+pub use fall::{Fall, reading_noise};
 pub use feasible::Feasible;
 pub use load::{Loaded, SetError};
 pub use reading::Reading;
