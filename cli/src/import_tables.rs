@@ -8,9 +8,9 @@ use exchange::tracking::{
 use measurements::{ContradictionKind, Loaded, MeasurementSet};
 use serde_json::json;
 
-use crate::text::{lines, table};
 use crate::import::Args;
 use crate::output::{self, CommandError, CommandResult, stderr_color};
+use crate::text::{lines, table};
 
 /// What no table holds.
 #[derive(clap::Args, Debug)]

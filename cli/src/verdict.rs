@@ -137,9 +137,13 @@ fn held_out(diagnosis: &Diagnosis) -> String {
         LeftOut::OneAtATime => "conditions left out one at a time (the set holds out none)",
     };
     let errors = (held_out.before, held_out.after, held_out.noise_floor);
+    let explained = match held_out.explained {
+        Some(share) => format!("; {:.0} % of what exceeds noise is explained", 1e2 * share),
+        None => String::new(),
+    };
     let mut text = match errors {
         (Some(before), Some(after), Some(floor)) => format!(
-            "Error on {which}: {} before, {} after (noise of the means {}).\n",
+            "Error on {which}: {} before, {} after (noise of the means {}){explained}.\n",
             shown(before),
             shown(after),
             shown(floor)

@@ -62,14 +62,14 @@ impl Apparatus {
         let or = |stated: Option<f64>, default: f64| stated.unwrap_or(default);
         let is_timed = layouts.iter().any(|one| one.stop_time || !one.times.is_empty());
         if let Some(sigma) = clock_sigma(set).filter(|_| is_timed) {
-            all.add(Fault::Clock, "clock-zero", "s", sigma);
+            all.add(Fault::Clock, "time-zero", "s", sigma);
         }
         let level = instrument.level_sigma.unwrap_or(0.0);
         let grain = 0.5 * set.bed.grain_diameter.unwrap_or(0.0);
         let zero = or(instrument.zero_sigma, defaults::ZERO.max(grain).max(level));
         all.add(Fault::Zero, "depth-zero", "m", zero);
         let speed = or(instrument.speed_bias_sigma_rel, defaults::SPEED);
-        all.add(Fault::Speed, "impact-speed", "1", speed);
+        all.add(Fault::Speed, "speed-scale", "1", speed);
         all.add(Fault::Scale, "camera-scale", "1", or(instrument.scale_sigma_rel, defaults::SCALE));
         // Straight down and seen from where it leans to, gravity that leans is as good as upright.
         if layouts.iter().any(|one| one.along_x || one.final_x) {
@@ -108,7 +108,8 @@ impl Apparatus {
         }
         for (body, first) in bodies.iter().enumerate() {
             let (shape, diameter, mass) = (&first.shape, 1e3 * first.diameter, 1e3 * first.mass);
-            let name = format!("mass of the {shape} of {diameter:.4} mm, {mass:.4} g");
+            let name =
+                format!("mass ({shape} of {} mm, {} g)", four_digits(diameter), four_digits(mass));
             self.add(Fault::Mass { body }, name, "1", sigma);
         }
     }
@@ -131,7 +132,7 @@ impl Apparatus {
         for (session, name) in names.iter().enumerate() {
             for (coefficient, key) in coefficients.iter().enumerate() {
                 let fault = Fault::Session { session, coefficient };
-                self.add(fault, format!("{key} of session {name}"), "1", sigma);
+                self.add(fault, format!("session ({name}, {key})"), "1", sigma);
             }
         }
     }
@@ -190,6 +191,12 @@ fn clock_sigma(set: &MeasurementSet) -> Option<f64> {
     frame.map(|frame| defaults::FRAMES * frame)
 }
 
+/// `value` to four digits, without zeros at its end.
+fn four_digits(value: f64) -> f64 {
+    let size = 10f64.powi(3 - value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32);
+    (value * size).round() / size
+}
+
 fn is_same_body(one: &Condition, other: &Condition) -> bool {
     one.shape == other.shape
         && one.diameter == other.diameter
@@ -197,4 +204,71 @@ fn is_same_body(one: &Condition, other: &Condition) -> bool {
         && one.length == other.length
         && one.height == other.height
         && one.apex_deg == other.apex_deg
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_sets::{condition, scalar_run, set};
+
+    fn before(change: impl Fn(&mut MeasurementSet)) -> (MeasurementSet, Apparatus) {
+        let conditions = vec![condition(1.0, 90.0), condition(2.0, 60.0)];
+        let runs = [0, 0, 1, 1].map(|at| scalar_run(at, [Some(0.1), Some(0.05), Some(0.01)]));
+        let mut set = set(Kind::Scalar, conditions, runs.into());
+        change(&mut set);
+        let layout = Layout {
+            times: Vec::new(),
+            along_x: false,
+            stop_time: true,
+            final_z: true,
+            final_x: true,
+        };
+        let apparatus = Apparatus::of(&set, &["drag", "friction"], &[layout.clone(), layout]);
+        (set, apparatus)
+    }
+
+    fn sigma(apparatus: &Apparatus, name: &str) -> Option<f64> {
+        let mut all = apparatus.parameters().iter();
+        all.find(|one| one.name == name).and_then(|one| Some(one.prior?.sigma))
+    }
+
+    #[test]
+    fn what_is_stated_stands_before_what_is_usual_and_zero_says_exact() {
+        let (_, usual) = before(|_| ());
+        // Half of a frame of 500 Hz; the grains of 0.8 mm and the level of 0.2 mm are finer than 1 mm.
+        assert_eq!(sigma(&usual, "time-zero"), Some(1e-3));
+        assert_eq!(sigma(&usual, "depth-zero"), Some(1e-3));
+        assert_eq!(sigma(&usual, "camera-scale"), Some(defaults::SCALE));
+        let (_, stated) = before(|set| {
+            set.instrument.time_sigma = Some(2e-4);
+            set.instrument.scale_sigma_rel = Some(0.0);
+        });
+        assert_eq!(sigma(&stated, "time-zero"), Some(2e-4));
+        assert!(!stated.has("camera-scale") && stated.has("speed-scale"));
+        let (_, exact) = before(|set| set.instrument = set.instrument.without_shared_errors());
+        assert!(exact.parameters().is_empty(), "{exact:?}");
+    }
+
+    #[test]
+    fn each_error_reaches_the_runs_that_share_it() {
+        let (_, apparatus) = before(|set| {
+            set.conditions[1].mass *= 2.0;
+            for (run, name) in set.runs.iter_mut().zip(["a", "b", "b", "b"]) {
+                run.session = Some(name.into());
+            }
+        });
+        let at = |name: &str| apparatus.parameters().iter().position(|one| one.name == name);
+        let alone = |name: &str, condition: usize| {
+            let mut values = vec![0.0; apparatus.parameters().len()];
+            values[at(name).expect("it is looked for")] = 0.01;
+            apparatus.added_to(&Scatter::default(), condition, &values)
+        };
+        assert_eq!([0, 1].map(|c| alone("speed-scale", c).speed), [0.01; 2]);
+        let body = apparatus.parameters().iter().find(|one| one.name.starts_with("mass ("));
+        let body = body.map(|one| one.name.clone()).expect("a body");
+        assert_eq!([0, 1].map(|c| alone(&body, c).mass), [0.01, 0.0]);
+        // Half of the runs of the first condition, and all of the second, are of session b.
+        let of_b = [0, 1].map(|c| alone("session (b, friction)", c).coefficients);
+        assert_eq!(of_b, [vec![0.0, 0.005], vec![0.0, 0.01]]);
+    }
 }

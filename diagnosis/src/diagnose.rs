@@ -20,7 +20,7 @@ use crate::score::Ranking;
 use crate::sensitivity::Point;
 use crate::suggestion::suggestion;
 use crate::verdict::{
-    Amplitude, ApparatusError, Diagnosis, RankedEffect, Status, Strength, StrengthReason,
+    Amplitude, ApparatusError, Diagnosis, Evidence, RankedEffect, Status, Strength, StrengthReason,
     Unexplained, Verdict,
 };
 
@@ -239,7 +239,8 @@ impl Judge<'_> {
                 let se = proposed.fit.standard_error(proposed.fit.point.parameters.len() + at);
                 let candidate = &bench.forward.candidates()[index];
                 let (at_bound, unusual) = (candidate.bound_at(q), candidate.is_unusual(q, se));
-                Amplitude { id: self.name(index), q, se, at_bound, unusual }
+                let interval_95 = candidate.interval_95(q, se);
+                Amplitude { id: self.name(index), q, se, at_bound, interval_95, unusual }
             })
             .collect();
         let held_out = match held_out {
@@ -255,6 +256,8 @@ impl Judge<'_> {
         Ok(Diagnosis {
             verdict,
             strength: strength(&strength_reasons),
+            evidence: evidence(bench, proposed),
+            warnings: warnings(bench, &amplitudes),
             strength_reasons,
             effects: amplitudes.iter().map(|amplitude| amplitude.id.clone()).collect(),
             not_separable,
@@ -316,6 +319,26 @@ fn doubts(
     }
     doubts.extend(held_out.doubt());
     doubts
+}
+
+/// What the noise of `fitted` is known from.
+fn evidence(bench: &Bench<'_>, fitted: &Fitted) -> Evidence {
+    match fitted.noise.source {
+        NoiseSource::Repeats if bench.observed.contrasts() < CONTRASTS => Evidence::FewRepeats,
+        NoiseSource::Repeats => Evidence::Repeats,
+        NoiseSource::Stated | NoiseSource::AssumedScatter | NoiseSource::Assumed => {
+            Evidence::StatedErrors
+        }
+    }
+}
+
+/// What was left aside of the measurements, and what is unusual of what is named.
+fn warnings(bench: &Bench<'_>, amplitudes: &[Amplitude]) -> Vec<String> {
+    let unusual = amplitudes.iter().filter(|amplitude| amplitude.unusual);
+    let unusual = unusual.map(|amplitude| {
+        format!("{} of {:.4} is outside of its usual range", amplitude.id, amplitude.q)
+    });
+    bench.observed.notes.iter().cloned().chain(unusual).collect()
 }
 
 fn strength(doubts: &[StrengthReason]) -> Strength {

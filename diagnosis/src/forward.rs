@@ -65,6 +65,9 @@ pub(crate) const SEPARATE: f64 = 9.2;
 /// At a bound is what differs from it by less than this share of it.
 const AT_BOUND: f64 = 1e-6;
 
+/// Standard errors to either side that hold 95 % of a normal distribution.
+const NORMAL_95: f64 = 1.96;
+
 /// An amplitude that is farther than so many standard errors outside of its usual range is outside of it.
 const OUTSIDE: f64 = 2.0;
 
@@ -169,6 +172,21 @@ impl Candidate {
     #[must_use]
     pub fn bound_at(&self, q: f64) -> Option<Bound> {
         Bound::at(q, self.min, self.max)
+    }
+
+    /// Least and greatest amplitude that an estimate `q` with standard error `se` allows, 95 %, within the range; `None`
+    /// for an end that the range decides.
+    #[must_use]
+    pub fn interval_95(&self, q: f64, se: Option<f64>) -> [Option<f64>; 2] {
+        let Some(se) = se else {
+            return match self.bound_at(q) {
+                Some(Bound::Upper) => [Some(q), None],
+                Some(Bound::Lower) => [None, Some(q)],
+                None => [None, None],
+            };
+        };
+        let [least, greatest] = [q - NORMAL_95 * se, q + NORMAL_95 * se];
+        [Some(least).filter(|end| *end > self.min), Some(greatest).filter(|end| *end < self.max)]
     }
 
     /// Whether amplitude `q` is outside of what one would expect, by more than two of its standard errors `se`; none

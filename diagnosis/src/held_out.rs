@@ -27,6 +27,9 @@ pub struct HeldOut {
     /// What means of so many runs would miss the truth by.
     #[serde(serialize_with = "six_digits_or_null")]
     pub noise_floor: Option<f64>,
+    /// Share of what exceeds the noise that is explained: (before² − after²)/(before² − noise²); none where nothing does.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub explained: Option<f64>,
     /// What the three are root mean squares of.
     pub unit: Unit,
     /// Which conditions were left out.
@@ -152,10 +155,17 @@ impl HeldOut {
             pick(&sums.errors())
         };
         let compared: Vec<usize> = both.iter().map(|(condition, ..)| *condition).collect();
+        let errors = Self::share(
+            error(|(condition, before, _)| (*condition, before)),
+            error(|(condition, _, after)| (*condition, after)),
+            pick(&noise_floor(bench.observed, &compared)),
+        );
+        let [before, after, noise_floor, explained] = errors;
         Ok(Self {
-            before: error(|(condition, before, _)| (*condition, before)),
-            after: error(|(condition, _, after)| (*condition, after)),
-            noise_floor: pick(&noise_floor(bench.observed, &compared)),
+            before,
+            after,
+            noise_floor,
+            explained,
             unit,
             conditions,
             conditions_judged: compared.len(),
@@ -163,6 +173,20 @@ impl HeldOut {
             ratio_at_most: ratio_at_most(bench.observed, &all, unit),
             log_density_gain: both.iter().map(|(_, b, a)| a.log_density - b.log_density).sum(),
         })
+    }
+
+    /// Errors without and with what is proposed and their noise, and the share of what exceeds it that is explained.
+    pub(crate) fn share(
+        before: Option<f64>,
+        after: Option<f64>,
+        noise: Option<f64>,
+    ) -> [Option<f64>; 4] {
+        let square = |error: Option<f64>| error.map(|error| error * error);
+        let explained = square(before).zip(square(after)).zip(square(noise));
+        let explained = explained.filter(|((before, _), noise)| before > noise);
+        let explained =
+            explained.map(|((before, after), noise)| (before - after) / (before - noise));
+        [before, after, noise, explained.map(|share| share.clamp(0.0, 1.0))]
     }
 
     /// What keeps the errors from confirming what is proposed, if anything does: it has to predict what it has not seen
@@ -411,6 +435,7 @@ mod tests {
             before: error,
             after: error,
             noise_floor: error,
+            explained: None,
             unit: Unit::Position,
             conditions: LeftOut::Holdout,
             conditions_judged: judged,

@@ -33,6 +33,18 @@ pub enum Verdict {
     CannotTell,
 }
 
+/// What the noise is known from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Evidence {
+    /// The scatter of repeats.
+    Repeats,
+    /// Repeats with fewer than eight independent deviations.
+    FewRepeats,
+    /// What the set states, or what is usual.
+    StatedErrors,
+}
+
 /// What became of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -56,6 +68,10 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// What it rests on.
     pub strength: Strength,
+    /// What the noise is known from.
+    pub evidence: Evidence,
+    /// What one should know before one believes it, in sentences.
+    pub warnings: Vec<String>,
     /// Why it is only suggested; empty where it is confirmed.
     pub strength_reasons: Vec<StrengthReason>,
     /// The one effect (of a pair, the two) that the verdict names.
@@ -158,6 +174,8 @@ pub struct Amplitude {
     pub se: Option<f64>,
     /// The end of its range at which it is held.
     pub at_bound: Option<Bound>,
+    /// Least and greatest value that the data allow, 95 %; null where the range of the effect holds it back.
+    pub interval_95: [Option<f64>; 2],
     /// Whether it is outside of what one would expect of its effect, by more than two standard errors.
     pub unusual: bool,
 }
@@ -165,8 +183,11 @@ pub struct Amplitude {
 /// An error that runs share: of the clock, the zero of depth, the speed, the scale, a mass, gravity or a session.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ApparatusError {
-    /// Which.
+    /// Which: `time-zero`, `depth-zero`, `speed-scale`, `camera-scale`, `tilt`, `mass` or `session`.
     pub id: String,
+    /// Of which body, or of which session and coefficient.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub of: Option<String>,
     /// How large the fit finds it.
     #[serde(serialize_with = "six_digits")]
     pub value: f64,
@@ -201,9 +222,13 @@ impl ApparatusError {
                 let beyond = |limit: f64, sigma: Option<f64>| {
                     sigma.is_some_and(|sigma| value.abs() >= limit * sigma)
                 };
-                let (id, unit) = (parameter.name.clone(), parameter.unit.clone());
+                let (id, of) = match parameter.name.split_once(" (") {
+                    Some((id, of)) => (id.to_owned(), Some(of.trim_end_matches(')').to_owned())),
+                    None => (parameter.name.clone(), None),
+                };
+                let unit = parameter.unit.clone();
                 let named = beyond(CLEAR_OF_ZERO, se) && beyond(UNEXPECTED, prior_sigma);
-                Self { id, value, se, unit, prior_sigma, named }
+                Self { id, of, value, se, unit, prior_sigma, named }
             })
             .collect()
     }
@@ -227,6 +252,8 @@ impl Diagnosis {
         Self {
             verdict: Verdict::CannotTell,
             strength: Strength::Suggested,
+            evidence: Evidence::StatedErrors,
+            warnings: Vec::new(),
             strength_reasons: Vec::new(),
             effects: Vec::new(),
             not_separable: Vec::new(),

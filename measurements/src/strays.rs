@@ -108,8 +108,19 @@ impl Found {
     fn of(track: &[[f64; 2]], error: f64) -> Self {
         let misses: Vec<f64> = (0..track.len()).map(|at| least_miss(track, at)).collect();
         let limit = FAR * usual(&misses).max(error);
-        Self { stray: misses.iter().map(|miss| *miss > limit).collect() }
+        let is_stray = |(at, miss): (usize, &f64)| *miss > limit && !is_on_the_way(track, at);
+        Self { stray: misses.iter().enumerate().map(is_stray).collect() }
     }
+}
+
+/// Whether the reading `at` lies between those beside it: a body that is stopped within a frame or two looks so.
+fn is_on_the_way(track: &[[f64; 2]], at: usize) -> bool {
+    let (Some([_, before]), Some([_, after])) =
+        (at.checked_sub(1).and_then(|before| track.get(before)), track.get(at + 1))
+    else {
+        return false;
+    };
+    (before.min(*after)..=before.max(*after)).contains(&track[at][1])
 }
 
 /// The standard deviation of which `sizes` are, by their median.
@@ -143,22 +154,27 @@ fn parabola(track: &[[f64; 2]], places: &[usize], t: f64) -> Option<f64> {
     sum.is_finite().then_some(sum)
 }
 
-/// Whether the course goes on elsewhere from one frame to the next: each side misses what the other promises, and
-/// keeps to its own.
+/// Whether the course goes on elsewhere from one frame to the next: each side misses what the other promises, and by as
+/// much one frame farther on, where a blow would miss by four times as much.
 fn jumps_in(track: &[[f64; 2]], error: f64) -> bool {
     let n = track.len();
     if n < FEWEST_FRAMES {
         return false;
     }
     let miss = |places: [usize; 3], at: usize| {
-        parabola(track, &places, track[at][0])
-            .map_or(0.0, |promised| (track[at][1] - promised).abs())
+        parabola(track, &places, track[at][0]).map_or(0.0, |promised| track[at][1] - promised)
     };
-    let forward: Vec<f64> = (3..n).map(|at| miss([at - 3, at - 2, at - 1], at)).collect();
-    let backward: Vec<f64> = (0..n - 3).map(|at| miss([at + 1, at + 2, at + 3], at)).collect();
+    let forward = |at: usize, to: usize| miss([at - 3, at - 2, at - 1], to);
+    let backward = |at: usize, to: usize| miss([at + 1, at + 2, at + 3], to);
+    let sizes: Vec<f64> = (3..n).map(|at| forward(at, at).abs()).collect();
     // A parabola through three readings misses the next by √20 of their error.
-    let limit = FAR * usual(&forward).max(error * 20.0_f64.sqrt());
-    (3..n - 3).any(|at| forward[at - 3] > limit && backward[at - 1] > limit)
+    let limit = FAR * usual(&sizes).max(error * 20.0_f64.sqrt());
+    let is_offset =
+        |near: f64, far: f64| near.abs() > limit && (far - near).abs() < 0.5 * near.abs();
+    (3..n - 4).any(|at| {
+        is_offset(forward(at, at), forward(at, at + 1))
+            && is_offset(backward(at - 1, at - 1), backward(at - 1, at - 2))
+    })
 }
 
 /// The runs that are far from the middle of their condition.
@@ -215,4 +231,150 @@ fn between(track: &[[f64; 2]], t: f64) -> Option<f64> {
     }
     let [early, before] = *track.get(after.checked_sub(1)?)?;
     Some(before + (z - before) * (t - early) / (late - early))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, Role, StatedError,
+        StopDefinition,
+    };
+
+    const ERROR: f64 = 1e-4;
+
+    /// 2 m/s, stopped within 40 ms by a constant deceleration; readings off by up to 0.1 mm.
+    fn run(name: &str, factor: f64) -> Run {
+        let frame = |k: i32| {
+            let t = 1e-3 * f64::from(k);
+            let inside = t.clamp(0.0, 0.04);
+            let z = 2.0 * t.min(0.04) - if t > 0.0 { 25.0 * inside * inside } else { 0.0 };
+            let off = 1e-4 * f64::from((7 * k).rem_euclid(5) - 2) / 2.0;
+            Frame { t, z: factor * z + off, x: 0.0, sigma: None }
+        };
+        Run {
+            name: name.into(),
+            condition: 0,
+            repeat: None,
+            order: None,
+            session: None,
+            stop_time: None,
+            final_z: None,
+            final_x: None,
+            frames: (-15..60).map(frame).collect(),
+        }
+    }
+
+    fn set(runs: Vec<Run>) -> MeasurementSet {
+        MeasurementSet {
+            id: "test".into(),
+            source: None,
+            kind: Kind::Trajectory,
+            instrument: Instrument::default(),
+            bed: Bed {
+                geometry: Geometry::Spatial,
+                bulk_density: None,
+                gravity: 9.81,
+                grain_diameter: None,
+            },
+            baseline: None,
+            stated: StatedError::default(),
+            stop: StopDefinition::SpeedFivePercent,
+            last: FinalDefinition::Resting,
+            feasible: Feasible::default(),
+            conditions: vec![Condition {
+                id: "2 m/s".into(),
+                role: Role::Fit,
+                speed: 2.0,
+                angle_deg: 90.0,
+                shape: "sphere".into(),
+                diameter: 0.02,
+                mass: 0.03,
+                spin: 0.0,
+                packing: None,
+                bed_depth: None,
+                length: None,
+                height: None,
+                apex_deg: None,
+                link_angle_deg: None,
+            }],
+            runs,
+            keep: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    fn repeats() -> Vec<Run> {
+        [0.97, 0.99, 1.0, 1.01, 1.03]
+            .iter()
+            .enumerate()
+            .map(|(at, factor)| run(&format!("r{at}"), *factor))
+            .collect()
+    }
+
+    #[test]
+    fn sound_runs_are_left_as_they_are() {
+        let whole = set(repeats());
+        assert_eq!(without_strays(&whole, ERROR), Cleaned { set: whole, notes: Vec::new() });
+    }
+
+    #[test]
+    fn stray_frames_are_left_out_and_no_other() {
+        let mut runs = repeats();
+        for (at, off) in [(20, 5e-3), (21, -9e-3), (50, 4e-3)] {
+            runs[1].frames[at].z += off;
+        }
+        let cleaned = without_strays(&set(runs), ERROR);
+        let left: Vec<f64> = cleaned.set.runs[1].frames.iter().map(|frame| frame.t).collect();
+        let sound = run("r1", 0.99).frames;
+        let others = sound.iter().enumerate().filter(|(at, _)| ![20, 21, 50].contains(at));
+        assert_eq!(left, others.map(|(_, frame)| frame.t).collect::<Vec<_>>());
+        assert!(cleaned.notes[0].starts_with("3 stray frames are left out, of 1 run"));
+    }
+
+    #[test]
+    fn a_run_that_jumps_or_is_far_from_its_repeats_is_named_unless_it_is_kept() {
+        for (name, spoil) in [
+            (
+                "jumps",
+                (|run| run.frames[40..].iter_mut().for_each(|f| f.z += 8e-3)) as fn(&mut Run),
+            ),
+            ("far", |run| run.frames.iter_mut().for_each(|f| f.z *= 1.6)),
+        ] {
+            let mut runs = repeats();
+            spoil(&mut runs[3]);
+            let mut spoilt = set(runs);
+            let cleaned = without_strays(&spoilt, ERROR);
+            let left: Vec<&str> = cleaned.set.runs.iter().map(|run| run.name.as_str()).collect();
+            assert_eq!(left, ["r0", "r1", "r2", "r4"], "{name}");
+            assert!(cleaned.notes[0].starts_with("run r3 looks mistracked"), "{:?}", cleaned.notes);
+            spoilt.keep = vec!["r3".into()];
+            assert_eq!(without_strays(&spoilt, ERROR).set.runs.len(), 5, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_hard_blow_in_a_slow_clip_is_no_jump() {
+        // 3 m/s, stopped within one and a half of the frames of a clip of 120 Hz.
+        let frame = |k: i32| {
+            let t = f64::from(k) / 120.0;
+            let inside = t.clamp(0.0, 0.0125);
+            let z = 3.0 * t.min(0.0125) - if t > 0.0 { 120.0 * inside * inside } else { 0.0 };
+            Frame { t, z, x: 0.0, sigma: None }
+        };
+        let mut runs = repeats();
+        for run in &mut runs[..2] {
+            run.frames = (-10..30).map(frame).collect();
+        }
+        let cleaned = without_strays(&set(runs[..2].to_vec()), ERROR);
+        assert_eq!(cleaned.notes, Vec::<String>::new());
+    }
+
+    #[test]
+    fn where_half_of_the_runs_jump_none_is_left_out() {
+        let mut runs = repeats();
+        runs.truncate(2);
+        runs[0].frames[40..].iter_mut().for_each(|frame| frame.z += 8e-3);
+        assert_eq!(without_strays(&set(runs), ERROR).set.runs.len(), 2);
+    }
 }

@@ -54,7 +54,11 @@ pub fn apparatus_error(error: &Value) -> String {
         _ => (1e2, " %"),
     };
     let number = |key: &str| error[key].as_f64().map(|value| factor * value);
-    let (id, value) = (text(&error["id"]), number("value").unwrap_or(0.0));
+    let value = number("value").unwrap_or(0.0);
+    let id = match error["of"].as_str() {
+        Some(of) => format!("{} ({of})", text(&error["id"])),
+        None => text(&error["id"]),
+    };
     match number("se") {
         Some(se) => format!("{id} {value:.2} ± {se:.2}{unit}"),
         None => format!("{id} {value:.2}{unit}"),

@@ -91,8 +91,10 @@ impl Confirmation {
             Unit::Relative => errors.relative,
         };
         let [before, after, noise_floor] = sums.map(|sums| pick(&sums.errors()));
+        let [.., explained] = HeldOut::share(before, after, noise_floor);
         let held_out = HeldOut {
             ratio_at_most: None,
+            explained,
             before,
             after,
             noise_floor,

@@ -225,8 +225,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
         what: "the error of held-out conditions is halved once an effect is named",
         file: "diagnosis/src/held_out.rs",
         edits: &[(
-            "after: error(|(condition, _, after)| (*condition, after)),",
-            "after: error(|(condition, _, after)| (*condition, after)).map(|error| 0.5 * error),",
+            "error(|(condition, _, after)| (*condition, after)),",
+            "error(|(condition, _, after)| (*condition, after)).map(|error| 0.5 * error),",
         )],
         suites: STATISTICS,
     },
