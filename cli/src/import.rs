@@ -1,45 +1,56 @@
-//! `plunge import`: what LAMMPS made of an exported impact, as the log of a run.
+//! `plunge import`: what LAMMPS made of an exported impact, as the log of a run; tables of tracking programs,
+//! as a measurement set, are in `import_tables`.
 
 use std::path::{Path, PathBuf};
 
-use exchange::lammps::{ImportError, Imported, import};
+use exchange::lammps::{FACTS, ImportError, Imported, import};
 use exchange::run_files::{RunFiles, is_log};
 use serde_json::json;
 
 use crate::BEGINS_AGAIN;
 use crate::control::stopped;
+use crate::import_tables::{self, Tables};
 use crate::output::{self, CommandError, CommandResult};
 use crate::signals;
-use crate::table_file;
 
 /// Arguments of `plunge import`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// The folder that `plunge export MODEL --to lammps` wrote, and in which LAMMPS has run.
-    folder: PathBuf,
-    /// The log to write, or a folder for it; grains and summary go beside it. Without it, into FOLDER.
-    #[arg(short, long, value_name = "RUN.mcap")]
-    out: Option<PathBuf>,
-    /// Replace a log that is there.
+    /// Tables of tracking programs, spreadsheets, patterns or a folder of them; an import.toml; or the folder
+    /// that `plunge export MODEL --to lammps` wrote, and in which LAMMPS has run.
+    #[arg(required_unless_present = "from")]
+    pub(crate) files: Vec<PathBuf>,
+    /// The folder of the measurement set to write. Of LAMMPS: the log, or a folder for it; without it, into
+    /// its own folder.
+    #[arg(short, long, value_name = "SET|RUN.mcap")]
+    pub(crate) out: Option<PathBuf>,
+    /// Replace what is there.
     #[arg(long)]
-    force: bool,
+    pub(crate) force: bool,
     /// Print one JSON object to stdout.
     #[arg(long)]
-    json: bool,
+    pub(crate) json: bool,
     /// Say nothing when it went well.
     #[arg(long)]
-    quiet: bool,
+    pub(crate) quiet: bool,
+    #[command(flatten)]
+    pub(crate) tables: Tables,
 }
 
 pub(crate) fn run(args: &Args) -> CommandResult {
-    table_file::refuse(&args.folder)?;
-    if args.folder.is_file() {
-        return Err(CommandError::bad_input(format!(
-            "{} is a file; the folder that `plunge export MODEL --to lammps` wrote is expected",
-            args.folder.display()
-        )));
+    match &args.files[..] {
+        [folder] if folder.is_dir() && is_of_lammps(folder) => of_lammps(args, folder),
+        _ => import_tables::run(args),
     }
-    let out = args.out.as_ref().unwrap_or(&args.folder);
+}
+
+/// Whether LAMMPS ran in `folder`, or nothing that could be a table is in it.
+fn is_of_lammps(folder: &Path) -> bool {
+    folder.join(FACTS).exists() || !exchange::tracking::has_tables(folder)
+}
+
+fn of_lammps(args: &Args, folder: &Path) -> CommandResult {
+    let out = args.out.as_deref().unwrap_or(folder);
     let files = RunFiles::of(out);
     if !args.force && files.log.exists() {
         let log = files.log.display();
@@ -47,12 +58,12 @@ pub(crate) fn run(args: &Args) -> CommandResult {
             "{log} is there already; --force replaces it"
         )));
     }
-    let folder = if is_log(out) { out.parent() } else { Some(out.as_path()) };
-    if let Some(folder) = folder.filter(|folder| !folder.as_os_str().is_empty()) {
-        make(folder)?;
+    let around = if is_log(out) { out.parent() } else { Some(out) };
+    if let Some(around) = around.filter(|around| !around.as_os_str().is_empty()) {
+        make(around)?;
     }
     signals::will_be_asked_for();
-    let imported = import(&args.folder, &files.log, &signals::is_asked_to_stop).map_err(failed)?;
+    let imported = import(folder, &files.log, &signals::is_asked_to_stop).map_err(failed)?;
     match (args.json, args.quiet) {
         (true, _) => output::json_to_stdout(&json!({
             "log": imported.files.log.to_string_lossy(),

@@ -16,6 +16,7 @@ mod diagnose;
 mod effects;
 mod export;
 mod import;
+mod import_tables;
 mod new;
 mod new_set;
 mod next;
@@ -69,7 +70,7 @@ enum Command {
     Report(report::Args),
     /// Write a run or an impact as files of other programs: tables, grains for viewers, a LAMMPS input.
     Export(export::Args),
-    /// Bring a run of LAMMPS, of an exported impact, into a log.
+    /// Make a measurement set of tables of tracking programs; or a log of a run of LAMMPS.
     Import(import::Args),
     /// Save everything readable of a damaged or unfinished log.
     Recover(recover::Args),

@@ -4,7 +4,6 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use configs::engine::units::{Dimension, dimension_of};
 use configs::{printable, shorten};
 
 use crate::output::{CommandError, CommandResult};
@@ -54,8 +53,8 @@ pub(crate) fn refuse(path: &Path) -> CommandResult {
     let name = printable(&path.display().to_string());
     if SPREADSHEETS.contains(&ending.as_str()) {
         return Err(CommandError::BadInput(format!(
-            "error: {name} is a file of a spreadsheet\n  save its sheet as CSV, then\n{}",
-            steps(&name, &[])
+            "error: {name} is a file of a spreadsheet, not a measurement set or a model\n{}",
+            steps(&name)
         )));
     }
     let found = match read(path) {
@@ -69,11 +68,7 @@ pub(crate) fn refuse(path: &Path) -> CommandResult {
         }
         None => return Ok(()),
     };
-    Err(CommandError::BadInput(format!(
-        "error: {}\n{}",
-        found.describe(&name),
-        found.advice(&name)
-    )))
+    Err(CommandError::BadInput(format!("error: {}\n{}", found.describe(&name), steps(&name))))
 }
 
 /// The table in the file at `path`, if it is one.
@@ -174,63 +169,13 @@ impl Found {
             columns.join(", ")
         )
     }
-
-    fn advice(&self, name: &str) -> String {
-        let before = match self.program {
-            Some(Program::Tracker) => {
-                "  remove its first line (the name of the mass), and add a column run\n"
-            }
-            Some(Program::TrackMate) => {
-                "  keep one line of names, without the rows of units and long names below it; \
-                 TRACK_ID is the run\n"
-            }
-            None => "",
-        };
-        format!("{before}{}", steps(name, &self.guesses()))
-    }
-
-    /// What columns may be, as lines below `[columns]`.
-    fn guesses(&self) -> Vec<String> {
-        let mut lines = Vec::new();
-        for (key, dimension, starts, sign) in COLUMNS {
-            let like = |name: &&String| {
-                let name = name.to_lowercase();
-                let word: String = name.chars().take_while(|c| c.is_alphabetic()).collect();
-                starts.contains(&word.as_str()) || starts.iter().any(|one| name == *one)
-            };
-            let Some(name) = self.columns.iter().find(like) else { continue };
-            let unit = unit_in(name, dimension).unwrap_or_else(|| dimension.si_unit());
-            let name = printable(&shorten(name));
-            lines.push(format!("{key} = {{ name = \"{name}\", unit = \"{unit}\"{sign} }}"));
-        }
-        lines
-    }
 }
 
-/// Keys of columns with what a table may call them; heights count upwards.
-const COLUMNS: [(&str, Dimension, &[&str], &str); 3] = [
-    ("t", Dimension::TIME, &["t", "time", "position_t"], ""),
-    ("z", Dimension::LENGTH, &["y", "z", "height", "depth", "position_y"], ", sign = -1"),
-    ("x", Dimension::LENGTH, &["x", "position_x"], ""),
-];
-
-/// The unit that a column has in its name: `y (cm)`, `z_mm`, `t/ms`.
-fn unit_in(name: &str, dimension: Dimension) -> Option<String> {
-    let unit = name.rsplit(['_', ' ', '(', '[', '/']).next()?.trim_end_matches([')', ']']);
-    (dimension_of(unit) == Some(dimension)).then(|| unit.to_owned())
-}
-
-/// What to type around a table, with lines of `[columns]` that may fit.
-fn steps(name: &str, guesses: &[String]) -> String {
-    let guesses = match guesses.is_empty() {
-        true => String::new(),
-        false => format!(", such as\n       {}", guesses.join("\n       ")),
-    };
+/// What to type to make a set of a table.
+fn steps(name: &str) -> String {
     format!(
-        "  a set is made around it:\n    1. plunge new measurements     writes a commented set to the \
-         folder measurements\n    2. put {name} into that folder, and its name below [files] of \
-         measurement.toml\n    3. say below [columns] what its columns are{guesses}\n    4. plunge check \
-         measurements   shows what is understood\n"
+        "  plunge import {name} -o my-drops --diameter 25.4mm --mass \"67 g\"\n  makes a measurement set of it, and of all \
+         tables that are named with it; then plunge diagnose my-drops\n"
     )
 }
 
@@ -247,13 +192,6 @@ mod tests {
         let drops = understand(&lines("t (ms);y1 (cm);y2 (cm)\n0;18,4;18,4\n1,5;18,2;18,1\n"));
         let drops = drops.expect("a table");
         assert_eq!((drops.delimiter, drops.rows, drops.decimal_commas), (';', 2, true));
-        assert_eq!(
-            drops.guesses(),
-            [
-                "t = { name = \"t (ms)\", unit = \"ms\" }",
-                "z = { name = \"y1 (cm)\", unit = \"cm\", sign = -1 }"
-            ]
-        );
         let tracker = understand(&lines("mass A\nt\tx\ty\n0.0\t1E-2\t0.2\n0.1\t1E-2\t0.19\n"));
         let tracker = tracker.expect("a table");
         assert_eq!((tracker.program, tracker.rows), (Some(Program::Tracker), 2));

@@ -20,7 +20,8 @@ pub(crate) fn as_text(
     }
     text.push('\n');
     if let (Some(p1), Some(p_lof)) = (diagnosis.p1, diagnosis.p_lof) {
-        let explained = diagnosis.verdict == Verdict::NothingDetected;
+        let explained =
+            matches!(diagnosis.verdict, Verdict::NothingDetected | Verdict::ExplainedByApparatus);
         text.push_str(&format!(
             "Does the model explain the data?  {}   p1 {}   lack of fit p {}\n",
             if explained { "YES" } else { "NO" },
@@ -39,6 +40,7 @@ pub(crate) fn as_text(
     if let Some(strength) = reports::strength_in_words(object) {
         text.push_str(&format!("{strength}\n"));
     }
+    text.push_str(&apparatus(object));
     if !diagnosis.unexplained.hint.is_empty() {
         text.push_str(&format!("{}.\n", diagnosis.unexplained.hint));
     }
@@ -106,6 +108,20 @@ fn ranking(diagnosis: &Diagnosis) -> String {
         text.push_str(&format!(" unusual: {id} of {q:.4}, where {least} to {most} is usual\n"));
     }
     text
+}
+
+/// Errors of the apparatus that are seen, whether they are larger than expected or not.
+fn apparatus(object: &Value) -> String {
+    let errors = object["apparatus"].as_array().map_or(&[][..], Vec::as_slice);
+    let is_seen = |error: &&Value| {
+        let [value, se] = ["value", "se"].map(|key| error[key].as_f64());
+        se.is_some_and(|se| value.unwrap_or(0.0).abs() >= 3.0 * se)
+    };
+    let seen: Vec<String> = errors.iter().filter(is_seen).map(reports::apparatus_error).collect();
+    match seen.is_empty() {
+        true => String::new(),
+        false => format!("Apparatus: {}; no effect is credited with these.\n", seen.join(", ")),
+    }
 }
 
 fn held_out(diagnosis: &Diagnosis) -> String {

@@ -15,6 +15,7 @@
 //!
 //! [`runs`] holds a run against a run.
 
+pub mod apparatus;
 pub mod beds;
 pub mod bench;
 mod chord;

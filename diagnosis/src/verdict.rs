@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::bench::Fitted;
-use crate::forward::Bound;
+use crate::fit::Fit;
+use crate::forward::{Bound, Forward, ParameterKind};
 use crate::held_out::HeldOut;
 use crate::rounding::{six_digits, six_digits_or_null};
 use crate::sensitivity::Point;
@@ -24,6 +25,10 @@ pub enum Verdict {
     Pair,
     /// Something is missing that no listed effect explains.
     NoneOfTheCandidates,
+    /// Errors of the apparatus, and no effect.
+    ExplainedByApparatus,
+    /// Something is missing, and held-out conditions are missed by no more than a name needs.
+    BelowNoise,
     /// The data cannot answer.
     CannotTell,
 }
@@ -78,6 +83,8 @@ pub struct Diagnosis {
     pub holdout: Option<HeldOut>,
     /// What no listed effect explains.
     pub unexplained: Unexplained,
+    /// Errors that runs share, as the fit finds them.
+    pub apparatus: Vec<ApparatusError>,
     /// Experiments that would tell more, best first.
     pub next: Vec<Value>,
     /// Parameters with what is named added (without, where nothing is), with standard error and unit.
@@ -155,6 +162,53 @@ pub struct Amplitude {
     pub unusual: bool,
 }
 
+/// An error that runs share: of the clock, the zero of depth, the speed, the scale, a mass, gravity or a session.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ApparatusError {
+    /// Which.
+    pub id: String,
+    /// How large the fit finds it.
+    #[serde(serialize_with = "six_digits")]
+    pub value: f64,
+    /// Its standard error.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub se: Option<f64>,
+    /// Unit of both.
+    pub unit: String,
+    /// Standard deviation of what is known beforehand.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub prior_sigma: Option<f64>,
+    /// Whether it is there, and larger than one would expect.
+    pub named: bool,
+}
+
+/// An error that is named is so many of its standard errors away from zero,
+const CLEAR_OF_ZERO: f64 = 4.0;
+
+/// and at least so many standard deviations of what is known beforehand.
+const UNEXPECTED: f64 = 1.5;
+
+impl ApparatusError {
+    /// All of `fit`.
+    pub(crate) fn all(forward: &dyn Forward, fit: &Fit) -> Vec<Self> {
+        let values = forward.parameters().iter().zip(&fit.point.parameters).enumerate();
+        let errors =
+            values.filter(|(_, (parameter, _))| parameter.kind == ParameterKind::Apparatus);
+        errors
+            .map(|(at, (parameter, &value))| {
+                let se = fit.standard_error(at);
+                let prior_sigma = parameter.prior.map(|prior| prior.sigma);
+                let beyond = |limit: f64, sigma: Option<f64>| {
+                    sigma.is_some_and(|sigma| value.abs() >= limit * sigma)
+                };
+                let (id, unit) = (parameter.name.clone(), parameter.unit.clone());
+                let named = beyond(CLEAR_OF_ZERO, se) && beyond(UNEXPECTED, prior_sigma);
+                Self { id, value, se, unit, prior_sigma, named }
+            })
+            .collect()
+    }
+}
+
 /// What remains.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Unexplained {
@@ -183,6 +237,7 @@ impl Diagnosis {
             p_lof_with: None,
             noise: Value::Null,
             holdout: None,
+            apparatus: Vec::new(),
             unexplained: Unexplained { hint: why, ..Unexplained::default() },
             next: Vec::new(),
             parameters: Map::new(),

@@ -33,11 +33,12 @@ const LENGTH: Content = Content::Quantity(Dimension::LENGTH);
 const TIME: Content = Content::Quantity(Dimension::TIME);
 
 /// The columns of `runs.csv`.
-pub(super) const RUNS: [ColumnSpec; 9] = [
+pub(super) const RUNS: [ColumnSpec; 10] = [
     column("run", Content::Name, true),
     column("condition", Content::Name, true),
     column("repeat", Content::Count, false),
     column("order", Content::Count, false),
+    column("session", Content::Name, false),
     column("stop_time", TIME, false),
     column("final_z", LENGTH, false),
     column("final_x", LENGTH, false),
@@ -45,14 +46,25 @@ pub(super) const RUNS: [ColumnSpec; 9] = [
     column("z_zero", LENGTH, false),
 ];
 
+/// The columns of a table of trajectories, which has to have `run` and `x`, or not.
+const fn trajectories(run: bool, x: bool) -> [ColumnSpec; 5] {
+    [
+        column("run", Content::Name, run),
+        column("t", TIME, true),
+        column("z", LENGTH, true),
+        column("x", LENGTH, x),
+        column("sigma_z", LENGTH, false),
+    ]
+}
+
 /// The columns of `trajectories.csv`.
-pub(super) const TRAJECTORIES: [ColumnSpec; 5] = [
-    column("run", Content::Name, true),
-    column("t", TIME, true),
-    column("z", LENGTH, true),
-    column("x", LENGTH, true),
-    column("sigma_z", LENGTH, false),
-];
+pub(super) const TRAJECTORIES: [ColumnSpec; 5] = trajectories(true, true);
+/// Where all impacts are vertical.
+pub(super) const VERTICAL: [ColumnSpec; 5] = trajectories(true, false);
+/// Of a table of one run.
+pub(super) const OF_ONE_RUN: [ColumnSpec; 5] = trajectories(false, true);
+/// Both.
+pub(super) const VERTICAL_OF_ONE_RUN: [ColumnSpec; 5] = trajectories(false, false);
 
 /// How a file names and counts one column.
 #[derive(Clone, Debug, PartialEq)]

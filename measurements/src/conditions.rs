@@ -11,6 +11,7 @@ use super::{Condition, Role, keys};
 #[derive(Clone, Copy, Default)]
 pub(super) struct ConditionPlaces {
     pub(super) id: Option<Span>,
+    /// `None` where the frames have to say the speed.
     pub(super) speed: Option<Span>,
     pub(super) angle: Option<Span>,
     pub(super) diameter: Option<Span>,
@@ -57,8 +58,15 @@ pub(super) fn read(
 
 fn condition(table: TableReader<'_>, absent: &mut Absent) -> Option<(Condition, ConditionPlaces)> {
     let id = table.text("id", None, "c01", "the name of the condition");
-    let role = table.choice("role", &["fit", "holdout"], &[], "whether it may be fitted to");
-    let speed = table.number(&keys::SPEED);
+    let role = match table.has("role") {
+        true => table.choice("role", &["fit", "holdout"], &[], "whether it may be fitted to"),
+        false => Some("fit"),
+    };
+    // Frames before contact say it too: what is not stated is read from them afterwards.
+    let speed = match table.has("speed") {
+        true => table.number(&keys::SPEED).map(|found| found.value),
+        false => Some(f64::NAN),
+    };
     let angle = table.number(&keys::ANGLE);
     let shape =
         table.choice("shape", &SHAPES.map(|(name, _)| name), &[], "the shape of the intruder");
@@ -88,7 +96,7 @@ fn condition(table: TableReader<'_>, absent: &mut Absent) -> Option<(Condition, 
         mass: table.span_of("mass"),
     };
     let wanted = SHAPES.iter().find(|(name, _)| Some(*name) == shape).map_or(&[][..], |row| row.1);
-    for key in ["packing", "bed_depth"].iter().chain(wanted) {
+    for key in ["role", "packing", "bed_depth"].iter().chain(wanted) {
         absent.count(key, !table.has(key));
     }
     table.finish();
@@ -98,7 +106,7 @@ fn condition(table: TableReader<'_>, absent: &mut Absent) -> Option<(Condition, 
             "fit" => Role::Fit,
             _ => Role::Holdout,
         },
-        speed: speed?.value,
+        speed: speed?,
         angle_deg: angle?.value,
         shape: shape?.to_owned(),
         diameter: diameter?.value,

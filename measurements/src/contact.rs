@@ -22,8 +22,10 @@ pub struct Contact {
     pub between: [f64; 2],
     /// Depth (m) that free fall has at time zero, where the frames reach that far.
     pub depth_at_zero: Option<Reading>,
-    /// Depth (m) that free fall has at `time`.
+    /// Depth (m) that free fall has where the path departs from it, with the error of `time` in it.
     pub depth: Reading,
+    /// Depth (m) that free fall has at just the value of `time`.
+    pub at_time: Reading,
     /// Downward velocity (m/s) at `time`.
     pub sinking: Reading,
     /// Forward velocity (m/s) at `time`.
@@ -51,11 +53,17 @@ impl Contact {
 /// Share of its greatest velocity above which a path is near its contact.
 const NEAR: f64 = 0.7;
 
+/// The same of the fall before it, where nothing else is known of a path.
+const FALLING: f64 = 0.4;
+
 /// Fewest frames near the contact that a path can be read from.
 const FEWEST: usize = 5;
 
 /// Most frames, or means of neighbouring ones, that are fitted to.
 const MOST: usize = 48;
+
+/// The same with the fall before it.
+const MOST_OF_FALL: usize = 200;
 
 /// Places of the contact that are tried between two frames.
 const BETWEEN_FRAMES: usize = 4;
@@ -68,6 +76,24 @@ const EARLY: usize = 4;
 
 /// Squared distance, in standard errors, up to which a fit is possible.
 const POSSIBLE: f64 = 16.0;
+
+impl Contact {
+    /// First contact in `frames` of a body of this `shape` that does not spin: times in s on any clock, depths in m
+    /// downward on any scale, readings good to `sigma` (m), under `gravity` (m/s²). `None` where they do not show
+    /// it: fewer than five frames near contact, no fall before it, or a shape whose lowest point does not fall
+    /// freely.
+    #[must_use]
+    pub fn of_frames(frames: &[Frame], shape: &str, gravity: f64, sigma: f64) -> Option<Self> {
+        let power = power_of(shape)?;
+        let near = velocity_window(frames, sigma, NEAR)?;
+        // Nothing is known of the zeros: more of the fall has to tell.
+        let (start, end) = (velocity_window(frames, sigma, FALLING)?[0].t, near[near.len() - 1].t);
+        let from = frames.partition_point(|frame| frame.t < start);
+        let to = frames.partition_point(|frame| frame.t <= end);
+        let all = Some(&frames[from..to]).filter(|all| all.len() >= FEWEST)?;
+        Some(fit(all, MOST_OF_FALL, (gravity, sigma), power).1)
+    }
+}
 
 /// The contact of `run` under `condition`, with readings that are good to `sigma` (m), the depth of free
 /// fall at the time `zero` (s) of the table; `None` where the frames do not show it, or the lowest point
@@ -84,30 +110,40 @@ pub(super) fn read(
     if all.len() < FEWEST {
         return coarse(&run.frames, sigma, (condition, gravity, zero));
     }
+    let (fits, contact) = fit(all, MOST, (gravity, sigma), power);
+    let [first, last] = fits.ends;
+    let reaches_zero = first <= zero + 1.5 * contact.step && zero <= last;
+    let is_whole = all[0].t <= run.frames[0].t;
+    let depth_at_zero = match reaches_zero {
+        true => Some(fits.mean(|fit| fits.free(fit, zero))),
+        false if is_whole => back_to_zero(all, condition, gravity, zero),
+        false => None,
+    };
+    Some(Contact { depth_at_zero, ..contact })
+}
+
+/// The fits to the frames `all` near contact, and what they say of it.
+fn fit(all: &[Frame], most: usize, (gravity, sigma): (f64, f64), power: f64) -> (Fits, Contact) {
     let step = (all[all.len() - 1].t - all[0].t) / (all.len() - 1) as f64;
-    let (frames, sigma) = blocks(all, MOST, sigma);
+    let (frames, sigma) = blocks(all, most, sigma);
     let fits = Fits::of(&frames, (gravity, sigma), power);
     let time = fits.mean(|fit| (fit.contact, 0.0));
-    let reaches_zero = frames[0].t <= zero + 1.5 * step && zero <= frames[frames.len() - 1].t;
-    let is_whole = all[0].t <= run.frames[0].t;
     // Behind the contact the bed brakes the forward motion too.
     let before = frames.iter().filter(|frame| frame.t <= time.value + step).count();
     let before = &frames[..before.clamp(3, frames.len())];
     let forward = slope(before.iter().map(|frame| (frame.t, frame.x)), sigma);
-    Some(Contact {
+    let contact = Contact {
         time,
         between: fits.between(),
-        depth_at_zero: match reaches_zero {
-            true => Some(fits.mean(|fit| fits.free(fit, zero))),
-            false if is_whole => back_to_zero(all, condition, gravity, zero),
-            false => None,
-        },
+        depth_at_zero: None,
         depth: fits.mean(|fit| fits.free(fit, fit.contact)),
+        at_time: fits.mean(|fit| fits.free(fit, time.value)),
         sinking: fits.mean(|fit| fits.velocity(fit, fit.contact)),
         forward,
         first: all[0].t,
         step,
-    })
+    };
+    (fits, contact)
 }
 
 /// Of few frames: the depth at `zero` alone, on the chord beside it.
@@ -140,6 +176,7 @@ fn coarse(
         between: [f64::NEG_INFINITY, f64::INFINITY],
         depth_at_zero: Some(depth),
         depth,
+        at_time: depth,
         sinking: Reading { value: velocity, se: change },
         forward: unknown,
         first: frames[0].t,
@@ -172,8 +209,12 @@ fn back_to_zero(
 /// fall like a mass.
 fn power(condition: &Condition) -> Option<f64> {
     let round = matches!(condition.shape.as_str(), "sphere" | "disc");
-    match condition.shape.as_str() {
-        _ if condition.spin != 0.0 && !round => None,
+    power_of(&condition.shape).filter(|_| condition.spin == 0.0 || round)
+}
+
+/// The same of a shape that does not spin.
+fn power_of(shape: &str) -> Option<f64> {
+    match shape {
         "sphere" | "hemisphere" => Some(3.0),
         "disc" => Some(2.5),
         "cylinder" => Some(2.0),

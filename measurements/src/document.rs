@@ -1,5 +1,6 @@
 //! `measurement.toml`: everything of a set but its tables.
 
+use configs::document::Value;
 use configs::reader::TableReader;
 use configs::{Diagnostic, Span, limits};
 use engine::params::ParamSpec;
@@ -38,7 +39,8 @@ pub(super) struct Document {
 /// `[files]` and `[columns]`.
 pub(super) struct Files {
     pub(super) runs: FileName,
-    pub(super) trajectories: Option<FileName>,
+    /// Tables of trajectories, or patterns that give them; none for scalars.
+    pub(super) trajectories: Vec<FileName>,
     pub(super) missing: Missing,
     pub(super) format: Format,
 }
@@ -108,6 +110,7 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
         feasible,
         conditions,
         runs: Vec::new(),
+        keep: head.keep,
         notes,
     };
     Some(Document {
@@ -134,6 +137,7 @@ struct Head {
     phase: Option<String>,
     stop: StopDefinition,
     last: FinalDefinition,
+    keep: Vec<String>,
     notes: Option<Vec<String>>,
     definitions: [Option<Span>; 2],
     header: Option<Span>,
@@ -159,6 +163,7 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
         _ => FinalDefinition::Resting,
     });
     let notes = table.texts("notes");
+    let keep = table.texts("keep").unwrap_or_default();
     let definitions = ["stop_definition", "final"].map(|key| table.span_of(key));
     let header = table.header();
     table.finish();
@@ -183,6 +188,7 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
         phase,
         stop: stop?,
         last,
+        keep,
         notes,
         definitions,
         header,
@@ -200,6 +206,14 @@ fn instrument(table: TableReader<'_>, unstated: &mut Unstated) -> Instrument {
         position_sigma: number(&keys::POSITION_SIGMA, "instrument.position_sigma_m"),
         speed_sigma_rel: number(&keys::SPEED_SIGMA, "instrument.speed_sigma_rel"),
         level_sigma: number(&keys::LEVEL_SIGMA, "instrument.level_sigma_m"),
+        // Unlike an error of readings, none of these may be missed: zero says that it is exact.
+        time_sigma: optional(&table, &keys::TIME_SIGMA),
+        zero_sigma: optional(&table, &keys::ZERO_SIGMA),
+        speed_bias_sigma_rel: optional(&table, &keys::SPEED_BIAS_SIGMA),
+        scale_sigma_rel: optional(&table, &keys::SCALE_SIGMA),
+        mass_sigma_rel: optional(&table, &keys::MASS_SIGMA),
+        tilt_sigma_deg: optional(&table, &keys::TILT_SIGMA),
+        session_sigma_rel: optional(&table, &keys::SESSION_SIGMA),
     };
     table.finish();
     instrument
@@ -261,10 +275,10 @@ fn files(table: TableReader<'_>, kind: Option<Kind>) -> Option<Files> {
                     .at(table.span_of("trajectories"), "a table of trajectories")
                     .help("write kind = \"trajectory\" above, or remove this line"),
             );
-            None
+            Vec::new()
         }
-        (Some(Kind::Trajectory), _) => Some(name("trajectories", "the table of trajectories")?),
-        _ => None,
+        (Some(Kind::Trajectory), _) => trajectories(&table)?,
+        _ => Vec::new(),
     };
     let missing = match optional_choice(&table, "missing", &["error", "drop"]) {
         Some("drop") => Missing::Drop,
@@ -279,6 +293,26 @@ fn files(table: TableReader<'_>, kind: Option<Kind>) -> Option<Files> {
     table.finish();
     let format = Format { delimiter, decimal, columns: ColumnNames::default() };
     Some(Files { runs: runs?, trajectories, missing, format })
+}
+
+/// One table of trajectories, or a list of them.
+fn trajectories(table: &TableReader<'_>) -> Option<Vec<FileName>> {
+    const KEY: &str = "trajectories";
+    let is_list = table.node(KEY).is_some_and(|node| matches!(node.value, Value::Array(_)));
+    if !is_list {
+        let found = table.text(KEY, None, "trajectories.csv", "the table of trajectories")?;
+        return Some(vec![FileName { name: found.value, span: found.span }]);
+    }
+    let names = table.raw_texts(KEY, "drop-1.csv")??;
+    if names.is_empty() {
+        table.reader.report(
+            Diagnostic::error("`trajectories` is an empty list")
+                .at(table.span_of(KEY), "a table at least")
+                .help("write trajectories = [\"drop-1.csv\", \"drop-2.csv\"] or \"drop-*.csv\""),
+        );
+        return None;
+    }
+    Some(names.into_iter().map(|one| FileName { name: one.value, span: one.span }).collect())
 }
 
 fn optional_text(

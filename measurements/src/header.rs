@@ -91,6 +91,9 @@ fn find<'a>(
     if spec.key == "run" && position(name).is_none() && position(spec.key).is_some() {
         name = spec.key;
     }
+    if spec.key == "session" && renamed.is_none() && position(name).is_none() {
+        name = "day";
+    }
     match position(name) {
         Some(at) => Ok(Some(Column {
             at,
@@ -139,11 +142,10 @@ fn missing(name: &str, spec: &ColumnSpec, found: &[String], row: &Row, findings:
     let first = found.first().map(|name| name.to_lowercase()).unwrap_or_default();
     let program = match () {
         () if first.starts_with("mass") => {
-            "\nthis is a table of Tracker: remove its first line, the name of the mass"
+            "\nthis is a table of Tracker: plunge import makes a set of it as it is"
         }
         () if found.iter().any(|name| name == "TRACK_ID") => {
-            "\nthis is a table of TrackMate: keep one line of names, without the rows of units below \
-             it; TRACK_ID is the run"
+            "\nthis is a table of TrackMate: plunge import makes a set of it as it is"
         }
         () => "",
     };

@@ -47,6 +47,56 @@ pub(super) const LEVEL_SIGMA: ParamSpec = key(
     "the error of the level of the surface",
 );
 
+pub(super) const TIME_SIGMA: ParamSpec = key(
+    "time_sigma_s",
+    Dimension::TIME,
+    NOT_NEGATIVE,
+    (0.0, 0.1),
+    "the error of the zero of the clock, which all runs share",
+);
+pub(super) const ZERO_SIGMA: ParamSpec = key(
+    "zero_sigma_m",
+    LENGTH,
+    NOT_NEGATIVE,
+    (0.0, 0.05),
+    "the error of the zero of depth, which all runs share",
+);
+pub(super) const SPEED_BIAS_SIGMA: ParamSpec = key(
+    "speed_bias_sigma_rel",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 0.5),
+    "the relative error that all impact speeds share",
+);
+pub(super) const SCALE_SIGMA: ParamSpec = key(
+    "scale_sigma_rel",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 0.5),
+    "the relative error of the scale of lengths",
+);
+pub(super) const MASS_SIGMA: ParamSpec = key(
+    "mass_sigma_rel",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 0.5),
+    "the relative error of the mass of each body",
+);
+pub(super) const TILT_SIGMA: ParamSpec = key(
+    "tilt_sigma_deg",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 30.0),
+    "how well the apparatus is plumb, in degrees",
+);
+pub(super) const SESSION_SIGMA: ParamSpec = key(
+    "session_sigma_rel",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 0.5),
+    "the relative difference of the resistance between sessions",
+);
+
 /// A planar bed has a density per area; its unit is told by the geometry.
 pub(super) const BULK_DENSITY: ParamSpec =
     key("bulk_density", Dimension::DENSITY, POSITIVE, (0.1, 2e4), "the bulk density of the bed");

@@ -15,7 +15,8 @@ use super::document::{self, Document, FileName, Missing};
 use super::findings::Findings;
 use super::row::file_name;
 use super::table::Format;
-use super::{MeasurementSet, checks, order, runs, trajectories};
+use super::trajectories::Source;
+use super::{MeasurementSet, checks, order, runs, several, speeds, trajectories};
 
 /// A set and what came with it.
 #[derive(Clone, Debug)]
@@ -110,6 +111,10 @@ impl MeasurementSet {
             return Err(findings.into());
         }
         order::sort(&mut set.runs);
+        speeds::fill(&mut set, &document.places, &mut findings);
+        if findings.errors() > 0 {
+            return Err(findings.into());
+        }
         let contradictions = checks::check(&set, &document, &mut findings);
         if findings.errors() > 0 {
             return Err(findings.into());
@@ -174,17 +179,26 @@ fn read_tables(
     let Some(read) = read else { return tables };
     set.runs = read.runs;
     tables.push(format!("{}: {}", file_name(&name), read.columns));
-    if findings.errors() == 0
-        && let Some(named) = &files.trajectories
-        && let Some((name, file)) = open(named, folder, findings)
-    {
-        let columns = trajectories::read((&name, file), &mut set.runs, format, missing, findings);
+    if findings.errors() == 0 && !files.trajectories.is_empty() {
+        let names = several::expand(&files.trajectories, folder, findings);
+        let is_vertical = set.conditions.iter().all(|one| one.angle_deg >= 90.0);
+        let mut rows = 0;
+        for named in &names {
+            let Some((name, file)) = open(named, folder, findings) else { break };
+            let source = Source { name: &name, reader: file, is_one_of: names.len(), is_vertical };
+            let columns =
+                trajectories::read(source, &mut set.runs, (format, missing), (&mut rows, findings));
+            tables.extend(columns.map(|columns| format!("{}: {columns}", file_name(&name))));
+            findings.point_at(named.span, "this table");
+            if findings.errors() > 0 {
+                break;
+            }
+        }
         shift(set, &read.zeros, format);
-        tables.extend(columns.map(|columns| format!("{}: {columns}", file_name(&name))));
         if findings.errors() == 0 {
             settle_empty_runs(set, missing, findings);
         }
-        findings.point_at(named.span, "this table");
+        findings.point_at(files.trajectories[0].span, "this table");
     }
     if findings.errors() == 0 {
         find_empty_conditions(set, document, findings);

@@ -145,6 +145,11 @@ impl<R: BufRead> Table<R> {
         }
     }
 
+    /// Whether the table has the column `key` of the specs.
+    pub(super) fn has(&self, key: usize) -> bool {
+        self.columns[key].is_some()
+    }
+
     /// The text of the column `key` of the specs; empty where the table has no such column.
     pub(super) fn text<'r>(&self, row: &'r Row, key: usize) -> &'r str {
         self.columns[key].as_ref().map_or("", |column| row.cell(column.at))

@@ -1,4 +1,4 @@
-//! `trajectories.csv`: one row for each reading, in long form.
+//! `trajectories.csv`, or several such tables: one row for each reading, in long form.
 
 use std::collections::BTreeMap;
 use std::io::BufRead;
@@ -6,7 +6,7 @@ use std::io::BufRead;
 use configs::{Diagnostic, shorten};
 
 use super::cells::Cell;
-use super::columns::TRAJECTORIES;
+use super::columns::{ColumnSpec, OF_ONE_RUN, TRAJECTORIES, VERTICAL, VERTICAL_OF_ONE_RUN};
 use super::document::Missing;
 use super::findings::{Findings, lines_in_words, nearest_name};
 use super::row::{Row, file_name};
@@ -24,32 +24,65 @@ const Z: usize = 2;
 const X: usize = 3;
 const SIGMA: usize = 4;
 
-/// Reads the readings into their runs; faults are reported. Gives what is understood of the table,
-/// `None` if nothing of it can be read.
+/// A table of trajectories, and what is known of it before it is read.
+pub(super) struct Source<'a, R> {
+    /// What messages call it.
+    pub(super) name: &'a str,
+    pub(super) reader: R,
+    /// How many such tables the set has.
+    pub(super) is_one_of: usize,
+    /// Whether all impacts of the set are vertical, and `x` may be left out.
+    pub(super) is_vertical: bool,
+}
+
+impl<R> Source<'_, R> {
+    /// The run that the whole table is of where it has no column of runs: that of its name.
+    fn run(&self, index: &BTreeMap<String, usize>) -> Option<usize> {
+        let name = file_name(self.name);
+        let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+        index.get(stem).or_else(|| index.get(name)).copied()
+    }
+
+    fn columns(&self, is_of_one_run: bool) -> &'static [ColumnSpec] {
+        match (is_of_one_run, self.is_vertical) {
+            (true, true) => &VERTICAL_OF_ONE_RUN,
+            (true, false) => &OF_ONE_RUN,
+            (false, true) => &VERTICAL,
+            (false, false) => &TRAJECTORIES,
+        }
+    }
+}
+
+/// Reads the readings into their runs, after `before` rows of other tables; faults are reported. Gives what
+/// is understood of the table, `None` if nothing of it can be read.
 pub(super) fn read(
-    (name, reader): (&str, impl BufRead),
+    source: Source<'_, impl BufRead>,
     runs: &mut [Run],
-    format: &Format,
-    missing: Missing,
-    findings: &mut Findings,
+    (format, missing): (&Format, Missing),
+    (before, findings): (&mut usize, &mut Findings),
 ) -> Option<String> {
     let mut row = Row::default();
-    let mut table = Table::open((name, reader), &TRAJECTORIES, format, &mut row, findings)?;
     let index: BTreeMap<String, usize> =
         runs.iter().enumerate().map(|(index, run)| (run.name.clone(), index)).collect();
-    // The time and the line of the last reading of every run.
-    let mut last: Vec<Option<(f64, u64)>> = vec![None; runs.len()];
+    let only = source.run(&index).filter(|_| source.is_one_of > 1 || runs.len() == 1);
+    let (columns, name) = (source.columns(only.is_some()), source.name);
+    let mut table = Table::open((name, source.reader), columns, format, &mut row, findings)?;
+    let only = only.filter(|_| !table.has(RUN));
+    let has_x = table.has(X);
+    // The time and the line of the last reading of every run; line 0 is that of an earlier table.
+    let mut last: Vec<Option<(f64, u64)>> =
+        runs.iter().map(|run| run.frames.last().map(|frame| (frame.t, 0))).collect();
     let (mut rows, mut zeros, mut holes) = (0, 0, Vec::new());
     while table.next(&mut row, findings) {
         rows += 1;
-        if rows > MOST {
+        if *before + rows > MOST {
             findings.report(
                 Diagnostic::error(format!("{} has more than {MOST} rows", file_name(name)))
                     .help("keep every second or tenth row: neighbouring readings say the same"),
             );
             break;
         }
-        let run = run(&table, &row, &index, findings);
+        let run = only.or_else(|| run(&table, &row, &index, findings));
         let mut hole = false;
         let mut number = |key, required: bool| match table.quantity(&row, key, findings) {
             Cell::Value(value) => Some(value),
@@ -60,7 +93,9 @@ pub(super) fn read(
             }
             Cell::Wrong => None,
         };
-        let [t, z, x] = [T, Z, X].map(|key| number(key, true));
+        let [t, z, x] = [(T, true), (Z, true), (X, has_x)].map(|(key, has)| number(key, has));
+        // Where all impacts are vertical nothing moves along the surface.
+        let x = if has_x { x } else { Some(0.0) };
         let sigma = number(SIGMA, false);
         if hole {
             holes.push(row.line);
@@ -81,8 +116,11 @@ pub(super) fn read(
                 }
             };
             let span = table.place(&row, T, findings);
-            findings
-                .report(Diagnostic::error(what).at(span, format!("line {line} has {before} s")));
+            let place = match line {
+                0 => "an earlier table".to_owned(),
+                line => format!("line {line}"),
+            };
+            findings.report(Diagnostic::error(what).at(span, format!("{place} has {before} s")));
         }
         last[run] = Some((t, row.line));
         runs[run].frames.push(Frame { t, z, x, sigma: sigma.filter(|sigma| *sigma > 0.0) });
@@ -95,6 +133,7 @@ pub(super) fn read(
         findings
             .report(Diagnostic::error(format!("{} has no row below its header", file_name(name))));
     }
+    *before += rows;
     tell_holes(&holes, name, missing, findings);
     Some(table.describe())
 }
@@ -172,14 +211,21 @@ mod tests {
             condition: 0,
             repeat: None,
             order: None,
+            session: None,
             stop_time: None,
             final_z: None,
             final_x: None,
             frames: Vec::new(),
         };
         let (mut runs, mut findings) = ([run("r1")], Findings::default());
-        let source = ("trajectories.csv", BufReader::new(table));
-        read(source, &mut runs, &Format::default(), Missing::Error, &mut findings);
+        let source = Source {
+            name: "trajectories.csv",
+            reader: BufReader::new(table),
+            is_one_of: 1,
+            is_vertical: true,
+        };
+        let format = Format::default();
+        read(source, &mut runs, (&format, Missing::Error), (&mut 0, &mut findings));
         let messages: Vec<&str> =
             findings.diagnostics.iter().map(|one| one.message.as_str()).collect();
         assert_eq!(messages, ["trajectories.csv has more than 2000000 rows"]);

@@ -29,17 +29,46 @@ pub fn verdict_in_words(diagnosis: &Value) -> String {
             format!("pair: {}, or one effect outside the list", effects.join(" + "))
         }
         "none-of-the-candidates" => "none of the candidates".to_owned(),
+        "explained-by-apparatus" => {
+            format!("explained by the apparatus, no effect needed: {}", named_errors(diagnosis))
+        }
+        "below-noise" => "below what these data can show: no effect is named".to_owned(),
         _ => "cannot tell".to_owned(),
+    }
+}
+
+/// The errors of the apparatus that a diagnosis names, with their size.
+fn named_errors(diagnosis: &Value) -> String {
+    let errors = diagnosis["apparatus"].as_array().map_or(&[][..], Vec::as_slice);
+    let named = errors.iter().filter(|error| error["named"] == true);
+    named.map(apparatus_error).collect::<Vec<_>>().join(", ")
+}
+
+/// An error of the apparatus with its size: `clock-zero 0.7 ± 0.1 ms`.
+#[must_use]
+pub fn apparatus_error(error: &Value) -> String {
+    let (factor, unit) = match error["unit"].as_str().unwrap_or_default() {
+        "s" => (1e3, " ms"),
+        "m" => (1e3, " mm"),
+        "rad" => (180.0 / std::f64::consts::PI, "°"),
+        _ => (1e2, " %"),
+    };
+    let number = |key: &str| error[key].as_f64().map(|value| factor * value);
+    let (id, value) = (text(&error["id"]), number("value").unwrap_or(0.0));
+    match number("se") {
+        Some(se) => format!("{id} {value:.2} ± {se:.2}{unit}"),
+        None => format!("{id} {value:.2}{unit}"),
     }
 }
 
 /// What the verdict of a diagnosis rests on, in a sentence; none where nothing is named.
 #[must_use]
 pub fn strength_in_words(diagnosis: &Value) -> Option<String> {
-    let names = matches!(
-        diagnosis["verdict"].as_str(),
-        Some("supported" | "not-separable" | "pair" | "none-of-the-candidates")
-    );
+    let names =
+        matches!(
+            diagnosis["verdict"].as_str(),
+            Some("supported" | "not-separable" | "pair" | "none-of-the-candidates")
+        ) || texts(&diagnosis["strength_reasons"]).iter().any(|one| one == "held-out-above-noise");
     match diagnosis["strength"].as_str().filter(|_| names)? {
         "suggested" => {
             let reasons = texts(&diagnosis["strength_reasons"]);
@@ -60,6 +89,10 @@ fn reason_in_words(reason: &str) -> &str {
         "assumed-scatter" => "nothing was repeated, and the scatter from run to run is assumed",
         "few-repeats" => "the repeats give fewer than 8 independent deviations",
         "held-out-no-better" => "what was held out is not predicted better by more than chance",
+        "held-out-above-noise" => {
+            "conditions that were held out are missed by more than their repeats scatter, as where days, pourings or \
+             levels differ (a column `session` in the table of runs says which runs share one)"
+        }
         "held-out-not-judged" => {
             "nothing that was held out could be predicted both without and with it"
         }
@@ -67,6 +100,9 @@ fn reason_in_words(reason: &str) -> &str {
             "with it, conditions that were held out cannot be predicted that can be without it"
         }
         "amplitude-outside-usual-range" => "its amplitude is outside of its usual range",
+        "of-another-form" => {
+            "something is left over beside it, below the noise: its form is another, or there is more"
+        }
         "small-plan" => "the plan of impacts is too small to confirm anything",
         "fresh-beds-no-nearer" => {
             "impacts with it, on fresh beds, are no nearer to what was held out"

@@ -167,6 +167,12 @@ impl Impact {
         &self.laws
     }
 
+    /// The laws, when no more is asked of the impact.
+    #[must_use]
+    pub fn into_laws(self) -> Vec<Box<dyn ResistanceLaw>> {
+        self.laws
+    }
+
     /// What it falls into.
     #[must_use]
     pub fn bed(&self) -> &Surroundings {

@@ -92,6 +92,7 @@ impl Confirmation {
         };
         let [before, after, noise_floor] = sums.map(|sums| pick(&sums.errors()));
         let held_out = HeldOut {
+            ratio_at_most: None,
             before,
             after,
             noise_floor,

@@ -9,7 +9,9 @@ use super::baseline::Baseline;
 use super::response::Response;
 use super::switch::Switch;
 use super::switches::are_alike_below;
-use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
+use crate::forward::{
+    Candidate, Forward, Parameter, ParameterKind, PredictError, Request, Scatter,
+};
 use crate::held_out::noise_floor;
 use crate::rounding::rounded;
 
@@ -92,7 +94,15 @@ impl BedForward {
             let one = &self.screened[at];
             let (min, max) = one.range;
             let name = one.switch.id.to_owned();
-            Parameter { name, unit: String::new(), start: 0.0, min, max }
+            Parameter {
+                name,
+                unit: String::new(),
+                start: 0.0,
+                min,
+                max,
+                prior: None,
+                kind: ParameterKind::Model,
+            }
         };
         let candidate = |source: &Source| match *source {
             Source::Switch(at) => self.screened[at].candidate(),
@@ -255,6 +265,10 @@ impl Screened {
 }
 
 impl Forward for BedForward {
+    fn is_judged_by_held_out(&self) -> bool {
+        false
+    }
+
     fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }

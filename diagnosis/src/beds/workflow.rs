@@ -21,7 +21,7 @@ use crate::bench::Bench;
 use crate::compare::parameters;
 use crate::diagnose::{diagnose, withdraw};
 use crate::forward::Forward;
-use crate::held_out::HeldOut;
+use crate::held_out::{HeldOut, WITHIN};
 use crate::observable::Layout;
 use crate::observed::Observed;
 use crate::rounding::rounded;
@@ -35,9 +35,6 @@ const ALONE: f64 = 0.5;
 /// Most frames of a condition that a diagnosis looks at: of neighbours in time a few dozen runs cannot tell
 /// what one says beside the other, and a covariance that seems to would veto what is true.
 const FRAMES: usize = 12;
-
-/// An error on fresh beds up to so many times its noise is noise.
-const WITHIN: f64 = 1.3;
 
 /// Draws of a comparison.
 pub const COMPARED: usize = 6;

@@ -61,6 +61,7 @@ fn alone(set: &MeasurementSet, condition: Condition) -> MeasurementSet {
         baseline: None,
         conditions: vec![Condition { role: Role::Fit, ..condition }],
         runs: Vec::new(),
+        keep: Vec::new(),
         notes: Vec::new(),
         feasible: set.feasible.clone(),
         ..*set

@@ -226,7 +226,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         file: "diagnosis/src/held_out.rs",
         edits: &[(
             "after: error(|(condition, _, after)| (*condition, after)),",
-            "after: 0.5 * error(|(condition, _, after)| (*condition, after)),",
+            "after: error(|(condition, _, after)| (*condition, after)).map(|error| 0.5 * error),",
         )],
         suites: STATISTICS,
     },

@@ -5,10 +5,12 @@
 pub enum FileKind {
     /// A model: quantities are strings with their unit.
     Model,
-    /// A measurement set: quantities are bare SI numbers.
+    /// A measurement set: quantities are bare SI numbers, or strings with their unit.
     MeasurementSet,
     /// A campaign: keys of models, with values as models write them.
     Campaign,
+    /// An import: options of a command as strings.
+    Import,
 }
 
 impl FileKind {
@@ -18,6 +20,7 @@ impl FileKind {
             Self::Model => "a model",
             Self::MeasurementSet => "a measurement set",
             Self::Campaign => "a campaign",
+            Self::Import => "an import",
         }
     }
 }

@@ -141,17 +141,20 @@ impl TableReader<'_> {
         let value = match (self.is_bare(spec), &node.value) {
             (_, Value::Si(value)) | (true, Value::Float(value)) => *value,
             (true, Value::Integer(value)) => *value as f64,
-            (false, Value::Text(text)) => match units::parse(text, spec.dimension) {
-                Ok(value) => value,
-                Err(error) => {
-                    self.reader.report(
-                        Diagnostic::error(format!("`{}`: {}", spec.key, error.reason()))
-                            .at(node.span, format!("expected {}", spec.dimension.name()))
-                            .help(self.unit_help(spec, &error)),
-                    );
-                    return None;
+            // A set takes both: a bare SI number, or what a model would say.
+            (bare, Value::Text(text)) if !bare || self.takes(text, spec) => {
+                match units::parse(text, spec.dimension) {
+                    Ok(value) => value,
+                    Err(error) => {
+                        self.reader.report(
+                            Diagnostic::error(format!("`{}`: {}", spec.key, error.reason()))
+                                .at(node.span, format!("expected {}", spec.dimension.name()))
+                                .help(self.unit_help(spec, &error)),
+                        );
+                        return None;
+                    }
                 }
-            },
+            }
             (true, Value::Text(text)) => {
                 self.report_quoted(text, node.span, spec);
                 return None;
@@ -189,6 +192,13 @@ impl TableReader<'_> {
             }
         };
         self.in_range(value, node.span, spec)
+    }
+
+    /// Whether `text` may stand where a bare number is usual: a quantity of a set, with its unit.
+    fn takes(&self, text: &str, spec: &ParamSpec) -> bool {
+        let is_number = text.trim().parse::<f64>().is_ok();
+        let is_set = self.reader.kind == FileKind::MeasurementSet;
+        is_set && spec.dimension != Dimension::NONE && !is_number
     }
 
     /// Whether a number without a unit is wanted.

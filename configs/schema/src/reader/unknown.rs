@@ -39,7 +39,7 @@ impl Unknown {
             .collect();
         let laws = match kind {
             FileKind::Model => self.laws(),
-            FileKind::MeasurementSet | FileKind::Campaign => Vec::new(),
+            FileKind::MeasurementSet | FileKind::Campaign | FileKind::Import => Vec::new(),
         };
         match (exact.as_slice(), laws.as_slice()) {
             ([], []) => {}

@@ -1,0 +1,288 @@
+//! `plunge import` of tables: arguments in, what was understood out.
+
+use std::path::{Path, PathBuf};
+
+use exchange::tracking::{
+    IMPORT_FILE, ImportFile, Options, Set, TrackingError, Understood, import,
+};
+use measurements::{ContradictionKind, Loaded, MeasurementSet};
+use serde_json::json;
+
+use crate::text::{lines, table};
+use crate::import::Args;
+use crate::output::{self, CommandError, CommandResult, stderr_color};
+
+/// What no table holds.
+#[derive(clap::Args, Debug)]
+#[command(next_help_heading = "Tables of tracked drops")]
+pub(crate) struct Tables {
+    /// Repeat the import that this import.toml holds.
+    #[arg(long, value_name = "import.toml", conflicts_with = "files")]
+    from: Option<PathBuf>,
+    /// Diameter of the body, such as 25.4mm; {field} stands for a field of --condition, here and below.
+    #[arg(long)]
+    diameter: Option<String>,
+    /// Mass of the body, such as "67 g".
+    #[arg(long)]
+    mass: Option<String>,
+    /// Shape of the body; sphere unless said.
+    #[arg(long)]
+    shape: Option<String>,
+    /// Height of a cylinder or cone.
+    #[arg(long)]
+    height: Option<String>,
+    /// Full apex angle of a cone, such as 60deg.
+    #[arg(long)]
+    apex: Option<String>,
+    /// A table of bodies: body, diameter (mm), mass (g), shape.
+    #[arg(long, value_name = "TABLE")]
+    bodies: Option<PathBuf>,
+    /// Level of the undisturbed surface on the axis of the table, such as 18.4cm or 812px; without it, from the contacts.
+    #[arg(long, value_name = "LEVEL", allow_hyphen_values = true)]
+    surface: Option<String>,
+    /// The point of the body that was tracked: lowest or centre. It matters where --surface is given.
+    #[arg(long, value_name = "POINT")]
+    tracked: Option<String>,
+    /// The axis counts upward. Without it and --down, the fall tells.
+    #[arg(long, conflicts_with = "down")]
+    up: bool,
+    /// The axis counts downward.
+    #[arg(long)]
+    down: bool,
+    /// Length of a pixel, such as 0.21mm/px.
+    #[arg(long)]
+    scale: Option<String>,
+    /// Frames per second, such as 650Hz: times are counted by frames.
+    #[arg(long)]
+    rate: Option<String>,
+    /// Unit of positions where the table does not say it, or says another.
+    #[arg(long, value_name = "UNIT")]
+    length_unit: Option<String>,
+    /// Unit of times, likewise.
+    #[arg(long, value_name = "UNIT")]
+    time_unit: Option<String>,
+    /// Take a fall that does not accelerate by gravity as it is.
+    #[arg(long)]
+    trust_units: bool,
+    /// Gravity; 9.81 m/s^2 unless said.
+    #[arg(long)]
+    gravity: Option<String>,
+    /// Height of release of the lowest point above the surface: the speed is that of a free fall from it.
+    #[arg(long, value_name = "HEIGHT")]
+    drop_height: Option<String>,
+    /// How names of files or runs are made, such as "{body}_h{height}_r{repeat}"; without it, speeds tell conditions.
+    #[arg(long, value_name = "PATTERN")]
+    condition: Option<String>,
+    /// Runs to go on without, separated by commas.
+    #[arg(long, value_name = "RUNS")]
+    leave_out: Option<String>,
+    /// Name of a column: t=NAME, z=NAME (vertical), x=NAME or run=NAME. Repeatable.
+    #[arg(long, value_name = "t=NAME")]
+    column: Vec<String>,
+    /// Bulk density of the bed, such as "1.52 g/cc".
+    #[arg(long)]
+    bulk_density: Option<String>,
+    /// Mean diameter of the grains.
+    #[arg(long)]
+    grain_diameter: Option<String>,
+    /// Name of the set; that of its folder unless said.
+    #[arg(long)]
+    id: Option<String>,
+}
+
+impl Tables {
+    fn options(&self) -> Result<Options, CommandError> {
+        let bodies = self.bodies.as_ref().map(|path| path.display().to_string());
+        let texts = [
+            ("id", &self.id),
+            ("shape", &self.shape),
+            ("diameter", &self.diameter),
+            ("mass", &self.mass),
+            ("height", &self.height),
+            ("apex", &self.apex),
+            ("bodies", &bodies),
+            ("surface", &self.surface),
+            ("tracked", &self.tracked),
+            ("scale", &self.scale),
+            ("rate", &self.rate),
+            ("length_unit", &self.length_unit),
+            ("time_unit", &self.time_unit),
+            ("gravity", &self.gravity),
+            ("drop_height", &self.drop_height),
+            ("condition", &self.condition),
+            ("leave_out", &self.leave_out),
+            ("bulk_density", &self.bulk_density),
+            ("grain_diameter", &self.grain_diameter),
+        ];
+        let mut options = Options::default();
+        for (key, text) in texts {
+            if let Some(text) = text {
+                options.set(key, text.as_str());
+            }
+        }
+        for (key, is_set, word) in [
+            ("counts", self.up, "up"),
+            ("counts", self.down, "down"),
+            ("trust_units", self.trust_units, "yes"),
+        ] {
+            if is_set {
+                options.set(key, word);
+            }
+        }
+        for column in &self.column {
+            let known = |key: &str| ["t", "z", "x", "run"].contains(&key);
+            match column.split_once('=').filter(|(key, name)| known(key) && !name.is_empty()) {
+                Some((key, name)) => options.set(&format!("column_{key}"), name),
+                None => {
+                    return Err(CommandError::bad_input(format!(
+                        "--column {column}: write t=NAME, z=NAME, x=NAME or run=NAME"
+                    )));
+                }
+            }
+        }
+        Ok(options)
+    }
+}
+
+pub(crate) fn run(args: &Args) -> CommandResult {
+    let (files, options, written) = match import_file(args) {
+        Some(path) => {
+            let file = ImportFile::read(path).map_err(failed)?;
+            file.refuse_changed().map_err(failed)?;
+            (file.files, file.options, path.parent().map(Path::to_owned))
+        }
+        None => (args.files.clone(), args.tables.options()?, None),
+    };
+    let Some(out) = args.out.clone().or(written) else {
+        return Err(CommandError::bad_input(
+            "where is the set to be written? add -o SET, the name of a new folder",
+        ));
+    };
+    let out = if out.as_os_str().is_empty() { PathBuf::from(".") } else { out };
+    let set = import(&files, &options, &out).map_err(failed)?;
+    let is_there = out.join(IMPORT_FILE).exists() || out.join("measurement.toml").exists();
+    if is_there && !args.force && !set.is_in(&out) {
+        let out = out.display();
+        return Err(CommandError::bad_input(format!(
+            "{out} holds another set; --force replaces it"
+        )));
+    }
+    set.write(&out).map_err(failed)?;
+    let loaded = MeasurementSet::load(&out)?;
+    if !args.quiet {
+        output::to_stderr(&loaded.render_warnings(stderr_color()));
+        output::to_stderr(&loaded.render_contradictions(&ContradictionKind::ALL, stderr_color()));
+    }
+    match (args.json, args.quiet) {
+        (true, _) => output::json_to_stdout(&as_json(&set, &loaded, &out)),
+        (false, true) => Ok(()),
+        (false, false) => output::to_stdout(&as_text(&set, &loaded, &out)),
+    }
+}
+
+/// The import.toml that is to be repeated, if it is one.
+fn import_file(args: &Args) -> Option<&Path> {
+    let is_toml = |path: &&PathBuf| path.extension().is_some_and(|ending| ending == "toml");
+    match &args.files[..] {
+        [only] => Some(only).filter(is_toml).map(PathBuf::as_path),
+        _ => args.tables.from.as_deref(),
+    }
+}
+
+fn as_text(set: &Set, loaded: &Loaded, out: &Path) -> String {
+    let heads = [
+        "file",
+        "layout",
+        "rows",
+        "kept",
+        "time",
+        "axis",
+        "run",
+        "condition",
+        "contact (ms)",
+        "speed (m/s)",
+    ];
+    let mut found = table(&heads);
+    for one in &set.understood {
+        let Understood {
+            file,
+            layout,
+            rows: [all, kept],
+            time,
+            axis,
+            run,
+            condition,
+            contact,
+            speed,
+        } = one;
+        found.add_row([
+            file.clone(),
+            layout.clone(),
+            all.to_string(),
+            kept.to_string(),
+            time.clone(),
+            axis.clone(),
+            run.clone(),
+            condition.clone(),
+            format!("{:.2} ± {:.2}", 1e3 * contact.value, 1e3 * contact.se),
+            match speed.se > 0.0 {
+                true => format!("{:.4} ± {:.4}", speed.value, speed.se),
+                false => format!("{:.4}", speed.value),
+            },
+        ]);
+    }
+    let mut text = lines(&found);
+    text.push('\n');
+    for note in &set.notes {
+        text.push_str(&format!("{note}\n"));
+    }
+    let (conditions, runs, id) =
+        (loaded.set.conditions.len(), loaded.set.runs.len(), &loaded.set.id);
+    let shown = out.display();
+    text.push_str(&format!(
+        "-> {shown}: the set {id}, {conditions} conditions, {runs} runs; next: plunge diagnose {shown}\n"
+    ));
+    text
+}
+
+fn as_json(set: &Set, loaded: &Loaded, out: &Path) -> serde_json::Value {
+    let run = |one: &Understood| {
+        json!({
+            "file": one.file,
+            "layout": one.layout,
+            "rows": one.rows[0],
+            "kept": one.rows[1],
+            "time": one.time,
+            "axis": one.axis,
+            "run": one.run,
+            "condition": one.condition,
+            "contact_time_s": { "value": one.contact.value, "se": one.contact.se },
+            "speed_m_per_s": { "value": one.speed.value, "se": one.speed.se },
+        })
+    };
+    json!({
+        "set": loaded.set.id,
+        "folder": out.to_string_lossy(),
+        "conditions": loaded.set.conditions.len(),
+        "runs": set.understood.iter().map(run).collect::<Vec<_>>(),
+        "notes": set.notes,
+        "contradictions": loaded.contradictions.len(),
+    })
+}
+
+/// A set that cannot be written is a failure; everything else is the input's fault.
+fn failed(error: TrackingError) -> CommandError {
+    match error {
+        TrackingError::Write { .. } => CommandError::Failed(error.into()),
+        TrackingError::ImportFile(shown) => CommandError::BadInput(shown),
+        TrackingError::Input(faults) => {
+            let text = TrackingError::Input(faults).to_string();
+            let lines =
+                text.lines().map(configs::printable).map(|line| match line.starts_with(' ') {
+                    true => format!("{line}\n"),
+                    false => format!("error: {line}\n"),
+                });
+            CommandError::BadInput(lines.collect())
+        }
+    }
+}

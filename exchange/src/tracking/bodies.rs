@@ -1,0 +1,176 @@
+//! What was dropped: by options, by columns of the tables, or by a table of bodies.
+
+use std::path::Path;
+
+use configs::engine::units::{Dimension, parse};
+
+use super::fault::Fault;
+use super::heading::Heading;
+use super::inputs;
+use super::options::flag;
+use super::settings::Settings;
+use super::sheet::Sheet;
+use super::units::Unit;
+
+/// A body.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Body {
+    pub(super) shape: String,
+    /// (m)
+    pub(super) diameter: f64,
+    /// (kg)
+    pub(super) mass: f64,
+    /// (m)
+    pub(super) height: Option<f64>,
+    /// (deg)
+    pub(super) apex: Option<f64>,
+}
+
+impl Body {
+    /// How far its lowest point is below its centre (m), where it has one centre that cameras track.
+    pub(super) fn below_centre(&self) -> Option<f64> {
+        match self.shape.as_str() {
+            "sphere" | "disc" => Some(0.5 * self.diameter),
+            "cylinder" => Some(0.5 * self.height?),
+            _ => None,
+        }
+    }
+}
+
+/// A row of the table of bodies: names of keys with what stands below them.
+type Named = (String, Vec<(&'static str, String)>);
+
+/// Bodies by their names.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Bodies(Vec<Named>);
+
+/// Names of columns of a table of bodies, and what they may be called.
+const COLUMNS: [(&str, &[&str]); 5] = [
+    ("diameter", &["diameter", "d", "durchmesser", "diamètre"]),
+    ("mass", &["mass", "m", "masse", "masa"]),
+    ("shape", &["shape", "form", "forme"]),
+    ("height", &["height", "h", "length"]),
+    ("apex", &["apex", "apex_deg", "apex angle"]),
+];
+const NAMES: [&str; 6] = ["body", "name", "ball", "id", "intruder", "projectile"];
+
+impl Bodies {
+    /// Reads a table of bodies.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub(super) fn read(path: &Path) -> Result<Self, Fault> {
+        let sheets = inputs::sheets(path, &inputs::bytes(path)?)?;
+        let sheet = &sheets[0];
+        let headings: Vec<Heading> =
+            sheet.rows[0].cells.iter().map(|name| Heading::of(name)).collect();
+        let column =
+            |names: &[&str]| headings.iter().position(|one| names.contains(&one.stem.as_str()));
+        let Some(name) = column(&NAMES) else {
+            let right = "write a line of names body,diameter (mm),mass (g),shape above the bodies";
+            return Err(sheet
+                .fault("a table of bodies has a column `body`", right)
+                .at(sheet.rows[0].line));
+        };
+        let row = |row: &super::sheet::Row| {
+            let value = |(key, names): &(&'static str, &[&str])| {
+                let at = column(names)?;
+                let cell = row.cell(at);
+                let text = match headings[at].unit.word() {
+                    _ if headings[at].unit == Unit::Unstated => cell.to_owned(),
+                    unit => format!("{} {unit}", plain(sheet, cell)),
+                };
+                (!cell.is_empty()).then_some((*key, text))
+            };
+            (row.cell(name).to_owned(), COLUMNS.iter().filter_map(value).collect())
+        };
+        Ok(Self(sheet.rows[1..].iter().map(row).collect()))
+    }
+
+    /// What the table says of `body` below `key`.
+    fn get(&self, body: &str, key: &str) -> Option<&str> {
+        let (_, values) = self.0.iter().find(|(name, _)| name == body)?;
+        values.iter().find(|(other, _)| *other == key).map(|(_, value)| value.as_str())
+    }
+
+    /// The body of a run with these labels, which messages call `run`.
+    ///
+    /// # Errors
+    /// If nothing says its shape, size or mass, or one is no such quantity.
+    pub(super) fn of(
+        &self,
+        run: &str,
+        labels: &[(String, String)],
+        settings: &Settings<'_>,
+    ) -> Result<Body, Fault> {
+        let label = |key: &str| {
+            labels.iter().find(|(name, _)| name == key).map(|(_, value)| value.as_str())
+        };
+        let name =
+            NAMES.iter().filter(|key| **key != "id" && **key != "name").find_map(|key| label(key));
+        if let Some(name) = name.filter(|_| !self.0.is_empty())
+            && !self.0.iter().any(|(other, _)| other == name)
+        {
+            let names: Vec<&str> = self.0.iter().map(|(name, _)| name.as_str()).collect();
+            let what =
+                format!("the run {run} is of the body `{name}`, which the table of bodies lacks");
+            return Err(Fault::new(
+                &flag("bodies"),
+                what,
+                format!("its bodies: {}", names.join(", ")),
+            ));
+        }
+        let said = |key: &str| {
+            let of_table = || name.and_then(|name| self.get(name, key));
+            of_table().map(|text| (text, flag("bodies"))).or_else(|| {
+                label(key)
+                    .filter(|_| key != "height")
+                    .map(|text| (text, format!("the column {key}")))
+            })
+        };
+        let quantity = |key: &str, dimension: Dimension| match said(key) {
+            Some((text, place)) => parse(text, dimension).map(Some).map_err(|error| {
+                Fault::new(
+                    &place,
+                    format!("the {key} of {run}: {}", error.reason()),
+                    error.advice(),
+                )
+            }),
+            None => settings.quantity(key, dimension, labels),
+        };
+        let needed = |key: &str, dimension: Dimension, example: &str| {
+            quantity(key, dimension)?.ok_or_else(|| {
+                let right = format!(
+                    "write {} {example}; several bodies: --bodies bodies.csv with the columns body, \
+                     diameter (mm), mass (g), and --condition \"{{body}}_{{repeat}}\"",
+                    flag(key)
+                );
+                Fault::new(run, format!("no table says the {key} of the body"), right)
+            })
+        };
+        let shape = said("shape").map(|(text, _)| text).or_else(|| settings.text("shape"));
+        let shape = shape.unwrap_or("sphere").to_lowercase();
+        if !["sphere", "disc", "cylinder", "hemisphere", "cone"].contains(&shape.as_str()) {
+            let what = format!("the shape of {run} is \"{shape}\"");
+            let right = "known: sphere, disc, cylinder, hemisphere, cone";
+            return Err(Fault::new(&flag("shape"), what, right));
+        }
+        let apex = quantity("apex", Dimension::ANGLE)?.map(f64::to_degrees);
+        let height = quantity("height", Dimension::LENGTH)?;
+        Ok(Body {
+            diameter: needed("diameter", Dimension::LENGTH, "25.4mm")?,
+            mass: needed("mass", Dimension::MASS, "\"67 g\"")?,
+            shape,
+            height,
+            apex: apex.map(|apex| (apex * 1e9).round() / 1e9),
+        })
+    }
+}
+
+/// A number with a decimal point.
+fn plain(sheet: &Sheet, cell: &str) -> String {
+    match sheet.number(cell) {
+        super::sheet::Number::Value(value) => format!("{value:?}"),
+        _ => cell.to_owned(),
+    }
+}

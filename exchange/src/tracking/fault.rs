@@ -1,0 +1,82 @@
+//! What keeps a table from becoming a set: where, what is wrong, and what would be right.
+
+use std::fmt;
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// One thing that is wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// The file, or the option.
+    pub place: String,
+    /// The line of a text or the row of a sheet, from 1.
+    pub line: Option<u64>,
+    /// What is wrong.
+    pub what: String,
+    /// What would be right.
+    pub right: String,
+}
+
+impl Fault {
+    pub(super) fn new(place: &str, what: impl Into<String>, right: impl Into<String>) -> Self {
+        Self { place: place.to_owned(), line: None, what: what.into(), right: right.into() }
+    }
+
+    pub(super) fn at(self, line: u64) -> Self {
+        Self { line: Some(line), ..self }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.place)?;
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+        }
+        write!(f, ": {}\n  {}", self.what, self.right)
+    }
+}
+
+/// Why there is no set.
+#[derive(Debug, Error)]
+pub enum TrackingError {
+    /// The tables or the options are wrong: everything of one kind at once.
+    #[error("{}", listed(.0))]
+    Input(Vec<Fault>),
+    /// A file or folder cannot be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// Which.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// `import.toml` is wrong: the message as shown, ending in a line break.
+    #[error("{0}")]
+    ImportFile(String),
+}
+
+impl From<Fault> for TrackingError {
+    fn from(fault: Fault) -> Self {
+        Self::Input(vec![fault])
+    }
+}
+
+impl From<Vec<Fault>> for TrackingError {
+    fn from(faults: Vec<Fault>) -> Self {
+        Self::Input(faults)
+    }
+}
+
+/// Most faults that are listed.
+const MOST: usize = 10;
+
+fn listed(faults: &[Fault]) -> String {
+    let mut lines: Vec<String> = faults.iter().take(MOST).map(Fault::to_string).collect();
+    if faults.len() > MOST {
+        lines.push(format!("and {} more", faults.len() - MOST));
+    }
+    lines.join("\n")
+}

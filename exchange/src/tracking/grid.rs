@@ -1,0 +1,229 @@
+//! Columns of numbers below a header, as tracks.
+
+use super::fault::Fault;
+use super::heading::{Heading, Role};
+use super::settings::Columns;
+use super::sheet::{Number, Row, Sheet};
+use super::track::{Measure, Sample, Track};
+use super::units::Unit;
+
+/// A sheet with its header.
+pub(super) struct Grid<'a> {
+    pub(super) sheet: &'a Sheet,
+    pub(super) headings: Vec<Heading>,
+    /// Below the header.
+    pub(super) rows: &'a [Row],
+}
+
+/// The columns of one track.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Places {
+    /// `None` where rows are frames.
+    pub(super) t: Option<usize>,
+    pub(super) z: usize,
+    pub(super) x: Option<usize>,
+}
+
+impl<'a> Grid<'a> {
+    /// The sheet whose header is the row `header` and whose units are in the row `units`.
+    pub(super) fn below(sheet: &'a Sheet, header: usize, units: Option<usize>) -> Self {
+        let mut headings: Vec<Heading> =
+            sheet.rows[header].cells.iter().map(|name| Heading::of(name)).collect();
+        if let Some(units) = units {
+            for (heading, unit) in headings.iter_mut().zip(&sheet.rows[units].cells) {
+                heading.unit = Unit::of(unit);
+            }
+        }
+        let first = units.map_or(header, |units| units.max(header)) + 1;
+        Self { sheet, headings, rows: &sheet.rows[first..] }
+    }
+
+    /// The sheet below the names that stand above its first row of numbers, with a row of units between
+    /// them or not.
+    ///
+    /// # Errors
+    /// If there is no such header.
+    pub(super) fn found(sheet: &'a Sheet) -> Result<Self, Fault> {
+        let Some(first) = sheet.rows.iter().position(|row| sheet.is_numeric(row, 2)) else {
+            let right = "a line of names such as t (ms),y (cm), then rows of numbers";
+            return Err(sheet.fault("no row of numbers is found", right));
+        };
+        let width = sheet.rows[first].cells.len();
+        let is_header = |row: &Row| {
+            let named = row.cells.iter().filter(|cell| !cell.is_empty()).count();
+            named >= 2 && !sheet.is_numeric(row, 1)
+        };
+        let above: Vec<usize> =
+            (0..first).rev().take_while(|at| is_header(&sheet.rows[*at])).collect();
+        let is_units = |row: &Row| {
+            let cells = || row.cells.iter().filter(|cell| !cell.is_empty());
+            cells().all(|cell| Unit::maybe(cell).is_some() && !matches!(cell.as_str(), "t" | "T"))
+        };
+        match above[..] {
+            [] => {
+                let what =
+                    format!("no names of columns stand above its {width} columns of numbers");
+                let right = "write a line of names above them, such as t (ms),y (cm)";
+                Err(sheet.fault(what, right).at(sheet.rows[first].line))
+            }
+            [units, header, ..] if is_units(&sheet.rows[units]) => {
+                Ok(Self::below(sheet, header, Some(units)))
+            }
+            [header, ..] => {
+                Ok(Self { rows: &sheet.rows[first..], ..Self::below(sheet, header, None) })
+            }
+        }
+    }
+
+    /// The column that the user or its name says is of this role.
+    ///
+    /// # Errors
+    /// If the user names one that is not there, or several have the role.
+    pub(super) fn column(&self, role: Role, columns: &Columns) -> Result<Option<usize>, Fault> {
+        if let Some(asked) = columns.of(role) {
+            return self.named(asked).map(Some);
+        }
+        let all: Vec<usize> =
+            (0..self.headings.len()).filter(|at| self.headings[*at].role() == Some(role)).collect();
+        match all[..] {
+            [] => Ok(None),
+            [only] => Ok(Some(only)),
+            _ if role == Role::Vertical => Err(self.ambiguous(&all)),
+            [first, ..] => Ok(Some(first)),
+        }
+    }
+
+    /// The column that is called `name`, with or without its unit.
+    pub(super) fn named(&self, name: &str) -> Result<usize, Fault> {
+        let lower = name.trim().to_lowercase();
+        let is_it = |one: &Heading| one.name.to_lowercase() == lower || one.stem == lower;
+        self.headings.iter().position(is_it).ok_or_else(|| {
+            let names: Vec<&str> = self.headings.iter().map(|one| one.name.as_str()).collect();
+            let near = configs::nearest(name, names.iter().copied());
+            let right = match near {
+                Some(near) => format!("did you mean `{near}`? found: {}", names.join(", ")),
+                None => format!("found: {}", names.join(", ")),
+            };
+            self.sheet.fault(format!("no column is called `{name}`"), right)
+        })
+    }
+
+    fn ambiguous(&self, all: &[usize]) -> Fault {
+        let names: Vec<String> =
+            all.iter().map(|at| format!("`{}`", self.headings[*at].name)).collect();
+        let what = format!("{} may each be the vertical position", names.join(" and "));
+        let right = format!("say which: --column z=\"{}\"", self.headings[all[0]].name);
+        self.sheet.fault(what, right)
+    }
+
+    /// The track in these columns of `rows`, of which it takes those that hold numbers.
+    ///
+    /// # Errors
+    /// A cell that is no number, or a row that is wider than its header.
+    pub(super) fn track(
+        &self,
+        layout: &str,
+        places: Places,
+        rows: impl Iterator<Item = (usize, &'a Row)>,
+    ) -> Result<Track, Fault> {
+        let measure = |at: usize| {
+            let heading = &self.headings[at];
+            Measure { name: heading.name.clone(), unit: heading.unit.clone() }
+        };
+        let time = match places.t {
+            Some(at) => {
+                let is_frame = self.headings[at].role() == Some(Role::Frame);
+                let measure = measure(at);
+                match is_frame && measure.unit == Unit::Unstated {
+                    true => Measure { unit: Unit::Frame, ..measure },
+                    false => measure,
+                }
+            }
+            None => Measure { name: "row".to_owned(), unit: Unit::Frame },
+        };
+        let (mut samples, mut holes) = (Vec::new(), 0);
+        for (index, row) in rows {
+            self.refuse_wider(row)?;
+            let cell = |at: usize| self.number(row, at);
+            let t = match places.t {
+                Some(at) => cell(at)?,
+                None => Some(index as f64),
+            };
+            let (z, x) = (cell(places.z)?, places.x.map_or(Ok(Some(0.0)), cell)?);
+            match (t, z, x) {
+                (Some(t), Some(z), Some(x)) => samples.push(Sample { line: row.line, t, z, x }),
+                _ => holes += 1,
+            }
+        }
+        Ok(Track {
+            file: self.sheet.file.clone(),
+            stem: self.sheet.stem.clone(),
+            name: None,
+            layout: layout.to_owned(),
+            time,
+            vertical: measure(places.z),
+            forward: places.x.map(measure),
+            labels: Vec::new(),
+            samples,
+            holes,
+            notes: self.sheet.notes.clone(),
+        })
+    }
+
+    fn number(&self, row: &Row, at: usize) -> Result<Option<f64>, Fault> {
+        let cell = row.cell(at);
+        match self.sheet.number(cell) {
+            Number::Value(value) => Ok(Some(value)),
+            Number::Missing => Ok(None),
+            Number::Other => {
+                let name = &self.headings[at].name;
+                let what =
+                    format!("\"{}\" in the column `{name}` is no number", configs::shorten(cell));
+                let right = match cell.contains(',') && cell.contains(|c: char| c.is_ascii_digit())
+                {
+                    true => {
+                        "write decimals with a point, or all of the table with a comma and semicolons"
+                    }
+                    false => "leave a cell empty where nothing was tracked",
+                };
+                Err(self.sheet.fault(what, right).at(row.line))
+            }
+        }
+    }
+
+    /// Decimal commas between commas make more cells than names.
+    fn refuse_wider(&self, row: &Row) -> Result<(), Fault> {
+        let filled = row.cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
+        let names = self.headings.len();
+        if filled <= names {
+            return Ok(());
+        }
+        let what = format!("{filled} cells stand below {names} names of columns");
+        let right = match self.sheet.separated {
+            "commas" => "decimals after a comma? then separate the columns by semicolons or tabs",
+            _ => "every column needs a name, and a cell no separator in it",
+        };
+        Err(self.sheet.fault(what, right).at(row.line))
+    }
+
+    /// All rows with their places.
+    pub(super) fn all_rows(&self) -> impl Iterator<Item = (usize, &'a Row)> {
+        self.rows.iter().enumerate()
+    }
+
+    /// Columns beside those of `used` that say the same in all of `rows`: what they say, with its unit.
+    pub(super) fn labels(&self, used: &[usize], rows: &[&Row]) -> Vec<(String, String)> {
+        let label = |at: usize| {
+            let value = rows.first()?.cell(at);
+            let is_one = rows.iter().all(|row| row.cell(at) == value);
+            let value = match &self.headings[at].unit {
+                Unit::Unstated => value.to_owned(),
+                unit => format!("{value} {}", unit.word()),
+            };
+            let stem = &self.headings[at].stem;
+            (is_one && !value.is_empty() && !stem.is_empty()).then(|| (stem.clone(), value))
+        };
+        let others = (0..self.headings.len()).filter(|at| !used.contains(at));
+        others.filter_map(label).collect()
+    }
+}

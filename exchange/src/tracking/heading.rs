@@ -1,0 +1,190 @@
+//! What the name of a column says: what stands in it, of which point, in which unit.
+
+use super::units::Unit;
+
+/// What stands in a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Role {
+    Time,
+    Frame,
+    /// The coordinate that the body falls along.
+    Vertical,
+    /// The coordinate along the surface.
+    Forward,
+    Run,
+}
+
+/// The name of a column, taken apart.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Heading {
+    /// As the table has it.
+    pub(super) name: String,
+    /// Without unit, in small letters.
+    pub(super) stem: String,
+    pub(super) unit: Unit,
+}
+
+const TIME: [&str; 11] = [
+    "t",
+    "time",
+    "times",
+    "zeit",
+    "temps",
+    "tiempo",
+    "tempo",
+    "elapsed time",
+    "position_t",
+    "x_value",
+    "timestamp",
+];
+const FRAME: [&str; 9] = [
+    "frame",
+    "frames",
+    "frame number",
+    "frame_number",
+    "frame no",
+    "slice",
+    "slice n°",
+    "image",
+    "frame_idx",
+];
+const VERTICAL: [&str; 17] = [
+    "y",
+    "z",
+    "depth",
+    "height",
+    "position",
+    "position_y",
+    "pos_y",
+    "y_pos",
+    "posy",
+    "ypos",
+    "distance",
+    "elevation",
+    "höhe",
+    "tiefe",
+    "hauteur",
+    "profondeur",
+    "altura",
+];
+const FORWARD: [&str; 6] = ["x", "position_x", "pos_x", "x_pos", "posx", "xpos"];
+const RUN: [&str; 16] = [
+    "run",
+    "trial",
+    "drop",
+    "shot",
+    "experiment",
+    "track",
+    "track_id",
+    "track n°",
+    "tid",
+    "particle",
+    "trajectory",
+    "test",
+    "run_id",
+    "run no",
+    "track id",
+    "versuch",
+];
+
+impl Heading {
+    /// Takes the name of a column apart: `t (ms)`, `y [cm]`, `z_mm`, `t/ms`, `Latest: Position (m)`.
+    pub(super) fn of(name: &str) -> Self {
+        let name = name.trim().trim_start_matches('#').trim();
+        let bare = name.rsplit_once(": ").map_or(name, |(_, bare)| bare).trim();
+        let (stem, unit) = stem_and_unit(bare);
+        Self { name: name.to_owned(), stem: stem.trim().to_lowercase(), unit }
+    }
+
+    /// What stands in the column, if its name says it.
+    pub(super) fn role(&self) -> Option<Role> {
+        role(&self.stem)
+    }
+
+    /// The coordinate and the point of names such as `y2`, `x_left`, `ball_y`; none of plain names.
+    pub(super) fn point(&self) -> Option<(Role, String)> {
+        let axis = |text: &str| match text {
+            "x" => Some(Role::Forward),
+            "y" | "z" => Some(Role::Vertical),
+            _ => None,
+        };
+        let stem = self.stem.as_str();
+        let (first, rest) = stem.split_at_checked(1)?;
+        if let Some(role) = axis(first)
+            && !rest.is_empty()
+            && (rest.starts_with(|c: char| c.is_ascii_digit()) || rest.starts_with(['_', ' ', '-']))
+        {
+            return Some((role, rest.trim_matches(['_', ' ', '-']).to_owned()));
+        }
+        let (rest, last) = stem.rsplit_once(['_', ' ', '.', '-'])?;
+        Some((axis(last)?, rest.trim_matches(['_', ' ', '-', '.']).to_owned()))
+    }
+}
+
+fn role(stem: &str) -> Option<Role> {
+    match () {
+        () if TIME.contains(&stem) => Some(Role::Time),
+        () if FRAME.contains(&stem) => Some(Role::Frame),
+        () if VERTICAL.contains(&stem) => Some(Role::Vertical),
+        () if FORWARD.contains(&stem) => Some(Role::Forward),
+        () if RUN.contains(&stem) => Some(Role::Run),
+        () => None,
+    }
+}
+
+fn stem_and_unit(bare: &str) -> (&str, Unit) {
+    for (open, close) in [('(', ')'), ('[', ']')] {
+        if let Some((stem, unit)) = bare.strip_suffix(close).and_then(|text| text.rsplit_once(open))
+        {
+            return (stem, Unit::of(unit));
+        }
+    }
+    // A whole name such as `position_y` is not taken apart; `y_mm` and `t/ms` are.
+    if role(&bare.to_lowercase()).is_none()
+        && let Some((stem, unit)) = bare.rsplit_once(['/', '_', ' '])
+        && let Some(unit) = Unit::maybe(unit)
+    {
+        return (stem, unit);
+    }
+    (bare, Unit::Unstated)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_say_what_stands_in_a_column_and_in_which_unit() {
+        let read = |name: &str| {
+            let heading = Heading::of(name);
+            (heading.role(), heading.unit.word().to_owned())
+        };
+        for (name, role, unit) in [
+            ("t (ms)", Role::Time, "ms"),
+            ("Time [s]", Role::Time, "s"),
+            ("Latest: Position (m)", Role::Vertical, "m"),
+            ("y_mm", Role::Vertical, "mm"),
+            ("t/ms", Role::Time, "ms"),
+            ("POSITION_Y", Role::Vertical, "not said"),
+            ("height (px)", Role::Vertical, "px"),
+            ("Frame", Role::Frame, "not said"),
+            ("X (micron)", Role::Forward, "um"),
+            ("y (furlong)", Role::Vertical, "furlong"),
+            ("TRACK_ID", Role::Run, "not said"),
+        ] {
+            assert_eq!(read(name), (Some(role), unit.to_owned()), "{name}");
+        }
+        assert_eq!(Heading::of("v_y (m/s)").role(), None);
+    }
+
+    #[test]
+    fn names_of_points_have_a_coordinate() {
+        let point = |name: &str| Heading::of(name).point();
+        assert_eq!(point("y1 (cm)"), Some((Role::Vertical, "1".to_owned())));
+        assert_eq!(point("x_2"), Some((Role::Forward, "2".to_owned())));
+        assert_eq!(point("Ball A y"), Some((Role::Vertical, "ball a".to_owned())));
+        assert_eq!(point("y"), None);
+        assert_eq!(point("drop1"), None);
+        assert_eq!(point("v_x").map(|point| point.1), Some("v".to_owned()));
+    }
+}

@@ -1,0 +1,126 @@
+//! Files and patterns of files as sheets.
+
+use std::path::{Path, PathBuf};
+
+use configs::paths::read_bounded;
+
+use super::fault::Fault;
+use super::sheet::Sheet;
+use super::{spreadsheet, text};
+
+/// Most bytes of one table.
+const MOST: u64 = 512_000_000;
+
+/// The files that `paths` mean, sorted within a pattern or folder, each once.
+///
+/// # Errors
+/// If a pattern fits nothing or a folder holds no table.
+pub(super) fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Fault> {
+    let mut all: Vec<PathBuf> = Vec::new();
+    for path in paths {
+        let shown = path.display().to_string();
+        let found = match () {
+            () if path.is_dir() => tables_in(path)?,
+            () if !path.exists() && shown.contains(['*', '?', '[']) => fitting(&shown)?,
+            () => vec![path.clone()],
+        };
+        for one in found {
+            if !all.contains(&one) {
+                all.push(one);
+            }
+        }
+    }
+    match all.is_empty() {
+        true => Err(Fault::new(
+            "plunge import",
+            "no table is named",
+            "name tables: plunge import *.csv -o SET",
+        )),
+        false => Ok(all),
+    }
+}
+
+/// Endings of tables that a folder is searched for.
+const TABLES: [&str; 6] = ["csv", "tsv", "txt", "dat", "lvm", "tab"];
+
+/// The tables in a folder, sorted.
+///
+/// # Errors
+/// If there is none.
+pub(super) fn tables_in(folder: &Path) -> Result<Vec<PathBuf>, Fault> {
+    let shown = folder.display().to_string();
+    let entries = std::fs::read_dir(folder).map_err(|error| {
+        Fault::new(&shown, error.to_string(), "name tables, or a folder of tables")
+    })?;
+    let is_table = |path: &PathBuf| {
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        let ending = ending.to_ascii_lowercase();
+        TABLES.contains(&ending.as_str()) || spreadsheet::ENDINGS.contains(&ending.as_str())
+    };
+    let mut found: Vec<PathBuf> =
+        entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_table).collect();
+    found.sort();
+    match found.is_empty() {
+        true => {
+            let right = "a table ends in .csv, .tsv, .txt, .dat, .lvm, .xlsx or .ods";
+            Err(Fault::new(&shown, "no table is in this folder", right))
+        }
+        false => Ok(found),
+    }
+}
+
+fn fitting(pattern: &str) -> Result<Vec<PathBuf>, Fault> {
+    let paths = glob::glob(pattern).map_err(|error| {
+        Fault::new(
+            pattern,
+            format!("this is no pattern: {}", error.msg),
+            "`*` is any text, `?` one character",
+        )
+    })?;
+    let found: Vec<PathBuf> = paths.filter_map(Result::ok).filter(|path| path.is_file()).collect();
+    match found.is_empty() {
+        true => Err(Fault::new(
+            pattern,
+            "no file fits this pattern",
+            "`*` is any text, `?` one character",
+        )),
+        false => Ok(found),
+    }
+}
+
+/// The content of a file.
+///
+/// # Errors
+/// If it cannot be read.
+pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, Fault> {
+    let shown = path.display().to_string();
+    read_bounded(path, &shown, MOST).map_err(|error| {
+        let text = error.to_string();
+        let what = text.strip_prefix(&format!("`{shown}`: ")).unwrap_or(&text).to_owned();
+        Fault::new(
+            &shown,
+            what,
+            "name tables, patterns such as \"drops/*.csv\", or a folder of tables",
+        )
+    })
+}
+
+/// The sheets of the file `path` with this content.
+///
+/// # Errors
+/// If it holds no table.
+pub(super) fn sheets(path: &Path, bytes: &[u8]) -> Result<Vec<Sheet>, Fault> {
+    let file = path.display().to_string();
+    let part = |part: Option<&std::ffi::OsStr>| {
+        part.map_or(String::new(), |part| part.to_string_lossy().into_owned())
+    };
+    let (stem, ending) = (part(path.file_stem()), part(path.extension()).to_ascii_lowercase());
+    let sheets = match spreadsheet::ENDINGS.contains(&ending.as_str()) {
+        true => spreadsheet::read(&file, &stem, bytes)?,
+        false => vec![text::read(&file, &stem, bytes)?],
+    };
+    match sheets.iter().all(|sheet| sheet.rows.is_empty()) {
+        true => Err(Fault::new(&file, "it is empty", "a line of names, then rows of numbers")),
+        false => Ok(sheets),
+    }
+}

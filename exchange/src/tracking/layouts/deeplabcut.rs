@@ -1,0 +1,62 @@
+//! DeepLabCut: three rows of names (scorer, bodyparts, coords), then a row for each frame.
+
+use super::{Layout, first_row};
+use crate::tracking::fault::Fault;
+use crate::tracking::grid::{Grid, Places};
+use crate::tracking::settings::Columns;
+use crate::tracking::sheet::{Number, Sheet};
+use crate::tracking::track::Track;
+
+pub(super) const LAYOUT: Layout = Layout { fits, read };
+
+/// Likelihood below which the program itself takes a point as not seen.
+const SEEN: f64 = 0.6;
+
+fn fits(sheet: &Sheet, _: &Columns) -> bool {
+    first_row(sheet).starts_with("scorer\t")
+}
+
+fn read(sheet: &Sheet, _: &Columns) -> Result<Vec<Track>, Fault> {
+    let row = |name: &str| sheet.rows.iter().take(4).position(|row| row.cell(0) == name);
+    let (Some(parts), Some(coords)) = (row("bodyparts"), row("coords")) else {
+        let right = "the first rows are scorer, bodyparts and coords";
+        return Err(sheet.fault("the rows `bodyparts` and `coords` are missing", right).at(1));
+    };
+    let grid = Grid::below(sheet, coords, None);
+    let width = sheet.rows[coords].cells.len();
+    let at = |part: &str, coordinate: &str| {
+        (1..width).find(|at| {
+            sheet.rows[parts].cell(*at) == part && sheet.rows[coords].cell(*at) == coordinate
+        })
+    };
+    let mut tracks: Vec<Track> = Vec::new();
+    for column in 1..width {
+        let part = sheet.rows[parts].cell(column);
+        if sheet.rows[coords].cell(column) != "y" {
+            continue;
+        }
+        let likelihood = at(part, "likelihood");
+        let is_seen = |cell: &str| !matches!(sheet.number(cell), Number::Value(p) if p < SEEN);
+        let seen = grid
+            .all_rows()
+            .filter(|(_, row)| likelihood.is_none_or(|likelihood| is_seen(row.cell(likelihood))));
+        let places = Places { t: None, z: column, x: at(part, "x") };
+        let mut track = grid.track("DeepLabCut", places, seen)?;
+        let unseen = grid.rows.len() - track.samples.len() - track.holes;
+        if unseen > 0 {
+            track
+                .notes
+                .push(format!("{unseen} readings of a likelihood below {SEEN} are left out"));
+        }
+        track.vertical.name = format!("{part} y");
+        tracks.push(Track { name: Some(part.to_owned()), ..track });
+    }
+    if tracks.is_empty() {
+        let right = "export x, y and likelihood of each body part";
+        return Err(sheet.fault("no column is called `y`", right).at(sheet.rows[coords].line));
+    }
+    if let [only] = &mut tracks[..] {
+        only.name = None;
+    }
+    Ok(tracks)
+}

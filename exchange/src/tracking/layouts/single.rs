@@ -1,0 +1,48 @@
+//! Plain tables of one drop: a column of times or frames, and one of positions.
+
+use super::Layout;
+use crate::tracking::fault::Fault;
+use crate::tracking::grid::{Grid, Places};
+use crate::tracking::heading::Role;
+use crate::tracking::settings::Columns;
+use crate::tracking::sheet::{Row, Sheet};
+use crate::tracking::track::Track;
+
+pub(super) const LAYOUT: Layout = Layout { fits: |_, _| true, read };
+
+fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
+    let grid = Grid::found(sheet)?;
+    let places = places(&grid, columns)?;
+    let layout = format!("one drop, {}", sheet.separated);
+    let track = grid.track(&layout, places, grid.all_rows())?;
+    let used: Vec<usize> = [places.t, Some(places.z), places.x].into_iter().flatten().collect();
+    let rows: Vec<&Row> = grid.rows.iter().collect();
+    let labels = grid.labels(&used, &rows);
+    Ok(vec![Track { labels, ..track }])
+}
+
+/// The columns of time and position.
+///
+/// # Errors
+/// If one is not found.
+pub(super) fn places(grid: &Grid<'_>, columns: &Columns) -> Result<Places, Fault> {
+    let names: Vec<&str> = grid.headings.iter().map(|one| one.name.as_str()).collect();
+    let missing = |what: &str, key: &str, example: &str| {
+        let right = format!(
+            "name it {example}, or say which it is: --column {key}=NAME; found: {}",
+            names.join(", ")
+        );
+        let line = grid.rows.first().map_or(1, |row| row.line.saturating_sub(1).max(1));
+        grid.sheet.fault(format!("no column of {what} is found"), right).at(line)
+    };
+    let t = match grid.column(Role::Time, columns)? {
+        Some(at) => at,
+        None => grid
+            .column(Role::Frame, columns)?
+            .ok_or_else(|| missing("times or frames", "t", "`t (ms)` or `frame`"))?,
+    };
+    let z = grid
+        .column(Role::Vertical, columns)?
+        .ok_or_else(|| missing("vertical positions", "z", "`y (cm)`"))?;
+    Ok(Places { t: Some(t), z, x: grid.column(Role::Forward, columns)?.filter(|x| *x != z) })
+}

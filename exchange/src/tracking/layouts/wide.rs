@@ -1,0 +1,68 @@
+//! Plain tables in wide form: one column of times, and a column of positions for each drop.
+
+use super::Layout;
+use crate::tracking::fault::Fault;
+use crate::tracking::grid::{Grid, Places};
+use crate::tracking::heading::Role;
+use crate::tracking::settings::Columns;
+use crate::tracking::sheet::{Number, Sheet};
+use crate::tracking::track::Track;
+
+pub(super) const LAYOUT: Layout = Layout { fits, read };
+
+fn fits(sheet: &Sheet, columns: &Columns) -> bool {
+    let asked = columns.of(Role::Vertical).is_some();
+    !asked && Grid::found(sheet).is_ok_and(|grid| !drops(&grid).is_empty())
+}
+
+fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
+    let grid = Grid::found(sheet)?;
+    let t = time(&grid, columns)?;
+    let one = |(name, z, x): (String, usize, Option<usize>)| {
+        let layout = format!("wide, {}", sheet.separated);
+        let track = grid.track(&layout, Places { t, z, x }, grid.all_rows())?;
+        Ok(Track { name: Some(name), ..track })
+    };
+    drops(&grid).into_iter().map(one).collect()
+}
+
+fn time(grid: &Grid<'_>, columns: &Columns) -> Result<Option<usize>, Fault> {
+    match grid.column(Role::Time, columns)? {
+        Some(at) => Ok(Some(at)),
+        None => grid.column(Role::Frame, columns),
+    }
+}
+
+/// Names of the drops, with the columns of their positions: points of a coordinate (`y1`, `y2`), or, where no
+/// column is called like a position, every column of numbers.
+fn drops(grid: &Grid<'_>) -> Vec<(String, usize, Option<usize>)> {
+    let role = |at: usize| grid.headings[at].role();
+    let has = |wanted: Role| (0..grid.headings.len()).any(|at| role(at) == Some(wanted));
+    if has(Role::Vertical) || !(has(Role::Time) || has(Role::Frame)) {
+        return Vec::new();
+    }
+    let points = |wanted: Role| {
+        (0..grid.headings.len()).filter_map(move |at| {
+            let (role, name) = grid.headings[at].point()?;
+            // `v_y` and `a_y` are no places.
+            let is_place = !matches!(name.as_str(), "v" | "a" | "velocity" | "acceleration" | "");
+            (role == wanted && is_place).then_some((name, at))
+        })
+    };
+    let forward: Vec<(String, usize)> = points(Role::Forward).collect();
+    let named: Vec<_> = points(Role::Vertical)
+        .map(|(name, z)| {
+            let x = forward.iter().find(|(other, _)| *other == name).map(|(_, x)| *x);
+            (name, z, x)
+        })
+        .collect();
+    if !named.is_empty() {
+        return named;
+    }
+    let numbers = |at: usize| {
+        let is_value = |cell: &str| matches!(grid.sheet.number(cell), Number::Value(_));
+        2 * grid.rows.iter().filter(|row| is_value(row.cell(at))).count() > grid.rows.len()
+    };
+    let others = (0..grid.headings.len()).filter(|at| role(*at).is_none() && numbers(*at));
+    others.map(|at| (grid.headings[at].stem.clone(), at, None)).collect()
+}

@@ -1,0 +1,110 @@
+//! A table as cells.
+
+use super::fault::Fault;
+
+/// One row of a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Row {
+    /// Line of the text or row of the sheet, from 1.
+    pub(super) line: u64,
+    /// Without blanks around them.
+    pub(super) cells: Vec<String>,
+}
+
+impl Row {
+    /// The cell at `column`; empty where the row is shorter.
+    pub(super) fn cell(&self, column: usize) -> &str {
+        self.cells.get(column).map_or("", String::as_str)
+    }
+
+    /// Whether nothing stands in it.
+    pub(super) fn is_blank(&self) -> bool {
+        self.cells.iter().all(String::is_empty)
+    }
+}
+
+/// A table, its blank rows left out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Sheet {
+    /// What messages call it.
+    pub(super) file: String,
+    /// The name of the file without its ending, and the name of the sheet where there are several.
+    pub(super) stem: String,
+    /// How cells are told apart, in words.
+    pub(super) separated: &'static str,
+    /// Whether decimals stand behind a comma.
+    pub(super) decimal_comma: bool,
+    /// Rows with something in them.
+    pub(super) rows: Vec<Row>,
+    /// What was assumed to read it, in sentences.
+    pub(super) notes: Vec<String>,
+}
+
+/// What stands in the cell of a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Number {
+    /// A finite number.
+    Value(f64),
+    /// Nothing, or a mark for it.
+    Missing,
+    /// Something else.
+    Other,
+}
+
+impl Sheet {
+    /// The number in `cell`.
+    pub(super) fn number(&self, cell: &str) -> Number {
+        number(cell, self.decimal_comma)
+    }
+
+    /// Whether `row` has at least `most` numbers and more numbers than words.
+    pub(super) fn is_numeric(&self, row: &Row, most: usize) -> bool {
+        let kinds = || row.cells.iter().map(|cell| self.number(cell));
+        let numbers = kinds().filter(|kind| matches!(kind, Number::Value(_))).count();
+        let words = kinds().filter(|kind| *kind == Number::Other).count();
+        numbers >= most && numbers > words
+    }
+
+    /// A fault of the whole table.
+    pub(super) fn fault(&self, what: impl Into<String>, right: impl Into<String>) -> Fault {
+        Fault::new(&self.file, what, right)
+    }
+}
+
+/// The number in `cell`, whose decimals stand behind a comma or a point.
+pub(super) fn number(cell: &str, decimal_comma: bool) -> Number {
+    let lower = cell.to_ascii_lowercase();
+    let marks = ["", "nan", "-", "n/a", "na", "#n/a", "none", "null", "#value!", "#div/0!"];
+    if marks.contains(&lower.as_str()) {
+        return Number::Missing;
+    }
+    let text = match decimal_comma {
+        true if cell.contains('.') => return Number::Other,
+        true => cell.replace(',', "."),
+        false => cell.to_owned(),
+    };
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && text.contains(|c: char| c.is_ascii_digit()) => {
+            Number::Value(value)
+        }
+        _ => Number::Other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_marks_and_words_are_told_apart() {
+        assert_eq!(number("1.5e-2", false), Number::Value(0.015));
+        assert_eq!(number("1,5E-2", true), Number::Value(0.015));
+        for mark in ["", "NaN", "-", "#N/A", "None"] {
+            assert_eq!(number(mark, false), Number::Missing, "{mark}");
+        }
+        for word in ["inf", "1,5", "12 mm", "infinity", "0:00:01"] {
+            assert_eq!(number(word, false), Number::Other, "{word}");
+        }
+        assert_eq!(number("1.5", true), Number::Other);
+    }
+}

@@ -1,0 +1,162 @@
+//! Text as a sheet: encoding, line ends, separator and decimals are found out.
+
+use super::fault::Fault;
+use super::sheet::{Number, Row, Sheet, number};
+
+/// Lines that separator and decimals are found from.
+const SAMPLE: usize = 400;
+
+/// What may stand between cells, with its name; the first that gives most numbers is it.
+const SEPARATORS: [(Option<u8>, &str); 4] =
+    [(Some(b'\t'), "tabs"), (Some(b';'), "semicolons"), (Some(b','), "commas"), (None, "blanks")];
+
+/// The table in `bytes`, the content of the file that messages call `file`.
+///
+/// # Errors
+/// If it is no text, or a quoted cell does not end on its line.
+pub(super) fn read(file: &str, stem: &str, bytes: &[u8]) -> Result<Sheet, Fault> {
+    let mut notes = Vec::new();
+    let text = decode(bytes, &mut notes);
+    if text.contains('\0') {
+        let what = "this is no text";
+        let right = "a table is text, or a spreadsheet named .xlsx, .xls or .ods";
+        return Err(Fault::new(file, what, right));
+    }
+    let lines: Vec<(u64, &str)> =
+        (1..).zip(lines(&text)).filter(|(_, line)| !line.trim().is_empty()).collect();
+    // What stands above the numbers has other separators.
+    let sample = &lines[lines.len().min(lines.len() / 4).min(40)..];
+    let sample = &sample[..sample.len().min(SAMPLE)];
+    let score = |separator: Option<u8>| -> usize {
+        let comma = separator != Some(b',');
+        let count = |line: &str| {
+            let cells = split(line, separator).unwrap_or_default();
+            let is_number = |cell: &&String| {
+                let with = |comma: bool| matches!(number(cell, comma), Number::Value(_));
+                with(false) || comma && with(true)
+            };
+            cells.iter().filter(is_number).count()
+        };
+        sample.iter().map(|(_, line)| count(line)).sum()
+    };
+    let (separator, separated) = SEPARATORS
+        .into_iter()
+        .rev()
+        .max_by_key(|(separator, _)| score(*separator))
+        .unwrap_or((Some(b','), "commas"));
+    let mut rows = Vec::with_capacity(lines.len());
+    for (line, text) in lines {
+        let cells = split(text, separator).ok_or_else(|| {
+            Fault::new(file, "a quoted cell does not end on its line", "close its quote").at(line)
+        })?;
+        rows.push(Row { line, cells });
+    }
+    rows.retain(|row| !row.is_blank());
+    let decimal_comma = separator != Some(b',') && has_decimal_commas(&rows);
+    Ok(Sheet {
+        file: file.to_owned(),
+        stem: stem.to_owned(),
+        separated,
+        decimal_comma,
+        rows,
+        notes,
+    })
+}
+
+/// UTF-8 or UTF-16 by its byte order mark, else UTF-8, else Latin-1.
+fn decode(bytes: &[u8], notes: &mut Vec<String>) -> String {
+    let wide = |bytes: &[u8], of: fn([u8; 2]) -> u16| {
+        let units: Vec<u16> = bytes.chunks_exact(2).map(|pair| of([pair[0], pair[1]])).collect();
+        String::from_utf16_lossy(&units)
+    };
+    match bytes {
+        [0xef, 0xbb, 0xbf, rest @ ..] => String::from_utf8_lossy(rest).into_owned(),
+        [0xff, 0xfe, rest @ ..] => wide(rest, u16::from_le_bytes),
+        [0xfe, 0xff, rest @ ..] => wide(rest, u16::from_be_bytes),
+        _ => match std::str::from_utf8(bytes) {
+            Ok(text) => text.to_owned(),
+            Err(_) => {
+                notes.push("it is not UTF-8 and was read as Latin-1".to_owned());
+                bytes.iter().map(|byte| char::from(*byte)).collect()
+            }
+        },
+    }
+}
+
+/// Lines that end in LF, CRLF or CR.
+fn lines(text: &str) -> impl Iterator<Item = &str> {
+    text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'))
+}
+
+/// The cells of a line, without blanks and quotes around them; `None` where a quote stays open.
+fn split(line: &str, separator: Option<u8>) -> Option<Vec<String>> {
+    let Some(separator) = separator else {
+        return Some(
+            line.split_whitespace().map(|cell| cell.trim_matches('"').to_owned()).collect(),
+        );
+    };
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(separator)
+        .has_headers(false)
+        .flexible(true)
+        .buffer_capacity(line.len() + 1)
+        .from_reader(line.as_bytes());
+    let mut record = csv::StringRecord::new();
+    // A quote that stays open takes up the end of the line.
+    let open = line.matches('"').count() % 2 == 1
+        && line
+            .split(char::from(separator))
+            .any(|cell| cell.trim_start().starts_with('"') && cell.matches('"').count() % 2 == 1);
+    if open {
+        return None;
+    }
+    reader.read_record(&mut record).ok()?;
+    Some(record.iter().map(|cell| cell.trim().to_owned()).collect())
+}
+
+fn has_decimal_commas(rows: &[Row]) -> bool {
+    let cells = || rows.iter().flat_map(|row| &row.cells);
+    let has = |comma: bool, mark: char| {
+        cells().any(|cell| cell.contains(mark) && matches!(number(cell, comma), Number::Value(_)))
+    };
+    has(true, ',') && !has(false, '.')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sheet(text: &str) -> Sheet {
+        read("a.csv", "a", text.as_bytes()).expect("a table")
+    }
+
+    #[test]
+    fn separators_and_decimals_are_found_out() {
+        let semicolons = sheet("t (ms);y (cm)\n0;18,4\n1,5;18,2\n");
+        assert_eq!((semicolons.separated, semicolons.decimal_comma), ("semicolons", true));
+        assert_eq!(sheet("t\ty\n0\t1,5\n1\t1,6\n").separated, "tabs");
+        assert_eq!(sheet("t,y\n0,1.5\n1,1.6\n").separated, "commas");
+        let blanks = sheet("# t y\n0:00:00:00  866,00 320,00 \n0:00:00:03 847,00 321,00 \n");
+        assert_eq!((blanks.separated, blanks.decimal_comma), ("blanks", true));
+    }
+
+    #[test]
+    fn line_ends_marks_and_encodings_change_nothing() {
+        let plain = sheet("t,y\n0,1.5\n1,1.6\n").rows;
+        assert_eq!(sheet("\u{feff}t,y\r\n0,1.5\r\n1,1.6").rows, plain);
+        assert_eq!(sheet("t,y\r0,1.5\r1,1.6\r\r").rows, plain);
+        let wide: Vec<u8> =
+            "\u{feff}t,y\n0,1.5\n1,1.6\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        assert_eq!(read("a.csv", "a", &wide).expect("a table").rows, plain);
+        let latin = read("a.csv", "a", b"Slice n\xb0,Y\n1,2\n").expect("a table");
+        assert_eq!(latin.rows[0].cells[0], "Slice n°");
+        assert_eq!(latin.notes.len(), 1);
+    }
+
+    #[test]
+    fn an_open_quote_is_told_with_its_line() {
+        let fault = read("a.csv", "a", b"t,y\n0,\"1.5\n1,2\n2,3\n").expect_err("a quote");
+        assert_eq!(fault.line, Some(2));
+        assert!(read("a.csv", "a", b"PK\x03\x04\0\0").is_err());
+    }
+}

@@ -1,0 +1,43 @@
+//! One tracked body as its table has it.
+
+use super::units::Unit;
+
+/// A column of numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Measure {
+    /// Its name in the table.
+    pub(super) name: String,
+    pub(super) unit: Unit,
+}
+
+/// One reading, in the units of the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sample {
+    pub(super) line: u64,
+    pub(super) t: f64,
+    pub(super) z: f64,
+    pub(super) x: f64,
+}
+
+/// The readings of one run.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Track {
+    /// The table that it is from, and that without its ending.
+    pub(super) file: String,
+    pub(super) stem: String,
+    /// What the table calls it; none where the table is of one run.
+    pub(super) name: Option<String>,
+    /// The layout, in words.
+    pub(super) layout: String,
+    pub(super) time: Measure,
+    pub(super) vertical: Measure,
+    pub(super) forward: Option<Measure>,
+    /// Columns that say the same in all rows of the run, such as `condition`, with their values.
+    pub(super) labels: Vec<(String, String)>,
+    /// In the order of the table.
+    pub(super) samples: Vec<Sample>,
+    /// Rows without a number.
+    pub(super) holes: usize,
+    /// What was assumed, in sentences.
+    pub(super) notes: Vec<String>,
+}

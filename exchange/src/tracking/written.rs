@@ -1,0 +1,300 @@
+//! The files of an imported set.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use configs::engine::checkpoint::write_whole;
+use configs::engine::units::Dimension;
+use configs::toml_string as quoted;
+use measurements::Reading;
+
+use super::bodies::Body;
+use super::fault::{Fault, TrackingError};
+use super::options::Options;
+use super::set::{Run, Set};
+use super::settings::Settings;
+use super::surface::Level;
+
+/// What is written.
+pub(super) struct Known<'a> {
+    pub(super) options: &'a Options,
+    pub(super) settings: &'a Settings<'a>,
+    pub(super) level: &'a Level,
+    pub(super) runs: &'a [Run],
+    pub(super) out: &'a Path,
+}
+
+impl Set {
+    /// Writes the files of the set into `folder`, which is made where it is missing; `import.toml` and
+    /// `measurement.toml` come last, so that a set that is there is whole.
+    ///
+    /// # Errors
+    /// If the system refuses.
+    pub fn write(&self, folder: &Path) -> Result<(), TrackingError> {
+        let refused = |path: &Path| {
+            let path = path.to_owned();
+            move |source| TrackingError::Write { path, source }
+        };
+        std::fs::create_dir_all(folder).map_err(refused(folder))?;
+        let last = |name: &str| name == "measurement.toml";
+        let ordered = self
+            .files
+            .iter()
+            .filter(|one| !last(one.0))
+            .chain(self.files.iter().filter(|one| last(one.0)));
+        for (name, content) in ordered {
+            let path = folder.join(name);
+            write_whole(&path, content.as_bytes()).map_err(refused(&path))?;
+        }
+        Ok(())
+    }
+
+    /// Whether `folder` holds these files already, byte for byte.
+    #[must_use]
+    pub fn is_in(&self, folder: &Path) -> bool {
+        self.files.iter().all(|(name, content)| {
+            std::fs::read(folder.join(name)).is_ok_and(|there| there == content.as_bytes())
+        })
+    }
+}
+
+/// Names and contents of the set itself.
+///
+/// # Errors
+/// If an option of the bed is none.
+pub(super) fn files(
+    known: &Known<'_>,
+    notes: &[String],
+) -> Result<Vec<(&'static str, String)>, Fault> {
+    Ok(vec![
+        ("measurement.toml", measurement(known, notes)?),
+        ("runs.csv", runs(known)),
+        ("trajectories.csv", trajectories(known)),
+    ])
+}
+
+/// Conditions in the order of their first runs.
+fn conditions<'a>(known: &Known<'a>) -> Vec<(&'a str, Vec<&'a Run>)> {
+    let mut all: Vec<(&str, Vec<&Run>)> = Vec::new();
+    for run in known.runs {
+        match all.iter_mut().find(|(id, _)| *id == run.condition) {
+            Some((_, own)) => own.push(run),
+            None => all.push((&run.condition, vec![run])),
+        }
+    }
+    all
+}
+
+fn measurement(known: &Known<'_>, notes: &[String]) -> Result<String, Fault> {
+    let Known { options, settings, level, runs, out } = known;
+    let conditions = conditions(known);
+    let mut text = String::new();
+    let mut line = |words: String| text.push_str(&format!("{words}\n"));
+    let (n, noun) = (runs.len(), if runs.len() == 1 { "run" } else { "runs" });
+    line(format!(
+        "# Made by `plunge import` from {n} {noun}; import.toml makes it again. Correct what you know better."
+    ));
+    notes.iter().for_each(|note| line(format!("# {note}")));
+    line("\nschema = 1\n\n[measurement]".to_owned());
+    line(format!("id = {}", quoted(&id(options, out))));
+    line("kind = \"trajectory\"".to_owned());
+    line("source = \"tables of a tracking program, read by plunge import\"".to_owned());
+    line("\n[instrument]".to_owned());
+    let of = |number: fn(&Run) -> f64| median(runs.iter().map(number).collect());
+    let step = of(|run| run.step);
+    if runs.iter().all(|run| (run.step / step - 1.0).abs() < 0.01) {
+        line(format!("rate_hz = {:<18} # by the steps between frames", significant(1.0 / step, 6)));
+    }
+    let noise = of(|run| run.noise);
+    line(format!(
+        "position_sigma_m = {:<9} # by what readings differ from a smooth path",
+        significant(noise, 2)
+    ));
+    if let Some(scatter) = speed_scatter(&conditions) {
+        line(format!(
+            "speed_sigma_rel = {:<10} # of one run, by its fit or by the scatter within conditions",
+            significant(scatter, 2)
+        ));
+    }
+    let (level_error, by) = match level {
+        Level::Stated => (None, ""),
+        Level::Common(level) => (Some(level.se), "the one level of all runs"),
+        Level::Own => (Some(of(|run| run.touch.level.se)), "the level of each run"),
+    };
+    if let Some(error) = level_error {
+        line(format!("level_sigma_m = {:<12} # of {by}, by the contact", significant(error, 2)));
+    }
+    line("\n[bed]".to_owned());
+    let is_planar = runs.iter().any(|run| run.body.shape == "disc");
+    if is_planar {
+        line("geometry = \"2d\"".to_owned());
+    }
+    line(format!("gravity = {:?}", settings.gravity));
+    let density = if is_planar { Dimension::AREA_DENSITY } else { Dimension::DENSITY };
+    let example = if is_planar { "20 kg/m^2" } else { "1.5 g/cc" };
+    for (key, dimension, example) in
+        [("bulk_density", density, example), ("grain_diameter", Dimension::LENGTH, "0.8 mm")]
+    {
+        match settings.quantity(key, dimension, &[])? {
+            Some(value) => line(format!("{key} = {value:?}")),
+            None => line(format!("# {key} = \"{example}\"  # not known")),
+        }
+    }
+    line("\n[model]\nbaseline = \"two-term-vector\"".to_owned());
+    line("\n[files]\nruns = \"runs.csv\"\ntrajectories = \"trajectories.csv\"".to_owned());
+    line("delimiter = \",\"\ndecimal = \".\"".to_owned());
+    line("\n# Without `role` each condition is left out in turn; role = \"holdout\" never lets one be fitted to.".to_owned());
+    for (id, own) in &conditions {
+        let speed = mean(own.iter().map(|run| run.speed));
+        let from = match options.get("drop_height") {
+            Some(_) => "from the height of release".to_owned(),
+            None => format!(
+                "± {}, from the frames before contact of {} {}",
+                significant(speed.se, 2),
+                own.len(),
+                if own.len() == 1 { "run" } else { "runs" }
+            ),
+        };
+        let angle = own.iter().map(|run| run.angle).sum::<f64>() / own.len() as f64;
+        line(format!("\n[[condition]]\nid = {}", quoted(id)));
+        line(format!("speed = {}  # {from}", significant(speed.value, 5)));
+        line(format!("angle_deg = {}", significant(angle, 4)));
+        body(&own[0].body, &mut line);
+    }
+    Ok(text)
+}
+
+fn body(body: &Body, line: &mut impl FnMut(String)) {
+    line(format!("shape = {}", quoted(&body.shape)));
+    line(format!("diameter = {:?}", body.diameter));
+    line(format!("mass = {:?}", body.mass));
+    if let Some(height) = body.height {
+        line(format!("height = {height:?}"));
+    }
+    if let Some(apex) = body.apex {
+        line(format!("apex_deg = {apex:?}"));
+    }
+}
+
+fn runs(known: &Known<'_>) -> String {
+    let mut text = String::from(
+        "# contact: on the clock of the table (s); level: depth of the surface on its axis (m)\n",
+    );
+    for run in known.runs {
+        let _ = writeln!(
+            text,
+            "# {}: {}, contact {:.6} ± {:.6}, level {:.6}, speed {:.4} ± {:.4} m/s",
+            run.name.escape_debug(),
+            run.file.escape_debug(),
+            run.touch.time.value,
+            run.touch.time.se,
+            run.touch.level.value,
+            run.speed.value,
+            run.speed.se
+        );
+    }
+    let has_order = known.runs.iter().all(|run| label(run, "order").is_some());
+    let mut rows = vec![["run", "condition", "repeat", "order"].map(str::to_owned)];
+    let mut counts: Vec<(&str, i64)> = Vec::new();
+    for run in known.runs {
+        let at = counts.iter().position(|(id, _)| *id == run.condition).unwrap_or_else(|| {
+            counts.push((&run.condition, 0));
+            counts.len() - 1
+        });
+        counts[at].1 += 1;
+        let repeat = label(run, "repeat").unwrap_or(counts[at].1).to_string();
+        let order = label(run, "order").map_or(String::new(), |order| order.to_string());
+        rows.push([run.name.clone(), run.condition.clone(), repeat, order]);
+    }
+    let columns = if has_order { 4 } else { 3 };
+    text.push_str(&table(rows.iter().map(|row| row[..columns].to_vec())));
+    text
+}
+
+fn label(run: &Run, key: &str) -> Option<i64> {
+    run.labels.iter().find(|(name, _)| name == key)?.1.trim().parse().ok()
+}
+
+fn trajectories(known: &Known<'_>) -> String {
+    let is_oblique = known.runs.iter().any(|run| run.angle < 90.0);
+    let columns = if is_oblique { 4 } else { 3 };
+    let names = ["run", "t", "z", "x"].map(str::to_owned)[..columns].to_vec();
+    let rows = known.runs.iter().flat_map(|run| {
+        run.frames.iter().map(move |frame| {
+            // Tenths of a micrometre and of a microsecond are finer than any camera.
+            let [t, z, x] = [frame.t, frame.z, frame.x].map(|value| format!("{:.7}", value + 0.0));
+            [run.name.clone(), t, z, x][..columns].to_vec()
+        })
+    });
+    table(std::iter::once(names).chain(rows))
+}
+
+/// Rows as CSV; names with commas are quoted, and those that begin like a comment.
+fn table(rows: impl Iterator<Item = Vec<String>>) -> String {
+    let mut writer = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(Vec::new());
+    for row in rows {
+        // Memory takes all that is written to it.
+        let _ = writer.write_record(&row);
+    }
+    writer
+        .into_inner()
+        .map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
+        .unwrap_or_default()
+}
+
+/// The name of the set: as asked, else that of its folder.
+fn id(options: &Options, out: &Path) -> String {
+    let folder = std::path::absolute(out).ok();
+    let folder = folder.as_deref().and_then(Path::file_name);
+    let name = match (options.get("id"), folder) {
+        (Some(id), _) => id.to_owned(),
+        (None, Some(folder)) => folder.to_string_lossy().into_owned(),
+        (None, None) => "my-drops".to_owned(),
+    };
+    let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
+    let slug: String =
+        name.to_lowercase().chars().map(|c| if fits(c) { c } else { '-' }).take(64).collect();
+    match slug.trim_matches('-') {
+        "" => "my-drops".to_owned(),
+        slug => slug.to_owned(),
+    }
+}
+
+/// Error of the speed of one run, relative: the scatter within conditions where they repeat, and at least that of
+/// the fits.
+fn speed_scatter(conditions: &[(&str, Vec<&Run>)]) -> Option<f64> {
+    let (mut sum, mut freedom, mut errors) = (0.0, 0.0, Vec::new());
+    for (_, own) in conditions {
+        let n = own.len() as f64;
+        let mean = own.iter().map(|run| run.speed.value).sum::<f64>() / n;
+        sum += own.iter().map(|run| (run.speed.value / mean - 1.0).powi(2)).sum::<f64>();
+        freedom += n - 1.0;
+        errors.extend(own.iter().map(|run| run.speed.se / run.speed.value));
+    }
+    let fit = median(errors);
+    let scatter = if freedom >= 3.0 { f64::sqrt(sum / freedom) } else { 0.0 };
+    let error = scatter.max(fit);
+    (error > 0.0).then_some(error)
+}
+
+/// Mean with its error, from scatter or stated errors, whichever is larger.
+fn mean(readings: impl Iterator<Item = Reading>) -> Reading {
+    let all: Vec<Reading> = readings.collect();
+    let n = all.len() as f64;
+    let value = all.iter().map(|one| one.value).sum::<f64>() / n;
+    let scatter = all.iter().map(|one| (one.value - value).powi(2)).sum::<f64>();
+    let stated = all.iter().map(|one| one.se * one.se).sum::<f64>() / (n * n);
+    let seen = if n > 1.0 { scatter / (n * (n - 1.0)) } else { 0.0 };
+    Reading { value, se: seen.max(stated).sqrt() }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// A number with so many significant digits, as TOML has it.
+fn significant(value: f64, digits: usize) -> String {
+    let rounded: f64 = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
+    format!("{rounded:?}")
+}

@@ -1,0 +1,116 @@
+//! Contact time, speed and level of un-zeroed tables come out within the uncertainties that are stated.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use exchange::tracking::{IMPORT_FILE, ImportFile, Options, Set, import};
+use measurements::MeasurementSet;
+
+use crate::world::{Camera, Drop, drop};
+
+/// Level of the surface on the axis of the tables (cm).
+const LEVEL: f64 = 18.4;
+
+/// Options for the ball of `world`.
+pub(crate) fn ball() -> Options {
+    let mut options = Options::default();
+    options.set("diameter", "25.4 mm");
+    options.set("mass", "67 g");
+    options
+}
+
+/// Tables in cm and ms with y upward, decimal commas and semicolons, of drops from four heights, three times each.
+fn write_tables(folder: &Path, seed: u64) -> Vec<(PathBuf, Drop)> {
+    let mut all = Vec::new();
+    for (at, height) in [0.05, 0.1, 0.2, 0.4].into_iter().enumerate() {
+        for repeat in 0..3_u32 {
+            let seed = 100 * seed + 10 * at as u64 + u64::from(repeat);
+            let hold = 0.3 + 0.013 * f64::from(repeat);
+            let one = drop(height, Camera { hold, duration: 1.0, seed, ..Camera::USUAL });
+            let mut text = String::from("\u{feff}t (ms);y (cm)\r\n");
+            for (t, z) in &one.readings {
+                let row = format!("{:.3};{:.4}\r\n", 1e3 * t, LEVEL + 1e2 * z);
+                let _ = write!(text, "{}", row.replace('.', ","));
+            }
+            let path = folder.join(format!("h{:02.0}_r{repeat}.csv", 1e2 * height));
+            fs::write(&path, text).expect("a table");
+            all.push((path, one));
+        }
+    }
+    all
+}
+
+/// The set of tables, written to `out`.
+fn imported(paths: &[PathBuf], options: &Options, out: &Path) -> Set {
+    let set = import(paths, options, out).unwrap_or_else(|error| panic!("{error}"));
+    set.write(out).unwrap_or_else(|error| panic!("{error}"));
+    set
+}
+
+/// Misses over stated errors of contact time and speed of all runs.
+fn misses(set: &Set, drops: &[(PathBuf, Drop)]) -> Vec<[f64; 2]> {
+    let of = |(one, (_, drop)): (&exchange::tracking::Understood, &(PathBuf, Drop))| {
+        [
+            (one.contact.value - drop.contact) / one.contact.se,
+            (one.speed.value - drop.speed) / one.speed.se,
+        ]
+    };
+    set.understood.iter().zip(drops).map(of).collect()
+}
+
+#[test]
+fn contact_speed_and_level_are_found_within_their_errors() {
+    let mut all = Vec::new();
+    for seed in 1..7 {
+        let here = tempfile::tempdir().expect("a folder");
+        let drops = write_tables(here.path(), seed);
+        let paths: Vec<PathBuf> = drops.iter().map(|(path, _)| path.clone()).collect();
+        let set = imported(&paths, &ball(), &here.path().join("set"));
+        for (one, (_, drop)) in set.understood.iter().zip(&drops) {
+            let [off, fast] =
+                [1e3 * (one.contact.value - drop.contact), one.speed.value / drop.speed - 1.0];
+            println!(
+                "{} {off:.3} ± {:.3} ms {fast:.5} ± {:.5}",
+                one.run,
+                1e3 * one.contact.se,
+                one.speed.se / drop.speed
+            );
+            assert!(off.abs() < 1.0 && fast.abs() < 0.01, "{one:?} {drop:?}");
+        }
+        println!("{:?}", set.notes);
+        all.extend(misses(&set, &drops));
+    }
+    for which in [0, 1] {
+        let square = all.iter().map(|miss| miss[which].powi(2)).sum::<f64>() / all.len() as f64;
+        let worst = all.iter().map(|miss| miss[which].abs()).fold(0.0, f64::max);
+        println!("{which}: {square} {worst}");
+        assert!((0.05..2.5).contains(&square) && worst < 4.0, "{which}: {square}, {worst}");
+    }
+}
+
+#[test]
+fn an_import_is_repeated_to_the_byte() {
+    let here = tempfile::tempdir().expect("a folder");
+    let drops = write_tables(here.path(), 1);
+    let paths: Vec<PathBuf> = drops.iter().map(|(path, _)| path.clone()).collect();
+    let mut options = ball();
+    options.set("condition", "h{height}_r{repeat}");
+    let (first, again) = (here.path().join("first"), here.path().join("again"));
+    imported(&paths, &options, &first);
+    let file = ImportFile::read(&first.join(IMPORT_FILE)).unwrap_or_else(|error| panic!("{error}"));
+    file.refuse_changed().expect("nothing has changed");
+    let set = imported(&file.files, &file.options, &again);
+    assert!(set.is_in(&again));
+    for name in ["runs.csv", "trajectories.csv", IMPORT_FILE, "measurement.toml"] {
+        let read = |folder: &Path| fs::read_to_string(folder.join(name)).expect(name);
+        assert_eq!(read(&first).replace("\"first\"", "\"again\""), read(&again), "{name}");
+    }
+    let loaded = MeasurementSet::load(&again).unwrap_or_else(|error| panic!("{error}"));
+    assert!(loaded.contradictions.is_empty(), "{}", loaded.describe());
+    let conditions: Vec<&str> = loaded.set.conditions.iter().map(|one| one.id.as_str()).collect();
+    assert_eq!(conditions, ["h05", "h10", "h20", "h40"]);
+    fs::write(&paths[0], "t,y\n1,2\n").expect("a table");
+    let error = file.refuse_changed().expect_err("a table has changed").to_string();
+    assert!(error.contains("h05_r0.csv: it is not what it was"), "{error}");
+}

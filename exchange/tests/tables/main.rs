@@ -1,0 +1,4 @@
+//! Tables of tracking programs become measurement sets: what is found in them, what is refused, and how.
+
+mod contact;
+mod world;
