@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::lanes::Lanes;
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{ParamSpec, ParamTable};
 use engine::units::Dimension;
 
 use crate::adhesion::{Bond, Energy, Pull};
@@ -150,14 +150,14 @@ const CHANNELS: &[Channel] = &[
     Channel { name: "cohesion-jkr", kind: ChannelKind::Dissipated },
 ];
 
-const PARAMS: &[ParamSpec] = &params::specs_on_base(ParamSpec {
-    key: "work_of_adhesion",
-    dimension: Dimension::SURFACE_ENERGY,
-    default: Default::Required,
-    allowed: Range::NOT_NEGATIVE,
-    plausible: Range::closed(1e-4, 10.0),
-    meaning: "W, energy per area that parting the surfaces takes, twice the surface energy",
-});
+const PARAMS: &[ParamSpec] = &params::specs_on_base(
+    ParamSpec::required(
+        "work_of_adhesion",
+        Dimension::SURFACE_ENERGY,
+        "W, energy per area that parting the surfaces takes, twice the surface energy",
+    )
+    .usual(1e-4, 10.0),
+);
 
 /// The registry's line.
 pub(crate) const ENTRY: LawEntry = LawEntry {

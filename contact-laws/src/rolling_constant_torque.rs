@@ -3,8 +3,7 @@
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::lanes::{Lanes, Vector, length, vector_where};
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
-use engine::units::Dimension;
+use engine::params::{ParamSpec, ParamTable};
 
 use crate::candidate::Candidacy;
 use crate::registry::{ActsOn, FromParams, LawEntry};
@@ -89,14 +88,8 @@ impl FromParams for RollingConstantTorque {
 const CHANNELS: &[Channel] =
     &[Channel { name: "rolling-constant-torque", kind: ChannelKind::Dissipated }];
 
-const PARAMS: &[ParamSpec] = &[ParamSpec {
-    key: "rolling_friction",
-    dimension: Dimension::NONE,
-    default: Default::Required,
-    allowed: Range::NOT_NEGATIVE,
-    plausible: Range::closed(0.01, 0.3),
-    meaning: "μ_r, rolling torque over R* F_n",
-}];
+const PARAMS: &[ParamSpec] =
+    &[ParamSpec::number("rolling_friction", "μ_r, rolling torque over R* F_n").usual(0.01, 0.3)];
 
 /// The registry's line.
 pub(crate) const ENTRY: LawEntry = LawEntry {

@@ -3,8 +3,7 @@
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::lanes::{Lanes, Vector, length, select_vector, shortened, vector_where};
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
-use engine::units::Dimension;
+use engine::params::{ParamSpec, ParamTable};
 
 use crate::candidate::{Candidacy, Candidate};
 use crate::registry::{ActsOn, FromParams, LawEntry};
@@ -138,22 +137,14 @@ const CHANNELS: &[Channel] = &[
 ];
 
 const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        key: "rolling_friction",
-        dimension: Dimension::NONE,
-        default: Default::Required,
-        allowed: Range::NOT_NEGATIVE,
-        plausible: Range::closed(0.01, 0.3),
-        meaning: "μ_r, limit of the rolling torque over R* |F_n|",
-    },
-    ParamSpec {
-        key: "rolling_damping_ratio",
-        dimension: Dimension::NONE,
-        default: Default::Value(0.3),
-        allowed: Range::NOT_NEGATIVE,
-        plausible: Range::closed(0.0, 1.0),
-        meaning: "η_r, damping of the rolling spring over its critical damping",
-    },
+    ParamSpec::number("rolling_friction", "μ_r, limit of the rolling torque over R* |F_n|")
+        .usual(0.01, 0.3),
+    ParamSpec::number(
+        "rolling_damping_ratio",
+        "η_r, damping of the rolling spring over its critical damping",
+    )
+    .or(0.3)
+    .usual(0.0, 1.0),
 ];
 
 /// The registry's line.

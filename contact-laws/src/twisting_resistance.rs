@@ -3,8 +3,7 @@
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::lanes::Lanes;
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
-use engine::units::Dimension;
+use engine::params::{ParamSpec, ParamTable, Range};
 
 use crate::candidate::{Candidacy, Candidate, Need};
 use crate::registry::{ActsOn, FromParams, LawEntry};
@@ -119,22 +118,12 @@ const CHANNELS: &[Channel] = &[
 ];
 
 const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        key: "twisting_friction",
-        dimension: Dimension::NONE,
-        default: Default::Required,
-        allowed: Range::NOT_NEGATIVE,
-        plausible: Range::closed(0.001, 0.3),
-        meaning: "μ_o, limit of the twisting torque over R* F_n",
-    },
-    ParamSpec {
-        key: "twisting_stiffness_ratio",
-        dimension: Dimension::NONE,
-        default: Default::Value(0.1),
-        allowed: Range::POSITIVE,
-        plausible: Range::closed(0.01, 1.0),
-        meaning: "stiffness of the twisting spring over R*² k_n",
-    },
+    ParamSpec::number("twisting_friction", "μ_o, limit of the twisting torque over R* F_n")
+        .usual(0.001, 0.3),
+    ParamSpec::number("twisting_stiffness_ratio", "stiffness of the twisting spring over R*² k_n")
+        .or(0.1)
+        .allowed(Range::POSITIVE)
+        .usual(0.01, 1.0),
 ];
 
 /// The registry's line.

@@ -3,7 +3,7 @@
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::lanes::Lanes;
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{ParamSpec, ParamTable};
 use engine::units::Dimension;
 
 use crate::candidate::{Candidacy, Candidate, Need};
@@ -91,14 +91,14 @@ impl FromParams for VelocityRestitution {
 const CHANNELS: &[Channel] =
     &[Channel { name: "velocity-restitution", kind: ChannelKind::Dissipated }];
 
-const PARAMS: &[ParamSpec] = &params::specs_on_base(ParamSpec {
-    key: "viscous_time",
-    dimension: Dimension::TIME,
-    default: Default::Required,
-    allowed: Range::NOT_NEGATIVE,
-    plausible: Range::closed(1e-8, 1e-2),
-    meaning: "A, damping force over stiffness and normal velocity",
-});
+const PARAMS: &[ParamSpec] = &params::specs_on_base(
+    ParamSpec::required(
+        "viscous_time",
+        Dimension::TIME,
+        "A, damping force over stiffness and normal velocity",
+    )
+    .usual(1e-8, 1e-2),
+);
 
 /// The registry's line.
 pub(crate) const ENTRY: LawEntry = LawEntry {

@@ -2,7 +2,7 @@
 
 use engine::grain_force::{ForceOnGrain, GrainForce, MovingGrain};
 use engine::math::Vec3;
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{ParamSpec, ParamTable};
 use engine::units::Dimension;
 
 use super::GrainForceEntry;
@@ -38,14 +38,12 @@ impl GrainForce for PoreAir {
     }
 }
 
-const PARAMS: &[ParamSpec] = &[ParamSpec {
-    key: "drag_rate",
-    dimension: Dimension::RATE,
-    default: Default::Required,
-    allowed: Range::NOT_NEGATIVE,
-    plausible: Range::closed(0.01, 1e3),
-    meaning: "γ, drag of the air on a grain over its mass and velocity",
-}];
+const PARAMS: &[ParamSpec] = &[ParamSpec::required(
+    "drag_rate",
+    Dimension::RATE,
+    "γ, drag of the air on a grain over its mass and velocity",
+)
+.usual(0.01, 1e3)];
 
 /// The registry's line.
 pub(super) const ENTRY: GrainForceEntry = GrainForceEntry {

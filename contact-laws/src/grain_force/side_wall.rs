@@ -1,8 +1,7 @@
 //! Friction of discs with the plates that hold them in their plane.
 
 use engine::grain_force::{ForceOnGrain, GrainForce, MovingGrain};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
-use engine::units::Dimension;
+use engine::params::{ParamSpec, ParamTable};
 
 use super::GrainForceEntry;
 use crate::candidate::{Candidacy, Candidate, Need};
@@ -45,14 +44,9 @@ impl GrainForce for SideWall {
     }
 }
 
-const PARAMS: &[ParamSpec] = &[ParamSpec {
-    key: "plate_friction",
-    dimension: Dimension::NONE,
-    default: Default::Required,
-    allowed: Range::NOT_NEGATIVE,
-    plausible: Range::closed(0.01, 1.0),
-    meaning: "μ, friction of a disc with the plates over its weight",
-}];
+const PARAMS: &[ParamSpec] =
+    &[ParamSpec::number("plate_friction", "μ, friction of a disc with the plates over its weight")
+        .usual(0.01, 1.0)];
 
 /// The registry's line.
 pub(super) const ENTRY: GrainForceEntry = GrainForceEntry {

@@ -20,6 +20,7 @@ mod layouts;
 mod motion;
 mod names;
 mod options;
+mod run;
 mod set;
 mod settings;
 mod sheet;
@@ -35,7 +36,8 @@ use std::path::Path;
 pub use fault::{Fault, TrackingError};
 pub use import_file::{IMPORT_FILE, ImportFile};
 pub use options::Options;
-pub use set::{Set, Understood, import};
+pub use run::{Set, Understood};
+pub use set::import;
 
 /// Whether a file in `folder` is called like a table.
 #[must_use]

@@ -10,6 +10,7 @@ use super::conditions::{self, Member};
 use super::fault::{Fault, TrackingError};
 use super::motion::{self, Path, Scales};
 use super::options::Options;
+use super::run::{Run, Set, Understood};
 use super::settings::{Settings, Tracked};
 use super::surface::{self, Level, Seen, Touch};
 use super::track::Track;
@@ -17,60 +18,6 @@ use super::{import_file, inputs, layouts, written};
 
 /// Degrees from the vertical up to which a fall counts as vertical: cameras are not held straighter.
 const UPRIGHT: f64 = 5.0;
-
-/// What was understood of one run, in words for a table.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Understood {
-    /// The file, without its folder.
-    pub file: String,
-    /// The layout.
-    pub layout: String,
-    /// Rows with numbers, and how many are kept.
-    pub rows: [usize; 2],
-    /// The unit of time.
-    pub time: String,
-    /// The axis that the body falls along: its name, unit and direction.
-    pub axis: String,
-    /// The run.
-    pub run: String,
-    /// Its condition.
-    pub condition: String,
-    /// Time of first contact on the clock of the table (s).
-    pub contact: Reading,
-    /// Speed at contact (m/s).
-    pub speed: Reading,
-}
-
-/// A set that is not written yet.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Set {
-    /// One for each run.
-    pub understood: Vec<Understood>,
-    /// What holds for all of them, in sentences.
-    pub notes: Vec<String>,
-    /// Names and contents of the files.
-    pub(super) files: Vec<(&'static str, String)>,
-}
-
-/// One drop.
-pub(super) struct Run {
-    pub(super) name: String,
-    pub(super) file: String,
-    pub(super) fields: Vec<(String, String)>,
-    pub(super) labels: Vec<(String, String)>,
-    pub(super) body: Body,
-    pub(super) condition: String,
-    pub(super) touch: Touch,
-    pub(super) speed: Reading,
-    /// (deg)
-    pub(super) angle: f64,
-    /// Error of one reading (m).
-    pub(super) noise: f64,
-    /// Time between frames (s).
-    pub(super) step: f64,
-    /// From contact and surface; ways too.
-    pub(super) frames: Vec<Frame>,
-}
 
 /// A run whose path is known, and nothing of the others.
 struct Begun {

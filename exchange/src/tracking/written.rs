@@ -11,7 +11,7 @@ use measurements::Reading;
 use super::bodies::Body;
 use super::fault::{Fault, TrackingError};
 use super::options::Options;
-use super::set::{Run, Set};
+use super::run::{Run, Set};
 use super::settings::Settings;
 use super::surface::Level;
 

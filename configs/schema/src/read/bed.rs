@@ -1,7 +1,6 @@
 //! `[bed]` and its `[[bed.grains]]`.
 
 use engine::grains::Space;
-use engine::params::{Default as ParamDefault, ParamSpec};
 
 use super::bed_file::{DataFolder, csv_bed};
 use super::laws::effects;
@@ -88,7 +87,7 @@ fn preparation_friction(table: &TableReader<'_>, law: Option<&LawChoice>) -> Opt
     let own = law.params.iter().find(|(key, _)| *key == "friction").map(|(_, value)| value);
     match own {
         Some(friction) => {
-            let spec = ParamSpec { default: ParamDefault::Value(friction), ..spec };
+            let spec = spec.or(friction);
             table.number(&spec).map(|found| Some(found.value))
         }
         None if table.has(spec.key) => {

@@ -4,7 +4,7 @@ mod law;
 mod variables;
 
 use crate::{Immersion, Motion, Space, Surroundings};
-use engine::params::{Default, ParamSpec, Range};
+use engine::params::{ParamSpec, Range};
 use engine::units::Dimension;
 use thiserror::Error;
 
@@ -174,14 +174,10 @@ impl OwnEffect {
         if q.range.max <= 0.0 {
             return Err(OwnEffectError::NeverPresent);
         }
-        let amplitude = ParamSpec {
-            key: AMPLITUDE,
-            dimension: q.dimension,
-            default: Default::Required,
-            allowed: q.range,
-            plausible: q.range,
-            meaning: "the amplitude; 0 without the effect",
-        };
+        let amplitude =
+            ParamSpec::required(AMPLITUDE, q.dimension, "the amplitude; 0 without the effect")
+                .allowed(q.range)
+                .plausible(q.range);
         let names: Vec<&str> = STATE_VARIABLES
             .iter()
             .flat_map(|variable| [variable.name, variable.alias])
