@@ -93,12 +93,18 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let loaded = MeasurementSet::load(&out)?;
     if !args.quiet {
         output::to_stderr(&loaded.render_warnings(stderr_color()));
-        output::to_stderr(&loaded.render_contradictions(&ContradictionKind::ALL, stderr_color()));
     }
     match (args.json, args.quiet) {
-        (true, _) => output::json_to_stdout(&as_json(&set, &loaded, &out)),
-        (false, true) => Ok(()),
-        (false, false) => output::to_stdout(&as_text(&set, &loaded, &out)),
+        (true, _) => output::json_to_stdout(&as_json(&set, &loaded, &out))?,
+        (false, true) => {}
+        (false, false) => output::to_stdout(&as_text(&set, &loaded, &out))?,
+    }
+    // As `check` does: what is there cannot be fitted to.
+    match loaded.contradictions.is_empty() {
+        true => Ok(()),
+        false => Err(CommandError::BadInput(
+            loaded.render_contradictions(&ContradictionKind::ALL, stderr_color()),
+        )),
     }
 }
 

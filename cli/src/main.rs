@@ -72,7 +72,7 @@ enum Command {
     /// Write a run or an impact as files of other programs: tables, grains for viewers, a LAMMPS input.
     Export(export::Args),
     /// Make a measurement set of tables of tracking programs; or a log of a run of LAMMPS.
-    Import(import_args::Args),
+    Import(Box<import_args::Args>),
     /// Save everything readable of a damaged or unfinished log.
     Recover(recover::Args),
     /// Serve a log to viewers in a browser, and say how to open it in the others.

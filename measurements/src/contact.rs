@@ -5,8 +5,10 @@
 //! path departs with the third power of time), and is not known exactly. So the fit is made for all
 //! `t₀` and several `p`, and what is said of the contact is the mean over these fits, each with the
 //! weight of its misfit; its error holds the spread between them. Nothing of a model of the bed is needed.
+//!
+//! Of a path whose zeros are not known ([`Departure`]) more is fitted to, and `k` may change with time.
 
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Matrix5, Vector5};
 
 use super::reading::Reading;
 use super::smooth::{blocks, median_step, slope, velocity_window};
@@ -26,6 +28,8 @@ pub struct Contact {
     pub depth: Reading,
     /// Depth (m) that free fall has at just the value of `time`.
     pub at_time: Reading,
+    /// Downward velocity (m/s) of free fall there.
+    pub falling: Reading,
     /// Downward velocity (m/s) at `time`.
     pub sinking: Reading,
     /// Forward velocity (m/s) at `time`.
@@ -56,6 +60,9 @@ const NEAR: f64 = 0.7;
 /// The same of the fall before it, where nothing else is known of a path.
 const FALLING: f64 = 0.4;
 
+/// The same behind it.
+const BEHIND: f64 = 0.55;
+
 /// Fewest frames near the contact that a path can be read from.
 const FEWEST: usize = 5;
 
@@ -77,7 +84,27 @@ const EARLY: usize = 4;
 /// Squared distance, in standard errors, up to which a fit is possible.
 const POSSIBLE: f64 = 16.0;
 
-impl Contact {
+/// First contact of a path whose zeros are not known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Departure {
+    /// What its frames alone say.
+    pub contact: Contact,
+    /// All contacts that were tried.
+    pub(super) trials: Vec<Trial>,
+}
+
+/// A contact that was tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Trial {
+    /// Power of time that the path departs with.
+    pub(super) power: f64,
+    /// Depth (m) of free fall at the contact.
+    pub(super) depth: f64,
+    /// Chi-squared.
+    pub(super) misfit: f64,
+}
+
+impl Departure {
     /// First contact in `frames` of a body of this `shape` that does not spin: times in s on any clock, depths in m
     /// downward on any scale, readings good to `sigma` (m), under `gravity` (m/s²). `None` where they do not show
     /// it: fewer than five frames near contact, no fall before it, or a shape whose lowest point does not fall
@@ -85,13 +112,33 @@ impl Contact {
     #[must_use]
     pub fn of_frames(frames: &[Frame], shape: &str, gravity: f64, sigma: f64) -> Option<Self> {
         let power = power_of(shape)?;
-        let near = velocity_window(frames, sigma, NEAR)?;
+        let near = velocity_window(frames, sigma, BEHIND)?;
         // Nothing is known of the zeros: more of the fall has to tell.
         let (start, end) = (velocity_window(frames, sigma, FALLING)?[0].t, near[near.len() - 1].t);
         let from = frames.partition_point(|frame| frame.t < start);
         let to = frames.partition_point(|frame| frame.t <= end);
         let all = Some(&frames[from..to]).filter(|all| all.len() >= FEWEST)?;
-        Some(fit(all, MOST_OF_FALL, (gravity, sigma), power).1)
+        let (fits, contact) = fit(all, (MOST_OF_FALL, true), (gravity, sigma), power);
+        let trial = |fit: &Fit| Trial {
+            power: fit.power,
+            depth: fits.free(fit, fit.contact).0,
+            misfit: fit.misfit / fits.excess,
+        };
+        Some(Self { contact, trials: fits.all.iter().map(trial).collect() })
+    }
+
+    /// The same with depths counted from `level` (m).
+    #[must_use]
+    pub fn below(&self, level: f64) -> Self {
+        let from = |depth: Reading| Reading { value: depth.value - level, ..depth };
+        let contact = Contact {
+            depth_at_zero: self.contact.depth_at_zero.map(from),
+            depth: from(self.contact.depth),
+            at_time: from(self.contact.at_time),
+            ..self.contact
+        };
+        let trial = |trial: &Trial| Trial { depth: trial.depth - level, ..*trial };
+        Self { contact, trials: self.trials.iter().map(trial).collect() }
     }
 }
 
@@ -110,7 +157,7 @@ pub(super) fn read(
     if all.len() < FEWEST {
         return coarse(&run.frames, sigma, (condition, gravity, zero));
     }
-    let (fits, contact) = fit(all, MOST, (gravity, sigma), power);
+    let (fits, contact) = fit(all, (MOST, false), (gravity, sigma), power);
     let [first, last] = fits.ends;
     let reaches_zero = first <= zero + 1.5 * contact.step && zero <= last;
     let is_whole = all[0].t <= run.frames[0].t;
@@ -123,10 +170,15 @@ pub(super) fn read(
 }
 
 /// The fits to the frames `all` near contact, and what they say of it.
-fn fit(all: &[Frame], most: usize, (gravity, sigma): (f64, f64), power: f64) -> (Fits, Contact) {
+fn fit(
+    all: &[Frame],
+    (most, bends): (usize, bool),
+    (gravity, sigma): (f64, f64),
+    power: f64,
+) -> (Fits, Contact) {
     let step = (all[all.len() - 1].t - all[0].t) / (all.len() - 1) as f64;
     let (frames, sigma) = blocks(all, most, sigma);
-    let fits = Fits::of(&frames, (gravity, sigma), power);
+    let fits = Fits::of(&frames, (gravity, sigma), (power, bends));
     let time = fits.mean(|fit| (fit.contact, 0.0));
     // Behind the contact the bed brakes the forward motion too.
     let before = frames.iter().filter(|frame| frame.t <= time.value + step).count();
@@ -138,6 +190,7 @@ fn fit(all: &[Frame], most: usize, (gravity, sigma): (f64, f64), power: f64) -> 
         depth_at_zero: None,
         depth: fits.mean(|fit| fits.free(fit, fit.contact)),
         at_time: fits.mean(|fit| fits.free(fit, time.value)),
+        falling: fits.mean(|fit| fits.velocity(fit, time.value)),
         sinking: fits.mean(|fit| fits.velocity(fit, fit.contact)),
         forward,
         first: all[0].t,
@@ -177,6 +230,7 @@ fn coarse(
         depth_at_zero: Some(depth),
         depth,
         at_time: depth,
+        falling: Reading { value: velocity, se: change },
         sinking: Reading { value: velocity, se: change },
         forward: unknown,
         first: frames[0].t,
@@ -240,13 +294,13 @@ struct Fit {
     contact: f64,
     power: f64,
     misfit: f64,
-    /// a, b, c, k in units of the scale of time.
-    numbers: Vector4<f64>,
-    covariance: Matrix4<f64>,
+    /// a, b, c, k in units of the scale of time, and what k changes by with time.
+    numbers: Vector5<f64>,
+    covariance: Matrix5<f64>,
 }
 
 impl Fits {
-    fn of(frames: &[Frame], (gravity, sigma): (f64, f64), power: f64) -> Self {
+    fn of(frames: &[Frame], (gravity, sigma): (f64, f64), (power, bends): (f64, bool)) -> Self {
         let (first, last) = (frames[0].t, frames[frames.len() - 1].t);
         let (origin, scale) = (0.5 * (first + last), 0.5 * (last - first));
         let places = BETWEEN_FRAMES * (frames.len() - 1);
@@ -254,7 +308,12 @@ impl Fits {
         let mut all = Vec::new();
         for power in [(power - 1.0).max(2.0), power, power + 1.0] {
             for contact in (0..=places).map(place) {
-                all.extend(Fit::of(frames, (origin, scale), (gravity, sigma), (contact, power)));
+                all.extend(Fit::of(
+                    frames,
+                    (origin, scale),
+                    (gravity, sigma),
+                    (contact, power, bends),
+                ));
             }
         }
         let best = all.iter().fold(f64::INFINITY, |best, fit| best.min(fit.misfit));
@@ -302,13 +361,13 @@ impl Fits {
     /// Depth (m) of free fall at `time`, and its variance.
     fn free(&self, fit: &Fit, time: f64) -> (f64, f64) {
         let t = (time - self.origin) / self.scale;
-        fit.along(Vector4::new(1.0, t, 0.5 * t * t, 0.0))
+        fit.along(Vector5::new(1.0, t, 0.5 * t * t, 0.0, 0.0))
     }
 
     /// Velocity (m/s) of free fall at `time`, and its variance.
     fn velocity(&self, fit: &Fit, time: f64) -> (f64, f64) {
         let t = (time - self.origin) / self.scale;
-        fit.along(Vector4::new(0.0, 1.0, t, 0.0) / self.scale)
+        fit.along(Vector5::new(0.0, 1.0, t, 0.0, 0.0) / self.scale)
     }
 }
 
@@ -317,10 +376,10 @@ impl Fit {
         frames: &[Frame],
         (origin, scale): (f64, f64),
         (gravity, sigma): (f64, f64),
-        (contact, power): (f64, f64),
+        (contact, power, bends): (f64, f64, bool),
     ) -> Option<Self> {
-        let (mut normal, mut right, mut square) = (Matrix4::zeros(), Vector4::zeros(), 0.0);
-        let mut add = |row: Vector4<f64>, value: f64, weight: f64| {
+        let (mut normal, mut right, mut square) = (Matrix5::zeros(), Vector5::zeros(), 0.0);
+        let mut add = |row: Vector5<f64>, value: f64, weight: f64| {
             normal += row * row.transpose() * weight;
             right += row * (value * weight);
             square += weight * value * value;
@@ -328,13 +387,17 @@ impl Fit {
         for frame in frames {
             let t = (frame.t - origin) / scale;
             let since = ((frame.t - contact) / scale).max(0.0);
-            let row = Vector4::new(1.0, t, 0.5 * t * t, -libm::pow(since, power));
+            let departure = libm::pow(since, power);
+            let bend = if bends { departure * since } else { 0.0 };
+            let row = Vector5::new(1.0, t, 0.5 * t * t, -departure, bend);
             add(row, frame.z, 1.0 / (sigma * sigma));
         }
         let acceleration = gravity * scale * scale;
         let doubt = ACCELERATION * gravity.max(1.0) * scale * scale;
-        add(Vector4::new(0.0, 0.0, 1.0, 0.0), acceleration, 1.0 / (doubt * doubt));
-        let solve = |normal: Matrix4<f64>| {
+        add(Vector5::new(0.0, 0.0, 1.0, 0.0, 0.0), acceleration, 1.0 / (doubt * doubt));
+        // Without a frame behind the contact nothing is known of what bends the path: it is 0.
+        normal[(4, 4)] += if bends { 1e-12 * normal[(0, 0)] } else { 1.0 };
+        let solve = |normal: Matrix5<f64>| {
             let covariance = normal.cholesky()?.inverse();
             let numbers = covariance * right;
             Some((numbers, covariance, (square - numbers.dot(&right)).max(0.0)))
@@ -351,7 +414,7 @@ impl Fit {
     }
 
     /// A combination of the numbers, and its variance.
-    fn along(&self, row: Vector4<f64>) -> (f64, f64) {
+    fn along(&self, row: Vector5<f64>) -> (f64, f64) {
         (row.dot(&self.numbers), row.dot(&(self.covariance * row)))
     }
 }

@@ -4,7 +4,7 @@
 //! [`MeasurementSet::load`] reads a set, [`MeasurementSet::write`] writes one. `document` knows
 //! `measurement.toml` and `conditions` its conditions; `lines`, `dialect`, `columns`, `header`, `row`,
 //! `cells` and `table` read a table, `runs` and `trajectories` know the two tables there are, `several` finds
-//! more than one of the latter; `fall` sees the fall before contact in any units, `speeds` reads speeds that are
+//! more than one of the latter; `fall` sees the fall before contact in any units, `level` finds one surface for several runs, `speeds` reads speeds that are
 //! not stated; `checks`, `ranges`, `signs`
 //! and `magnitudes` look at the whole; `smooth`, `contact`, `zeros`, `stops` and `definitions` hold what
 //! it states against its frames, and `contradictions` says where they do not agree.
@@ -26,6 +26,7 @@ mod feasible;
 mod findings;
 mod header;
 mod keys;
+mod level;
 mod lines;
 mod load;
 mod magnitudes;
@@ -50,11 +51,12 @@ mod write;
 mod zeros;
 
 pub use agreement::Agreement;
-pub use contact::Contact;
+pub use contact::{Contact, Departure};
 pub use contradictions::{Contradiction, ContradictionKind};
 pub use definitions::{Held, Miss, Outcome, Scalar, hold};
 pub use fall::{Fall, reading_noise};
 pub use feasible::Feasible;
+pub use level::common_level;
 pub use load::{Loaded, SetError};
 pub use reading::Reading;
 pub use strays::{Cleaned, without_strays};

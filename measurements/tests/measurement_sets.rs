@@ -130,6 +130,46 @@ note: In trajectories.csv the column `note` is ignored.
 }
 
 #[test]
+fn what_the_frames_and_the_names_of_files_say_may_be_left_out() {
+    let folder = tempfile::tempdir().expect("a folder for the test");
+    let write =
+        |name: &str, text: String| fs::write(folder.path().join(name), text).expect("a file");
+    // Free fall at 2 m/s, then a constant brake, at 1000 frames a second.
+    let depth = |t: f64| 2.0 * t + if t < 0.0 { 4.905 * t * t } else { -40.0 * t * t };
+    for run in ["a", "b"] {
+        let row =
+            |k: i32| format!("{0:.3};{1:.5}\n", f64::from(k), 1e2 * depth(1e-3 * f64::from(k)));
+        write(
+            &format!("drop {run}.csv"),
+            "t;z\n".to_owned() + &(-40..20).map(row).collect::<String>(),
+        );
+    }
+    write("runs.csv", "run;condition\ndrop a;c01\ndrop b;c01\n".to_owned());
+    let toml = "schema = 1\n[measurement]\nid = \"left-out\"\nkind = \"trajectory\"\n\
+                [instrument]\nrate_hz = \"1 kHz\"\nposition_sigma_m = \"10 um\"\n\
+                [bed]\nbulk_density = \"1.52 g/cc\"\n[files]\nruns = \"runs.csv\"\ntrajectories = TABLES\n\
+                [columns]\nt = { unit = \"ms\" }\nz = { unit = \"cm\" }\n\
+                [[condition]]\nid = \"c01\"\nangle_deg = 90\nshape = \"cylinder\"\ndiameter = \"1 inch\"\n\
+                height = \"3 cm\"\nmass = \"67 g\"\n";
+    for tables in ["[\"drop a.csv\", \"drop b.csv\"]", "\"drop*.csv\""] {
+        write("measurement.toml", toml.replace("TABLES", tables));
+        let loaded = MeasurementSet::load(folder.path()).unwrap_or_else(|error| panic!("{error}"));
+        let (set, condition) = (&loaded.set, &loaded.set.conditions[0]);
+        assert_eq!(set.runs.iter().map(|run| run.frames.len()).collect::<Vec<_>>(), [60, 60]);
+        assert_eq!(
+            (condition.diameter, condition.mass, condition.height),
+            (0.0254, 0.067, Some(0.03))
+        );
+        assert_eq!((set.bed.bulk_density, set.instrument.rate), (Some(1520.0), Some(1000.0)));
+        assert_eq!(condition.role, measurements::Role::Fit);
+        assert!((condition.speed - 2.0).abs() < 0.02, "{}", condition.speed);
+        let note = "The speed of `c01` is ";
+        assert!(set.notes.iter().any(|one| one.starts_with(note)), "{:?}", set.notes);
+        assert!(loaded.contradictions.is_empty(), "{}", loaded.describe());
+    }
+}
+
+#[test]
 fn the_template_of_the_documentation_loads_without_a_warning() {
     let page = fs::read_to_string("../docs/measurement-sets.md").expect("the page of the format");
     let blocks: Vec<&str> = page.split("```").skip(1).step_by(2).collect();

@@ -1,7 +1,7 @@
 //! A track as a path in SI: order and clock of its readings, which way is down, units, and first contact.
 
 use configs::engine::units::Dimension;
-use measurements::{Contact, Fall, Frame};
+use measurements::{Contact, Departure, Fall, Frame};
 
 use super::fault::Fault;
 use super::settings::Settings;
@@ -324,21 +324,30 @@ pub(super) fn contact(
     frames: &[Frame],
     (shape, noise): (&str, f64),
     gravity: f64,
-) -> Result<Contact, &'static str> {
-    let contact = Contact::of_frames(frames, shape, gravity, noise)
+) -> Result<Departure, &'static str> {
+    let departure = Departure::of_frames(frames, shape, gravity, noise)
         .ok_or("too few frames are near the greatest speed to see a contact")?;
+    let contact = &departure.contact;
     let time = contact.time;
-    let last = frames.last();
+    let end = &frames[frames.len().saturating_sub(6)..];
+    let speed = match end {
+        [first, .., last] => (last.z - first.z) / (last.t - first.t),
+        _ => f64::INFINITY,
+    };
+    let error = (2.0 * time.se).max(2.0 * contact.step);
     match () {
-        () if time.value - time.se < contact.first + 2.0 * contact.step => Err(
-            "no free fall is seen before the body is braked: the frames before contact are missing",
-        ),
-        () if last.is_none_or(|last| last.t < time.value + 2.0 * contact.step) => {
+        () if speed > BRAKED * contact.falling.value => {
             Err("the body is never braked: the frames behind contact are missing")
         }
-        () => Ok(contact),
+        () if time.value - error < contact.first => Err(
+            "no free fall is seen before the body is braked: the frames before contact are missing",
+        ),
+        () => Ok(departure),
     }
 }
+
+/// Share of the speed at contact that is left at the end of a clip that shows the body braked.
+const BRAKED: f64 = 0.7;
 
 /// Frames that are kept after the body has come to rest.
 const AT_REST: usize = 10;

@@ -187,6 +187,7 @@ fn finish(
     let ids =
         conditions::group(&members, settings.pattern.as_ref()).map_err(|fault| vec![fault])?;
     for ((run, words), id) in runs.iter_mut().zip(&mut understood).zip(ids) {
+        words.speed = run.speed;
         words.condition.clone_from(&id);
         run.condition = id;
     }
@@ -213,7 +214,7 @@ fn see(
     let frames = one.path.in_si(&scales);
     let noise = (one.path.noise() * scales.length.1).max(1e-6);
     let shape = one.body.shape.as_str();
-    let contact = motion::contact(&frames, (shape, noise), settings.gravity).map_err(|why| {
+    let departure = motion::contact(&frames, (shape, noise), settings.gravity).map_err(|why| {
         let what = format!("the run {}: {why}", one.name);
         Fault::new(
             &one.path.track.file,
@@ -237,7 +238,7 @@ fn see(
     };
     let stated = settings.position("surface", &one.labels)?;
     let stated = stated.map(|level| one.path.sign * level - lift);
-    Ok((Seen { name: one.name.clone(), contact, stated, below_centre }, scales, frames, noise))
+    Ok((Seen { name: one.name.clone(), departure, stated, below_centre }, scales, frames, noise))
 }
 
 fn run(
@@ -247,8 +248,8 @@ fn run(
     touch: Touch,
 ) -> (Run, Understood) {
     let Begun { name, fields, labels, body, path } = begun;
-    let kept = motion::kept(frames, &seen.contact, noise);
-    let forward = seen.contact.forward;
+    let kept = motion::kept(frames, &seen.departure.contact, noise);
+    let forward = seen.departure.contact.forward;
     let has_x = path.track.forward.is_some();
     let from_vertical = libm::atan2(forward.value.abs(), touch.sinking.value).to_degrees();
     let is_oblique = has_x && from_vertical > UPRIGHT && forward.value.abs() > 4.0 * forward.se;
@@ -298,7 +299,7 @@ fn run(
         speed,
         angle: if is_oblique { 90.0 - from_vertical } else { 90.0 },
         noise,
-        step: seen.contact.step,
+        step: seen.departure.contact.step,
         frames: frames[kept].iter().map(counted).collect(),
     };
     (run, understood)

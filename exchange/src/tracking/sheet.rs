@@ -57,12 +57,12 @@ impl Sheet {
         number(cell, self.decimal_comma)
     }
 
-    /// Whether `row` has at least `most` numbers and more numbers than words.
-    pub(super) fn is_numeric(&self, row: &Row, most: usize) -> bool {
+    /// Whether `row` has at least so many numbers, and no fewer of them than words.
+    pub(super) fn is_numeric(&self, row: &Row, least: usize) -> bool {
         let kinds = || row.cells.iter().map(|cell| self.number(cell));
         let numbers = kinds().filter(|kind| matches!(kind, Number::Value(_))).count();
         let words = kinds().filter(|kind| *kind == Number::Other).count();
-        numbers >= most && numbers > words
+        numbers >= least && numbers >= words
     }
 
     /// A fault of the whole table.

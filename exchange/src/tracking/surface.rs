@@ -1,14 +1,11 @@
 //! The level of the surface on the axes of the tables, and with it contact time and speed of each run.
 
-use measurements::{Contact, Reading};
+use measurements::{Contact, Departure, Reading, common_level};
 
 use super::fault::Fault;
 
-/// Times the error that levels may scatter by and still be one.
-const AGREE: f64 = 2.0;
-
 /// Distance (m) and times its error beyond which a level that is stated is not where the contact is.
-const OFF: (f64, f64) = (1e-3, 5.0);
+const OFF: (f64, f64) = (1e-3, 3.5);
 
 /// Least error of a level (m).
 const LEAST: f64 = 1e-5;
@@ -16,7 +13,7 @@ const LEAST: f64 = 1e-5;
 /// What is known of one run.
 pub(super) struct Seen {
     pub(super) name: String,
-    pub(super) contact: Contact,
+    pub(super) departure: Departure,
     /// Depth (m) that the tracked point has at contact by what the user says, with the size of the body there.
     pub(super) stated: Option<f64>,
     /// How far the lowest point is below the centre (m), if that is known.
@@ -52,30 +49,35 @@ pub(super) enum Level {
 pub(super) fn touches(runs: &[Seen], gravity: f64) -> Result<(Level, Vec<Touch>), Vec<Fault>> {
     let is_stated = runs.iter().all(|run| run.stated.is_some());
     if is_stated {
-        let faults: Vec<Fault> = runs.iter().filter_map(off).collect();
+        let faults = off(runs);
         if !faults.is_empty() {
             return Err(faults);
         }
         let at = |run: &Seen| {
             let level = Reading { value: run.stated.unwrap_or_default(), se: LEAST };
-            Touch::at(&run.contact, level, gravity)
+            Touch::at(&run.departure.contact, level, gravity)
         };
         return Ok((Level::Stated, runs.iter().map(at).collect()));
     }
-    match common(runs) {
+    let departures: Vec<&Departure> = runs.iter().map(|run| &run.departure).collect();
+    match common_level(&departures) {
         Some(level) => {
-            let touches = runs.iter().map(|run| Touch::at(&run.contact, level, gravity)).collect();
+            let level = Reading { se: level.se.max(LEAST), ..level };
+            let touches =
+                runs.iter().map(|run| Touch::at(&run.departure.contact, level, gravity)).collect();
             Ok((Level::Common(level), touches))
         }
-        None => Ok((Level::Own, runs.iter().map(|run| Touch::own(&run.contact)).collect())),
+        None => {
+            Ok((Level::Own, runs.iter().map(|run| Touch::own(&run.departure.contact)).collect()))
+        }
     }
 }
 
 impl Touch {
     /// Where the path crosses `level` (m).
     fn at(contact: &Contact, level: Reading, gravity: f64) -> Self {
-        let Contact { time, at_time, sinking, .. } = contact;
-        let (v, ahead) = (sinking.value, level.value - at_time.value);
+        let Contact { time, at_time, falling, .. } = contact;
+        let (v, ahead) = (falling.value, level.value - at_time.value);
         let root = (v * v + 2.0 * gravity * ahead).max(0.0).sqrt();
         let later = 2.0 * ahead / (v + root).max(f64::MIN_POSITIVE);
         let se = libm::hypot(level.se, at_time.se) / v;
@@ -84,7 +86,7 @@ impl Touch {
             level,
             sinking: Reading {
                 value: v + gravity * later,
-                se: libm::hypot(sinking.se, gravity * se),
+                se: libm::hypot(falling.se, gravity * se),
             },
         }
     }
@@ -95,45 +97,44 @@ impl Touch {
     }
 }
 
-/// The level (m) of all runs, if theirs scatter no more than their errors allow.
-fn common(runs: &[Seen]) -> Option<Reading> {
-    let weight = |run: &Seen| run.contact.depth.se.max(LEAST).powi(-2);
-    let total: f64 = runs.iter().map(weight).sum();
-    let level = runs.iter().map(|run| weight(run) * run.contact.depth.value).sum::<f64>() / total;
-    let square = |run: &Seen| weight(run) * (run.contact.depth.value - level).powi(2);
-    let n = runs.len() as f64;
-    let scatter = (runs.iter().map(square).sum::<f64>() / (n - 1.0).max(1.0)).sqrt();
-    // Half of the error of a contact is how a path departs from free fall, which all runs share.
-    let least = runs.iter().map(|run| run.contact.depth.se).fold(f64::INFINITY, f64::min);
-    let se = scatter.max(1.0) / total.sqrt();
-    (scatter <= AGREE)
-        .then_some(Reading { value: level, se: libm::hypot(se, 0.5 * least).max(LEAST) })
+/// What is wrong where the contacts are not at the levels that are stated: of all runs together where they agree, else
+/// of each.
+fn off(runs: &[Seen]) -> Vec<Fault> {
+    let below = |run: &Seen| Some(run.departure.below(run.stated?));
+    let all: Vec<Departure> = runs.iter().filter_map(below).collect();
+    match common_level(&all.iter().collect::<Vec<_>>()) {
+        Some(miss) => one_off("the runs are", miss, runs[0].below_centre).into_iter().collect(),
+        None => {
+            let of = |(run, one): (&Seen, &Departure)| {
+                one_off(&format!("the run {} is", run.name), one.contact.depth, run.below_centre)
+            };
+            runs.iter().zip(&all).filter_map(of).collect()
+        }
+    }
 }
 
-/// What is wrong where the contact is not at the level that is stated.
-fn off(run: &Seen) -> Option<Fault> {
-    let depth = run.contact.depth;
-    let miss = depth.value - run.stated?;
-    if miss.abs() <= OFF.0.max(OFF.1 * depth.se) {
+/// What is wrong with a level that contacts miss by `miss` (m).
+fn one_off(who: &str, miss: Reading, below_centre: Option<f64>) -> Option<Fault> {
+    let error = OFF.1 * miss.se;
+    if miss.value.abs() <= OFF.0.max(error) {
         return None;
     }
-    let near = |wanted: f64| (miss - wanted).abs() <= (OFF.1 * depth.se).max(0.1 * wanted.abs());
-    let right = match run.below_centre {
+    let near = |wanted: f64| (miss.value - wanted).abs() <= error.max(0.1 * wanted.abs());
+    let half = "this is half of the body: was its";
+    let right = match below_centre {
         Some(below) if near(-below) => {
-            "this is half of the body: was its centre tracked? then write --tracked centre"
-                .to_owned()
+            format!("{half} centre tracked? then write --tracked centre")
         }
         Some(below) if near(below) => {
-            "this is half of the body: was its lowest point tracked? then write --tracked lowest"
-                .to_owned()
+            format!("{half} lowest point tracked? then write --tracked lowest")
         }
-        _ => "leave --surface out, and the level is taken from the contact".to_owned(),
+        _ => "leave --surface out, and the level is taken from the contacts".to_owned(),
     };
-    let (what, side) = (1e3 * miss.abs(), if miss < 0.0 { "above" } else { "below" });
+    let side = if miss.value < 0.0 { "above" } else { "below" };
     let what = format!(
-        "{}: the body is braked {what:.2} ± {:.2} mm {side} the stated surface",
-        run.name,
-        1e3 * depth.se
+        "{who} braked {:.2} ± {:.2} mm {side} the stated surface",
+        1e3 * miss.value.abs(),
+        1e3 * miss.se
     );
     Some(Fault::new("--surface", what, right))
 }

@@ -111,7 +111,8 @@ fn split(line: &str, separator: Option<u8>) -> Option<Vec<String>> {
         return None;
     }
     reader.read_record(&mut record).ok()?;
-    Some(record.iter().map(|cell| cell.trim().to_owned()).collect())
+    // A tabulator within a cell is another separator.
+    Some(record.iter().map(|cell| cell.trim_matches(' ').to_owned()).collect())
 }
 
 fn has_decimal_commas(rows: &[Row]) -> bool {

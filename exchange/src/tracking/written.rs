@@ -103,7 +103,7 @@ fn measurement(known: &Known<'_>, notes: &[String]) -> Result<String, Fault> {
     let of = |number: fn(&Run) -> f64| median(runs.iter().map(number).collect());
     let step = of(|run| run.step);
     if runs.iter().all(|run| (run.step / step - 1.0).abs() < 0.01) {
-        line(format!("rate_hz = {:<18} # by the steps between frames", significant(1.0 / step, 6)));
+        line(format!("rate_hz = {:<18} # by the steps between frames", significant(1.0 / step, 5)));
     }
     let noise = of(|run| run.noise);
     line(format!(

@@ -1,4 +1,7 @@
 //! Tables of tracking programs become measurement sets: what is found in them, what is refused, and how.
 
 mod contact;
+mod formats;
+mod layouts;
+mod refusals;
 mod world;

@@ -16,10 +16,11 @@ fn fits(sheet: &Sheet, _: &Columns) -> bool {
     let names: Vec<&str> = first.split('\t').collect();
     let has = |name: &str| names.contains(&name);
     let is_mtrackj = has("tid") && has("pid");
-    let is_table = names.iter().any(|name| name.starts_with("slice") || *name == "frame")
-        && (has("y") || has("ym"))
-        && (names[0].is_empty() || names.iter().any(|name| name.starts_with("track n")));
-    is_mtrackj || is_table
+    let starts = |start: &str| names.iter().any(|name| name.starts_with(start));
+    let is_manual = starts("track n") && starts("slice");
+    let is_table =
+        names[0].is_empty() && (starts("slice") || has("frame")) && (has("y") || has("ym"));
+    is_mtrackj || is_manual || is_table
 }
 
 fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {

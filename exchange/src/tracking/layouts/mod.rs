@@ -53,6 +53,3 @@ pub(super) fn tracks(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fau
 fn first_row(sheet: &Sheet) -> String {
     sheet.rows.first().map_or(String::new(), |row| row.cells.join("\t").to_lowercase())
 }
-
-#[cfg(test)]
-mod tests;

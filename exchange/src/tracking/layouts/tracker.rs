@@ -3,7 +3,7 @@
 use super::Layout;
 use crate::tracking::fault::Fault;
 use crate::tracking::grid::{Grid, Places};
-use crate::tracking::heading::Role;
+use crate::tracking::heading::{Heading, Role};
 use crate::tracking::settings::Columns;
 use crate::tracking::sheet::{Row, Sheet};
 use crate::tracking::track::Track;
@@ -25,7 +25,7 @@ fn fits(sheet: &Sheet, _: &Columns) -> bool {
     let [first, second, ..] = &sheet.rows[..] else { return false };
     let name = first.cell(0).to_lowercase();
     let word = name.split([' ', '_']).next().unwrap_or_default();
-    let is_header = second.cell(0).to_lowercase().starts_with('t') && filled(second) > 1;
+    let is_header = Heading::of(second.cell(0)).stem == "t" && filled(second) > 1;
     is_multi(sheet) || filled(first) == 1 && (TRACKS.contains(&word) || is_header)
 }
 
