@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use configs::edit::add_effects;
 use diagnosis::bench::Bench;
+use diagnosis::calibrate::calibrate;
 use diagnosis::diagnose::diagnose;
 use diagnosis::next::recommend;
 use diagnosis::verdict::{Diagnosis, Verdict};
 use diagnosis::where_it_fails::WhereItFails;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::add::from_diagnosis;
 use crate::beds::{self, Beds};
@@ -16,7 +17,7 @@ use crate::next;
 use crate::output::{self, CommandError, CommandResult};
 use crate::report;
 use crate::table_file;
-use crate::verdict::as_text;
+use crate::verdict::{as_text, calibration_as_text};
 use crate::workbench::{Candidate, Flags, failed};
 
 /// Arguments of `plunge diagnose`.
@@ -27,6 +28,9 @@ pub(crate) struct Args {
     /// A model file or the name of a shipped model; without, the baseline that the set names.
     #[arg(long, value_name = "MODEL")]
     model: Option<PathBuf>,
+    /// Simulate a hundred sets of the same design and say how often verdicts are right: some minutes.
+    #[arg(long)]
+    calibrate: bool,
     #[command(flatten)]
     flags: Flags,
     #[command(flatten)]
@@ -39,6 +43,11 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let measured = flags.measured(&args.set)?;
     let models = flags.models(args.model.as_slice(), &measured)?;
     let model = &models[0];
+    if model.loaded.model.grains().is_some() && args.calibrate {
+        return Err(CommandError::BadInput(
+            "--calibrate is of resistive-force models: sets of a bed of grains take hours to simulate\n".to_owned(),
+        ));
+    }
     if model.loaded.model.grains().is_some() {
         return beds::diagnose(&args.beds, flags, &measured, &models);
     }
@@ -52,10 +61,23 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let next = recommend(&bench, &model.loaded.model, &mut diagnosis);
     flags.notes(&measured.set.notes);
     flags.notes(&measured.observed.notes);
+    let calibration = match args.calibrate {
+        false => None,
+        true => {
+            let found = calibrate(&bench, &diagnosis, flags.seed);
+            let calibration = found.map_err(|error| failed(error, &model.name))?;
+            diagnosis.probability = Some(calibration.probability(&diagnosis));
+            Some(calibration)
+        }
+    };
     let object = diagnosis.to_json().map_err(anyhow::Error::new)?;
     let text = format!("{object:#}\n");
     let mut files = propose(model, &object, &diagnosis)?;
     files.insert(0, ("diagnosis.json".to_owned(), text.clone()));
+    if let Some(calibration) = &calibration {
+        let object = json!({ "rows": calibration.rows(), "sets": calibration.sets });
+        files.push(("calibration.json".to_owned(), format!("{object:#}\n")));
+    }
     let where_it_fails = WhereItFails::of_diagnosis(&bench, &model.name, &diagnosis, flags.seed)
         .map_err(|error| failed(error, &model.name))?;
     files.extend(where_it_fails.files().map_err(anyhow::Error::new)?);
@@ -66,6 +88,9 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     }
     let n = [&measured.observed.fit, &measured.observed.holdout].map(Vec::len);
     let mut text = as_text(&model.name, (&diagnosis, &object), n);
+    if let Some(calibration) = &calibration {
+        text.push_str(&calibration_as_text(calibration, &diagnosis));
+    }
     text.push_str(&next::as_text(&diagnosis, &next));
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     text.push_str(&format!("\nwritten to {}: {}\n", results.shown(), names.join(", ")));

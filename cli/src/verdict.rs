@@ -1,5 +1,6 @@
 //! A diagnosis as `plunge diagnose` prints it.
 
+use diagnosis::calibrate::Calibration;
 use diagnosis::forward::Bound;
 use diagnosis::held_out::{Fails, LeftOut, Unit};
 use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Verdict};
@@ -159,6 +160,44 @@ fn held_out(diagnosis: &Diagnosis) -> String {
         };
         let (id, why) = (&one.condition, &one.why);
         text.push_str(&format!("Not predicted {by}, 1 of {all} and in no error: {id} ({why}).\n"));
+    }
+    text
+}
+
+/// How often verdicts are right before sets of this design, and how likely this one is.
+pub(crate) fn calibration_as_text(calibration: &Calibration, diagnosis: &Diagnosis) -> String {
+    let head =
+        ["truth", "sets", "named alone", "in a set", "something else named", "nothing named"];
+    let mut table = table(&head);
+    for row in calibration.rows() {
+        let unnamed: Vec<String> =
+            row.unnamed.iter().map(|(verdict, sets)| format!("{verdict} {sets}")).collect();
+        table.add_row([
+            row.truth,
+            row.sets.to_string(),
+            row.alone.to_string(),
+            row.among.to_string(),
+            row.wrong.to_string(),
+            unnamed.join(", "),
+        ]);
+    }
+    let covered: Vec<bool> = calibration.sets.iter().filter_map(|set| set.covered).collect();
+    let holding = covered.iter().filter(|holds| **holds).count();
+    let mut text = format!(
+        "\nOf {} simulated sets of this design:\n{}95 % intervals that hold the true amplitude: {holding} of {}.\n",
+        calibration.sets.len(),
+        lines(&table),
+        covered.len()
+    );
+    if let Some(probability) = diagnosis.probability {
+        let shown = |share: Option<f64>| share.map_or("-".to_owned(), |p| format!("{p:.2}"));
+        text.push_str(&format!(
+            "Sets with this verdict, where nothing, a listed and an unlisted effect are equally likely: named rightly {}, \
+             nothing missing {}, something unlisted {}.\n",
+            shown(probability.right),
+            shown(probability.nothing),
+            shown(probability.unlisted)
+        ));
     }
     text
 }

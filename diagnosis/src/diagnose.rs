@@ -256,6 +256,7 @@ impl Judge<'_> {
         Ok(Diagnosis {
             verdict,
             strength: strength(&strength_reasons),
+            probability: None,
             evidence: evidence(bench, proposed),
             warnings: warnings(bench, &amplitudes),
             strength_reasons,

@@ -16,6 +16,8 @@ pub(crate) enum Purpose {
     Order = 4,
     /// Choices of held-out conditions.
     HeldOut = 5,
+    /// Sets that are simulated to see how often verdicts come true.
+    Simulation = 6,
 }
 
 /// The random numbers of condition (or other thing) `index` for `purpose`.

@@ -33,6 +33,20 @@ pub enum Verdict {
     CannotTell,
 }
 
+/// Probabilities of what is true, given a verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Probability {
+    /// The effect that is named, or one of those named, is missing.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub right: Option<f64>,
+    /// Nothing is missing.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub nothing: Option<f64>,
+    /// Something is missing that no list has.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub unlisted: Option<f64>,
+}
+
 /// What the noise is known from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -68,6 +82,8 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// What it rests on.
     pub strength: Strength,
+    /// How likely it is that this comes true; none unless sets of the same design were simulated.
+    pub probability: Option<Probability>,
     /// What the noise is known from.
     pub evidence: Evidence,
     /// What one should know before one believes it, in sentences.
@@ -252,6 +268,7 @@ impl Diagnosis {
         Self {
             verdict: Verdict::CannotTell,
             strength: Strength::Suggested,
+            probability: None,
             evidence: Evidence::StatedErrors,
             warnings: Vec::new(),
             strength_reasons: Vec::new(),

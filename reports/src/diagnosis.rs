@@ -11,6 +11,9 @@ use crate::{ReportError, Texts, object};
 /// The file whose presence means a diagnosis.
 pub(crate) const RESULT: &str = "diagnosis.json";
 
+/// How often verdicts come true, where it was asked.
+const CALIBRATION: &str = "calibration.json";
+
 /// Most effects with a card of their own; the table has all.
 const CARDS: usize = 6;
 
@@ -127,6 +130,7 @@ pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
     sections.extend(views(texts).into_iter().map(Some));
     sections.extend([
         Section::new("Errors by kind of number", by_kind(texts)),
+        Section::new("How often verdicts are right in this design", calibrated(texts)?),
         Section::new("What to measure next", next(&diagnosis)),
         Section::new("Corrected parameters", corrected(&diagnosis)),
         Section::new("All effects", ranking(&diagnosis)),
@@ -240,6 +244,25 @@ fn in_unit(effect: &Value) -> String {
         None | Some("1" | "") => text(&effect["id"]),
         Some(unit) => format!("{} ({unit})", text(&effect["id"])),
     }
+}
+
+/// Simulated sets by truth and verdict, where they were asked for.
+fn calibrated(texts: &Texts) -> Result<Vec<Part>, ReportError> {
+    if !texts.contains_key(CALIBRATION) {
+        return Ok(Vec::new());
+    }
+    let calibration = object(texts, CALIBRATION)?;
+    let head =
+        ["truth", "sets", "named alone", "in a set", "something else named", "intervals hold"];
+    let mut table = Table::new(&head);
+    for row in list(&calibration["rows"]) {
+        let cell = |key: &str| row[key].as_u64().unwrap_or_default().to_string();
+        let counts = ["sets", "alone", "among", "wrong", "covered"].map(cell);
+        table.rows.push([text(&row["truth"])].into_iter().chain(counts).collect());
+    }
+    let words =
+        "Sets with these conditions, repeats and noise were simulated and diagnosed.".to_owned();
+    Ok(vec![Part::Text(words), Part::Table(table)])
 }
 
 fn testable(diagnosis: &Value) -> impl Iterator<Item = &Value> {
