@@ -18,11 +18,11 @@ use runner::{CampaignError, Elsewhere};
 use serde_json::{Value, json};
 
 use crate::common::{On, cache_folder, of_scheduler};
-use crate::compare::{lines, table};
 use crate::control::Terminal;
-use crate::diagnose::as_text;
 use crate::output::{self, CommandError, CommandResult};
 use crate::report;
+use crate::text::{lines, table};
+use crate::verdict::as_text;
 use crate::workbench::{Candidate, Flags, Measured, failed};
 
 /// The flags of commands that run many impacts on beds of grains.

@@ -80,7 +80,7 @@ fn of_grains(grains: GrainModel<'_>, args: &Args) -> Result<Facts, CommandError>
         }
         _ => lines.push(("time step", "known when the laws are built".to_owned())),
     }
-    let cost = GrainCost::of(grains, args)?;
+    let cost = GrainCost::of(grains, &args.common, args.measure)?;
     lines.extend(cost.lines());
     let json = [
         ("bed", json!({ "grains": estimate.n_grains })),

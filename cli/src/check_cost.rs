@@ -7,7 +7,7 @@ use configs::{BedSource, GrainModel, SidesKind};
 use runner::campaign::pace::{Pace, PaceError, is_prepared};
 use serde_json::{Value, json};
 
-use crate::check::Args;
+use crate::common::Common;
 use crate::output::{self, CommandError};
 
 /// Diameters of the intruder that a bed leaves between it and each wall: side walls act over about one
@@ -46,17 +46,21 @@ struct Smaller {
 }
 
 impl GrainCost {
-    /// Of `grains`, measured if the arguments ask for it.
-    pub(crate) fn of(grains: GrainModel<'_>, args: &Args) -> Result<Self, CommandError> {
-        let cache = args.common.cache_folder();
-        let pace = match args.measure {
+    /// Of `grains`, measured if `measure` asks for it.
+    pub(crate) fn of(
+        grains: GrainModel<'_>,
+        common: &Common,
+        measure: bool,
+    ) -> Result<Self, CommandError> {
+        let cache = common.cache_folder();
+        let pace = match measure {
             true => with_threads(1, || Pace::of(grains, &cache))
                 .map_err(|error| CommandError::Failed(error.into()))?
                 .map_err(refused)?,
             false => Pace::kept(grains, &cache),
         };
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-        let threads = args.common.threads.map_or_else(cores, usize::from);
+        let threads = common.threads.map_or_else(cores, usize::from);
         let estimate = Estimate::of(grains);
         let n = estimate.n_grains;
         let is_prepared = match &grains.medium.bed.source {

@@ -2,22 +2,21 @@
 
 use std::path::PathBuf;
 
-use comfy_table::presets::NOTHING;
-use comfy_table::{CellAlignment, Table};
+use comfy_table::CellAlignment;
 use diagnosis::compare::{Comparison, ModelComparison, Revision, compare};
 use diagnosis::forward::Forward;
 use diagnosis::observable::Observable;
 use diagnosis::picture;
 use diagnosis::residual::Residual;
-use diagnosis::where_it_fails::WhereItFails;
 use measurements::MeasurementSet;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::beds::{self, Beds, Workshop};
 use crate::compare_runs::{self, Found};
 use crate::output::{self, CommandError, CommandResult};
 use crate::report;
 use crate::table_file;
+use crate::text::{lines, noise_words, probability, table};
 use crate::workbench::{Flags, failed};
 
 /// Arguments of `plunge compare`.
@@ -106,8 +105,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         .map_err(|error| CommandError::Failed(error.into()))?;
     let mut files = vec![("comparison.json".to_owned(), format!("{object:#}\n"))];
     files.extend(figure.map(|figure| ("comparison.svg".to_owned(), figure)));
-    let where_it_fails =
-        WhereItFails::of_comparison(&measured.set, &measured.observed, &comparison);
+    let where_it_fails = comparison.where_it_fails(&measured.set, &measured.observed);
     files.extend(where_it_fails.files().map_err(anyhow::Error::new)?);
     files.extend(report::of_results(&files, flags.quiet));
     results.write(&files)?;
@@ -155,36 +153,6 @@ fn as_text(
     text.push_str("\nwhere the force is wrong (significant at a false-discovery rate of 5 %)\n");
     text.push_str(&failures(&comparison.models));
     text
-}
-
-/// Where the errors come from, in words.
-pub(crate) fn noise_words(noise: &Value) -> String {
-    let percent = |key: &str| 100.0 * noise[key].as_f64().unwrap_or(0.0);
-    match noise["source"].as_str() {
-        Some("repeats") => format!(
-            "from repeats: coefficients {:.1} %, force along the path {:.1} %, readings {:.2} mm",
-            percent("coefficient_sd"),
-            percent("path_force_sd"),
-            1e3 * noise["position_sigma_m"].as_f64().unwrap_or(0.0)
-        ),
-        Some("stated") => "as stated by the set".to_owned(),
-        _ => "not known".to_owned(),
-    }
-}
-
-/// An empty table with right-aligned numbers behind the first column.
-pub(crate) fn table(header: &[&str]) -> Table {
-    let mut table = Table::new();
-    table.load_preset(NOTHING).set_header(header);
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    table
-}
-
-/// The lines of a table, indented, without trailing blanks.
-pub(crate) fn lines(table: &Table) -> String {
-    table.lines().map(|line| format!(" {}\n", line.trim_end())).collect()
 }
 
 fn errors(comparison: &Comparison) -> String {
@@ -261,15 +229,6 @@ fn numbers(set: &MeasurementSet, models: &[ModelComparison]) -> String {
         table.add_row(row);
     }
     format!("\nmeasured and predicted\n{}", lines(&table))
-}
-
-/// A probability as one would write it.
-pub(crate) fn probability(p: f64) -> String {
-    match p {
-        p if p < 1e-4 => "< 1e-4".to_owned(),
-        p if p < 0.1 => format!("{p:.4}"),
-        p => format!("{p:.2}"),
-    }
 }
 
 fn parameters(models: &[ModelComparison]) -> String {

@@ -12,9 +12,9 @@ use reports::run::Course;
 use runner::run::Summary;
 use serde_json::{Map, Value, json};
 
-use crate::compare::{lines, table};
 use crate::output::{self, CommandError, CommandResult};
 use crate::report;
+use crate::text::{lines, table};
 use crate::workbench::Flags;
 
 /// The summary of a run, or of a list of them.

@@ -4,21 +4,20 @@ use std::path::PathBuf;
 
 use configs::edit::add_effects;
 use diagnosis::bench::Bench;
+use diagnosis::calibrate::calibrate;
 use diagnosis::diagnose::diagnose;
-use diagnosis::forward::Bound;
-use diagnosis::held_out::{Fails, LeftOut, Unit};
 use diagnosis::next::recommend;
-use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Verdict};
+use diagnosis::verdict::{Diagnosis, Verdict};
 use diagnosis::where_it_fails::WhereItFails;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::add::from_diagnosis;
 use crate::beds::{self, Beds};
-use crate::compare::{lines, noise_words, probability, table};
 use crate::next;
 use crate::output::{self, CommandError, CommandResult};
 use crate::report;
 use crate::table_file;
+use crate::verdict::{as_text, calibration_as_text};
 use crate::workbench::{Candidate, Flags, failed};
 
 /// Arguments of `plunge diagnose`.
@@ -29,6 +28,9 @@ pub(crate) struct Args {
     /// A model file or the name of a shipped model; without, the baseline that the set names.
     #[arg(long, value_name = "MODEL")]
     model: Option<PathBuf>,
+    /// Simulate a hundred sets of the same design and say how often verdicts are right: some minutes.
+    #[arg(long)]
+    calibrate: bool,
     #[command(flatten)]
     flags: Flags,
     #[command(flatten)]
@@ -41,6 +43,11 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let measured = flags.measured(&args.set)?;
     let models = flags.models(args.model.as_slice(), &measured)?;
     let model = &models[0];
+    if model.loaded.model.grains().is_some() && args.calibrate {
+        return Err(CommandError::BadInput(
+            "--calibrate is of resistive-force models: sets of a bed of grains take hours to simulate\n".to_owned(),
+        ));
+    }
     if model.loaded.model.grains().is_some() {
         return beds::diagnose(&args.beds, flags, &measured, &models);
     }
@@ -54,10 +61,23 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let next = recommend(&bench, &model.loaded.model, &mut diagnosis);
     flags.notes(&measured.set.notes);
     flags.notes(&measured.observed.notes);
+    let calibration = match args.calibrate {
+        false => None,
+        true => {
+            let found = calibrate(&bench, &diagnosis, flags.seed);
+            let calibration = found.map_err(|error| failed(error, &model.name))?;
+            diagnosis.probability = Some(calibration.probability(&diagnosis));
+            Some(calibration)
+        }
+    };
     let object = diagnosis.to_json().map_err(anyhow::Error::new)?;
     let text = format!("{object:#}\n");
     let mut files = propose(model, &object, &diagnosis)?;
     files.insert(0, ("diagnosis.json".to_owned(), text.clone()));
+    if let Some(calibration) = &calibration {
+        let object = json!({ "rows": calibration.rows(), "sets": calibration.sets });
+        files.push(("calibration.json".to_owned(), format!("{object:#}\n")));
+    }
     let where_it_fails = WhereItFails::of_diagnosis(&bench, &model.name, &diagnosis, flags.seed)
         .map_err(|error| failed(error, &model.name))?;
     files.extend(where_it_fails.files().map_err(anyhow::Error::new)?);
@@ -68,6 +88,9 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     }
     let n = [&measured.observed.fit, &measured.observed.holdout].map(Vec::len);
     let mut text = as_text(&model.name, (&diagnosis, &object), n);
+    if let Some(calibration) = &calibration {
+        text.push_str(&calibration_as_text(calibration, &diagnosis));
+    }
     text.push_str(&next::as_text(&diagnosis, &next));
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     text.push_str(&format!("\nwritten to {}: {}\n", results.shown(), names.join(", ")));
@@ -98,139 +121,4 @@ fn propose(
             Ok((format!("model+{}.toml", effects.join("+")), text))
         })
         .collect()
-}
-
-pub(crate) fn as_text(
-    model: &str,
-    (diagnosis, object): (&Diagnosis, &Value),
-    [n_fit, n_holdout]: [usize; 2],
-) -> String {
-    let mut text = format!("Model {model}: {n_fit} conditions to fit, {n_holdout} held out.");
-    // Without a held-out error nothing was fitted.
-    if !diagnosis.noise.is_null() {
-        text.push_str(&format!(" Errors {}.", noise_words(&diagnosis.noise)));
-    }
-    text.push('\n');
-    if let (Some(p1), Some(p_lof)) = (diagnosis.p1, diagnosis.p_lof) {
-        let explained = diagnosis.verdict == Verdict::NothingDetected;
-        text.push_str(&format!(
-            "Does the model explain the data?  {}   p1 {}   lack of fit p {}\n",
-            if explained { "YES" } else { "NO" },
-            probability(p1),
-            probability(p_lof)
-        ));
-    }
-    if !diagnosis.ranking.is_empty() {
-        text.push('\n');
-        text.push_str(&ranking(diagnosis));
-    }
-    if let Some(p) = diagnosis.p_lof_with {
-        text.push_str(&format!("\nLack of fit with the best: p {}.\n", probability(p)));
-    }
-    text.push_str(&format!("\nVERDICT  {}\n", reports::verdict_in_words(object)));
-    if let Some(strength) = reports::strength_in_words(object) {
-        text.push_str(&format!("{strength}\n"));
-    }
-    if !diagnosis.unexplained.hint.is_empty() {
-        text.push_str(&format!("{}.\n", diagnosis.unexplained.hint));
-    }
-    if !diagnosis.unexplained.depends_on.is_empty() {
-        let on = diagnosis.unexplained.depends_on.join(", ");
-        text.push_str(&format!("What remains of the force depends on {on}.\n"));
-    }
-    if let Some(table) = &diagnosis.unexplained.suggestion {
-        let intro = "A suggestion, not a finding: put this into the model file and diagnose again.";
-        text.push_str(&format!("\n{intro}\n\n{table}"));
-    }
-    text.push_str(&held_out(diagnosis));
-    text
-}
-
-/// The name of an effect, with the unit of its amplitude where that is no pure number.
-fn in_unit(effect: &RankedEffect) -> String {
-    match effect.unit.as_str() {
-        "1" => effect.id.clone(),
-        unit => format!("{} ({unit})", effect.id),
-    }
-}
-
-fn ranking(diagnosis: &Diagnosis) -> String {
-    let header = ["effect", "q", "se", "delta", "behind", "ranked first if there", "limit"];
-    let mut table = table(&header);
-    let best = diagnosis.ranking.first().and_then(|effect| effect.delta).unwrap_or(0.0);
-    let number = |value: Option<f64>, digits: usize| {
-        value.map_or("-".to_owned(), |value| format!("{value:.digits$}"))
-    };
-    let ranked = || diagnosis.ranking.iter().filter(|effect| effect.status == Status::Ranked);
-    for effect in ranked() {
-        let q = number(effect.q, 4);
-        let (q, se) = match effect.at_bound {
-            Some(Bound::Lower) => (format!("at most {q}"), "end of the range".to_owned()),
-            Some(Bound::Upper) => (format!("at least {q}"), "end of the range".to_owned()),
-            None => (q, number(effect.se, 4)),
-        };
-        table.add_row([
-            in_unit(effect),
-            q,
-            se,
-            number(effect.delta, 1),
-            number(effect.delta.map(|delta| best - delta), 1),
-            number(effect.predicted_top1, 2),
-            number(effect.detection_limit, 4),
-        ]);
-    }
-    let mut text = lines(&table);
-    let alike = |effect: &&RankedEffect| diagnosis.not_separable.contains(&effect.id);
-    for effect in ranked().filter(alike).filter(|effect| !effect.note.is_empty()) {
-        text.push_str(&format!(" separable: {} {}\n", effect.id, effect.note));
-    }
-    for effect in diagnosis.ranking.iter().filter(|effect| effect.status != Status::Ranked) {
-        let what = match effect.status {
-            Status::NotIntegrated => "could not be computed",
-            Status::Imitated => "not told from the parameters",
-            Status::NotTestable | Status::NotTested | Status::Ranked => "not testable",
-        };
-        text.push_str(&format!(" {what}: {} ({})\n", effect.id, effect.note));
-    }
-    for effect in ranked().filter(|effect| effect.unusual && effect.delta > Some(0.0)) {
-        let (q, [least, most]) = (effect.q.unwrap_or(0.0), effect.usual_range.unwrap_or_default());
-        let id = &effect.id;
-        text.push_str(&format!(" unusual: {id} of {q:.4}, where {least} to {most} is usual\n"));
-    }
-    text
-}
-
-fn held_out(diagnosis: &Diagnosis) -> String {
-    let (Some(held_out), false) = (&diagnosis.holdout, diagnosis.amplitudes.is_empty()) else {
-        return String::new();
-    };
-    let shown = |error: f64| match held_out.unit {
-        Unit::Position => format!("{:.3} mm", 1e3 * error),
-        Unit::Relative => format!("{:.1} %", 1e2 * error),
-    };
-    let which = match held_out.conditions {
-        LeftOut::Holdout => "held-out conditions",
-        LeftOut::OneAtATime => "conditions left out one at a time (the set holds out none)",
-    };
-    let errors = (held_out.before, held_out.after, held_out.noise_floor);
-    let mut text = match errors {
-        (Some(before), Some(after), Some(floor)) => format!(
-            "Error on {which}: {} before, {} after (noise of the means {}).\n",
-            shown(before),
-            shown(after),
-            shown(floor)
-        ),
-        _ => format!("No error on {which}: none could be predicted both without and with it.\n"),
-    };
-    let all = held_out.conditions_judged + held_out.not_predicted.len();
-    for one in &held_out.not_predicted {
-        let by = match one.by {
-            Fails::Before => "without it",
-            Fails::After => "with it",
-            Fails::Both => "either way",
-        };
-        let (id, why) = (&one.condition, &one.why);
-        text.push_str(&format!("Not predicted {by}, 1 of {all} and in no error: {id} ({why}).\n"));
-    }
-    text
 }

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use configs::contact_laws::{ActsOn, GRAIN_FORCES, GrainForceEntry, LAWS, LawEntry};
+use configs::contact_laws::{
+    ActsOn, Candidacy, Candidate, GRAIN_FORCES, GrainForceEntry, LAWS, LawEntry,
+};
 use configs::engine::ledger::{Channel, ChannelKind};
 use configs::engine::params::{Default, ParamSpec, Range};
 use configs::engine::units::format_si;
@@ -46,6 +48,51 @@ struct Described {
     shows_with: Vec<&'static str>,
     /// The effects that look like it.
     twins: Vec<Twin>,
+    on_beds: OnBeds,
+}
+
+/// Whether the diagnosis of a bed of grains looks for an effect.
+enum OnBeds {
+    /// It is simulated.
+    Simulated(Candidate),
+    /// It is predicted by a force law.
+    Predicted,
+    /// It is not looked for, for this reason.
+    No(&'static str),
+}
+
+impl From<Candidacy> for OnBeds {
+    fn from(candidacy: Candidacy) -> Self {
+        match candidacy {
+            Candidacy::Candidate(candidate) => Self::Simulated(candidate),
+            Candidacy::None(why) => Self::No(why),
+        }
+    }
+}
+
+impl OnBeds {
+    fn text(&self) -> String {
+        match self {
+            Self::Simulated(Candidate { amplitude, screen, range: (least, most), .. }) => {
+                format!("of beds: {amplitude}, {least} to {most}, screened at {screen}")
+            }
+            Self::Predicted => "of beds: predicted by the force law nearest to the bed".to_owned(),
+            Self::No(why) => format!("not of beds: {why}"),
+        }
+    }
+
+    fn json(&self) -> Value {
+        match self {
+            Self::Simulated(candidate) => json!({
+                "amplitude": candidate.amplitude,
+                "screened_at": candidate.screen,
+                "range": [candidate.range.0, candidate.range.1],
+                "told_apart": candidate.separable_from,
+            }),
+            Self::Predicted => json!({ "by": "force-law" }),
+            Self::No(why) => json!({ "none": why }),
+        }
+    }
 }
 
 impl From<&LawEntry> for Described {
@@ -68,6 +115,7 @@ impl From<&LawEntry> for Described {
             variables: &[],
             shows_with: Vec::new(),
             twins: Vec::new(),
+            on_beds: law.candidacy.into(),
         }
     }
 }
@@ -88,15 +136,21 @@ impl From<&GrainForceEntry> for Described {
             variables: &[],
             shows_with: Vec::new(),
             twins: Vec::new(),
+            on_beds: force.candidacy.into(),
         }
     }
 }
 
 impl From<&ResistanceEntry> for Described {
     fn from(law: &ResistanceEntry) -> Self {
-        let (acts_on, table, visible) = match law.role {
-            Role::Baseline => ("resistance-base", "[resistance]", &[][..]),
-            Role::Effect(facts) => ("resistance-effect", "[[effect]]", facts.visible),
+        let (acts_on, table, visible, absent) = match law.role {
+            Role::Baseline => {
+                ("resistance-base", "[resistance]", &[][..], Some("it is the force law itself"))
+            }
+            Role::Effect(facts) => {
+                let absent = facts.kind.absent_from_beds();
+                ("resistance-effect", "[[effect]]", facts.visible, absent)
+            }
         };
         Self {
             name: law.name,
@@ -112,6 +166,7 @@ impl From<&ResistanceEntry> for Described {
             variables: law.variables,
             shows_with: visible.iter().map(|need| need.describe()).collect(),
             twins: twins(law.name).collect(),
+            on_beds: absent.map_or(OnBeds::Predicted, OnBeds::No),
         }
     }
 }
@@ -216,6 +271,7 @@ fn as_text(law: &Described) -> String {
         let name = if index == 0 { "told apart" } else { "" };
         line(name, &format!("from {}", twin.describe()));
     }
+    line("diagnosis", &law.on_beds.text());
     text.push_str("\nparameters\n");
     let width = law.params.iter().map(|spec| spec.key.len()).max().unwrap_or(0) + 2;
     for spec in law.params {
@@ -274,6 +330,7 @@ fn as_json(law: &Described) -> Value {
             "kind": kind_name(channel.kind),
         })).collect::<Vec<_>>(),
     });
+    object["diagnosis_of_beds"] = law.on_beds.json();
     if !law.variables.is_empty() {
         object["variables"] = json!(law.variables);
     }

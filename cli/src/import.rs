@@ -1,7 +1,7 @@
 //! `plunge import`: what LAMMPS made of an exported impact, as the log of a run; tables of tracking programs,
 //! as a measurement set, are in `import_tables`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use exchange::lammps::{FACTS, ImportError, Imported, import};
 use exchange::run_files::{RunFiles, is_log};
@@ -9,33 +9,10 @@ use serde_json::json;
 
 use crate::BEGINS_AGAIN;
 use crate::control::stopped;
-use crate::import_tables::{self, Tables};
+use crate::import_args::Args;
+use crate::import_tables;
 use crate::output::{self, CommandError, CommandResult};
 use crate::signals;
-
-/// Arguments of `plunge import`.
-#[derive(clap::Args, Debug)]
-pub(crate) struct Args {
-    /// Tables of tracking programs, spreadsheets, patterns or a folder of them; an import.toml; or the folder
-    /// that `plunge export MODEL --to lammps` wrote, and in which LAMMPS has run.
-    #[arg(required_unless_present = "from")]
-    pub(crate) files: Vec<PathBuf>,
-    /// The folder of the measurement set to write. Of LAMMPS: the log, or a folder for it; without it, into
-    /// its own folder.
-    #[arg(short, long, value_name = "SET|RUN.mcap")]
-    pub(crate) out: Option<PathBuf>,
-    /// Replace what is there.
-    #[arg(long)]
-    pub(crate) force: bool,
-    /// Print one JSON object to stdout.
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Say nothing when it went well.
-    #[arg(long)]
-    pub(crate) quiet: bool,
-    #[command(flatten)]
-    pub(crate) tables: Tables,
-}
 
 pub(crate) fn run(args: &Args) -> CommandResult {
     match &args.files[..] {

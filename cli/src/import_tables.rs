@@ -8,87 +8,9 @@ use exchange::tracking::{
 use measurements::{ContradictionKind, Loaded, MeasurementSet};
 use serde_json::json;
 
-use crate::compare::{lines, table};
-use crate::import::Args;
+use crate::import_args::{Args, Tables};
 use crate::output::{self, CommandError, CommandResult, stderr_color};
-
-/// What no table holds.
-#[derive(clap::Args, Debug)]
-#[command(next_help_heading = "Tables of tracked drops")]
-pub(crate) struct Tables {
-    /// Repeat the import that this import.toml holds.
-    #[arg(long, value_name = "import.toml", conflicts_with = "files")]
-    from: Option<PathBuf>,
-    /// Diameter of the body, such as 25.4mm; {field} stands for a field of --condition, here and below.
-    #[arg(long)]
-    diameter: Option<String>,
-    /// Mass of the body, such as "67 g".
-    #[arg(long)]
-    mass: Option<String>,
-    /// Shape of the body; sphere unless said.
-    #[arg(long)]
-    shape: Option<String>,
-    /// Height of a cylinder or cone.
-    #[arg(long)]
-    height: Option<String>,
-    /// Full apex angle of a cone, such as 60deg.
-    #[arg(long)]
-    apex: Option<String>,
-    /// A table of bodies: body, diameter (mm), mass (g), shape.
-    #[arg(long, value_name = "TABLE")]
-    bodies: Option<PathBuf>,
-    /// Level of the undisturbed surface on the axis of the table, such as 18.4cm or 812px; without it, from the contacts.
-    #[arg(long, value_name = "LEVEL", allow_hyphen_values = true)]
-    surface: Option<String>,
-    /// The point of the body that was tracked: lowest or centre. It matters where --surface is given.
-    #[arg(long, value_name = "POINT")]
-    tracked: Option<String>,
-    /// The axis counts upward. Without it and --down, the fall tells.
-    #[arg(long, conflicts_with = "down")]
-    up: bool,
-    /// The axis counts downward.
-    #[arg(long)]
-    down: bool,
-    /// Length of a pixel, such as 0.21mm/px.
-    #[arg(long)]
-    scale: Option<String>,
-    /// Frames per second, such as 650Hz: times are counted by frames.
-    #[arg(long)]
-    rate: Option<String>,
-    /// Unit of positions where the table does not say it, or says another.
-    #[arg(long, value_name = "UNIT")]
-    length_unit: Option<String>,
-    /// Unit of times, likewise.
-    #[arg(long, value_name = "UNIT")]
-    time_unit: Option<String>,
-    /// Take a fall that does not accelerate by gravity as it is.
-    #[arg(long)]
-    trust_units: bool,
-    /// Gravity; 9.81 m/s^2 unless said.
-    #[arg(long)]
-    gravity: Option<String>,
-    /// Height of release of the lowest point above the surface: the speed is that of a free fall from it.
-    #[arg(long, value_name = "HEIGHT")]
-    drop_height: Option<String>,
-    /// How names of files or runs are made, such as "{body}_h{height}_r{repeat}"; without it, speeds tell conditions.
-    #[arg(long, value_name = "PATTERN")]
-    condition: Option<String>,
-    /// Runs to go on without, separated by commas.
-    #[arg(long, value_name = "RUNS")]
-    leave_out: Option<String>,
-    /// Name of a column: t=NAME, z=NAME (vertical), x=NAME or run=NAME. Repeatable.
-    #[arg(long, value_name = "t=NAME")]
-    column: Vec<String>,
-    /// Bulk density of the bed, such as "1.52 g/cc".
-    #[arg(long)]
-    bulk_density: Option<String>,
-    /// Mean diameter of the grains.
-    #[arg(long)]
-    grain_diameter: Option<String>,
-    /// Name of the set; that of its folder unless said.
-    #[arg(long)]
-    id: Option<String>,
-}
+use crate::text::{lines, table};
 
 impl Tables {
     fn options(&self) -> Result<Options, CommandError> {

@@ -16,6 +16,7 @@ mod diagnose;
 mod effects;
 mod export;
 mod import;
+mod import_args;
 mod import_tables;
 mod new;
 mod new_set;
@@ -29,6 +30,8 @@ mod signals;
 mod sweep;
 mod table_file;
 mod task;
+mod text;
+mod verdict;
 mod view;
 mod workbench;
 
@@ -69,7 +72,7 @@ enum Command {
     /// Write a run or an impact as files of other programs: tables, grains for viewers, a LAMMPS input.
     Export(export::Args),
     /// Make a measurement set of tables of tracking programs; or a log of a run of LAMMPS.
-    Import(Box<import::Args>),
+    Import(Box<import_args::Args>),
     /// Save everything readable of a damaged or unfinished log.
     Recover(recover::Args),
     /// Serve a log to viewers in a browser, and say how to open it in the others.

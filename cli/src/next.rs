@@ -4,7 +4,7 @@ use comfy_table::Cell;
 use diagnosis::next::Recommendation;
 use diagnosis::verdict::{Diagnosis, Verdict};
 
-use crate::compare::{lines, table};
+use crate::text::{lines, table};
 
 /// The recommendations that `diagnosis` carries, best first, as text; nothing where nothing is to be
 /// told apart.

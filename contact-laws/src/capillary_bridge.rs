@@ -5,10 +5,11 @@ use std::f64::consts::{PI, TAU};
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::lanes::Lanes;
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
 use crate::adhesion::{Bond, Energy, Pull};
+use crate::candidate::{Candidacy, Candidate, Need};
 use crate::registry::{ActsOn, FromParams, LawEntry};
 
 /// The pull of a pendular bridge of liquid, from the first touch until it ruptures.
@@ -128,31 +129,28 @@ const CHANNELS: &[Channel] = &[
 ];
 
 const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        key: "surface_tension",
-        dimension: Dimension::SURFACE_ENERGY,
-        default: Default::Value(0.072),
-        allowed: Range::NOT_NEGATIVE,
-        plausible: Range::closed(0.01, 0.5),
-        meaning: "γ of the liquid; 0.072 N/m is water's",
-    },
-    ParamSpec {
-        key: "contact_angle",
-        dimension: Dimension::ANGLE,
-        default: Default::Value(0.0),
-        allowed: Range::closed(0.0, std::f64::consts::FRAC_PI_2),
-        plausible: Range::closed(0.0, 1.2),
-        meaning: "θ of the liquid on the grains",
-    },
-    ParamSpec {
-        key: "liquid_volume",
-        dimension: Dimension::VOLUME,
-        default: Default::Required,
-        allowed: Range::POSITIVE,
-        plausible: Range::closed(1e-16, 1e-7),
-        meaning: "V, the liquid of one bridge; valid while it is small against the grains",
-    },
+    ParamSpec::required(
+        "surface_tension",
+        Dimension::SURFACE_ENERGY,
+        "γ of the liquid; 0.072 N/m is water's",
+    )
+    .or(0.072)
+    .usual(0.01, 0.5),
+    ParamSpec::required("contact_angle", Dimension::ANGLE, "θ of the liquid on the grains")
+        .or(0.0)
+        .allowed(Range::closed(0.0, std::f64::consts::FRAC_PI_2))
+        .usual(0.0, 1.2),
+    ParamSpec::required(
+        "liquid_volume",
+        Dimension::VOLUME,
+        "V, the liquid of one bridge; valid while it is small against the grains",
+    )
+    .allowed(Range::POSITIVE)
+    .usual(1e-16, 1e-7),
 ];
+
+/// Volume of a bridge that is looked for, in that of a grain: a bed that is wet by about a per cent.
+const WET: f64 = 0.01;
 
 /// The registry's line.
 pub(crate) const ENTRY: LawEntry = LawEntry {
@@ -163,6 +161,18 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
     signature: "A constant resistance at low water content, with loss at every rupture.",
     source: "Willett, Adams, Johnson & Seville, Langmuir 16, 9396 (2000)",
     params: PARAMS,
+    candidacy: Candidacy::Candidate(Candidate {
+        amplitude: "pull of a bridge over the weight of a mean grain",
+        screen: 5.0,
+        range: (0.0, 100.0),
+        separable_from: "from cohesion-dmt: grains that are pulled apart; from friction: slow impacts",
+        alike_below: &["rail-friction"],
+        needs: &[Need::Gravity],
+        params: |grain, q| {
+            let surface_tension = q * grain.weight / (TAU * grain.radius);
+            vec![("surface_tension", surface_tension), ("liquid_volume", WET * grain.volume)]
+        },
+    }),
     ..LawEntry::of::<CapillaryBridge>()
 };
 

@@ -1,12 +1,15 @@
 //! Cohesion as a constant pull, as Derjaguin, Muller and Toporov have it.
 
+use std::f64::consts::PI;
+
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::lanes::Lanes;
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{ParamSpec, ParamTable};
 use engine::units::Dimension;
 
 use crate::adhesion::{Bond, Energy, Pull};
+use crate::candidate::{Candidacy, Candidate, Need};
 use crate::registry::{ActsOn, FromParams, LawEntry};
 
 /// A constant attraction while two bodies overlap.
@@ -78,14 +81,12 @@ const CHANNELS: &[Channel] = &[
     Channel { name: "cohesion-dmt", kind: ChannelKind::Dissipated },
 ];
 
-const PARAMS: &[ParamSpec] = &[ParamSpec {
-    key: "work_of_adhesion",
-    dimension: Dimension::SURFACE_ENERGY,
-    default: Default::Required,
-    allowed: Range::NOT_NEGATIVE,
-    plausible: Range::closed(1e-4, 10.0),
-    meaning: "W, energy per area that parting the surfaces takes, twice the surface energy",
-}];
+const PARAMS: &[ParamSpec] = &[ParamSpec::required(
+    "work_of_adhesion",
+    Dimension::SURFACE_ENERGY,
+    "W, energy per area that parting the surfaces takes, twice the surface energy",
+)
+.usual(1e-4, 10.0)];
 
 /// The registry's line.
 pub(crate) const ENTRY: LawEntry = LawEntry {
@@ -95,16 +96,24 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
     signature: "A constant resistance: shallow impacts stop earlier, crater walls stand.",
     source: "Derjaguin, Muller & Toporov, J. Colloid Interface Sci. 53, 314 (1975)",
     params: PARAMS,
+    candidacy: Candidacy::Candidate(Candidate {
+        amplitude: "pull-off over the weight of a mean grain",
+        screen: 5.0,
+        range: (0.0, 100.0),
+        separable_from: "from capillary-bridge: grains that are pulled apart; from friction: slow impacts",
+        alike_below: &["rail-friction", "capillary-bridge"],
+        needs: &[Need::Gravity],
+        // Two equal grains have R* = r/2 and part at 2π W R*.
+        params: |grain, q| vec![("work_of_adhesion", q * grain.weight / (PI * grain.radius))],
+    }),
     ..LawEntry::of::<CohesionDmt>()
 };
 
 #[cfg(test)]
 mod tests {
-    use engine::lanes::Record;
-    use std::f64::consts::PI;
-
     use super::*;
     use crate::hertz::tests::{OVERLAP, RADIUS_EFF, acted, close, contact};
+    use engine::lanes::Record;
 
     const WORK: f64 = 0.05;
 

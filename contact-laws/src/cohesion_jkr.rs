@@ -5,10 +5,11 @@ use std::f64::consts::PI;
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::lanes::Lanes;
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{ParamSpec, ParamTable};
 use engine::units::Dimension;
 
 use crate::adhesion::{Bond, Energy, Pull};
+use crate::candidate::Candidacy;
 use crate::hertz::{Elastic, params};
 use crate::registry::{ActsOn, FromParams, LawEntry};
 
@@ -149,14 +150,14 @@ const CHANNELS: &[Channel] = &[
     Channel { name: "cohesion-jkr", kind: ChannelKind::Dissipated },
 ];
 
-const PARAMS: &[ParamSpec] = &params::specs_on_base(ParamSpec {
-    key: "work_of_adhesion",
-    dimension: Dimension::SURFACE_ENERGY,
-    default: Default::Required,
-    allowed: Range::NOT_NEGATIVE,
-    plausible: Range::closed(1e-4, 10.0),
-    meaning: "W, energy per area that parting the surfaces takes, twice the surface energy",
-});
+const PARAMS: &[ParamSpec] = &params::specs_on_base(
+    ParamSpec::required(
+        "work_of_adhesion",
+        Dimension::SURFACE_ENERGY,
+        "W, energy per area that parting the surfaces takes, twice the surface energy",
+    )
+    .usual(1e-4, 10.0),
+);
 
 /// The registry's line.
 pub(crate) const ENTRY: LawEntry = LawEntry {
@@ -167,6 +168,10 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
     signature: "A constant resistance with hysteresis: grains stick, crater walls stand.",
     source: "Johnson, Kendall & Roberts, Proc. R. Soc. Lond. A 324, 301 (1971)",
     params: PARAMS,
+    candidacy: Candidacy::None(
+        "cohesion-dmt stands for it: grains let go at 3/2 π W R* and not 2π W R*, and depths and times do not \
+         tell the two apart",
+    ),
     ..LawEntry::of::<CohesionJkr>()
 };
 

@@ -2,7 +2,6 @@
 
 use engine::lanes::Lanes;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
-use engine::units::Dimension;
 
 use crate::hertz::{self, Damping, Elastic, damping_ratio, params};
 use crate::registry::{ActsOn, LawEntry};
@@ -54,14 +53,9 @@ impl Damping for Restitution {
 }
 
 const PARAMS: &[ParamSpec] = &params::specs(
-    ParamSpec {
-        key: "restitution",
-        dimension: Dimension::NONE,
-        default: Default::Required,
-        allowed: Range { min: 0.0, max: 1.0, includes_min: false },
-        plausible: Range::closed(0.1, 1.0),
-        meaning: "e, speed of a head-on rebound over that of the impact",
-    },
+    ParamSpec::number("restitution", "e, speed of a head-on rebound over that of the impact")
+        .allowed(Range { min: 0.0, max: 1.0, includes_min: false })
+        .usual(0.1, 1.0),
     ParamSpec {
         default: Default::Value(1.0),
         meaning: "factor on the viscous part of the tangential force; 0 leaves friction alone",

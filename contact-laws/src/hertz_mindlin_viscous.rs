@@ -1,7 +1,7 @@
 //! Hertz–Mindlin with a viscoelastic material.
 
 use engine::lanes::Lanes;
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{Default, ParamSpec, ParamTable};
 use engine::units::Dimension;
 
 use crate::hertz::{self, Damping, Elastic, params};
@@ -52,14 +52,12 @@ impl Damping for Viscous {
 }
 
 const PARAMS: &[ParamSpec] = &params::specs(
-    ParamSpec {
-        key: "viscous_time",
-        dimension: Dimension::TIME,
-        default: Default::Required,
-        allowed: Range::NOT_NEGATIVE,
-        plausible: Range::closed(1e-8, 1e-2),
-        meaning: "A, damping force over stiffness and normal velocity",
-    },
+    ParamSpec::required(
+        "viscous_time",
+        Dimension::TIME,
+        "A, damping force over stiffness and normal velocity",
+    )
+    .usual(1e-8, 1e-2),
     ParamSpec {
         default: Default::Value(0.0),
         meaning: "f, damping of shear over A k_t; 0 leaves it to friction, 1 damps it alike",

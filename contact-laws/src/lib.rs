@@ -1,6 +1,7 @@
 //! The contact laws and effects of plunge, each in a file of its own and one line of [`LAWS`].
 
 mod adhesion;
+mod candidate;
 mod capillary_bridge;
 mod cohesion_dmt;
 mod cohesion_jkr;
@@ -16,6 +17,7 @@ mod rolling_resistance;
 mod twisting_resistance;
 mod velocity_restitution;
 
+pub use candidate::{Candidacy, Candidate, MeanGrain, Need};
 pub use grain_force::{GRAIN_FORCES, GrainForceEntry, find_grain_force};
 pub use hertz::damping_ratio;
 pub use registry::{ActsOn, FromParams, LawEntry};

@@ -3,7 +3,7 @@
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::lanes::{Coarse, Lanes, Vector, select_vector, shortened, vector_where};
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
 use crate::damped::Damped;
@@ -158,62 +158,38 @@ const CHANNELS: &[Channel] = &[
 ];
 
 const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        key: "normal_stiffness",
-        dimension: Dimension::STIFFNESS,
-        default: Default::Required,
-        allowed: Range::POSITIVE,
-        plausible: Range::closed(1e2, 1e8),
-        meaning: "k_n, force per overlap",
-    },
-    ParamSpec {
-        key: "tangential_stiffness",
-        dimension: Dimension::STIFFNESS,
-        default: Default::SameAs("normal_stiffness"),
-        allowed: Range::POSITIVE,
-        plausible: Range::closed(1e2, 1e8),
-        meaning: "k_t, force per length of the tangential spring",
-    },
-    ParamSpec {
-        key: "normal_damping_rate",
-        dimension: Dimension::RATE,
-        default: Default::Required,
-        allowed: Range::NOT_NEGATIVE,
-        plausible: Range::closed(0.0, 1e6),
-        meaning: "γ_n, damping force per reduced mass and normal velocity",
-    },
-    ParamSpec {
-        key: "tangential_damping_rate",
-        dimension: Dimension::RATE,
-        default: Default::Value(0.0),
-        allowed: Range::NOT_NEGATIVE,
-        plausible: Range::closed(0.0, 1e6),
-        meaning: "γ_t, damping force per reduced mass and slip velocity",
-    },
-    ParamSpec {
-        key: "friction",
-        dimension: Dimension::NONE,
-        default: Default::Required,
-        allowed: Range::NOT_NEGATIVE,
-        plausible: Range::closed(0.0, 1.5),
-        meaning: "μ, Coulomb limit of the tangential force over |F_n|",
-    },
-    ParamSpec {
-        key: "wall_friction",
-        dimension: Dimension::NONE,
-        default: Default::SameAs("friction"),
-        allowed: Range::NOT_NEGATIVE,
-        plausible: Range::closed(0.0, 1.5),
-        meaning: "μ between grains and walls",
-    },
-    ParamSpec {
-        key: "intruder_friction",
-        dimension: Dimension::NONE,
-        default: Default::SameAs("friction"),
-        allowed: Range::NOT_NEGATIVE,
-        plausible: Range::closed(0.0, 1.5),
-        meaning: "μ between grains and the intruder",
-    },
+    ParamSpec::required("normal_stiffness", Dimension::STIFFNESS, "k_n, force per overlap")
+        .allowed(Range::POSITIVE)
+        .usual(1e2, 1e8),
+    ParamSpec::required(
+        "tangential_stiffness",
+        Dimension::STIFFNESS,
+        "k_t, force per length of the tangential spring",
+    )
+    .same_as("normal_stiffness")
+    .allowed(Range::POSITIVE)
+    .usual(1e2, 1e8),
+    ParamSpec::required(
+        "normal_damping_rate",
+        Dimension::RATE,
+        "γ_n, damping force per reduced mass and normal velocity",
+    )
+    .usual(0.0, 1e6),
+    ParamSpec::required(
+        "tangential_damping_rate",
+        Dimension::RATE,
+        "γ_t, damping force per reduced mass and slip velocity",
+    )
+    .or(0.0)
+    .usual(0.0, 1e6),
+    ParamSpec::number("friction", "μ, Coulomb limit of the tangential force over |F_n|")
+        .usual(0.0, 1.5),
+    ParamSpec::number("wall_friction", "μ between grains and walls")
+        .same_as("friction")
+        .usual(0.0, 1.5),
+    ParamSpec::number("intruder_friction", "μ between grains and the intruder")
+        .same_as("friction")
+        .usual(0.0, 1.5),
 ];
 
 /// The registry's line.

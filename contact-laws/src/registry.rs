@@ -5,6 +5,8 @@ use engine::ledger::Channel;
 use engine::params::{ParamSpec, ParamTable};
 use engine::stage::{ContactStage, Stage};
 
+use crate::candidate::Candidacy;
+
 /// What a law acts on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ActsOn {
@@ -14,8 +16,8 @@ pub enum ActsOn {
     ContactEffect,
 }
 
-/// One law or effect: its one line in [`crate::LAWS`] makes it exist for `run`, `effects`, the docs
-/// and the shared tests.
+/// One law or effect: its one line in [`crate::LAWS`] makes it exist for `run`, `diagnose`,
+/// `effects`, the docs and the shared tests.
 pub struct LawEntry {
     /// The name in TOML, kebab-case.
     pub name: &'static str,
@@ -35,13 +37,15 @@ pub struct LawEntry {
     pub params: &'static [ParamSpec],
     /// The accounts it books energy to.
     pub channels: &'static [Channel],
+    /// Whether the diagnosis of a bed looks for it.
+    pub candidacy: Candidacy,
     /// Makes it from SI values that fill `params`.
     pub build: fn(&ParamTable) -> Box<dyn ContactStage>,
 }
 
 impl LawEntry {
-    /// The parts of an entry that follow from the law itself; the texts and parameters are to be
-    /// filled in.
+    /// The parts of an entry that follow from the law itself; the texts and parameters, and the candidacy
+    /// of an effect, are to be filled in.
     #[must_use]
     pub const fn of<L: FromParams>() -> Self {
         Self {
@@ -54,6 +58,7 @@ impl LawEntry {
             source: "",
             params: &[],
             channels: L::CHANNELS,
+            candidacy: Candidacy::None("a model has one contact law from the start"),
             build: |params| Box::new(Stage::new(&L::from_params(params))),
         }
     }

@@ -3,9 +3,9 @@
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::lanes::{Lanes, Vector, length, vector_where};
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
-use engine::units::Dimension;
+use engine::params::{ParamSpec, ParamTable};
 
+use crate::candidate::Candidacy;
 use crate::registry::{ActsOn, FromParams, LawEntry};
 
 /// A couple against rolling that does not depend on how fast it rolls.
@@ -88,14 +88,8 @@ impl FromParams for RollingConstantTorque {
 const CHANNELS: &[Channel] =
     &[Channel { name: "rolling-constant-torque", kind: ChannelKind::Dissipated }];
 
-const PARAMS: &[ParamSpec] = &[ParamSpec {
-    key: "rolling_friction",
-    dimension: Dimension::NONE,
-    default: Default::Required,
-    allowed: Range::NOT_NEGATIVE,
-    plausible: Range::closed(0.01, 0.3),
-    meaning: "μ_r, rolling torque over R* F_n",
-}];
+const PARAMS: &[ParamSpec] =
+    &[ParamSpec::number("rolling_friction", "μ_r, rolling torque over R* F_n").usual(0.01, 0.3)];
 
 /// The registry's line.
 pub(crate) const ENTRY: LawEntry = LawEntry {
@@ -105,6 +99,9 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
     signature: "More depth-linear friction, as rolling-resistance, but a bed that settles for long.",
     source: "Ai, Chen, Rotter & Ooi, Powder Technol. 206, 269 (2011), model A",
     params: PARAMS,
+    candidacy: Candidacy::None(
+        "rolling-resistance stands for it: both end at μ_r R* F_n, and they differ where grains are at rest",
+    ),
     ..LawEntry::of::<RollingConstantTorque>()
 };
 

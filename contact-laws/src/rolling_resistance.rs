@@ -3,9 +3,9 @@
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::lanes::{Lanes, Vector, length, select_vector, shortened, vector_where};
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
-use engine::units::Dimension;
+use engine::params::{ParamSpec, ParamTable};
 
+use crate::candidate::{Candidacy, Candidate};
 use crate::registry::{ActsOn, FromParams, LawEntry};
 
 /// A couple against rolling: a spring in the relative rotation with a dashpot, and a plastic limit.
@@ -137,22 +137,14 @@ const CHANNELS: &[Channel] = &[
 ];
 
 const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        key: "rolling_friction",
-        dimension: Dimension::NONE,
-        default: Default::Required,
-        allowed: Range::NOT_NEGATIVE,
-        plausible: Range::closed(0.01, 0.3),
-        meaning: "μ_r, limit of the rolling torque over R* |F_n|",
-    },
-    ParamSpec {
-        key: "rolling_damping_ratio",
-        dimension: Dimension::NONE,
-        default: Default::Value(0.3),
-        allowed: Range::NOT_NEGATIVE,
-        plausible: Range::closed(0.0, 1.0),
-        meaning: "η_r, damping of the rolling spring over its critical damping",
-    },
+    ParamSpec::number("rolling_friction", "μ_r, limit of the rolling torque over R* |F_n|")
+        .usual(0.01, 0.3),
+    ParamSpec::number(
+        "rolling_damping_ratio",
+        "η_r, damping of the rolling spring over its critical damping",
+    )
+    .or(0.3)
+    .usual(0.0, 1.0),
 ];
 
 /// The registry's line.
@@ -163,6 +155,15 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
     signature: "A higher angle of repose and depth-linear friction; depth and stopping time fall together.",
     source: "Ai, Chen, Rotter & Ooi, Powder Technol. 206, 269 (2011), model C",
     params: PARAMS,
+    candidacy: Candidacy::Candidate(Candidate {
+        amplitude: "rolling_friction",
+        screen: 0.1,
+        range: (0.0, 0.5),
+        separable_from: "from grain-friction: several angles, or bed and impact by different friction",
+        alike_below: &[],
+        needs: &[],
+        params: |_, q| vec![("rolling_friction", q)],
+    }),
     ..LawEntry::of::<RollingResistance>()
 };
 

@@ -3,9 +3,9 @@
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::lanes::Lanes;
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
-use engine::units::Dimension;
+use engine::params::{ParamSpec, ParamTable, Range};
 
+use crate::candidate::{Candidacy, Candidate, Need};
 use crate::registry::{ActsOn, FromParams, LawEntry};
 
 /// A couple along the normal against the relative rotation about it: a spring with a plastic limit.
@@ -118,22 +118,12 @@ const CHANNELS: &[Channel] = &[
 ];
 
 const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        key: "twisting_friction",
-        dimension: Dimension::NONE,
-        default: Default::Required,
-        allowed: Range::NOT_NEGATIVE,
-        plausible: Range::closed(0.001, 0.3),
-        meaning: "μ_o, limit of the twisting torque over R* F_n",
-    },
-    ParamSpec {
-        key: "twisting_stiffness_ratio",
-        dimension: Dimension::NONE,
-        default: Default::Value(0.1),
-        allowed: Range::POSITIVE,
-        plausible: Range::closed(0.01, 1.0),
-        meaning: "stiffness of the twisting spring over R*² k_n",
-    },
+    ParamSpec::number("twisting_friction", "μ_o, limit of the twisting torque over R* F_n")
+        .usual(0.001, 0.3),
+    ParamSpec::number("twisting_stiffness_ratio", "stiffness of the twisting spring over R*² k_n")
+        .or(0.1)
+        .allowed(Range::POSITIVE)
+        .usual(0.01, 1.0),
 ];
 
 /// The registry's line.
@@ -144,6 +134,15 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
     signature: "Small: a spinning intruder and grains that spin on their contacts stop earlier.",
     source: "Luding, Granul. Matter 10, 235 (2008)",
     params: PARAMS,
+    candidacy: Candidacy::Candidate(Candidate {
+        amplitude: "twisting_friction",
+        screen: 0.1,
+        range: (0.0, 1.0),
+        separable_from: "from rolling-resistance: hardly by depths and times",
+        alike_below: &[],
+        needs: &[Need::Spheres("discs in a plane do not twist against each other")],
+        params: |_, q| vec![("twisting_friction", q)],
+    }),
     ..LawEntry::of::<TwistingResistance>()
 };
 

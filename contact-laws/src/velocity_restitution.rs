@@ -3,9 +3,10 @@
 use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use engine::lanes::Lanes;
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{ParamSpec, ParamTable};
 use engine::units::Dimension;
 
+use crate::candidate::{Candidacy, Candidate, Need};
 use crate::hertz::{Elastic, params};
 use crate::registry::{ActsOn, FromParams, LawEntry};
 
@@ -90,14 +91,14 @@ impl FromParams for VelocityRestitution {
 const CHANNELS: &[Channel] =
     &[Channel { name: "velocity-restitution", kind: ChannelKind::Dissipated }];
 
-const PARAMS: &[ParamSpec] = &params::specs_on_base(ParamSpec {
-    key: "viscous_time",
-    dimension: Dimension::TIME,
-    default: Default::Required,
-    allowed: Range::NOT_NEGATIVE,
-    plausible: Range::closed(1e-8, 1e-2),
-    meaning: "A, damping force over stiffness and normal velocity",
-});
+const PARAMS: &[ParamSpec] = &params::specs_on_base(
+    ParamSpec::required(
+        "viscous_time",
+        Dimension::TIME,
+        "A, damping force over stiffness and normal velocity",
+    )
+    .usual(1e-8, 1e-2),
+);
 
 /// The registry's line.
 pub(crate) const ENTRY: LawEntry = LawEntry {
@@ -107,6 +108,15 @@ pub(crate) const ENTRY: LawEntry = LawEntry {
     signature: "Small: the early peak and the rebound of the bed fall with speed.",
     source: "Brilliantov, Spahn, Hertzsch & Pöschel, Phys. Rev. E 53, 5382 (1996)",
     params: PARAMS,
+    candidacy: Candidacy::Candidate(Candidate {
+        amplitude: "viscous_time (us)",
+        screen: 5.0,
+        range: (0.0, 100.0),
+        separable_from: "from restitution: a wide range of speeds",
+        alike_below: &[],
+        needs: &[Need::HertzLaw, Need::LawWithout("viscous_time")],
+        params: |_, q| vec![("viscous_time", q / 1e6)],
+    }),
     ..LawEntry::of::<VelocityRestitution>()
 };
 

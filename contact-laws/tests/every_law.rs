@@ -381,7 +381,7 @@ fn a_head_on_collision_of_a_linear_law_rebounds_as_its_damping_says() {
         table.set("normal_damping_rate", rate);
         let stages = [(entry.build)(&table)];
         let encounter = Encounter { mass_eff: mass, radius_eff: 1e-3, speed: 0.5 };
-        let found = engine::stage::restitution(&stages, Partner::Grain, &encounter);
+        let found = engine::rebound::restitution(&stages, Partner::Grain, &encounter);
         // A damped oscillator through half its period; it may attract before it lets go.
         let natural = (stiffness / mass - 0.25 * rate * rate).sqrt();
         let exact = libm::exp(-0.5 * rate * std::f64::consts::PI / natural);

@@ -87,7 +87,8 @@ impl Bench<'_> {
     pub fn fit(&self, start: &Point) -> Result<Fitted, BenchError> {
         let measured =
             self.observed.fit.iter().map(|&c| self.observed.conditions[c].layout.len()).sum();
-        let free = start.parameters.len() + start.effects.len();
+        let without_prior = self.forward.parameters().iter().filter(|one| one.prior.is_none());
+        let free = without_prior.count() + start.effects.len();
         if measured <= free {
             return Err(BenchError::TooFew { measured, free });
         }

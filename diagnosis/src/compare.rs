@@ -9,14 +9,14 @@ use crate::bench::{Bench, BenchError, Fitted};
 use crate::errors::Errors;
 use crate::fit::Fit;
 use crate::force_error::ForceError;
-use crate::forward::{Bound, Forward};
+use crate::forward::{Bound, Forward, ParameterKind};
 use crate::lack_of_fit::lack_of_fit;
 use crate::noise::{Noise, NoiseSource};
 use crate::observed::Observed;
 use crate::residual::{Unpredicted, predictable};
 use crate::rounding::{rounded, six_digits, six_digits_or_null};
 use crate::sensitivity::Point;
-use crate::where_it_fails::Failing;
+use crate::where_it_fails::{Failing, WhereItFails};
 
 /// A model under the name that a report gives it.
 #[derive(Clone, Copy)]
@@ -51,6 +51,19 @@ pub struct Comparison {
     pub notes: Vec<String>,
 }
 
+impl Comparison {
+    /// How every revision fails, where this is of `set` and its `observed`.
+    #[must_use]
+    pub fn where_it_fails<'a>(
+        &self,
+        set: &'a MeasurementSet,
+        observed: &'a Observed,
+    ) -> WhereItFails<'a> {
+        let models = self.models.iter().map(|model| model.failing.clone()).collect();
+        WhereItFails { set, observed, models, signatures: Vec::new() }
+    }
+}
+
 /// One model against the set.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelComparison {
@@ -58,6 +71,8 @@ pub struct ModelComparison {
     pub model: String,
     /// Refitted: value, standard error and unit of each.
     pub parameters: Map<String, Value>,
+    /// Errors that runs share, as the fit finds them.
+    pub apparatus: Map<String, Value>,
     /// Weighted sum of squares per number that was fitted to; about 1 for a model that is right.
     #[serde(serialize_with = "six_digits")]
     pub chi2_per_n: f64,
@@ -171,11 +186,13 @@ fn compare_one(
     seed: u64,
 ) -> Result<ModelComparison, BenchError> {
     let failing = Failing::of(bench, (name, &fitted), holdout, seed)?;
+    let measured = fitted.fit.residual.rows(0, bench.data(&fitted.weights).measured());
     let json = |errors: &Option<Errors>| errors.as_ref().map_or(Value::Null, Errors::to_json);
     Ok(ModelComparison {
         model: name.to_owned(),
         parameters: parameters(bench.forward, &fitted.fit),
-        chi2_per_n: fitted.fit.chi2 / fitted.fit.residual.len() as f64,
+        apparatus: apparatus(bench.forward, &fitted.fit),
+        chi2_per_n: measured.norm_squared() / measured.len() as f64,
         p_lof,
         rms: Rms { fit: json(&failing.fit), holdout: json(&failing.holdout) },
         fails: failing.force_errors.fails(),
@@ -184,11 +201,13 @@ fn compare_one(
     })
 }
 
-/// Value, standard error and unit of every free parameter; no error of one that is held at the end of its range.
+/// Value, standard error and unit of every free parameter of the model; no error of one that is held at the end of its
+/// range.
 #[must_use]
 pub fn parameters(forward: &dyn Forward, fit: &Fit) -> Map<String, Value> {
     let values = forward.parameters().iter().zip(&fit.point.parameters).enumerate();
     values
+        .filter(|(_, (parameter, _))| parameter.kind == ParameterKind::Model)
         .map(|(at, (parameter, value))| {
             let se = fit.standard_error(at).map_or(Value::Null, rounded);
             let at_bound = Bound::at(*value, parameter.min, parameter.max);
@@ -197,6 +216,25 @@ pub fn parameters(forward: &dyn Forward, fit: &Fit) -> Map<String, Value> {
                 "se": se,
                 "unit": parameter.unit,
                 "at_bound": at_bound,
+            });
+            (parameter.name.clone(), entry)
+        })
+        .collect()
+}
+
+/// Errors that runs share, as the fit finds them: value, standard error, unit, and the standard deviation of what is
+/// known beforehand.
+#[must_use]
+pub fn apparatus(forward: &dyn Forward, fit: &Fit) -> Map<String, Value> {
+    let values = forward.parameters().iter().zip(&fit.point.parameters).enumerate();
+    values
+        .filter(|(_, (parameter, _))| parameter.kind == ParameterKind::Apparatus)
+        .map(|(at, (parameter, value))| {
+            let entry = json!({
+                "value": rounded(*value),
+                "se": fit.standard_error(at).map_or(Value::Null, rounded),
+                "unit": parameter.unit,
+                "prior_sigma": parameter.prior.map_or(Value::Null, |prior| rounded(prior.sigma)),
             });
             (parameter.name.clone(), entry)
         })

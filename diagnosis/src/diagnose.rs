@@ -10,7 +10,7 @@ use crate::bench::{Bench, BenchError, Fitted};
 use crate::compare::parameters;
 use crate::force_error::ForceErrors;
 use crate::forward::{Candidate, Forward};
-use crate::held_out::HeldOut;
+use crate::held_out::{CLEAR, HeldOut, NEARER};
 use crate::lack_of_fit::lack_of_fit;
 use crate::marginal::marginals;
 use crate::noise::NoiseSource;
@@ -20,11 +20,15 @@ use crate::score::Ranking;
 use crate::sensitivity::Point;
 use crate::suggestion::suggestion;
 use crate::verdict::{
-    Amplitude, Diagnosis, RankedEffect, Status, Strength, StrengthReason, Unexplained, Verdict,
+    Amplitude, ApparatusError, Diagnosis, Evidence, RankedEffect, Status, Strength, StrengthReason,
+    Unexplained, Verdict,
 };
 
 /// Probability of error at which something counts as found, or a model as rejected.
 pub const ALPHA: f64 = 0.01;
+
+/// Standard errors above an amplitude up to which the true one lies, 95 % one-sided.
+const UPPER: f64 = 1.645;
 
 /// How often weights and ranking are taken in turn: the weights are those along the best model.
 const ROUNDS: usize = 2;
@@ -105,7 +109,8 @@ impl Judge<'_> {
         if self.ranking.p > ALPHA {
             return if adequate(p_lof) {
                 let baseline = &self.baseline;
-                self.diagnosis(Verdict::NothingDetected, baseline, (p_lof, None), String::new())
+                let verdict = nothing(self.bench, baseline);
+                self.diagnosis(verdict, baseline, (p_lof, None), (String::new(), None))
             } else {
                 let hint = "the model is rejected, and no listed effect helps".to_owned();
                 self.refuse((p_lof, None), hint)
@@ -117,30 +122,39 @@ impl Judge<'_> {
             let why = format!("with {leader} as much is free as was measured: nothing judges it");
             return Ok(cannot_tell(self.bench, why));
         }
-        if adequate(p_leader) {
-            let held_out = HeldOut::of(self.bench, &self.weighed, &self.leader)?;
+        let held_out = HeldOut::of(self.bench, &self.weighed, &self.leader)?;
+        let leader = self.name(self.ranking.scores[0].candidate());
+        // Nature does not use our formulas: what is left beside the leader counts where it can be seen in what was
+        // held out.
+        let is_of_its_form =
+            self.bench.forward.is_judged_by_held_out() && held_out.is_within_noise();
+        if adequate(p_leader) || is_of_its_form {
             if held_out.refutes() {
                 let hint = format!(
-                    "{} explains what was fitted, but predicts what was left out worse than without it",
-                    self.name(self.ranking.scores[0].candidate())
+                    "{leader} explains what was fitted, but predicts what was left out worse than without it"
                 );
                 return self.refuse((p_lof, p_leader), hint);
+            }
+            if let Some(hint) = self.too_small(&held_out) {
+                return self.below_noise((p_lof, p_leader), hint, held_out);
             }
             let verdict = match self.alike.len() {
                 1 => Verdict::Supported,
                 _ => Verdict::NotSeparable,
             };
-            return self.diagnosis(verdict, &self.leader, (p_lof, p_leader), String::new());
+            let found = (String::new(), Some(held_out));
+            return self.diagnosis(verdict, &self.leader, (p_lof, p_leader), found);
         }
         let pair = best_pair(self.bench, &self.weighed, &self.ranking, self.seed)?;
         if let Some(Pair { fitted, p }) = pair.filter(|pair| pair.p <= ALPHA) {
             let p_pair = lack_of_fit(self.bench, &fitted, self.seed)?;
             let held_out = HeldOut::of(self.bench, &self.weighed, &fitted)?;
-            if adequate(p_pair) && !held_out.refutes() {
+            if adequate(p_pair) && !held_out.refutes() && self.too_small(&held_out).is_none() {
                 let hint = format!(
                     "both are needed (each by chance: {p:.1e} at most), or one effect outside the list"
                 );
-                return self.diagnosis(Verdict::Pair, &fitted, (p_lof, p_pair), hint);
+                let found = (hint, Some(held_out));
+                return self.diagnosis(Verdict::Pair, &fitted, (p_lof, p_pair), found);
             }
         }
         let hint = format!(
@@ -150,8 +164,49 @@ impl Judge<'_> {
         self.refuse((p_lof, p_leader), hint)
     }
 
+    /// None of the candidates; below noise, where the model misses what was held out by little more than that.
     fn refuse(&self, p: (Option<f64>, Option<f64>), hint: String) -> Result<Diagnosis, BenchError> {
-        self.diagnosis(Verdict::NoneOfTheCandidates, &self.baseline, p, hint)
+        let held_out = HeldOut::of(self.bench, &self.baseline, &self.baseline)?;
+        if self.bench.forward.is_judged_by_held_out() && held_out.is_above_noise() == Some(false) {
+            return self.below_noise(p, hint, held_out);
+        }
+        let found = (hint, Some(held_out));
+        self.diagnosis(Verdict::NoneOfTheCandidates, &self.baseline, p, found)
+    }
+
+    fn below_noise(
+        &self,
+        p: (Option<f64>, Option<f64>),
+        hint: String,
+        held_out: HeldOut,
+    ) -> Result<Diagnosis, BenchError> {
+        self.diagnosis(Verdict::BelowNoise, &self.baseline, p, (hint, Some(held_out)))
+    }
+
+    /// Why an effect with this error on held-out conditions is too small to be named, if it is; the most of the best
+    /// that could be there is said with it.
+    fn too_small(&self, held_out: &HeldOut) -> Option<String> {
+        if !self.bench.forward.is_judged_by_held_out() {
+            return None;
+        }
+        let best = &self.ranking.scores[0];
+        let candidate = &self.bench.forward.candidates()[best.candidate()];
+        let most = best.amplitude().abs() + UPPER * best.standard_error.unwrap_or(0.0);
+        let hides = format!("{} of up to {most:.3} could hide here", candidate.id);
+        let times = |error: Option<f64>| Some(error? / held_out.noise_floor?);
+        let (before, after) = (times(held_out.before)?, times(held_out.after)?);
+        if held_out.is_above_noise() == Some(false) {
+            return Some(format!(
+                "held-out conditions are missed by {before:.2} times their noise, and a name needs {CLEAR}: {hides}"
+            ));
+        }
+        (held_out.is_nearer() == Some(false)).then(|| {
+            format!(
+                "with {}, held-out conditions are missed by {after:.2} times their noise after {before:.2} without it, \
+                 and a name needs {NEARER} of the error at most, whichever conditions are held out: {hides}",
+                candidate.id
+            )
+        })
     }
 
     fn diagnosis(
@@ -159,7 +214,7 @@ impl Judge<'_> {
         verdict: Verdict,
         proposed: &Fitted,
         (p_lof, p_lof_with): (Option<f64>, Option<f64>),
-        hint: String,
+        (hint, held_out): (String, Option<HeldOut>),
     ) -> Result<Diagnosis, BenchError> {
         let Self { bench, ranking, .. } = self;
         let leaders: Vec<String> =
@@ -184,14 +239,26 @@ impl Judge<'_> {
                 let se = proposed.fit.standard_error(proposed.fit.point.parameters.len() + at);
                 let candidate = &bench.forward.candidates()[index];
                 let (at_bound, unusual) = (candidate.bound_at(q), candidate.is_unusual(q, se));
-                Amplitude { id: self.name(index), q, se, at_bound, unusual }
+                let interval_95 = candidate.interval_95(q, se);
+                Amplitude { id: self.name(index), q, se, at_bound, interval_95, unusual }
             })
             .collect();
-        let held_out = HeldOut::of(bench, before, proposed)?;
-        let strength_reasons = doubts(bench, proposed, &amplitudes, &held_out);
+        let held_out = match held_out {
+            Some(known) => known,
+            None => HeldOut::of(bench, before, proposed)?,
+        };
+        let mut strength_reasons = doubts(bench, proposed, &amplitudes, &held_out);
+        let is_nothing =
+            matches!(verdict, Verdict::NothingDetected | Verdict::ExplainedByApparatus);
+        if is_nothing && held_out.is_above_noise() == Some(true) {
+            strength_reasons.push(StrengthReason::HeldOutAboveNoise);
+        }
         Ok(Diagnosis {
             verdict,
             strength: strength(&strength_reasons),
+            probability: None,
+            evidence: evidence(bench, proposed),
+            warnings: warnings(bench, &amplitudes),
             strength_reasons,
             effects: amplitudes.iter().map(|amplitude| amplitude.id.clone()).collect(),
             not_separable,
@@ -203,6 +270,7 @@ impl Judge<'_> {
             noise: proposed.noise.to_json(&bench.set.instrument),
             holdout: Some(held_out),
             unexplained,
+            apparatus: ApparatusError::all(bench.forward, &proposed.fit),
             next: Vec::new(),
             parameters: parameters(bench.forward, &proposed.fit),
             amplitudes,
@@ -214,6 +282,15 @@ impl Judge<'_> {
 
     fn name(&self, candidate: usize) -> String {
         self.bench.forward.candidates()[candidate].id.clone()
+    }
+}
+
+/// What a verdict without an effect is called: whether errors of the apparatus are named in `fitted`.
+fn nothing(bench: &Bench<'_>, fitted: &Fitted) -> Verdict {
+    let errors = ApparatusError::all(bench.forward, &fitted.fit);
+    match errors.iter().any(|error| error.named) {
+        true => Verdict::ExplainedByApparatus,
+        false => Verdict::NothingDetected,
     }
 }
 
@@ -245,6 +322,26 @@ fn doubts(
     doubts
 }
 
+/// What the noise of `fitted` is known from.
+fn evidence(bench: &Bench<'_>, fitted: &Fitted) -> Evidence {
+    match fitted.noise.source {
+        NoiseSource::Repeats if bench.observed.contrasts() < CONTRASTS => Evidence::FewRepeats,
+        NoiseSource::Repeats => Evidence::Repeats,
+        NoiseSource::Stated | NoiseSource::AssumedScatter | NoiseSource::Assumed => {
+            Evidence::StatedErrors
+        }
+    }
+}
+
+/// What was left aside of the measurements, and what is unusual of what is named.
+fn warnings(bench: &Bench<'_>, amplitudes: &[Amplitude]) -> Vec<String> {
+    let unusual = amplitudes.iter().filter(|amplitude| amplitude.unusual);
+    let unusual = unusual.map(|amplitude| {
+        format!("{} of {:.4} is outside of its usual range", amplitude.id, amplitude.q)
+    });
+    bench.observed.notes.iter().cloned().chain(unusual).collect()
+}
+
 fn strength(doubts: &[StrengthReason]) -> Strength {
     if doubts.is_empty() { Strength::Confirmed } else { Strength::Suggested }
 }
@@ -261,7 +358,7 @@ pub(crate) fn withdraw(
 ) -> Result<Diagnosis, BenchError> {
     let Some(baseline) = &diagnosis.baseline else { return Ok(diagnosis) };
     let verdict = match adequate(diagnosis.p_lof) {
-        true => Verdict::NothingDetected,
+        true => nothing(bench, baseline),
         false => Verdict::NoneOfTheCandidates,
     };
     let mut strength_reasons = diagnosis.strength_reasons;
@@ -276,6 +373,7 @@ pub(crate) fn withdraw(
         amplitudes: Vec::new(),
         amplitude_correlation: None,
         parameters: parameters(bench.forward, &baseline.fit),
+        apparatus: ApparatusError::all(bench.forward, &baseline.fit),
         noise: baseline.noise.to_json(&bench.set.instrument),
         proposed: Some(baseline.clone()),
         ..diagnosis

@@ -27,6 +27,9 @@ const REFUSED: f64 = 1e3;
 /// Share of a parameter by which it is moved for a derivative.
 const STEP: f64 = 1e-3;
 
+/// Share of the standard deviation of a prior around zero, likewise: above what rounding does to differences.
+const OF_PRIOR: f64 = 0.05;
+
 /// An unknown that moves the prediction by less than this share of what the others do is idle.
 const IDLE: f64 = 1e-6;
 
@@ -52,7 +55,8 @@ pub struct Fit {
     pub covariance: DMatrix<f64>,
     /// Weighted sum of squares.
     pub chi2: f64,
-    /// Whitened measured less predicted, condition after condition.
+    /// Whitened measured less predicted, condition after condition; then parameters with a prior: its mean less the
+    /// value, in its standard deviations.
     pub residual: DVector<f64>,
     /// Whitened derivative of the prediction by what is not held at a bound.
     pub jacobian: DMatrix<f64>,
@@ -139,7 +143,7 @@ impl Data<'_> {
         self.result(point, scales, &held)
     }
 
-    /// Whitened measured less predicted at `point`, condition after condition.
+    /// Whitened measured less predicted at `point`, condition after condition; then parameters with a prior likewise.
     ///
     /// # Errors
     /// If the model cannot be integrated there.
@@ -150,7 +154,22 @@ impl Data<'_> {
             let difference = mean - weight.predict(point, self.forward, condition)?;
             residual.extend(weight.whiten(&difference).iter());
         }
+        let known = self.forward.parameters().iter().zip(&point.parameters);
+        residual.extend(known.filter_map(|(parameter, value)| {
+            parameter.prior.map(|prior| (prior.mean - value) / prior.sigma)
+        }));
         Ok(DVector::from_vec(residual))
+    }
+
+    /// How many numbers were measured: rows of a residual, before those of priors.
+    #[must_use]
+    pub fn measured(&self) -> usize {
+        self.weights.iter().map(|weight| weight.shift.len()).sum()
+    }
+
+    fn rows(&self) -> usize {
+        let priors = self.forward.parameters().iter().filter(|one| one.prior.is_some());
+        self.measured() + priors.count()
     }
 
     /// Whitened derivative of the prediction at `point` by the unknowns of `fit` that are not held at
@@ -168,8 +187,8 @@ impl Data<'_> {
         scales: &[Scale],
         free: &[usize],
     ) -> Result<DMatrix<f64>, PredictError> {
-        let rows = self.weights.iter().map(|weight| weight.shift.len()).sum();
-        let mut jacobian = DMatrix::zeros(rows, free.len());
+        let here = self.residual(point)?;
+        let mut jacobian = DMatrix::zeros(self.rows(), free.len());
         for (column, &at) in free.iter().enumerate() {
             let step = scales[at].physical_step(value(point, at));
             let moved = |by: f64| {
@@ -177,13 +196,14 @@ impl Data<'_> {
                 *value_mut(&mut point, at) += by;
                 self.residual(&point)
             };
-            // To one side where the model cannot be integrated on the other.
-            let slope = match (moved(-step), moved(step)) {
-                (Ok(less), Ok(more)) => (less - more) / (2.0 * step),
-                (Ok(less), Err(_)) => (less - self.residual(point)?) / step,
-                (Err(_), Ok(more)) => (self.residual(point)? - more) / step,
+            // To the other side where the model cannot be integrated on one.
+            let slope = match moved(step) {
+                Ok(more) => (&here - more) / step,
                 // What cannot be moved at all is where it is, as at a bound.
-                (Err(_), Err(_)) => continue,
+                Err(_) => match moved(-step) {
+                    Ok(less) => (less - &here) / step,
+                    Err(_) => continue,
+                },
             };
             jacobian.set_column(column, &slope);
         }
@@ -224,8 +244,14 @@ impl Data<'_> {
             logarithmic: parameter.min >= 0.0 && parameter.start > 0.0,
             min: parameter.min,
             max: parameter.max,
-            // An open range says nothing of the size of a number that starts at zero.
-            step: STEP * parameter.start.abs().max(1e-3 * (parameter.max - parameter.min).min(1.0)),
+            // An open range says nothing of the size of a number that starts at zero; a prior does.
+            step: match parameter.prior {
+                Some(prior) if parameter.start == 0.0 => OF_PRIOR * prior.sigma,
+                _ => {
+                    let size = 1e-3 * (parameter.max - parameter.min).min(1.0);
+                    STEP * parameter.start.abs().max(size)
+                }
+            },
         });
         let candidates = self.forward.candidates();
         let amplitudes = start.effects.iter().map(|&(index, _)| Scale {
@@ -343,7 +369,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
     fn residuals(&self) -> Option<DVector<f64>> {
         let mut best = self.best.borrow_mut();
         let Some(residual) = self.residual_at(&self.unknowns) else {
-            let rows = self.data.weights.iter().map(|weight| weight.shift.len()).sum::<usize>();
+            let rows = self.data.rows();
             let size = REFUSED * (best.0.max(1.0) / rows.max(1) as f64).sqrt();
             return size.is_finite().then(|| DVector::from_element(rows, size));
         };

@@ -9,66 +9,21 @@
 mod chronology;
 mod groups;
 mod normal;
+mod part;
 mod trend;
 
-use serde::Serialize;
-
+pub use self::part::{ForceCell, ForceError, Group};
 pub use self::trend::Trend;
 
 use self::chronology::Chronology;
 use self::normal::Normal;
+use self::part::p_value;
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::covariate::OF_CONDITIONS;
 use crate::discovery::discoveries;
-use crate::rounding::six_digits;
 
 /// Share of false marks that is tolerated.
 const FALSE_DISCOVERIES: f64 = 0.05;
-
-/// A force error over a part of what was varied.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ForceError {
-    /// What was varied: `speed`, `angle_deg`, `z`, …
-    pub over: &'static str,
-    /// Least value of the part (SI, angles in degrees).
-    #[serde(serialize_with = "six_digits")]
-    pub from: f64,
-    /// Greatest value.
-    #[serde(serialize_with = "six_digits")]
-    pub to: f64,
-    /// By how much the force is larger than the model has it (1 = 100 %).
-    #[serde(serialize_with = "six_digits")]
-    pub force_error: f64,
-    /// Its standard error.
-    #[serde(serialize_with = "six_digits")]
-    pub se: f64,
-}
-
-/// A force error and whether to believe it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Group {
-    /// The error.
-    pub error: ForceError,
-    /// Whether it is a discovery at a rate of 5 % false ones.
-    pub significant: bool,
-}
-
-/// A force error in one condition around one depth.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ForceCell {
-    /// Index of the condition in the set.
-    pub condition: usize,
-    /// Where the part of the path begins (m).
-    pub from: f64,
-    /// Where it ends (m).
-    pub to: f64,
-    /// By how much the force is larger than the model has it (1 = 100 %).
-    pub force_error: f64,
-    /// Its standard error.
-    pub se: f64,
-    /// Whether it is a discovery at a rate of 5 % false ones.
-    pub significant: bool,
-}
 
 /// Where a fitted model fails, in the conditions that it was fitted to.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -157,22 +112,4 @@ fn marked_cells(mut cells: Vec<ForceCell>) -> Vec<ForceCell> {
 
 fn believed(p: impl Iterator<Item = f64>) -> Vec<bool> {
     discoveries(&p.collect::<Vec<_>>(), FALSE_DISCOVERIES)
-}
-
-/// Two-sided, of a normal number.
-fn p_value(value: f64, se: f64) -> f64 {
-    if se > 0.0 { libm::erfc((value / se).abs() / std::f64::consts::SQRT_2) } else { 1.0 }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::p_value;
-
-    #[test]
-    fn an_error_of_1_96_standard_errors_of_either_sign_happens_once_in_twenty() {
-        for value in [1.959964, -1.959964] {
-            assert!((p_value(value, 1.0) - 0.05).abs() < 1e-6);
-        }
-        assert!((p_value(0.0, 1.0) - 1.0).abs() < 1e-12 && p_value(1.0, 0.0) > 0.99);
-    }
 }

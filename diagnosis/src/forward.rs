@@ -39,6 +39,12 @@ pub trait Forward: Sync {
         None
     }
 
+    /// Whether an error on held-out conditions decides here whether an effect is named; of a bed, impacts on fresh beds
+    /// do so afterwards.
+    fn is_judged_by_held_out(&self) -> bool {
+        true
+    }
+
     /// Effects whose χ² falls by less than this behind the best are not told apart.
     fn separation(&self) -> f64 {
         SEPARATE
@@ -58,6 +64,9 @@ pub(crate) const SEPARATE: f64 = 9.2;
 
 /// At a bound is what differs from it by less than this share of it.
 const AT_BOUND: f64 = 1e-6;
+
+/// Standard errors to either side that hold 95 % of a normal distribution.
+const NORMAL_95: f64 = 1.96;
 
 /// An amplitude that is farther than so many standard errors outside of its usual range is outside of it.
 const OUTSIDE: f64 = 2.0;
@@ -86,6 +95,30 @@ pub struct Parameter {
     pub min: f64,
     /// Greatest allowed value (SI).
     pub max: f64,
+    /// What is known of it before the measurements, if anything is.
+    pub prior: Option<Prior>,
+    /// What it is of.
+    pub kind: ParameterKind,
+}
+
+/// What a parameter is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParameterKind {
+    /// The model: a coefficient, an amplitude of an effect that it has.
+    Model,
+    /// The apparatus: an error that runs share.
+    Apparatus,
+    /// The form of effects that are added: by how much it differs from their formula ([`Bend`]).
+    Form,
+}
+
+/// A normal distribution of what a number is before the measurements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prior {
+    /// Its mean (SI).
+    pub mean: f64,
+    /// Its standard deviation (SI).
+    pub sigma: f64,
 }
 
 /// An effect that could be added to a model.
@@ -141,6 +174,21 @@ impl Candidate {
         Bound::at(q, self.min, self.max)
     }
 
+    /// Least and greatest amplitude that an estimate `q` with standard error `se` allows, 95 %, within the range; `None`
+    /// for an end that the range decides.
+    #[must_use]
+    pub fn interval_95(&self, q: f64, se: Option<f64>) -> [Option<f64>; 2] {
+        let Some(se) = se else {
+            return match self.bound_at(q) {
+                Some(Bound::Upper) => [Some(q), None],
+                Some(Bound::Lower) => [None, Some(q)],
+                None => [None, None],
+            };
+        };
+        let [least, greatest] = [q - NORMAL_95 * se, q + NORMAL_95 * se];
+        [Some(least).filter(|end| *end > self.min), Some(greatest).filter(|end| *end < self.max)]
+    }
+
     /// Whether amplitude `q` is outside of what one would expect, by more than two of its standard errors `se`; none
     /// count where none is known, as at a bound.
     #[must_use]
@@ -150,7 +198,8 @@ impl Candidate {
     }
 }
 
-/// Run-level random inputs: all zero for the run of the mean bed.
+/// Inputs of a run that the model has no coefficient for, random ones and errors of the apparatus: all zero for the
+/// run of the mean bed before an exact apparatus.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scatter {
     /// Logarithm of the factor on each scattering coefficient.
@@ -159,16 +208,23 @@ pub struct Scatter {
     pub speed: f64,
     /// Deviation of the level of the surface (m): positive when it lies lower than assumed.
     pub level: f64,
+    /// How late the clock is zero (s): positive when contact is before it.
+    pub clock: f64,
+    /// Relative error of every length that is read.
+    pub scale: f64,
+    /// Relative deviation of the mass of the body from what is stated.
+    pub mass: f64,
+    /// Angle by which gravity leans forward (rad).
+    pub tilt: f64,
     /// Relative deviation of the whole resistance at equally spaced nodes of depth, from the surface
     /// to [`Scatter::reach`], linear in between; empty for none.
     pub along: Vec<f64>,
     /// Force normal to the velocity, in units of the resistance, at nodes likewise; in the plane of
     /// motion, positive out of the bed.
     pub sideways: Vec<f64>,
-    /// Relative change of the strength of every effect of the request, from the surface to
-    /// [`Scatter::reach`] and from rest to the impact speed, zero at half of each: an effect of the same
-    /// kind and another form.
-    pub bend: [f64; 2],
+    /// Relative change of the strength of every effect of the request with depth, from the surface to the greatest of the
+    /// set, and with speed, from rest to the greatest: an effect of the same kind and another form.
+    pub bend: Bend,
     /// Depth of the last node (m); beyond it the last value holds.
     pub reach: f64,
 }
@@ -177,9 +233,40 @@ impl Scatter {
     /// Whether this is the run of the mean bed.
     #[must_use]
     pub fn is_still(&self) -> bool {
-        let Self { coefficients, speed, level, along, sideways, .. } = self;
+        let Self { coefficients, speed, level, clock, scale, mass, tilt, along, sideways, .. } =
+            self;
         let lists = coefficients.iter().chain(along).chain(sideways);
-        lists.chain([speed, level]).all(|value| *value == 0.0)
+        lists.chain([speed, level, clock, scale, mass, tilt]).all(|value| *value == 0.0)
+    }
+}
+
+/// A smooth relative change over depth and speed, in polynomials that are between −1 and 1: straight and curved over
+/// depth, straight and curved over speed, and straight over both together.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bend(pub [f64; Self::TERMS]);
+
+impl Bend {
+    /// How many polynomials there are.
+    pub const TERMS: usize = 5;
+
+    /// The factor at these shares of depth and of speed, from 0 to 1; beyond, that of the end.
+    #[must_use]
+    pub fn factor(&self, depth: f64, speed: f64) -> f64 {
+        let [u, w] = [depth, speed].map(|share| 2.0 * share.clamp(0.0, 1.0) - 1.0);
+        let curved = |x: f64| 2.0 * x * x - 1.0;
+        let terms = [u, curved(u), w, curved(w), u * w];
+        1.0 + self.0.iter().zip(terms).map(|(by, term)| by * term).sum::<f64>()
+    }
+
+    /// Its derivative by the share of depth.
+    #[must_use]
+    pub fn growth(&self, depth: f64, speed: f64) -> f64 {
+        if !(0.0..1.0).contains(&depth) {
+            return 0.0;
+        }
+        let [u, w] = [depth, speed].map(|share| 2.0 * share.clamp(0.0, 1.0) - 1.0);
+        let Self([straight, curved, _, _, both]) = self;
+        2.0 * (straight + 4.0 * curved * u + both * w)
     }
 }
 

@@ -4,11 +4,14 @@ use measurements::Kind;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Serialize;
 
-use crate::bench::{Bench, BenchError, Fitted};
+use rand::RngExt;
+
+use crate::bench::{Bench, BenchError, DEFAULT_SEED, Fitted};
 use crate::errors::{Errors, Sums};
 use crate::fit::Data;
 use crate::noise::log_determinant;
 use crate::observed::{Observed, ObservedCondition};
+use crate::random::{Purpose, stream};
 use crate::rounding::{six_digits, six_digits_or_null};
 use crate::strength::StrengthReason;
 
@@ -24,6 +27,9 @@ pub struct HeldOut {
     /// What means of so many runs would miss the truth by.
     #[serde(serialize_with = "six_digits_or_null")]
     pub noise_floor: Option<f64>,
+    /// Share of what exceeds the noise that is explained: (before² − after²)/(before² − noise²); none where nothing does.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub explained: Option<f64>,
     /// What the three are root mean squares of.
     pub unit: Unit,
     /// Which conditions were left out.
@@ -32,6 +38,10 @@ pub struct HeldOut {
     pub conditions_judged: usize,
     /// The others, which no error counts.
     pub not_predicted: Vec<NotPredicted>,
+    /// Upper end of what `after` over `before` may be, were the conditions others (one-sided, 90 %): resampled over the
+    /// held-out conditions and, left out one at a time, those that were fitted to; none of fewer than three.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub ratio_at_most: Option<f64>,
     /// How much the logarithm of the predictive density rises by what is proposed, over the
     /// conditions that can be predicted both with and without it.
     #[serde(serialize_with = "six_digits")]
@@ -86,6 +96,19 @@ pub enum LeftOut {
 /// within what few held-out conditions say by chance.
 const REFUTED: f64 = 3.0;
 
+/// An error of the model on held-out conditions below so many times the noise of their means is nothing to explain.
+pub const CLEAR: f64 = 1.5;
+
+/// What is named leaves at most this share of the error on held-out conditions.
+pub const NEARER: f64 = 0.75;
+
+/// An error on held-out conditions up to so many times the noise of their means is noise.
+pub const WITHIN: f64 = 1.3;
+
+/// Choices of conditions among which the share is looked at, and of how many conditions at least.
+const CHOICES: usize = 1000;
+const FEWEST: usize = 3;
+
 impl HeldOut {
     /// Of `before` and `after`.
     ///
@@ -104,12 +127,25 @@ impl HeldOut {
             true => (LeftOut::OneAtATime, &bench.observed.fit),
             false => (LeftOut::Holdout, &bench.observed.holdout),
         };
+        let in_turn = |fitted: &Fitted| Predicted::left_out(bench, after, fitted);
+        let fitted_to: Vec<Pair> = match conditions {
+            LeftOut::OneAtATime => Vec::new(),
+            LeftOut::Holdout => {
+                let fit = &bench.observed.fit;
+                in_both(bench.observed, fit, in_turn(before)?, in_turn(after)?).0
+            }
+        };
         let predict = |fitted: &Fitted| match conditions {
             LeftOut::Holdout => Predicted::unseen(bench, after, fitted, judged),
-            LeftOut::OneAtATime => Predicted::left_out(bench, after, fitted),
+            LeftOut::OneAtATime => in_turn(fitted),
         };
         let (both, not_predicted) =
             in_both(bench.observed, judged, predict(before)?, predict(after)?);
+        // Few conditions say little of a share: those that were fitted to are left out in turn beside them.
+        let all: Vec<&Pair> = match conditions {
+            LeftOut::OneAtATime => both.iter().collect(),
+            LeftOut::Holdout => both.iter().chain(&fitted_to).collect(),
+        };
         let error = |which: fn(&(usize, Predicted, Predicted)) -> (usize, &Predicted)| {
             let mut sums = Sums::default();
             for (condition, predicted) in both.iter().map(which) {
@@ -119,16 +155,38 @@ impl HeldOut {
             pick(&sums.errors())
         };
         let compared: Vec<usize> = both.iter().map(|(condition, ..)| *condition).collect();
+        let errors = Self::share(
+            error(|(condition, before, _)| (*condition, before)),
+            error(|(condition, _, after)| (*condition, after)),
+            pick(&noise_floor(bench.observed, &compared)),
+        );
+        let [before, after, noise_floor, explained] = errors;
         Ok(Self {
-            before: error(|(condition, before, _)| (*condition, before)),
-            after: error(|(condition, _, after)| (*condition, after)),
-            noise_floor: pick(&noise_floor(bench.observed, &compared)),
+            before,
+            after,
+            noise_floor,
+            explained,
             unit,
             conditions,
             conditions_judged: compared.len(),
             not_predicted,
+            ratio_at_most: ratio_at_most(bench.observed, &all, unit),
             log_density_gain: both.iter().map(|(_, b, a)| a.log_density - b.log_density).sum(),
         })
+    }
+
+    /// Errors without and with what is proposed and their noise, and the share of what exceeds it that is explained.
+    pub(crate) fn share(
+        before: Option<f64>,
+        after: Option<f64>,
+        noise: Option<f64>,
+    ) -> [Option<f64>; 4] {
+        let square = |error: Option<f64>| error.map(|error| error * error);
+        let explained = square(before).zip(square(after)).zip(square(noise));
+        let explained = explained.filter(|((before, _), noise)| before > noise);
+        let explained =
+            explained.map(|((before, after), noise)| (before - after) / (before - noise));
+        [before, after, noise, explained.map(|share| share.clamp(0.0, 1.0))]
     }
 
     /// What keeps the errors from confirming what is proposed, if anything does: it has to predict what it has not seen
@@ -145,6 +203,29 @@ impl HeldOut {
         }
     }
 
+    /// Whether the model without it misses by more than [`CLEAR`] times the noise; `None` where that is not known.
+    #[must_use]
+    pub fn is_above_noise(&self) -> Option<bool> {
+        Some(self.before? >= CLEAR * self.noise_floor?)
+    }
+
+    /// Whether what is proposed takes at least a quarter of the error away, in most choices of the conditions too;
+    /// `None` where no error is known.
+    #[must_use]
+    pub fn is_nearer(&self) -> Option<bool> {
+        let ratio = self.after? / self.before?;
+        Some(ratio.max(self.ratio_at_most.unwrap_or(0.0)) <= NEARER)
+    }
+
+    /// Whether what is proposed leaves nothing of the error but noise, and takes half of it away at least.
+    #[must_use]
+    pub fn is_within_noise(&self) -> bool {
+        let errors = self.before.zip(self.after).zip(self.noise_floor);
+        errors.is_some_and(|((before, after), floor)| {
+            after <= WITHIN * floor && after <= 0.5 * before && self.is_nearer() == Some(true)
+        })
+    }
+
     /// Whether it predicts that worse, by more than chance excuses: means of few runs under few
     /// conditions have errors that hang together, so the density alone refutes some true effects.
     #[must_use]
@@ -153,6 +234,43 @@ impl HeldOut {
         self.log_density_gain < -REFUTED && no_nearer
     }
 }
+
+/// Upper end of the error with what is proposed over that without it, over choices of the conditions.
+fn ratio_at_most(observed: &Observed, all: &[&Pair], unit: Unit) -> Option<f64> {
+    let error = |condition: usize, one: &Predicted| {
+        let mut sums = Sums::default();
+        let condition = &observed.conditions[condition];
+        sums.add(&condition.layout.kinds(), &condition.mean, &one.error);
+        let errors = sums.errors();
+        let error = match unit {
+            Unit::Position => errors.position,
+            Unit::Relative => errors.relative,
+        };
+        Some(error?.powi(2))
+    };
+    let pairs: Vec<[f64; 2]> = all
+        .iter()
+        .filter_map(|(c, before, after)| Some([error(*c, before)?, error(*c, after)?]))
+        .collect();
+    if pairs.len() < FEWEST {
+        return None;
+    }
+    let mut random = stream(DEFAULT_SEED, Purpose::HeldOut, 0);
+    let mut ratios: Vec<f64> = (0..CHOICES)
+        .map(|_| {
+            let sum = (0..pairs.len()).fold([0.0; 2], |sum, _| {
+                let pair = pairs[random.random_range(0..pairs.len())];
+                [sum[0] + pair[0], sum[1] + pair[1]]
+            });
+            (sum[1] / sum[0]).sqrt()
+        })
+        .collect();
+    ratios.sort_by(f64::total_cmp);
+    Some(ratios[(CHOICES * 9).div_ceil(10) - 1]).filter(|ratio| ratio.is_finite())
+}
+
+/// A condition with both predictions of it.
+type Pair = (usize, Predicted, Predicted);
 
 /// A condition as a model predicts it, or why it does not.
 type Attempt = Result<Predicted, String>;
@@ -163,7 +281,7 @@ fn in_both(
     conditions: &[usize],
     before: Vec<Attempt>,
     after: Vec<Attempt>,
-) -> (Vec<(usize, Predicted, Predicted)>, Vec<NotPredicted>) {
+) -> (Vec<Pair>, Vec<NotPredicted>) {
     let (mut both, mut others) = (Vec::new(), Vec::new());
     for (&condition, pair) in conditions.iter().zip(before.into_iter().zip(after)) {
         let (by, why) = match pair {
@@ -202,8 +320,9 @@ impl Predicted {
             let conditions = [condition];
             let weights = bench.weights(&noisy.fit.point, &noisy.noise, &conditions)?;
             let data = Data { conditions: &conditions, ..bench.data(&weights) };
-            let residual = data.residual(&fitted.fit.point)?;
-            let jacobian = data.jacobian(&fitted.fit)?;
+            let rows = data.measured();
+            let residual = data.residual(&fitted.fit.point)?.rows(0, rows).into_owned();
+            let jacobian = data.jacobian(&fitted.fit)?.rows(0, rows).into_owned();
             let log_density = density(&residual, &(&jacobian * &parameters * jacobian.transpose()));
             Ok(Self { error: weights[0].colour(&residual), log_density })
         };
@@ -222,23 +341,24 @@ impl Predicted {
         noisy: &Fitted,
         fitted: &Fitted,
     ) -> Result<Vec<Attempt>, BenchError> {
-        let fit = bench.data(&noisy.weights).fit(&fitted.fit.point)?;
-        let all = fit.jacobian.tr_mul(&fit.jacobian);
+        let data = bench.data(&noisy.weights);
+        let residual = data.residual(&fitted.fit.point)?;
+        let jacobian = data.jacobian(&fitted.fit)?;
+        let (all, pull) = (jacobian.tr_mul(&jacobian), jacobian.tr_mul(&residual));
         let mut predicted = Vec::with_capacity(noisy.weights.len());
         let mut start = 0;
         for (&condition, weight) in bench.observed.fit.iter().zip(&noisy.weights) {
-            let observed = &bench.observed.conditions[condition];
-            let rows = observed.mean.len();
-            let residual = fit.residual.rows(start, rows).into_owned();
-            let jacobian = fit.jacobian.rows(start, rows).into_owned();
+            let rows = bench.observed.conditions[condition].mean.len();
+            let own = residual.rows(start, rows).into_owned();
+            let slope = jacobian.rows(start, rows).into_owned();
             start += rows;
-            let Some(others) = Cholesky::new(&all - jacobian.tr_mul(&jacobian)) else {
+            let Some(others) = Cholesky::new(&all - slope.tr_mul(&slope)) else {
                 predicted.push(Err("it alone fixes a parameter".to_owned()));
                 continue;
             };
-            let residual = &residual + &jacobian * others.solve(&jacobian.tr_mul(&residual));
-            let log_density =
-                density(&residual, &(&jacobian * others.solve(&jacobian.transpose())));
+            let step = others.solve(&(&pull - slope.tr_mul(&own)));
+            let residual = own - &slope * step;
+            let log_density = density(&residual, &(&slope * others.solve(&slope.transpose())));
             predicted.push(Ok(Self { error: weight.colour(&residual), log_density }));
         }
         Ok(predicted)
@@ -315,10 +435,12 @@ mod tests {
             before: error,
             after: error,
             noise_floor: error,
+            explained: None,
             unit: Unit::Position,
             conditions: LeftOut::Holdout,
             conditions_judged: judged,
             not_predicted: by.map(one).into_iter().collect(),
+            ratio_at_most: None,
             log_density_gain: gain,
         }
     }

@@ -12,10 +12,9 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::directions::Directions;
-use crate::forward::PredictError;
 use crate::noise::NoiseSource;
 use crate::redraw::Redraw;
-use crate::sensitivity::{Direction, bend_response, force_response};
+use crate::sensitivity::{Direction, force_response};
 
 /// Resampled sets of means.
 const DRAWS: usize = 1999;
@@ -25,6 +24,9 @@ const NODES: (usize, usize) = (10, 24);
 
 /// Spacing of the nodes where the path is long enough (m), if the grains are finer.
 const SPACING: f64 = 3e-3;
+
+/// A parameter that the measurements know to less than this share of its prior is free.
+const OWN_SHARE: f64 = 0.5;
 
 /// Spacing in grains.
 const GRAINS: f64 = 4.0;
@@ -40,12 +42,12 @@ pub fn lack_of_fit(
     seed: u64,
 ) -> Result<Option<f64>, BenchError> {
     let observed = bench.observed;
-    let residual = &fitted.fit.residual;
-    if residual.len() <= fitted.fit.n_free() {
+    let whole = &fitted.fit.residual;
+    if whole.len() <= fitted.fit.n_free() {
         return Ok(None);
     }
     if fitted.noise.source != NoiseSource::Repeats {
-        let freedom = (residual.len() - fitted.fit.n_free()) as f64;
+        let freedom = (whole.len() - fitted.fit.n_free()) as f64;
         return Ok(at_least(fitted.fit.chi2, freedom));
     }
     let reach = observed.fit.iter().fold(0.0_f64, |r, &c| r.max(observed.conditions[c].reach));
@@ -63,11 +65,13 @@ pub fn lack_of_fit(
         let sideways = response(Direction::Sideways, nodes.div_ceil(2))?;
         responses.push([along, sideways].map(|response| weight.whiten_columns(&response)));
     }
-    let imitated = imitated(bench, fitted, reach);
+    let measured = bench.data(&fitted.weights).measured();
+    let residual = whole.rows(0, measured).into_owned();
+    let imitated = imitated(bench, fitted);
     let directions = Directions::new(bench, &imitated, &responses);
     let mut noise = Redraw::new(bench, fitted, &directions, seed);
     let drawn: Vec<Vec<f64>> = (0..DRAWS).map(|_| directions.sizes(&noise.draw())).collect();
-    let measured = directions.sizes(&directions.of(residual));
+    let measured = directions.sizes(&directions.of(&residual));
     Ok(Some(smallest_probability(&measured, &drawn)))
 }
 
@@ -76,35 +80,20 @@ fn at_least(chi2: f64, freedom: f64) -> Option<f64> {
     ChiSquared::new(freedom).ok().map(|distribution| distribution.sf(chi2))
 }
 
-/// Whitened directions that are no lack of fit: what the parameters and amplitudes of `fitted` can do,
-/// and, since nature does not use our formulas, what its effects do whose strength changes with depth
-/// or with speed.
-fn imitated(bench: &Bench<'_>, fitted: &Fitted, reach: f64) -> DMatrix<f64> {
-    let bends = bends(bench, fitted, reach);
-    let mut all = fitted.fit.jacobian.clone();
-    // An effect that no body comes to rest under when it is bent is of its formula or not at all.
-    if let Ok(bends) = bends {
-        let own = all.ncols();
-        all = all.resize_horizontally(own + bends.ncols(), 0.0);
-        all.columns_mut(own, bends.ncols()).copy_from(&bends);
-    }
-    all
-}
-
-fn bends(bench: &Bench<'_>, fitted: &Fitted, reach: f64) -> Result<DMatrix<f64>, PredictError> {
-    let mut blocks = Vec::with_capacity(fitted.weights.len());
-    for (&condition, weight) in bench.observed.fit.iter().zip(&fitted.weights) {
-        let response = bend_response(&fitted.fit.point, bench.forward, condition, reach)?;
-        blocks.push(weight.whiten_columns(&response));
-    }
-    let mut all =
-        DMatrix::zeros(fitted.fit.residual.len(), blocks.first().map_or(0, DMatrix::ncols));
-    let mut start = 0;
-    for block in blocks {
-        all.view_mut((start, 0), block.shape()).copy_from(&block);
-        start += block.nrows();
-    }
-    Ok(all)
+/// Whitened directions that are no lack of fit: what the parameters and amplitudes of `fitted` can do. A parameter that
+/// its prior holds has done what it can in the fit, and is none of them.
+fn imitated(bench: &Bench<'_>, fitted: &Fitted) -> DMatrix<f64> {
+    let measured = bench.data(&fitted.weights).measured();
+    let parameters = bench.forward.parameters();
+    let is_free = |unknown: usize| {
+        let prior = parameters.get(unknown).and_then(|parameter| parameter.prior);
+        let known = fitted.fit.standard_error(unknown).unwrap_or(f64::INFINITY);
+        prior.is_none_or(|prior| known < OWN_SHARE * prior.sigma)
+    };
+    let free = fitted.fit.free().iter().enumerate();
+    let columns: Vec<usize> =
+        free.filter(|(_, unknown)| is_free(**unknown)).map(|(column, _)| column).collect();
+    fitted.fit.jacobian.rows(0, measured).select_columns(&columns)
 }
 
 /// Probability that the smallest probability of several sizes is as small as that of `measured`,

@@ -11,12 +11,15 @@
 //!    ([`errors`], [`lack_of_fit`], [`force_error`], [`residual`]), and [`where_it_fails`] writes that
 //!    as tables and [`mod@picture`]s;
 //! 5. [`diagnose::diagnose`] says which effect is missing, as a [`verdict`];
-//! 6. [`next::recommend`] says what to measure next where several effects remain.
+//! 6. [`mod@calibrate`] says how often such verdicts come true before sets of the same design;
+//! 7. [`next::recommend`] says what to measure next where several effects remain.
 //!
 //! [`runs`] holds a run against a run.
 
+pub mod apparatus;
 pub mod beds;
 pub mod bench;
+pub mod calibrate;
 mod chord;
 pub mod compare;
 pub mod covariate;

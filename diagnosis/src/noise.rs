@@ -18,11 +18,16 @@ use crate::sensitivity::{Sensitivity, Spread};
 /// Bounds of a relative scatter: below, it is nothing; above, a bed is no longer one condition.
 const SPREAD_BOUNDS: (f64, f64) = (1e-4, 1.0);
 
+/// Bounds of the scatter of what a set does not state: impact speed (relative), level (m), and clock (in frames).
+const SPEED_BOUNDS: (f64, f64) = (1e-5, 0.2);
+const LEVEL_BOUNDS: (f64, f64) = (1e-6, 1e-2);
+const FRAMES_BOUNDS: (f64, f64) = (1e-3, 2.0);
+
 /// Most that readings may be worse than stated.
 const READING_MOST: f64 = 30.0;
 
 /// Iterations after which the likelihood is taken as it is; a fraction of it is common.
-const ITERATIONS: u64 = 300;
+const ITERATIONS: u64 = 600;
 
 /// How much the numbers of one run scatter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +63,7 @@ impl Noise {
     /// What the set states: nothing is known about the run-to-run scatter.
     #[must_use]
     pub fn stated() -> Self {
-        let spread = Spread { coefficient: 0.0, path: 0.0, speed: 0.0, level: 0.0 };
+        let spread = Spread { coefficient: 0.0, path: 0.0, speed: 0.0, level: 0.0, clock: 0.0 };
         Self { source: NoiseSource::Stated, reading: 1.0, spread }
     }
 
@@ -101,10 +106,10 @@ impl Noise {
             .map(|(condition, sensitivity)| Term::new(condition, sensitivity))
             .collect();
         let likelihood = Likelihood { terms, instrument: *instrument };
-        let start = [self.reading, self.spread.coefficient, self.spread.path].map(libm::log);
-        let mut simplex = vec![start.to_vec()];
+        let start = self.to_logarithms(instrument);
+        let mut simplex = vec![start.clone()];
         for axis in 0..start.len() {
-            let mut corner = start.to_vec();
+            let mut corner = start.clone();
             corner[axis] += 0.4;
             simplex.push(corner);
         }
@@ -120,6 +125,27 @@ impl Noise {
         best.map_or(*self, |at| from_logarithms(&at, instrument))
     }
 
+    /// The logarithms of what is learned from repeats: reading, coefficients and path; then what the set states
+    /// nothing of, impact speed, level and, where frames have a rate, the clock.
+    fn to_logarithms(self, instrument: &Instrument) -> Vec<f64> {
+        let Spread { coefficient, path, speed, level, clock } = self.spread;
+        let mut all = vec![libm::log(self.reading), libm::log(coefficient), libm::log(path)];
+        let mut add = |value: f64, start: f64, (low, high): (f64, f64)| {
+            let value = if value > 0.0 { value } else { start };
+            all.push(libm::log(value.clamp(low, high)));
+        };
+        if instrument.speed_sigma_rel.is_none() {
+            add(speed, 3e-3, SPEED_BOUNDS);
+        }
+        if instrument.level_sigma.is_none() {
+            add(level, 1e-4, LEVEL_BOUNDS);
+        }
+        if let Some(rate) = instrument.rate {
+            add(clock * rate, 0.05, FRAMES_BOUNDS);
+        }
+        all
+    }
+
     /// As JSON for a report.
     #[must_use]
     pub fn to_json(&self, instrument: &Instrument) -> Value {
@@ -131,6 +157,7 @@ impl Noise {
             "path_force_sd": rounded(self.spread.path),
             "speed_sd": rounded(self.spread.speed),
             "level_sd_m": rounded(self.spread.level),
+            "clock_sd_s": rounded(self.spread.clock),
         })
     }
 
@@ -180,7 +207,19 @@ fn from_logarithms(at: &[f64], instrument: &Instrument) -> Noise {
     let least = least_position_error(instrument) / position_error(instrument);
     let reading = libm::exp(at[0]).clamp(least, READING_MOST);
     let [coefficient, path] = [at[1], at[2]].map(|log| libm::exp(log).clamp(low, high));
-    let spread = Spread::new(coefficient, path, instrument);
+    let mut spread = Spread::new(coefficient, path, instrument);
+    let mut others = at[3..].iter();
+    let mut next =
+        |(low, high): (f64, f64)| others.next().map_or(0.0, |log| libm::exp(*log).clamp(low, high));
+    if instrument.speed_sigma_rel.is_none() {
+        spread.speed = next(SPEED_BOUNDS);
+    }
+    if instrument.level_sigma.is_none() {
+        spread.level = next(LEVEL_BOUNDS);
+    }
+    if let Some(rate) = instrument.rate {
+        spread.clock = next(FRAMES_BOUNDS) / rate;
+    }
     Noise { source: NoiseSource::Repeats, reading, spread }
 }
 

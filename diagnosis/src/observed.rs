@@ -1,6 +1,9 @@
 //! What a measurement set says about the observables: the vectors of its runs, condition by condition.
 
-use measurements::{Condition, Frame, Instrument, Kind, MeasurementSet, Role, Run, StatedError};
+use measurements::{
+    Cleaned, Condition, Frame, Instrument, Kind, MeasurementSet, Role, Run, StatedError,
+    without_strays,
+};
 use nalgebra::DVector;
 use runner::beds::STOPPED;
 
@@ -29,6 +32,10 @@ fn counted(stated: f64) -> f64 {
 pub(crate) fn least_position_error(instrument: &Instrument) -> f64 {
     position_error(instrument).min(UNSTATED)
 }
+
+/// How many independent numbers the frames of one run hold of the scatter of runs: two coefficients, the impact speed
+/// and the slowest changes along the path.
+const OF_A_RUN: usize = 4;
 
 /// Most frames of the penetration that are compared; neighbours in time tell the same.
 pub(crate) const PENETRATION_FRAMES: usize = 24;
@@ -81,10 +88,11 @@ impl Observed {
     /// thinned; the analysed part ends when the speed of the mean run first falls below 5 % of the
     /// impact speed (a tenth earlier, where the resting point is measured), so the creep of shallow
     /// slow shots is left out. Scalars count where every run
-    /// of the condition has them.
+    /// of the condition has them. Stray frames and mistracked runs are left out ([`without_strays`]).
     #[must_use]
     pub fn of(set: &MeasurementSet) -> Self {
-        let mut notes = Vec::new();
+        let Cleaned { set, mut notes } = without_strays(set, position_error(&set.instrument));
+        let set = &set;
         let conditions: Vec<_> = (0..set.conditions.len())
             .map(|index| ObservedCondition::of(set, index, &mut notes))
             .collect();
@@ -131,6 +139,20 @@ impl Observed {
     #[must_use]
     pub fn contrasts(&self) -> usize {
         self.fit.iter().map(|&index| self.conditions[index].runs.len() - 1).sum()
+    }
+
+    /// From how many independent numbers the scatter of runs is known: the frames of one run are no more than
+    /// [`OF_A_RUN`] of them. Infinite where nothing is learned from repeats.
+    #[must_use]
+    pub fn freedom(&self) -> f64 {
+        let of = |&index: &usize| {
+            let condition = &self.conditions[index];
+            (condition.runs.len() - 1) * condition.mean.len().min(OF_A_RUN)
+        };
+        match self.fit.iter().map(of).sum::<usize>() {
+            0 => f64::INFINITY,
+            freedom => freedom as f64,
+        }
     }
 
     /// Whether every number of every condition to fit has a stated error.

@@ -14,6 +14,10 @@ pub(crate) enum Purpose {
     NoiseScale = 3,
     /// Runs in another order.
     Order = 4,
+    /// Choices of held-out conditions.
+    HeldOut = 5,
+    /// Sets that are simulated to see how often verdicts come true.
+    Simulation = 6,
 }
 
 /// The random numbers of condition (or other thing) `index` for `purpose`.
@@ -25,4 +29,12 @@ pub(crate) fn stream(seed: u64, purpose: Purpose, index: usize) -> Pcg64 {
 pub(crate) fn normal(random: &mut Pcg64) -> f64 {
     let radius = (-2.0 * libm::log(1.0 - random.random::<f64>())).sqrt();
     radius * libm::cos(std::f64::consts::TAU * random.random::<f64>())
+}
+
+/// A factor on a standard deviation that is known from `freedom` independent numbers only: it may be larger than it
+/// seems. Draws follow Wilson & Hilferty 1931, Proc. Natl. Acad. Sci. 17, 684.
+pub(crate) fn scale_of_noise(freedom: f64, random: &mut Pcg64) -> f64 {
+    let spread = 2.0 / (9.0 * freedom);
+    let mean_square = (1.0 - spread + normal(random) * spread.sqrt()).max(0.1).powi(3);
+    1.0 / mean_square.sqrt()
 }

@@ -6,15 +6,12 @@ use rand_pcg::Pcg64;
 
 use crate::bench::{Bench, Fitted};
 use crate::directions::{Along, Directions};
-use crate::random::{Purpose, normal, stream};
+use crate::random::{Purpose, normal, scale_of_noise, stream};
 
 /// Fewest runs of a condition that are resampled. The deviations of two have one direction and one
 /// size, whatever their sign, so that draws from them hardly differ; fewer are drawn from the noise
 /// model, which is learned from all conditions together.
 const ENOUGH_RUNS: usize = 4;
-
-/// How many numbers the noise model has.
-const NOISE_PARAMETERS: usize = 3;
 
 /// Errors of means, drawn from the deviations of runs.
 pub(crate) struct Redraw {
@@ -66,17 +63,16 @@ impl Redraw {
             Source { columns, runs, random: stream(seed, Purpose::Resampling, condition) }
         });
         let conditions = conditions.collect();
-        let deviations = bench.observed.fit.iter().map(|&condition| {
-            let observed = &bench.observed.conditions[condition];
-            (observed.runs.len() - 1) * observed.mean.len()
-        });
-        let freedom = deviations.sum::<usize>().saturating_sub(NOISE_PARAMETERS).max(1) as f64;
-        Self { conditions, freedom, scale: stream(seed, Purpose::NoiseScale, 0) }
+        Self {
+            conditions,
+            freedom: bench.observed.freedom(),
+            scale: stream(seed, Purpose::NoiseScale, 0),
+        }
     }
 
     /// Whitened errors of the means of all conditions along the directions that are looked at.
     pub(crate) fn draw(&mut self) -> Vec<Along> {
-        let scale = 1.0 / mean_square(self.freedom, normal(&mut self.scale)).sqrt();
+        let scale = scale_of_noise(self.freedom, &mut self.scale);
         let draw = |source: &mut Source| {
             let random = &mut source.random;
             let n = source.columns.own.ncols();
@@ -97,13 +93,6 @@ impl Redraw {
         };
         self.conditions.iter_mut().map(draw).collect()
     }
-}
-
-/// The mean square of `freedom` normal numbers where a normal number is `z` (Wilson & Hilferty 1931,
-/// Proc. Natl. Acad. Sci. 17, 684): a noise that is known from few numbers may be larger than it seems.
-fn mean_square(freedom: f64, z: f64) -> f64 {
-    let spread = 2.0 / (9.0 * freedom);
-    (1.0 - spread + z * spread.sqrt()).max(0.1).powi(3)
 }
 
 /// Factors on the deviations of `runs` runs whose sum has the covariance of their mean: they are drawn

@@ -4,6 +4,7 @@ use crate::bench::{Bench, Fitted};
 use crate::chord::extend;
 use crate::forward::PredictError;
 use crate::marginal::Marginals;
+use crate::noise::NoiseSource;
 use crate::sensitivity::Point;
 use crate::signature::{Signature, collinearity, signature, variance_along};
 use crate::significance::{NullScores, leads_again};
@@ -117,7 +118,7 @@ impl Ranking {
         seed: u64,
     ) -> Self {
         let signatures: Vec<&Signature> = scores.iter().map(|score| &score.signature).collect();
-        let null = NullScores::new(collinearity(&signatures), seed);
+        let null = NullScores::new(collinearity(&signatures), freedom(bench, fitted), seed);
         let rows = best_first(&scores);
         let scale = rows.first().map_or(1.0, |&best| {
             variance_along(bench, fitted, &scores[best].signature.unit).max(1.0)
@@ -179,7 +180,15 @@ pub(crate) fn by_chance(
     };
     let scale = variance_along(bench, fitted, &own.unit).max(1.0);
     let all: Vec<&Signature> = signatures.iter().collect();
-    NullScores::new(collinearity(&all), seed).family_wise_p(fall / scale)
+    NullScores::new(collinearity(&all), freedom(bench, fitted), seed).family_wise_p(fall / scale)
+}
+
+/// From how many numbers the size of the noise of `fitted` is known; infinite where it is stated.
+fn freedom(bench: &Bench<'_>, fitted: &Fitted) -> f64 {
+    match fitted.noise.source {
+        NoiseSource::Repeats => bench.observed.freedom(),
+        _ => f64::INFINITY,
+    }
 }
 
 /// The signatures that exist, and the candidates whose failed.

@@ -67,6 +67,8 @@ pub struct Spread {
     pub speed: f64,
     /// Of the level of the surface (m).
     pub level: f64,
+    /// Of the time at which a clip is zero (s).
+    pub clock: f64,
 }
 
 impl Spread {
@@ -74,7 +76,8 @@ impl Spread {
     #[must_use]
     pub fn new(coefficient: f64, path: f64, instrument: &Instrument) -> Self {
         let speed = instrument.speed_sigma_rel.unwrap_or(0.0);
-        Self { coefficient, path, speed, level: instrument.level_sigma.unwrap_or(0.0) }
+        let level = instrument.level_sigma.unwrap_or(0.0);
+        Self { coefficient, path, speed, level, clock: 0.0 }
     }
 }
 
@@ -84,6 +87,7 @@ enum Input {
     Coefficient(usize),
     Speed,
     Level,
+    Clock,
     Along(usize),
     Sideways(usize),
 }
@@ -119,7 +123,7 @@ impl Sensitivity {
         }
         let inputs: Vec<Input> = (0..coefficients)
             .map(Input::Coefficient)
-            .chain([Input::Speed, Input::Level])
+            .chain([Input::Speed, Input::Level, Input::Clock])
             .chain((0..ALONG).map(Input::Along))
             .chain((0..SIDEWAYS).map(Input::Sideways))
             .collect();
@@ -161,6 +165,7 @@ impl Sensitivity {
                 Input::Coefficient(_) => spread.coefficient,
                 Input::Speed => spread.speed,
                 Input::Level => spread.level,
+                Input::Clock => spread.clock,
                 Input::Along(_) => spread.path,
                 Input::Sideways(_) => 0.5 * spread.path,
             }),
@@ -181,6 +186,7 @@ impl Input {
             Self::Coefficient(_) => 0.05,
             Self::Speed => 0.01,
             Self::Level => 2e-4,
+            Self::Clock => 1e-4,
             Self::Along(_) => 0.1,
             Self::Sideways(_) => 0.05,
         }
@@ -196,6 +202,7 @@ impl Input {
             Self::Coefficient(index) => scatter.coefficients[index] = value,
             Self::Speed => scatter.speed = value,
             Self::Level => scatter.level = value,
+            Self::Clock => scatter.clock = value,
             Self::Along(index) => scatter.along = only(ALONG, index),
             Self::Sideways(index) => scatter.sideways = only(SIDEWAYS, index),
         }
@@ -243,30 +250,4 @@ pub fn force_response(
         columns.push(column.unwrap_or_else(|_| DVector::zeros(mean.len())));
     }
     Ok(DMatrix::from_columns(&columns))
-}
-
-/// Change of the observables by a change of the strength of the effects of `point` with depth, to
-/// `reach` (m), and with speed ([`Scatter::bend`]); one column each, none where there are no effects.
-///
-/// # Errors
-/// If the model cannot be integrated there.
-pub fn bend_response(
-    point: &Point,
-    forward: &dyn Forward,
-    condition: usize,
-    reach: f64,
-) -> Result<DMatrix<f64>, PredictError> {
-    const STEP: f64 = 0.05;
-    let coefficients = vec![0.0; forward.n_scattering_coefficients()];
-    let still = Scatter { coefficients, reach, ..Scatter::default() };
-    let mean = point.predict(forward, condition)?;
-    let columns = if point.effects.is_empty() { 0 } else { 2 };
-    let mut response = DMatrix::zeros(mean.len(), columns);
-    for (at, mut column) in response.column_iter_mut().enumerate() {
-        let mut bend = [0.0; 2];
-        bend[at] = STEP;
-        let bent = point.predict_run(forward, condition, &Scatter { bend, ..still.clone() })?;
-        column.copy_from(&((bent - &mean) / STEP));
-    }
-    Ok(response)
 }

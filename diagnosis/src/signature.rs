@@ -110,5 +110,6 @@ pub(crate) fn variance_along(bench: &Bench<'_>, fitted: &Fitted, unit: &DVector<
             part.norm_squared()
         };
     }
-    variance
+    // What remains are priors, of one standard deviation each.
+    variance + unit.rows(start, unit.len() - start).norm_squared()
 }

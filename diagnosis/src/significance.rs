@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix};
 
-use crate::random::{Purpose, normal, stream};
+use crate::random::{Purpose, normal, scale_of_noise, stream};
 
 /// Draws of the scores of all effects.
 const DRAWS: usize = 10_000;
@@ -17,7 +17,8 @@ pub(crate) struct NullScores {
 }
 
 impl NullScores {
-    pub(crate) fn new(collinearity: DMatrix<f64>, seed: u64) -> Self {
+    /// Under noise whose size is known from `freedom` independent numbers.
+    pub(crate) fn new(collinearity: DMatrix<f64>, freedom: f64, seed: u64) -> Self {
         let n = collinearity.nrows();
         let jittered = &collinearity + DMatrix::identity(n, n) * JITTER;
         // Without a factor (which rounding alone could cause) effects count as independent: cautious.
@@ -26,7 +27,10 @@ impl NullScores {
         let mut random = stream(seed, Purpose::Family, 0);
         let draw = |_| {
             let white: Vec<f64> = (0..n).map(|_| normal(&mut random)).collect();
-            (0..n).map(|i| (0..=i).map(|j| factor[(i, j)] * white[j]).sum()).collect()
+            let scale =
+                if freedom.is_finite() { scale_of_noise(freedom, &mut random) } else { 1.0 };
+            let score = |i| (0..=i).map(|j| factor[(i, j)] * white[j]).sum::<f64>();
+            (0..n).map(|i| scale * score(i)).collect()
         };
         Self { draws: (0..DRAWS).map(draw).collect(), collinearity }
     }
@@ -66,7 +70,8 @@ mod tests {
     use super::*;
 
     fn pair(cosine: f64) -> NullScores {
-        NullScores::new(DMatrix::from_row_slice(2, 2, &[1.0, cosine, cosine, 1.0]), 1)
+        let collinearity = DMatrix::from_row_slice(2, 2, &[1.0, cosine, cosine, 1.0]);
+        NullScores::new(collinearity, f64::INFINITY, 1)
     }
 
     #[test]

@@ -25,12 +25,18 @@ pub enum StrengthReason {
     FewRepeats,
     /// What was held out is not predicted better by more than chance.
     HeldOutNoBetter,
+    /// Held-out conditions are missed by more than the scatter of their repeats, though nothing is found: conditions
+    /// differ by more than their runs do.
+    HeldOutAboveNoise,
     /// Nothing that was held out could be predicted both without and with what is named.
     HeldOutNotJudged,
     /// What is named cannot predict a condition that the model without it predicts.
     ConditionsNotPredicted,
     /// An amplitude of what is named lies outside of the usual range of its effect, by more than two standard errors.
     AmplitudeOutsideUsualRange,
+    /// Something is left over beside what is named, below the noise of what was held out: it is of another form than
+    /// its formula, or there is more.
+    OfAnotherForm,
     /// The plan of impacts was too small to confirm anything.
     SmallPlan,
     /// Impacts with it, on fresh beds, are no nearer to what was held out.

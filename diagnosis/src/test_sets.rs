@@ -29,7 +29,17 @@ pub(crate) fn condition(speed: f64, angle_deg: f64) -> Condition {
 pub(crate) fn scalar_run(condition: usize, [stop_time, final_z, final_x]: [Option<f64>; 3]) -> Run {
     let name = format!("run {condition}");
     let frames = Vec::new();
-    Run { name, condition, repeat: None, order: None, stop_time, final_z, final_x, frames }
+    Run {
+        name,
+        condition,
+        repeat: None,
+        order: None,
+        session: None,
+        stop_time,
+        final_z,
+        final_x,
+        frames,
+    }
 }
 
 /// A run at 500 Hz from 0.05 s before first contact to 0.5 s after it.
@@ -53,6 +63,7 @@ pub(crate) fn set(kind: Kind, conditions: Vec<Condition>, runs: Vec<Run>) -> Mea
             position_sigma: Some(1e-4),
             speed_sigma_rel: Some(0.01),
             level_sigma: Some(2e-4),
+            ..Instrument::default()
         },
         bed: Bed {
             geometry: Geometry::Spatial,
@@ -67,6 +78,7 @@ pub(crate) fn set(kind: Kind, conditions: Vec<Condition>, runs: Vec<Run>) -> Mea
         feasible: Feasible::default(),
         conditions,
         runs,
+        keep: Vec::new(),
         notes: Vec::new(),
     }
 }

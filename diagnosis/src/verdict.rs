@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::bench::Fitted;
-use crate::forward::Bound;
+use crate::fit::Fit;
+use crate::forward::{Bound, Forward, ParameterKind};
 use crate::held_out::HeldOut;
 use crate::rounding::{six_digits, six_digits_or_null};
 use crate::sensitivity::Point;
@@ -24,8 +25,38 @@ pub enum Verdict {
     Pair,
     /// Something is missing that no listed effect explains.
     NoneOfTheCandidates,
+    /// Errors of the apparatus, and no effect.
+    ExplainedByApparatus,
+    /// Something is missing, and held-out conditions are missed by no more than a name needs.
+    BelowNoise,
     /// The data cannot answer.
     CannotTell,
+}
+
+/// Probabilities of what is true, given a verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Probability {
+    /// The effect that is named, or one of those named, is missing.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub right: Option<f64>,
+    /// Nothing is missing.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub nothing: Option<f64>,
+    /// Something is missing that no list has.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub unlisted: Option<f64>,
+}
+
+/// What the noise is known from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Evidence {
+    /// The scatter of repeats.
+    Repeats,
+    /// Repeats with fewer than eight independent deviations.
+    FewRepeats,
+    /// What the set states, or what is usual.
+    StatedErrors,
 }
 
 /// What became of an effect.
@@ -51,6 +82,12 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// What it rests on.
     pub strength: Strength,
+    /// How likely it is that this comes true; none unless sets of the same design were simulated.
+    pub probability: Option<Probability>,
+    /// What the noise is known from.
+    pub evidence: Evidence,
+    /// What one should know before one believes it, in sentences.
+    pub warnings: Vec<String>,
     /// Why it is only suggested; empty where it is confirmed.
     pub strength_reasons: Vec<StrengthReason>,
     /// The one effect (of a pair, the two) that the verdict names.
@@ -78,6 +115,8 @@ pub struct Diagnosis {
     pub holdout: Option<HeldOut>,
     /// What no listed effect explains.
     pub unexplained: Unexplained,
+    /// Errors that runs share, as the fit finds them.
+    pub apparatus: Vec<ApparatusError>,
     /// Experiments that would tell more, best first.
     pub next: Vec<Value>,
     /// Parameters with what is named added (without, where nothing is), with standard error and unit.
@@ -151,8 +190,64 @@ pub struct Amplitude {
     pub se: Option<f64>,
     /// The end of its range at which it is held.
     pub at_bound: Option<Bound>,
+    /// Least and greatest value that the data allow, 95 %; null where the range of the effect holds it back.
+    pub interval_95: [Option<f64>; 2],
     /// Whether it is outside of what one would expect of its effect, by more than two standard errors.
     pub unusual: bool,
+}
+
+/// An error that runs share: of the clock, the zero of depth, the speed, the scale, a mass, gravity or a session.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ApparatusError {
+    /// Which: `time-zero`, `depth-zero`, `speed-scale`, `camera-scale`, `tilt`, `mass` or `session`.
+    pub id: String,
+    /// Of which body, or of which session and coefficient.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub of: Option<String>,
+    /// How large the fit finds it.
+    #[serde(serialize_with = "six_digits")]
+    pub value: f64,
+    /// Its standard error.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub se: Option<f64>,
+    /// Unit of both.
+    pub unit: String,
+    /// Standard deviation of what is known beforehand.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub prior_sigma: Option<f64>,
+    /// Whether it is there, and larger than one would expect.
+    pub named: bool,
+}
+
+/// An error that is named is so many of its standard errors away from zero,
+const CLEAR_OF_ZERO: f64 = 4.0;
+
+/// and at least so many standard deviations of what is known beforehand.
+const UNEXPECTED: f64 = 1.5;
+
+impl ApparatusError {
+    /// All of `fit`.
+    pub(crate) fn all(forward: &dyn Forward, fit: &Fit) -> Vec<Self> {
+        let values = forward.parameters().iter().zip(&fit.point.parameters).enumerate();
+        let errors =
+            values.filter(|(_, (parameter, _))| parameter.kind == ParameterKind::Apparatus);
+        errors
+            .map(|(at, (parameter, &value))| {
+                let se = fit.standard_error(at);
+                let prior_sigma = parameter.prior.map(|prior| prior.sigma);
+                let beyond = |limit: f64, sigma: Option<f64>| {
+                    sigma.is_some_and(|sigma| value.abs() >= limit * sigma)
+                };
+                let (id, of) = match parameter.name.split_once(" (") {
+                    Some((id, of)) => (id.to_owned(), Some(of.trim_end_matches(')').to_owned())),
+                    None => (parameter.name.clone(), None),
+                };
+                let unit = parameter.unit.clone();
+                let named = beyond(CLEAR_OF_ZERO, se) && beyond(UNEXPECTED, prior_sigma);
+                Self { id, of, value, se, unit, prior_sigma, named }
+            })
+            .collect()
+    }
 }
 
 /// What remains.
@@ -173,6 +268,9 @@ impl Diagnosis {
         Self {
             verdict: Verdict::CannotTell,
             strength: Strength::Suggested,
+            probability: None,
+            evidence: Evidence::StatedErrors,
+            warnings: Vec::new(),
             strength_reasons: Vec::new(),
             effects: Vec::new(),
             not_separable: Vec::new(),
@@ -183,6 +281,7 @@ impl Diagnosis {
             p_lof_with: None,
             noise: Value::Null,
             holdout: None,
+            apparatus: Vec::new(),
             unexplained: Unexplained { hint: why, ..Unexplained::default() },
             next: Vec::new(),
             parameters: Map::new(),

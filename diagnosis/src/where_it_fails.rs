@@ -3,41 +3,23 @@
 //! A [`Failing`] is one model, [`WhereItFails`] all models of a report; its `files` are listed in
 //! `docs/output-files.md`.
 
+mod files;
 mod json;
 mod signature;
 mod tables;
 
 use measurements::MeasurementSet;
-use plots::PictureError;
-use thiserror::Error;
 
+pub use self::files::{FILES, FilesError};
 pub use self::signature::Signature;
 
 use crate::bench::{Bench, BenchError, Fitted};
-use crate::compare::Comparison;
 use crate::errors::Errors;
 use crate::force_error::ForceErrors;
 use crate::held_out::noise_floor;
 use crate::observed::Observed;
-use crate::picture;
 use crate::residual::{Residual, predictable, residuals};
 use crate::verdict::Diagnosis;
-
-/// Names of all files that there may be.
-pub const FILES: [&str; 12] = [
-    "force_errors.csv",
-    "residuals.csv",
-    "signatures.csv",
-    "where_it_fails.json",
-    "map-speed-angle.svg",
-    "map-depth.svg",
-    "residuals.svg",
-    "covariates.svg",
-    "errors.svg",
-    "revisions.svg",
-    "trajectories.svg",
-    "signatures.svg",
-];
 
 /// How one model fails.
 #[derive(Clone, Debug)]
@@ -67,20 +49,6 @@ pub struct WhereItFails<'a> {
     pub signatures: Vec<Signature>,
 }
 
-/// What keeps a table or picture from being written.
-#[derive(Debug, Error)]
-pub enum FilesError {
-    /// A table.
-    #[error("cannot write a table: {0}")]
-    Table(#[from] csv::Error),
-    /// The file of numbers.
-    #[error("cannot write numbers: {0}")]
-    Json(#[from] serde_json::Error),
-    /// A picture.
-    #[error(transparent)]
-    Picture(#[from] PictureError),
-}
-
 impl Failing {
     /// Of `fitted`, called `model`, with the held-out conditions `holdout`, which it can predict; orders of runs are drawn
     /// with `seed`.
@@ -105,17 +73,6 @@ impl Failing {
 }
 
 impl<'a> WhereItFails<'a> {
-    /// Of every revision of `comparison`, which is of `set` and its `observed`.
-    #[must_use]
-    pub fn of_comparison(
-        set: &'a MeasurementSet,
-        observed: &'a Observed,
-        comparison: &Comparison,
-    ) -> Self {
-        let models = comparison.models.iter().map(|model| model.failing.clone()).collect();
-        Self { set, observed, models, signatures: Vec::new() }
-    }
-
     /// Of the model called `name` as it is and with what `diagnosis` names, and what the two best
     /// candidates would do; orders of runs are drawn with `seed`.
     ///
@@ -144,32 +101,6 @@ impl<'a> WhereItFails<'a> {
         let signatures =
             signature::best_two(bench, baseline, (&models[0].residuals, &holdout), diagnosis);
         Ok(Self { set, observed, models, signatures })
-    }
-
-    /// Names and texts of the files; without those that the set cannot have.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
-    pub fn files(&self) -> Result<Vec<(String, String)>, FilesError> {
-        if self.models.is_empty() {
-            return Ok(Vec::new());
-        }
-        let texts = [
-            Some(tables::force_errors(self)?),
-            Some(tables::residuals(self)?),
-            tables::signatures(self)?,
-            Some(json::text(self)?),
-            picture::speed_angle(self)?,
-            picture::depth(self)?,
-            picture::residuals(self)?,
-            picture::covariates(self)?,
-            picture::errors(self)?,
-            picture::revisions(self)?,
-            picture::trajectories(self)?,
-            picture::signatures(self)?,
-        ];
-        let named = FILES.iter().zip(texts);
-        Ok(named.filter_map(|(name, text)| Some(((*name).to_owned(), text?))).collect())
     }
 
     /// What means of so many runs would miss the truth by, in the conditions that were fitted to and

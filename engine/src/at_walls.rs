@@ -14,9 +14,9 @@ use crate::contacts::stage::{ContactStage, Sweep};
 use crate::contacts::{Contacts, Evaluation, Tally, record_lens};
 use crate::dimension::{Dimension, Planar, Spatial};
 use crate::feature::Feature;
-use crate::grains::Space;
 use crate::lanes::MOST_LANES;
 use crate::math::{Quat, Vec3};
+use crate::space::Space;
 use crate::surface::Surface;
 
 /// Room for the points of one part: a cylinder has two rims of three.

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use crate::contact::Partner;
 use crate::math::{Quat, Vec3, cayley, quat_from_parts, quat_parts};
-use crate::stopping::Followed;
 use crate::surface::{Placement, Surface, Wrench};
 
 /// One convex part of a wall or an intruder: what a grain can touch.
@@ -16,6 +15,28 @@ pub struct Part {
     pub placement: Placement,
     /// Which parameters of a law apply.
     pub partner: Partner,
+}
+
+/// What is followed of an intruder to tell when it has stopped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Followed {
+    /// A point of it: the centre of mass, or the tip of a link (m).
+    pub position: Vec3,
+    /// Velocity there (m/s).
+    pub velocity: Vec3,
+    /// How far its lowest point lies below that point (m).
+    pub reach: f64,
+}
+
+impl Followed {
+    /// A body as a whole.
+    #[must_use]
+    pub fn of(body: &RigidBody) -> Self {
+        // A rotation of many steps has lost its norm by some 1e-13, which is not a depth.
+        let down = body.orientation.inverse_transform_vector(&-Vec3::z()).normalize();
+        let reach = body.surface().support(down);
+        Self { position: body.position, velocity: body.velocity, reach }
+    }
 }
 
 /// Something that moves under the forces of the bed: a rigid body, or bodies that are linked.

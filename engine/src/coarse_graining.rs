@@ -12,8 +12,9 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
-use crate::grains::{Grains, Space};
+use crate::grains::Grains;
 use crate::math::Vec3;
+use crate::space::Space;
 
 /// A grid of points in the plane y = const.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,8 +4,9 @@
 //! in the air. It is sampled on a square grid of columns a tenth of a mean diameter apart and averaged
 //! over rings about the axis of the impact (planar: over intervals to either side of it).
 
-use crate::grains::{Grains, Space};
+use crate::grains::Grains;
 use crate::math::Vec3;
+use crate::space::Space;
 
 /// Columns per mean grain diameter.
 const COLUMNS_PER_DIAMETER: f64 = 10.0;

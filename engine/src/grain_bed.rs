@@ -15,7 +15,7 @@ use crate::error::StepError;
 use crate::footprint::Footprint;
 use crate::grain_force::{self, GrainForce, GrainForces};
 use crate::grain_pass::{GrainPass, SumsOfGrains};
-use crate::grains::{Grain, Grains, Space};
+use crate::grains::{Grain, Grains};
 use crate::ledger::{ChannelKind, Term, TermKind};
 use crate::math::Vec3;
 use crate::neighbours::{
@@ -23,6 +23,7 @@ use crate::neighbours::{
 };
 use crate::parallel::BLOCK;
 use crate::recessive::RecessiveWork;
+use crate::space::Space;
 use crate::surface::Placement;
 
 /// Gap up to which grains are listed as near the intruder, in mean grain diameters.

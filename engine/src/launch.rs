@@ -64,7 +64,8 @@ pub fn height_in_touch(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grains::{Grain, Space};
+    use crate::grains::Grain;
+    use crate::space::Space;
     use crate::surface::SurfacePoint;
 
     /// Half a plane that leans steeply: the flank of a sharp wedge, along y and upward without end.

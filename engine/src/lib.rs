@@ -35,10 +35,11 @@ mod prefetch;
 mod recessive;
 pub mod record;
 pub mod simulation;
+mod space;
 pub mod step;
 pub mod stopping;
 pub mod surface;
 pub mod units;
 pub mod world;
 
-pub use contacts::stage;
+pub use contacts::{rebound, stage};

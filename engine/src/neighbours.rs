@@ -6,10 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::boundary::Period;
 use crate::dimension::{Dimension, Planar, Quad, Spatial};
-use crate::grains::{Grain, Grains, Space};
+use crate::grains::{Grain, Grains};
 use crate::lanes::{Eight, MOST_LANES, Mask, per_lane};
 use crate::math::Vec3;
 use crate::parallel::BLOCK;
+use crate::space::Space;
 
 /// Gap up to which grains are listed as neighbours, in mean grain diameters: the wider, the rarer lists are made. In a
 /// plane that is worth the memory.

@@ -58,10 +58,67 @@ pub struct ParamSpec {
     pub default: Default,
     /// The values that are accepted at all (SI).
     pub allowed: Range,
-    /// The values that one would expect (SI): a fit searches them, a value outside warns.
+    /// The values that one would expect (SI): a value outside warns.
     pub plausible: Range,
     /// One line of meaning.
     pub meaning: &'static str,
+}
+
+impl ParamSpec {
+    /// A quantity that the file must give, from zero on.
+    #[must_use]
+    pub const fn required(key: &'static str, dimension: Dimension, meaning: &'static str) -> Self {
+        let (allowed, plausible) = (Range::NOT_NEGATIVE, Range::NOT_NEGATIVE);
+        Self { key, dimension, default: Default::Required, allowed, plausible, meaning }
+    }
+
+    /// A pure number that the file must give, from zero on.
+    #[must_use]
+    pub const fn number(key: &'static str, meaning: &'static str) -> Self {
+        Self::required(key, Dimension::NONE, meaning)
+    }
+
+    /// The same under another name.
+    #[must_use]
+    pub const fn named(self, key: &'static str, meaning: &'static str) -> Self {
+        Self { key, meaning, ..self }
+    }
+
+    /// The same with this value (SI) where the file gives none.
+    #[must_use]
+    pub const fn or(self, value: f64) -> Self {
+        Self { default: Default::Value(value), ..self }
+    }
+
+    /// The same with the value of `key`, of the same table, where the file gives none.
+    #[must_use]
+    pub const fn same_as(self, key: &'static str) -> Self {
+        Self { default: Default::SameAs(key), ..self }
+    }
+
+    /// The same with the value of `key` of the contact law where the file gives none.
+    #[must_use]
+    pub const fn from_base(self, key: &'static str) -> Self {
+        Self { default: Default::FromBase(key), ..self }
+    }
+
+    /// The same with these values accepted (SI).
+    #[must_use]
+    pub const fn allowed(self, allowed: Range) -> Self {
+        Self { allowed, ..self }
+    }
+
+    /// The same with the values from `min` to `max` expected (SI).
+    #[must_use]
+    pub const fn usual(self, min: f64, max: f64) -> Self {
+        Self { plausible: Range::closed(min, max), ..self }
+    }
+
+    /// The same with these values expected (SI).
+    #[must_use]
+    pub const fn plausible(self, plausible: Range) -> Self {
+        Self { plausible, ..self }
+    }
 }
 
 /// SI values by key, complete for the specs it was filled from.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::body::RigidBody;
+use crate::body::Followed;
 use crate::math::Vec3;
 
 /// A speed below this share of the greatest so far counts as rest.
@@ -10,28 +10,6 @@ const REST_SPEED: f64 = 0.05;
 
 /// How long (s) an intruder has to be at rest before the impact is over.
 const REST_HOLD: f64 = 0.01;
-
-/// What is followed of an intruder.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Followed {
-    /// A point of it: the centre of mass, or the tip of a link (m).
-    pub position: Vec3,
-    /// Velocity there (m/s).
-    pub velocity: Vec3,
-    /// How far its lowest point lies below that point (m).
-    pub reach: f64,
-}
-
-impl Followed {
-    /// A body as a whole.
-    #[must_use]
-    pub fn of(body: &RigidBody) -> Self {
-        // A rotation of many steps has lost its norm by some 1e-13, which is not a depth.
-        let down = body.orientation.inverse_transform_vector(&-Vec3::z()).normalize();
-        let reach = body.surface().support(down);
-        Self { position: body.position, velocity: body.velocity, reach }
-    }
-}
 
 /// Follows one impact and notes its stopping times, depth and range.
 ///

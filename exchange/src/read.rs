@@ -4,6 +4,7 @@
 //! run was killed reads as far as it goes. Messages are decoded by the descriptors that the log
 //! carries: fields are found by their names, wherever a version of plunge has put them.
 
+mod error;
 mod fields;
 pub(crate) mod messages;
 mod records;
@@ -12,8 +13,7 @@ mod series;
 mod tests;
 
 use std::collections::BTreeMap;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use engine::record::chunk;
 use mcap::records::Record;
@@ -21,6 +21,7 @@ use mcap::records::Record;
 use fields::{EnergyFields, StateFields};
 use records::Records;
 
+pub use error::ReadError;
 pub use series::{BodyState, BodyStates, Closing, EnergyBudgets};
 
 /// What is kept of a log; the rest takes no memory.
@@ -43,56 +44,6 @@ pub struct RunRecord {
     pub energy: Option<EnergyBudgets>,
     /// Whether the log is finished; one that is not ends with its last whole chunk.
     pub complete: bool,
-}
-
-/// Why a log gives no series.
-#[derive(Debug, thiserror::Error)]
-pub enum ReadError {
-    /// The file system refused an operation.
-    #[error("{}: cannot {doing}: {source}", path.display())]
-    Io {
-        /// The log.
-        path: PathBuf,
-        /// What was being done, as in "cannot …".
-        doing: &'static str,
-        /// The operating system's answer.
-        source: io::Error,
-    },
-    /// The file does not start as an MCAP file does.
-    #[error("{}: not an MCAP file", path.display())]
-    NotMcap {
-        /// The file.
-        path: PathBuf,
-    },
-    /// A part that is all there and cannot be read.
-    #[error(
-        "{}: damaged at byte {offset}: {why}; `plunge recover` saves what is readable",
-        path.display()
-    )]
-    Damaged {
-        /// The log.
-        path: PathBuf,
-        /// Where the chunk or record starts (bytes).
-        offset: u64,
-        /// What is wrong with it.
-        why: String,
-    },
-    /// Messages of ours whose descriptor lacks what is needed.
-    #[error("{}: {topic}: {why}", path.display())]
-    Fields {
-        /// The log.
-        path: PathBuf,
-        /// The topic of the messages.
-        topic: String,
-        /// What is wrong with their descriptor.
-        why: String,
-    },
-    /// A log without the state of any body.
-    #[error("{}: has no state of a body; is it the run.mcap of a run?", path.display())]
-    NoBodies {
-        /// The log.
-        path: PathBuf,
-    },
 }
 
 /// Reads the log at `path`, finished or not, and keeps what `keep` says.

@@ -6,19 +6,20 @@
 //! counts as far as it unpacks. The result is a complete, indexed log; attachments, metadata and
 //! chunk boundaries are kept, so that an undamaged log comes out as it went in.
 
+mod error;
 mod output;
 mod scan;
 #[cfg(test)]
 mod tests;
 
 use std::fs::{self, OpenOptions};
-use std::io;
 use std::path::{Path, PathBuf};
 
 use engine::record::chunk::{self, CHUNK_LIMIT, ChunkHead, RECORD_PREFIX, Records};
 use mcap::records::{Header, Record, op};
 
 use crate::Stop;
+pub use error::RecoverError;
 use output::{Definitions, Output};
 use scan::Input;
 
@@ -44,50 +45,6 @@ pub struct Lost {
     pub bytes: u64,
     /// What is wrong with it.
     pub why: String,
-}
-
-/// Why nothing could be recovered.
-#[derive(Debug, thiserror::Error)]
-pub enum RecoverError {
-    /// The file system refused an operation.
-    #[error("{}: cannot {doing}: {source}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What was being done, as in "cannot …".
-        doing: &'static str,
-        /// The operating system's answer.
-        source: io::Error,
-    },
-    /// The new log could not be written.
-    #[error("{}: {source}", path.display())]
-    Write {
-        /// The new log.
-        path: PathBuf,
-        /// The writer's answer.
-        source: mcap::McapError,
-    },
-    /// The input has neither the mark of an MCAP file nor any record of one.
-    #[error("{}: not an MCAP file", path.display())]
-    NotMcap {
-        /// The input.
-        path: PathBuf,
-    },
-    /// The output exists, or is the input.
-    #[error("{}: exists already; name a new file", path.display())]
-    OutputExists {
-        /// The output.
-        path: PathBuf,
-    },
-    /// It was asked to stop; nothing was written.
-    #[error("stopped before the end")]
-    Stopped,
-}
-
-impl RecoverError {
-    fn io(path: &Path, doing: &'static str, source: io::Error) -> Self {
-        Self::Io { path: path.to_owned(), doing, source }
-    }
 }
 
 /// Writes everything readable of the log `input` to a new log `output`.

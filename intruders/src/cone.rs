@@ -9,8 +9,9 @@ use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 use resistive::{Compact, Silhouette};
 
+use crate::body::Body;
 use crate::outline::{Draft, Revolved};
-use crate::registry::{Body, Casting, Launchable, ShapeEntry};
+use crate::registry::{Casting, Launchable, ShapeEntry};
 use crate::specs::{DIAMETER, section};
 
 /// The registry's line.

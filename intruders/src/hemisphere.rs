@@ -8,8 +8,9 @@ use engine::math::Vec3;
 use engine::params::{ParamSpec, ParamTable};
 use resistive::{Compact, Silhouette};
 
+use crate::body::Body;
 use crate::outline::{Draft, Revolved};
-use crate::registry::{Body, Casting, Launchable, ShapeEntry};
+use crate::registry::{Casting, Launchable, ShapeEntry};
 use crate::specs::{DIAMETER, section};
 use crate::sphere::Cap;
 

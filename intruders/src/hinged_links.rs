@@ -9,18 +9,18 @@
 //!
 //! The links pass side by side and do not touch each other.
 
+use engine::body::Followed;
 use engine::body::{Mechanism, Part, RigidBody};
 use engine::contact::Partner;
 use engine::grains::Space;
 use engine::math::{Vec3, Vec4, turned_about_y};
 use engine::params::ParamTable;
-use engine::stopping::Followed;
 use engine::surface::{Placement, Wrench};
 use resistive::State;
 
+use crate::chain::{Chain, angles, pose};
 use crate::equations::Equations;
 use crate::rod::{Pose, Rod};
-use crate::two_link_chain::{Chain, angles, pose};
 
 /// Rounds at the most; each makes the error of the midpoint less by the angle of a step.
 const ROUNDS: usize = 30;

@@ -1,5 +1,7 @@
 //! The shapes that plunge drops into sand, each in a file of its own and one line of [`SHAPES`].
 
+mod body;
+mod chain;
 mod cone;
 mod cylinder;
 mod equations;
@@ -14,8 +16,9 @@ mod specs;
 mod sphere;
 mod two_link_chain;
 
+pub use body::{Body, Drawing};
 pub use hinged_links::HingedLinks;
-pub use registry::{Body, Casting, Drawing, Launchable, ShapeEntry, UnderShaft};
+pub use registry::{Casting, Launchable, ShapeEntry, UnderShaft};
 
 /// Every shape, in the order of the docs.
 pub static SHAPES: &[&ShapeEntry] = &[

@@ -8,8 +8,8 @@ use engine::params::{ParamSpec, ParamTable};
 use engine::surface::Surface;
 use resistive::{Assembly, State};
 
+use crate::body::Body;
 use crate::hinged_links::HingedLinks;
-use crate::outline::Revolved;
 
 /// Makes a surface with a shaft of this length (m) on it.
 pub type UnderShaft = fn(&ParamTable, Space, f64) -> Arc<dyn Surface>;
@@ -85,32 +85,4 @@ pub struct Launchable {
     pub assembly: Box<dyn Assembly>,
     /// At first contact.
     pub start: State,
-}
-
-/// A shape with its distribution of mass, in the body frame: the centre of mass at the origin, the
-/// axis of symmetry along z, and what enters first towards −z.
-pub struct Body {
-    /// Its surface; in a planar medium, the mid-plane of it is what counts.
-    pub surface: Arc<dyn Surface>,
-    /// Principal moments of inertia of one kilogram of it (m²); planar, of its mid-plane.
-    pub inertia_per_mass: Vec3,
-    /// What it looks like.
-    pub drawing: Drawing,
-}
-
-/// How a shape is drawn.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Drawing {
-    /// A ball about the origin, of this radius (m).
-    Ball(f64),
-    /// A body of revolution about z: heights, and the half width there (m), from bottom to top.
-    Revolved(Vec<(f64, f64)>),
-}
-
-impl Body {
-    /// With these moments of inertia per mass (m²).
-    pub(crate) fn revolved(surface: Revolved, inertia_per_mass: Vec3) -> Self {
-        let drawing = Drawing::Revolved(surface.sections());
-        Self { surface: Arc::new(surface), inertia_per_mass, drawing }
-    }
 }

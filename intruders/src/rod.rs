@@ -8,9 +8,9 @@ use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 use resistive::{Immersion, Part, PartLoad};
 
+use crate::body::Body;
 use crate::equations::{Equations, Point};
 use crate::outline::Draft;
-use crate::registry::Body;
 
 /// The angle (rad) of a link's axis to the vertical at the start.
 pub(crate) const fn link_angle(

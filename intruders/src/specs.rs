@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use engine::grains::Space;
-use engine::params::{Default, ParamSpec, Range};
+use engine::params::{ParamSpec, Range};
 use engine::units::Dimension;
 
 /// The diameter (m) of a shape.
@@ -16,14 +16,9 @@ pub(crate) const fn length(
     plausible: Range,
     meaning: &'static str,
 ) -> ParamSpec {
-    ParamSpec {
-        key,
-        dimension: Dimension::LENGTH,
-        default: Default::Required,
-        allowed: Range::POSITIVE,
-        plausible,
-        meaning,
-    }
+    ParamSpec::required(key, Dimension::LENGTH, meaning)
+        .allowed(Range::POSITIVE)
+        .plausible(plausible)
 }
 
 /// Area (m²) of a circle of radius `half` (m); planar, the width (m) of a strip.

@@ -8,8 +8,9 @@ use engine::math::Vec3;
 use engine::params::{ParamSpec, ParamTable};
 use resistive::{Compact, Silhouette};
 
+use crate::body::{Body, Drawing};
 use crate::parry_surface::BallSurface;
-use crate::registry::{Body, Casting, Drawing, Launchable, ShapeEntry};
+use crate::registry::{Casting, Launchable, ShapeEntry};
 use crate::specs::{DIAMETER, section};
 
 const PARAMS: &[ParamSpec] = &[DIAMETER];

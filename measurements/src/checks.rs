@@ -3,7 +3,7 @@
 use super::contradictions::Contradiction;
 use super::document::Document;
 use super::findings::Findings;
-use super::{Kind, MeasurementSet, Run, magnitudes, ranges, signs};
+use super::{Kind, MeasurementSet, magnitudes, ranges, signs};
 
 impl MeasurementSet {
     /// Whether the set states the error of any number that it compares: of readings, if it has
@@ -65,26 +65,5 @@ fn note_late_starts(set: &MeasurementSet, findings: &mut Findings) {
             late.len(),
             set.runs.len()
         ));
-    }
-}
-
-/// The way of a run over a few readings around first contact.
-pub(super) struct Start {
-    /// Forward (m).
-    pub(super) dx: f64,
-    /// Down (m).
-    pub(super) dz: f64,
-    /// Time (s).
-    pub(super) dt: f64,
-}
-
-impl Start {
-    /// From the last reading before first contact, or the first of all, to the third after it.
-    pub(super) fn of(run: &Run) -> Option<Self> {
-        let frames = &run.frames;
-        let from = frames.iter().rposition(|frame| frame.t <= 0.0).unwrap_or(0);
-        let to = (from + 3).min(frames.len().checked_sub(1)?);
-        let (a, b) = (frames[from], frames[to]);
-        (to > from).then_some(Self { dx: b.x - a.x, dz: b.z - a.z, dt: b.t - a.t })
     }
 }

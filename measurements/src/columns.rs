@@ -33,11 +33,12 @@ const LENGTH: Content = Content::Quantity(Dimension::LENGTH);
 const TIME: Content = Content::Quantity(Dimension::TIME);
 
 /// The columns of `runs.csv`.
-pub(super) const RUNS: [ColumnSpec; 9] = [
+pub(super) const RUNS: [ColumnSpec; 10] = [
     column("run", Content::Name, true),
     column("condition", Content::Name, true),
     column("repeat", Content::Count, false),
     column("order", Content::Count, false),
+    column("session", Content::Name, false),
     column("stop_time", TIME, false),
     column("final_z", LENGTH, false),
     column("final_x", LENGTH, false),

@@ -3,7 +3,7 @@
 use configs::reader::{Found, TableReader};
 use configs::{Diagnostic, Span, shorten};
 
-use super::document::optional;
+use super::optional::optional;
 use super::unstated::Unstated;
 use super::{Condition, Role, keys};
 

@@ -10,6 +10,7 @@ use super::columns::ColumnNames;
 use super::conditions::{self, ConditionPlaces};
 use super::dialect::{Decimal, Delimiter};
 use super::keys;
+use super::optional::optional;
 use super::table::Format;
 use super::unstated::Unstated;
 use super::{
@@ -109,6 +110,7 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
         feasible,
         conditions,
         runs: Vec::new(),
+        keep: head.keep,
         notes,
     };
     Some(Document {
@@ -135,6 +137,7 @@ struct Head {
     phase: Option<String>,
     stop: StopDefinition,
     last: FinalDefinition,
+    keep: Vec<String>,
     notes: Option<Vec<String>>,
     definitions: [Option<Span>; 2],
     header: Option<Span>,
@@ -160,6 +163,7 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
         _ => FinalDefinition::Resting,
     });
     let notes = table.texts("notes");
+    let keep = table.texts("keep").unwrap_or_default();
     let definitions = ["stop_definition", "final"].map(|key| table.span_of(key));
     let header = table.header();
     table.finish();
@@ -184,6 +188,7 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
         phase,
         stop: stop?,
         last,
+        keep,
         notes,
         definitions,
         header,
@@ -201,6 +206,14 @@ fn instrument(table: TableReader<'_>, unstated: &mut Unstated) -> Instrument {
         position_sigma: number(&keys::POSITION_SIGMA, "instrument.position_sigma_m"),
         speed_sigma_rel: number(&keys::SPEED_SIGMA, "instrument.speed_sigma_rel"),
         level_sigma: number(&keys::LEVEL_SIGMA, "instrument.level_sigma_m"),
+        // Unlike an error of readings, none of these may be missed: zero says that it is exact.
+        time_sigma: optional(&table, &keys::TIME_SIGMA),
+        zero_sigma: optional(&table, &keys::ZERO_SIGMA),
+        speed_bias_sigma_rel: optional(&table, &keys::SPEED_BIAS_SIGMA),
+        scale_sigma_rel: optional(&table, &keys::SCALE_SIGMA),
+        mass_sigma_rel: optional(&table, &keys::MASS_SIGMA),
+        tilt_sigma_deg: optional(&table, &keys::TILT_SIGMA),
+        session_sigma_rel: optional(&table, &keys::SESSION_SIGMA),
     };
     table.finish();
     instrument
@@ -300,11 +313,6 @@ fn trajectories(table: &TableReader<'_>) -> Option<Vec<FileName>> {
         return None;
     }
     Some(names.into_iter().map(|one| FileName { name: one.value, span: one.span }).collect())
-}
-
-/// A number that may be left out; what is wrong with it is reported.
-pub(super) fn optional(table: &TableReader<'_>, spec: &ParamSpec) -> Option<f64> {
-    table.optional_number(spec).flatten().map(|found| found.value)
 }
 
 fn optional_text(

@@ -5,8 +5,7 @@ use engine::units::{self, Dimension};
 
 use super::columns::{ColumnNames, ColumnSpec, Content, Renamed};
 use super::findings::Findings;
-use super::row::Row;
-use super::table::file_name;
+use super::row::{Row, file_name};
 
 /// Where a column stands, and how it is written.
 pub(super) struct Column {
@@ -91,6 +90,9 @@ fn find<'a>(
     // Both tables have a column `run`, and perhaps only one calls it otherwise.
     if spec.key == "run" && position(name).is_none() && position(spec.key).is_some() {
         name = spec.key;
+    }
+    if spec.key == "session" && renamed.is_none() && position(name).is_none() {
+        name = "day";
     }
     match position(name) {
         Some(at) => Ok(Some(Column {

@@ -1,6 +1,6 @@
 //! The numeric keys of `measurement.toml`, specified like the parameters of a law.
 
-use engine::params::{Default, ParamSpec, Range};
+use engine::params::{ParamSpec, Range};
 use engine::units::Dimension;
 
 const fn key(
@@ -11,7 +11,7 @@ const fn key(
     meaning: &'static str,
 ) -> ParamSpec {
     let plausible = Range::closed(plausible.0, plausible.1);
-    ParamSpec { key, dimension, default: Default::Required, allowed, plausible, meaning }
+    ParamSpec::required(key, dimension, meaning).allowed(allowed).plausible(plausible)
 }
 
 const POSITIVE: Range = Range::POSITIVE;
@@ -47,15 +47,63 @@ pub(super) const LEVEL_SIGMA: ParamSpec = key(
     "the error of the level of the surface",
 );
 
+pub(super) const TIME_SIGMA: ParamSpec = key(
+    "time_sigma_s",
+    Dimension::TIME,
+    NOT_NEGATIVE,
+    (0.0, 0.1),
+    "the error of the zero of the clock, which all runs share",
+);
+pub(super) const ZERO_SIGMA: ParamSpec = key(
+    "zero_sigma_m",
+    LENGTH,
+    NOT_NEGATIVE,
+    (0.0, 0.05),
+    "the error of the zero of depth, which all runs share",
+);
+pub(super) const SPEED_BIAS_SIGMA: ParamSpec = key(
+    "speed_bias_sigma_rel",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 0.5),
+    "the relative error that all impact speeds share",
+);
+pub(super) const SCALE_SIGMA: ParamSpec = key(
+    "scale_sigma_rel",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 0.5),
+    "the relative error of the scale of lengths",
+);
+pub(super) const MASS_SIGMA: ParamSpec = key(
+    "mass_sigma_rel",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 0.5),
+    "the relative error of the mass of each body",
+);
+pub(super) const TILT_SIGMA: ParamSpec = key(
+    "tilt_sigma_deg",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 30.0),
+    "how well the apparatus is plumb, in degrees",
+);
+pub(super) const SESSION_SIGMA: ParamSpec = key(
+    "session_sigma_rel",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 0.5),
+    "the relative difference of the resistance between sessions",
+);
+
 /// A planar bed has a density per area; its unit is told by the geometry.
 pub(super) const BULK_DENSITY: ParamSpec =
     key("bulk_density", Dimension::DENSITY, POSITIVE, (0.1, 2e4), "the bulk density of the bed");
 pub(super) const AREA_DENSITY: ParamSpec =
     ParamSpec { dimension: Dimension::AREA_DENSITY, ..BULK_DENSITY };
-pub(super) const GRAVITY: ParamSpec = ParamSpec {
-    default: Default::Value(9.81),
-    ..key("gravity", Dimension::ACCELERATION, NOT_NEGATIVE, (0.0, 100.0), "gravity")
-};
+pub(super) const GRAVITY: ParamSpec =
+    key("gravity", Dimension::ACCELERATION, NOT_NEGATIVE, (0.0, 100.0), "gravity").or(9.81);
 pub(super) const GRAIN_DIAMETER: ParamSpec =
     key("grain_diameter", LENGTH, POSITIVE, (1e-6, 0.1), "the mean diameter of the grains");
 
@@ -79,10 +127,9 @@ pub(super) const DIAMETER: ParamSpec =
     key("diameter", LENGTH, POSITIVE, (1e-4, 10.0), "the diameter of the intruder");
 pub(super) const MASS: ParamSpec =
     key("mass", Dimension::MASS, POSITIVE, (1e-7, 1e5), "the mass of the intruder");
-pub(super) const SPIN: ParamSpec = ParamSpec {
-    default: Default::Value(0.0),
-    ..key("spin", Dimension::SPIN, ANY, (-1e4, 1e4), "the spin, positive when it rolls forward")
-};
+pub(super) const SPIN: ParamSpec =
+    key("spin", Dimension::SPIN, ANY, (-1e4, 1e4), "the spin, positive when it rolls forward")
+        .or(0.0);
 pub(super) const PACKING: ParamSpec = key(
     "packing",
     NUMBER,
@@ -112,7 +159,6 @@ pub(super) const LINK_ANGLE: ParamSpec = key(
 );
 
 /// +1 or -1: whether a column counts the other way.
-pub(super) const SIGN: ParamSpec = ParamSpec {
-    default: Default::Value(1.0),
-    ..key("sign", NUMBER, Range::closed(-1.0, 1.0), (-1.0, 1.0), "1, or -1 to turn a column round")
-};
+pub(super) const SIGN: ParamSpec =
+    key("sign", NUMBER, Range::closed(-1.0, 1.0), (-1.0, 1.0), "1, or -1 to turn a column round")
+        .or(1.0);

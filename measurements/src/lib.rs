@@ -31,6 +31,7 @@ mod level;
 mod lines;
 mod load;
 mod magnitudes;
+mod optional;
 mod order;
 mod ranges;
 mod reading;
@@ -40,7 +41,9 @@ mod several;
 mod signs;
 mod smooth;
 mod speeds;
+mod start;
 mod stops;
+mod strays;
 mod table;
 mod template;
 mod trajectories;
@@ -58,6 +61,7 @@ pub use feasible::Feasible;
 pub use level::common_level;
 pub use load::{Loaded, SetError};
 pub use reading::Reading;
+pub use strays::{Cleaned, without_strays};
 pub use template::TEMPLATE;
 pub use write::WriteError;
 pub use zeros::{Offset, RunContact, Severity, SpeedRatio, Zero, Zeros};
@@ -89,6 +93,8 @@ pub struct MeasurementSet {
     pub conditions: Vec<Condition>,
     /// By condition, and within it in an order that names and rows of the file do not decide.
     pub runs: Vec<Run>,
+    /// Names of runs that are used as they are, however stray they look.
+    pub keep: Vec<String>,
     /// What the reader assumed or left aside, in sentences for the report.
     pub notes: Vec<String>,
 }
@@ -103,7 +109,7 @@ pub enum Kind {
 }
 
 /// What is known of the instrument.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Instrument {
     /// Frames per second (1/s).
     pub rate: Option<f64>,
@@ -111,8 +117,40 @@ pub struct Instrument {
     pub position_sigma: Option<f64>,
     /// How well the set impact speed is known, relative, per run.
     pub speed_sigma_rel: Option<f64>,
-    /// How well the level of the surface is known (m).
+    /// How well the level of the surface is known in one run (m).
     pub level_sigma: Option<f64>,
+    /// How well the times are known that all runs share an error of (s): the zero of the clock.
+    pub time_sigma: Option<f64>,
+    /// How well the zero of depth is known that all runs share (m).
+    pub zero_sigma: Option<f64>,
+    /// Relative error that all impact speeds share.
+    pub speed_bias_sigma_rel: Option<f64>,
+    /// Relative error of the scale of lengths.
+    pub scale_sigma_rel: Option<f64>,
+    /// Relative error of the mass of each body.
+    pub mass_sigma_rel: Option<f64>,
+    /// How well the apparatus is plumb (deg).
+    pub tilt_sigma_deg: Option<f64>,
+    /// By how much the resistance differs from one session to the next, relative.
+    pub session_sigma_rel: Option<f64>,
+}
+
+impl Instrument {
+    /// The same without any error that runs share, as before runs of a simulation.
+    #[must_use]
+    pub fn without_shared_errors(self) -> Self {
+        let none = Some(0.0);
+        Self {
+            time_sigma: none,
+            zero_sigma: none,
+            speed_bias_sigma_rel: none,
+            scale_sigma_rel: none,
+            mass_sigma_rel: none,
+            tilt_sigma_deg: none,
+            session_sigma_rel: none,
+            ..self
+        }
+    }
 }
 
 /// Number of space dimensions of a bed.
@@ -219,6 +257,8 @@ pub struct Run {
     pub repeat: Option<i64>,
     /// Place in time among all runs, as the table says.
     pub order: Option<i64>,
+    /// The day, pouring or levelling that it shares with other runs, as the table says.
+    pub session: Option<String>,
     /// Stopping time (s).
     pub stop_time: Option<f64>,
     /// Final depth of the lowest point below the undisturbed surface (m).

@@ -13,7 +13,8 @@ use super::agreement::Agreement;
 use super::contradictions::{self, Contradiction, ContradictionKind};
 use super::document::{self, Document, FileName, Missing};
 use super::findings::Findings;
-use super::table::{Format, file_name};
+use super::row::file_name;
+use super::table::Format;
 use super::trajectories::Source;
 use super::{MeasurementSet, checks, order, runs, several, speeds, trajectories};
 

@@ -2,11 +2,11 @@
 
 use configs::Diagnostic;
 
-use super::checks::Start;
 use super::conditions::ConditionPlaces;
 use super::contradictions::{Contradiction, ContradictionKind};
 use super::findings::Findings;
 use super::smooth::greatest_velocity;
+use super::start::Start;
 use super::zeros::position;
 use super::{Condition, MeasurementSet, Run};
 

@@ -75,6 +75,11 @@ impl Row {
     }
 }
 
+/// The last part of a path, for a note.
+pub(super) fn file_name(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,8 +9,8 @@ use super::cells::Cell;
 use super::columns::RUNS;
 use super::document::Missing;
 use super::findings::{Findings, lines_in_words, nearest_name};
-use super::row::Row;
-use super::table::{Format, Table, file_name};
+use super::row::{Row, file_name};
+use super::table::{Format, Table};
 use super::{Condition, Run};
 
 /// Most runs of a set.
@@ -21,11 +21,12 @@ const RUN: usize = 0;
 const CONDITION: usize = 1;
 const REPEAT: usize = 2;
 const ORDER: usize = 3;
-const STOP_TIME: usize = 4;
-const FINAL_Z: usize = 5;
-const FINAL_X: usize = 6;
-const T_ZERO: usize = 7;
-const Z_ZERO: usize = 8;
+const SESSION: usize = 4;
+const STOP_TIME: usize = 5;
+const FINAL_Z: usize = 6;
+const FINAL_X: usize = 7;
+const T_ZERO: usize = 8;
+const Z_ZERO: usize = 9;
 
 /// Runs, and what is understood of their table.
 pub(super) struct Runs {
@@ -64,6 +65,8 @@ pub(super) fn read(
         let condition = condition(&table, &row, &index, findings);
         let repeat = table.count(&row, REPEAT, findings);
         let order = table.count(&row, ORDER, findings);
+        let session = Some(table.text(&row, SESSION)).filter(|name| !name.is_empty());
+        let session = session.map(str::to_owned);
         let mut number = |key| match table.quantity(&row, key, findings) {
             Cell::Value(value) => Some(value),
             Cell::Missing => {
@@ -96,7 +99,17 @@ pub(super) fn read(
         let Some(condition) = condition else { continue };
         let frames = Vec::new();
         zeros.push([t_zero, z_zero]);
-        runs.push(Run { name: run, condition, repeat, order, stop_time, final_z, final_x, frames });
+        runs.push(Run {
+            name: run,
+            condition,
+            repeat,
+            order,
+            session,
+            stop_time,
+            final_z,
+            final_x,
+            frames,
+        });
     }
     if lines.is_empty() && findings.errors() == 0 {
         findings

@@ -2,9 +2,9 @@
 
 use configs::Diagnostic;
 
-use super::checks::Start;
 use super::conditions::ConditionPlaces;
 use super::findings::Findings;
+use super::start::Start;
 use super::{Condition, Frame, MeasurementSet, Run};
 
 /// A way shorter than this share of the diameter says nothing about a direction.

@@ -11,7 +11,7 @@ use super::dialect::{Decimal, Delimiter, Dialect};
 use super::findings::Findings;
 use super::header::{self, Column};
 use super::lines::{LineFault, Lines};
-use super::row::Row;
+use super::row::{Row, file_name};
 
 /// How many rows are looked at before the first is understood.
 const SAMPLE: usize = 200;
@@ -274,11 +274,6 @@ impl<R: BufRead> Table<R> {
             findings.note(format!("The numbers of {table} have a decimal comma."));
         }
     }
-}
-
-/// The last part of a path, for a note.
-pub(super) fn file_name(path: &str) -> &str {
-    path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
 /// The number of the next line; `None` when there is none to be read, which is reported.

@@ -9,8 +9,8 @@ use super::cells::Cell;
 use super::columns::{ColumnSpec, OF_ONE_RUN, TRAJECTORIES, VERTICAL, VERTICAL_OF_ONE_RUN};
 use super::document::Missing;
 use super::findings::{Findings, lines_in_words, nearest_name};
-use super::row::Row;
-use super::table::{Format, Table, file_name};
+use super::row::{Row, file_name};
+use super::table::{Format, Table};
 use super::{Frame, Run};
 
 /// Most readings of a set: at 40 bytes each, and twice that while a list grows, they stay below
@@ -211,6 +211,7 @@ mod tests {
             condition: 0,
             repeat: None,
             order: None,
+            session: None,
             stop_time: None,
             final_z: None,
             final_x: None,

@@ -73,11 +73,22 @@ impl MeasurementSet {
         );
         let notes: Vec<String> = self.notes.iter().map(|note| quoted(note)).collect();
         file.line("notes", &format!("[{}]", notes.join(", ")));
+        if !self.keep.is_empty() {
+            let keep: Vec<String> = self.keep.iter().map(|name| quoted(name)).collect();
+            file.line("keep", &format!("[{}]", keep.join(", ")));
+        }
         file.table("[instrument]");
         file.number("rate_hz", self.instrument.rate);
         file.number("position_sigma_m", self.instrument.position_sigma);
         file.number("speed_sigma_rel", self.instrument.speed_sigma_rel);
         file.number("level_sigma_m", self.instrument.level_sigma);
+        file.number("time_sigma_s", self.instrument.time_sigma);
+        file.number("zero_sigma_m", self.instrument.zero_sigma);
+        file.number("speed_bias_sigma_rel", self.instrument.speed_bias_sigma_rel);
+        file.number("scale_sigma_rel", self.instrument.scale_sigma_rel);
+        file.number("mass_sigma_rel", self.instrument.mass_sigma_rel);
+        file.number("tilt_sigma_deg", self.instrument.tilt_sigma_deg);
+        file.number("session_sigma_rel", self.instrument.session_sigma_rel);
         file.table("[bed]");
         let planar = self.bed.geometry == Geometry::Planar;
         file.word("geometry", if planar { "2d" } else { "3d" });
@@ -105,11 +116,13 @@ impl MeasurementSet {
 
     fn runs_table(&self) -> io::Result<Vec<u8>> {
         let count = |value: Option<i64>| value.map_or(String::new(), |value| value.to_string());
+        let columns = if self.runs.iter().any(|run| run.session.is_some()) { 8 } else { 7 };
         let mut table = csv_writer();
-        let header = ["run", "condition", "repeat", "order", "stop_time", "final_z", "final_x"];
-        table.write_record(header)?;
+        let header =
+            ["run", "condition", "repeat", "order", "stop_time", "final_z", "final_x", "session"];
+        table.write_record(&header[..columns])?;
         for run in &self.runs {
-            table.write_record([
+            let cells = [
                 run.name.as_str(),
                 &self.conditions[run.condition].id,
                 &count(run.repeat),
@@ -117,7 +130,9 @@ impl MeasurementSet {
                 &cell(run.stop_time),
                 &cell(run.final_z),
                 &cell(run.final_x),
-            ])?;
+                run.session.as_deref().unwrap_or_default(),
+            ];
+            table.write_record(&cells[..columns])?;
         }
         table.into_inner().map_err(|error| error.into_error())
     }

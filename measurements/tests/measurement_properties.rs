@@ -80,6 +80,7 @@ fn run(condition: usize) -> impl Strategy<Value = Run> {
             condition,
             repeat,
             order,
+            session: None,
             stop_time,
             final_z,
             final_x,

@@ -11,6 +11,9 @@ use crate::{ReportError, Texts, object};
 /// The file whose presence means a diagnosis.
 pub(crate) const RESULT: &str = "diagnosis.json";
 
+/// How often verdicts come true, where it was asked.
+const CALIBRATION: &str = "calibration.json";
+
 /// Most effects with a card of their own; the table has all.
 const CARDS: usize = 6;
 
@@ -29,17 +32,50 @@ pub fn verdict_in_words(diagnosis: &Value) -> String {
             format!("pair: {}, or one effect outside the list", effects.join(" + "))
         }
         "none-of-the-candidates" => "none of the candidates".to_owned(),
+        "explained-by-apparatus" => {
+            format!("explained by the apparatus, no effect needed: {}", named_errors(diagnosis))
+        }
+        "below-noise" => "below what these data can show: no effect is named".to_owned(),
         _ => "cannot tell".to_owned(),
+    }
+}
+
+/// The errors of the apparatus that a diagnosis names, with their size.
+fn named_errors(diagnosis: &Value) -> String {
+    let errors = diagnosis["apparatus"].as_array().map_or(&[][..], Vec::as_slice);
+    let named = errors.iter().filter(|error| error["named"] == true);
+    named.map(apparatus_error).collect::<Vec<_>>().join(", ")
+}
+
+/// An error of the apparatus with its size: `clock-zero 0.7 ± 0.1 ms`.
+#[must_use]
+pub fn apparatus_error(error: &Value) -> String {
+    let (factor, unit) = match error["unit"].as_str().unwrap_or_default() {
+        "s" => (1e3, " ms"),
+        "m" => (1e3, " mm"),
+        "rad" => (180.0 / std::f64::consts::PI, "°"),
+        _ => (1e2, " %"),
+    };
+    let number = |key: &str| error[key].as_f64().map(|value| factor * value);
+    let value = number("value").unwrap_or(0.0);
+    let id = match error["of"].as_str() {
+        Some(of) => format!("{} ({of})", text(&error["id"])),
+        None => text(&error["id"]),
+    };
+    match number("se") {
+        Some(se) => format!("{id} {value:.2} ± {se:.2}{unit}"),
+        None => format!("{id} {value:.2}{unit}"),
     }
 }
 
 /// What the verdict of a diagnosis rests on, in a sentence; none where nothing is named.
 #[must_use]
 pub fn strength_in_words(diagnosis: &Value) -> Option<String> {
-    let names = matches!(
-        diagnosis["verdict"].as_str(),
-        Some("supported" | "not-separable" | "pair" | "none-of-the-candidates")
-    );
+    let names =
+        matches!(
+            diagnosis["verdict"].as_str(),
+            Some("supported" | "not-separable" | "pair" | "none-of-the-candidates")
+        ) || texts(&diagnosis["strength_reasons"]).iter().any(|one| one == "held-out-above-noise");
     match diagnosis["strength"].as_str().filter(|_| names)? {
         "suggested" => {
             let reasons = texts(&diagnosis["strength_reasons"]);
@@ -60,6 +96,10 @@ fn reason_in_words(reason: &str) -> &str {
         "assumed-scatter" => "nothing was repeated, and the scatter from run to run is assumed",
         "few-repeats" => "the repeats give fewer than 8 independent deviations",
         "held-out-no-better" => "what was held out is not predicted better by more than chance",
+        "held-out-above-noise" => {
+            "conditions that were held out are missed by more than their repeats scatter, as where days, pourings or \
+             levels differ (a column `session` in the table of runs says which runs share one)"
+        }
         "held-out-not-judged" => {
             "nothing that was held out could be predicted both without and with it"
         }
@@ -67,6 +107,9 @@ fn reason_in_words(reason: &str) -> &str {
             "with it, conditions that were held out cannot be predicted that can be without it"
         }
         "amplitude-outside-usual-range" => "its amplitude is outside of its usual range",
+        "of-another-form" => {
+            "something is left over beside it, below the noise: its form is another, or there is more"
+        }
         "small-plan" => "the plan of impacts is too small to confirm anything",
         "fresh-beds-no-nearer" => {
             "impacts with it, on fresh beds, are no nearer to what was held out"
@@ -87,6 +130,7 @@ pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
     sections.extend(views(texts).into_iter().map(Some));
     sections.extend([
         Section::new("Errors by kind of number", by_kind(texts)),
+        Section::new("How often verdicts are right in this design", calibrated(texts)?),
         Section::new("What to measure next", next(&diagnosis)),
         Section::new("Corrected parameters", corrected(&diagnosis)),
         Section::new("All effects", ranking(&diagnosis)),
@@ -200,6 +244,25 @@ fn in_unit(effect: &Value) -> String {
         None | Some("1" | "") => text(&effect["id"]),
         Some(unit) => format!("{} ({unit})", text(&effect["id"])),
     }
+}
+
+/// Simulated sets by truth and verdict, where they were asked for.
+fn calibrated(texts: &Texts) -> Result<Vec<Part>, ReportError> {
+    if !texts.contains_key(CALIBRATION) {
+        return Ok(Vec::new());
+    }
+    let calibration = object(texts, CALIBRATION)?;
+    let head =
+        ["truth", "sets", "named alone", "in a set", "something else named", "intervals hold"];
+    let mut table = Table::new(&head);
+    for row in list(&calibration["rows"]) {
+        let cell = |key: &str| row[key].as_u64().unwrap_or_default().to_string();
+        let counts = ["sets", "alone", "among", "wrong", "covered"].map(cell);
+        table.rows.push([text(&row["truth"])].into_iter().chain(counts).collect());
+    }
+    let words =
+        "Sets with these conditions, repeats and noise were simulated and diagnosed.".to_owned();
+    Ok(vec![Part::Text(words), Part::Table(table)])
 }
 
 fn testable(diagnosis: &Value) -> impl Iterator<Item = &Value> {

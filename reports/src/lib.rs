@@ -30,7 +30,7 @@ use runner::run::{ListSummary, Summary};
 use serde_json::Value;
 use thiserror::Error;
 
-pub use diagnosis::{strength_in_words, verdict_in_words};
+pub use diagnosis::{apparatus_error, strength_in_words, verdict_in_words};
 pub use run::sparkline;
 pub use set::of_set;
 

@@ -1,17 +1,19 @@
 //! One impact on a resistive medium, from first contact to rest.
 
 mod events;
+mod margin;
 
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 use super::assembly::{Assembly, COORDINATES, PARTS, State};
-use super::modes::{AXES, Modes, accelerate, is_held};
+use super::error::ImpactError;
+use super::holding::{accelerate, is_held};
+use super::modes::{AXES, Modes};
 use super::motion::System;
 use super::observe::{Observer, Stretch};
-use super::solver::{Plan, Solver};
+use super::solver::{Plan, Solver, Tolerance};
 use super::{ResistanceLaw, Surroundings};
-use events::{Before, COMPONENTS, FORWARD, Fired, SINKING, SLOW, SLOWING, STOPPING, SURFACE};
+use margin::{Before, COMPONENTS, FORWARD, Fired, SINKING, SLOW, SLOWING, STOPPING, SURFACE};
 
 /// Below this share of √(gD) a component of the velocity is what the integration has left of zero.
 const STILL: f64 = 1e-6;
@@ -22,15 +24,6 @@ const MOST_AT_ONCE: usize = 100;
 
 /// A tip this near to the surface touches it (m).
 const TOUCH: f64 = 1e-12;
-
-/// Errors that a step may make, as the solver weighs them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tolerance {
-    /// Relative to each coordinate and rate.
-    pub relative: f64,
-    /// Absolute (m, m/s, rad, rad/s).
-    pub absolute: f64,
-}
 
 /// How much an integration may cost before it is given up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,60 +39,6 @@ impl Default for Effort {
     fn default() -> Self {
         Self { steps: 200_000, changes: 10_000 }
     }
-}
-
-impl Default for Tolerance {
-    /// Errors of a whole impact stay near 1e-10 of its depth.
-    fn default() -> Self {
-        Self { relative: 1e-11, absolute: 1e-13 }
-    }
-}
-
-/// Why an impact could not be integrated.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum ImpactError {
-    /// The solver found no step small enough.
-    #[error(
-        "the solver finds no step small enough after {time:e} s: a force is not finite or too stiff"
-    )]
-    Stalled {
-        /// Where (s).
-        time: f64,
-    },
-    /// A force has no value.
-    #[error(
-        "the force `{law}` is not finite, or a friction that pushes, {depth:e} m deep at {speed:e} m/s, \
-         {time:e} s after the start"
-    )]
-    NotFinite {
-        /// The law, by its first account in the ledger.
-        law: String,
-        /// Of the lowest point (m).
-        depth: f64,
-        /// (m/s).
-        speed: f64,
-        /// (s).
-        time: f64,
-    },
-    /// The body chatters between two modes.
-    #[error(
-        "{time:.3e} s after the start the body sticks and slides in turn without getting on: a resistance is so large \
-         that it stops the body within a step, or changes its sign where the body stops"
-    )]
-    Chatter {
-        /// When (s).
-        time: f64,
-    },
-    /// The integration costs more than it may.
-    #[error(
-        "after {steps} steps of the solver only {time:.3e} s are integrated: a force changes too fast to be followed"
-    )]
-    TooMuchWork {
-        /// Steps that were tried.
-        steps: usize,
-        /// How far it has come (s).
-        time: f64,
-    },
 }
 
 /// An assembly on its way into a medium.
@@ -226,6 +165,12 @@ impl Impact {
     #[must_use]
     pub fn laws(&self) -> &[Box<dyn ResistanceLaw>] {
         &self.laws
+    }
+
+    /// The laws, when no more is asked of the impact.
+    #[must_use]
+    pub fn into_laws(self) -> Vec<Box<dyn ResistanceLaw>> {
+        self.laws
     }
 
     /// What it falls into.

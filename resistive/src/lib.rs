@@ -6,7 +6,9 @@
 //! the x–z plane, depth counted downward from the undisturbed surface at z = 0.
 
 pub mod assembly;
+mod error;
 pub mod formula;
+mod holding;
 pub mod impact;
 mod laws;
 mod modes;
@@ -20,15 +22,17 @@ use engine::ledger::Channel;
 use engine::math::Vec3;
 
 pub use assembly::{Assembly, Compact, Part, PartLoad, State};
-pub use impact::{Effort, Ending, Impact, ImpactError, PartStop, Tolerance};
+pub use error::ImpactError;
+pub use impact::{Effort, Ending, Impact, PartStop};
 pub use laws::{
-    Acts, Coefficients, Direction, Draft, Effect, Expression, Facts, ForceError, Needs, OwnEffect,
-    OwnEffectError, OwnParameter, RESISTANCE_LAWS, ResistanceEntry, Role, STATE_VARIABLES,
-    StateVariable, Twin, find_resistance, twins,
+    Acts, Coefficients, Direction, Draft, Effect, Expression, Facts, ForceError, Kind, Needs,
+    OwnEffect, OwnEffectError, OwnParameter, RESISTANCE_LAWS, ResistanceEntry, Role,
+    STATE_VARIABLES, StateVariable, Twin, find_resistance, twins,
 };
 pub use observe::{Observer, Stretch, Trajectory};
 pub use record::{PartSample, Recorder, Sample};
 pub use silhouette::{Silhouette, Space};
+pub use solver::Tolerance;
 
 /// What laws are told of the medium.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! The forces of the medium on the parts of an assembly, in a given mode of motion.
 
 use super::assembly::{Assembly, PARTS, Part, PartLoad, State};
-use super::impact::ImpactError;
+use super::error::ImpactError;
 use super::modes::{AXES, Modes, Sense};
 use super::{Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use engine::math::Vec3;

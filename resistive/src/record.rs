@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 
 use super::assembly::{PARTS, Part, State};
-use super::modes::{AXES, Modes, accelerate};
+use super::holding::accelerate;
+use super::modes::{AXES, Modes};
 use super::motion::System;
 use super::observe::{Observer, Stretch};
 use super::{Flow, Impact, Load, Motion};

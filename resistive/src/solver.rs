@@ -10,8 +10,8 @@ mod tableau;
 use std::cell::Cell;
 
 use super::assembly::{COORDINATES, State};
-use super::impact::Tolerance;
-use super::modes::{Modes, accelerate};
+use super::holding::accelerate;
+use super::modes::Modes;
 use super::motion::System;
 use root::root;
 use tableau::{DENSE, DENSE_STAGES, END, ERROR, LOW_ORDER_STEP, Row, SLOPES, STAGES, STEP};
@@ -46,6 +46,22 @@ impl From<State> for Flat {
         flat[..COORDINATES].copy_from_slice(&state.position);
         flat[COORDINATES..].copy_from_slice(&state.rate);
         flat
+    }
+}
+
+/// Errors that a step may make, as the solver weighs them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Relative to each coordinate and rate.
+    pub relative: f64,
+    /// Absolute (m, m/s, rad, rad/s).
+    pub absolute: f64,
+}
+
+impl Default for Tolerance {
+    /// Errors of a whole impact stay near 1e-10 of its depth.
+    fn default() -> Self {
+        Self { relative: 1e-11, absolute: 1e-13 }
     }
 }
 

@@ -4,10 +4,11 @@ use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::diagnose::diagnose;
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
-use diagnosis::verdict::Verdict;
+use diagnosis::verdict::{Diagnosis, Verdict};
 use measurements::MeasurementSet;
 use validation::benchmark::design::Design;
 use validation::benchmark::hidden::Hidden;
+use validation::benchmark::imperfection::Imperfection;
 use validation::benchmark::plan::{Plan, Row, Seeds, Size};
 use validation::benchmark::trial::{Answer, Trial, baseline, draw};
 
@@ -78,4 +79,44 @@ fn without_frames_before_impact_friction_of_the_guide_is_one_of_several() {
     let left = diagnosed(&without);
     assert_eq!(left.verdict, Verdict::NotSeparable, "{:?}", left.unexplained);
     assert!(left.not_separable.iter().any(|id| id == "rail-friction"), "{:?}", left.not_separable);
+}
+
+/// The diagnosis of a world that hides `hidden` before apparatus that is as `imperfection` says.
+fn before(imperfection: Imperfection, hidden: Vec<Hidden>, seed: u64) -> Diagnosis {
+    let design = Design { imperfection, ..Design::full() };
+    let plan = Plan { row: Row::Apparatus, seed, design, hidden, strength: 0.12 };
+    let (_, set) = draw(&plan).expect("it can be drawn");
+    let model = baseline().expect("the shipped model loads");
+    let observed = Observed::of(&set);
+    let forward = ResistiveForward::new(&model, &set, &observed.layouts()).expect("it fits");
+    let bench = Bench { set: &set, observed: &observed, forward: &forward };
+    diagnose(&bench, DEFAULT_SEED).expect("spheres stop")
+}
+
+#[test]
+fn errors_of_the_apparatus_are_found_and_no_effect_is_credited_with_them() {
+    // What the world says is wrong, in the unit of the parameter; half a frame of 650 Hz in the mean.
+    for (imperfection, id, size) in [
+        (Imperfection::FirstFrame, "time-zero", 0.5 / 650.0),
+        (Imperfection::Zero, "depth-zero", 3e-3),
+        (Imperfection::Speed, "speed-scale", 0.03),
+    ] {
+        let found = before(imperfection, Vec::new(), 501);
+        assert!(found.effects.is_empty() && found.not_separable.is_empty(), "{found:?}");
+        let error = found.apparatus.iter().find(|error| error.id == id).expect("it is looked for");
+        let se = error.se.expect("it is fitted");
+        assert!(error.value.abs() > 4.0 * se, "{imperfection:?}: {error:?}");
+        assert!(
+            (error.value.abs() - size).abs() < 4.0 * se + 0.1 * size,
+            "{imperfection:?}: {error:?}"
+        );
+    }
+}
+
+#[test]
+fn an_effect_is_found_before_an_apparatus_that_is_off() {
+    for imperfection in [Imperfection::FirstFrame, Imperfection::Mistracked, Imperfection::Strays] {
+        let found = before(imperfection, vec![Hidden::Magnus], 502);
+        assert_eq!(found.effects, ["magnus"], "{imperfection:?}: {:?}", found.unexplained);
+    }
 }

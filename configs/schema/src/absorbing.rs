@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use engine::boundary::Layer;
 use engine::contact::{Encounter, Partner};
 
+use crate::guess::guessed_packing;
 use crate::model::{BedSource, BottomKind, Container, GrainModel, SidesKind};
-use crate::stability::guessed_packing;
 
 /// Thickness of a layer, in mean grain diameters.
 const THICKNESS: f64 = 8.0;

@@ -22,6 +22,8 @@ pub enum Value {
     Integer(i64),
     /// Any other number.
     Float(f64),
+    /// A quantity in SI, of a model that was read already.
+    Si(f64),
     /// True or false.
     Boolean(bool),
     /// A date or a time, which no key takes.
@@ -38,7 +40,7 @@ impl Value {
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Text(_) => "a string",
-            Self::Integer(_) | Self::Float(_) => "a number",
+            Self::Integer(_) | Self::Float(_) | Self::Si(_) => "a number",
             Self::Boolean(_) => "a truth value",
             Self::Datetime => "a date",
             Self::Array(_) => "a list",
@@ -71,6 +73,40 @@ impl Table {
     #[must_use]
     pub fn has(&self, key: &str) -> bool {
         self.get(key).is_some()
+    }
+
+    /// A table without lines, whose header stands at `header`.
+    pub(crate) fn empty(header: Span) -> Self {
+        Self { header, entries: Vec::new() }
+    }
+
+    /// Puts `node` at `key`, over what is there.
+    pub(crate) fn put(&mut self, key: &str, node: Node) {
+        match self.entries.iter_mut().find(|entry| entry.key == key) {
+            Some(entry) => entry.node = node,
+            None => self.entries.push(Entry { key: key.to_owned(), key_span: node.span, node }),
+        }
+    }
+
+    /// The table at `key`, made where nothing is; `None` where something else is.
+    pub(crate) fn below(&mut self, key: &str) -> Option<&mut Self> {
+        if !self.has(key) {
+            let empty = Self::empty(self.header);
+            self.put(key, Node { span: self.header, value: Value::Table(empty) });
+        }
+        match &mut self.entries.iter_mut().find(|entry| entry.key == key)?.node.value {
+            Value::Table(table) => Some(table),
+            _ => None,
+        }
+    }
+
+    /// Adds `node` to the list at `key`.
+    pub(crate) fn push(&mut self, key: &str, node: Node) {
+        match self.entries.iter_mut().find(|entry| entry.key == key).map(|one| &mut one.node.value)
+        {
+            Some(Value::Array(nodes)) => nodes.push(node),
+            _ => self.put(key, Node { span: node.span, value: Value::Array(vec![node]) }),
+        }
     }
 
     /// The line of `key`.

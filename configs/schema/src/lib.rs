@@ -8,12 +8,14 @@
 
 mod absorbing;
 mod build;
+mod change;
 mod checks;
 mod diagnostics;
 pub mod document;
 pub mod edit;
 pub mod estimate;
 pub mod grains_csv;
+mod guess;
 mod launching;
 pub mod limits;
 mod load;
@@ -29,6 +31,7 @@ mod specs;
 pub mod stability;
 
 pub use build::BuildError;
+pub use change::Change;
 pub use diagnostics::{
     Color, Diagnostic, Severity, SourceId, Sources, Span, nearest, printable, render_all, shorten,
 };

@@ -8,7 +8,7 @@ use thiserror::Error;
 use crate::diagnostics::{
     Color, Diagnostic, Severity, Sources, nearest, printable, render_all, shorten,
 };
-use crate::document;
+use crate::document::{self, Table};
 use crate::model::Model;
 use crate::read::DataFolder;
 use crate::reader::{FileKind, Reader};
@@ -176,37 +176,55 @@ impl Model {
         };
         let mut diagnostics = Vec::new();
         for set in &options.sets {
-            diagnostics.extend(set::apply_set(&mut root, &mut sources, "--set", set).err());
+            diagnostics.extend(
+                set::apply_set(&mut root, &mut sources, "--set", set).err().map(|one| *one),
+            );
         }
         if let Some(seed) = options.seed.filter(|seed| i64::try_from(*seed).is_err()) {
             let largest = i64::MAX;
             let message = format!("--seed {seed} is too large; at most {largest} is accepted");
-            diagnostics.push(Diagnostic::error(message).into());
+            diagnostics.push(Diagnostic::error(message));
         } else if let Some(seed) = options.seed {
             let set = format!("run.seed={seed}");
-            diagnostics.extend(set::apply_set(&mut root, &mut sources, "--seed", &set).err());
+            diagnostics.extend(
+                set::apply_set(&mut root, &mut sources, "--seed", &set).err().map(|one| *one),
+            );
         }
-        let reader = Reader::new(&sources, FileKind::Model);
-        diagnostics.into_iter().for_each(|one: Box<Diagnostic>| reader.report(*one));
-        let data = DataFolder { folder: &folder, allow_paths: &options.allow_paths };
-        let read = read::model(reader.root(&root), &data);
-        if let Some((model, places)) = &read {
-            checks::check(model, places, &reader);
+        let data = DataFolder { folder: &folder, allow_paths: &options.allow_paths, known: None };
+        let loaded = understood(&root, (sources, diagnostics), &data)?;
+        Ok(Loaded { original: text, ..loaded })
+    }
+}
+
+/// The model that `root` is, read and checked, where `diagnostics` were found already.
+///
+/// # Errors
+/// Everything that is wrong with it, at once.
+pub(crate) fn understood(
+    root: &Table,
+    (sources, diagnostics): (Sources, Vec<Diagnostic>),
+    data: &DataFolder<'_>,
+) -> Result<Loaded, ConfigError> {
+    let reader = Reader::new(&sources, FileKind::Model);
+    diagnostics.into_iter().for_each(|one| reader.report(one));
+    let read = read::model(reader.root(root), data);
+    if let Some((model, places)) = &read {
+        checks::check(model, places, &reader);
+    }
+    let (diagnostics, resolved) = reader.finish();
+    let failed = diagnostics.iter().any(|one| one.severity == Severity::Error);
+    match read {
+        Some((model, _)) if !failed => {
+            let model = Model {
+                resolved: resolved.text(),
+                bed_key: resolved.bed_key_text(),
+                hash: blake3::hash(resolved.hashed_text().as_bytes()).to_hex().to_string(),
+                lines: resolved,
+                ..model
+            };
+            Ok(Loaded { model, warnings: diagnostics, sources, original: String::new() })
         }
-        let (diagnostics, resolved) = reader.finish();
-        let failed = diagnostics.iter().any(|one| one.severity == Severity::Error);
-        match read {
-            Some((model, _)) if !failed => {
-                let model = Self {
-                    resolved: resolved.text(),
-                    bed_key: resolved.bed_key_text(),
-                    hash: blake3::hash(resolved.hashed_text().as_bytes()).to_hex().to_string(),
-                    ..model
-                };
-                Ok(Loaded { model, warnings: diagnostics, sources, original: text })
-            }
-            _ => Err(ConfigError::Invalid { diagnostics, sources }),
-        }
+        _ => Err(ConfigError::Invalid { diagnostics, sources }),
     }
 }
 

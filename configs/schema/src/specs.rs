@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use engine::bed::inflation_range;
 use engine::grains::Space;
-use engine::params::{Default, ParamSpec, Range};
+use engine::params::{ParamSpec, Range};
 use engine::units::Dimension;
 
 const fn required(
@@ -14,7 +14,7 @@ const fn required(
     plausible: Range,
     meaning: &'static str,
 ) -> ParamSpec {
-    ParamSpec { key, dimension, default: Default::Required, allowed, plausible, meaning }
+    ParamSpec::required(key, dimension, meaning).allowed(allowed).plausible(plausible)
 }
 
 const POSITIVE: Range = Range::POSITIVE;
@@ -34,33 +34,26 @@ pub(crate) const DURATION: ParamSpec = required(
 pub(crate) const TIME_STEP: ParamSpec =
     required("time_step", Dimension::TIME, POSITIVE, Range::closed(1e-9, 1e-3), "the time step");
 
-pub(crate) const PREPARATION_TIME_STEP: ParamSpec = ParamSpec {
-    key: "preparation_time_step",
-    meaning: "the time step while settling",
-    ..TIME_STEP
-};
+pub(crate) const PREPARATION_TIME_STEP: ParamSpec =
+    TIME_STEP.named("preparation_time_step", "the time step while settling");
 
-pub(crate) const TIME_STEP_FACTOR: ParamSpec = ParamSpec {
-    default: Default::Value(1.0),
-    ..required(
-        "time_step_factor",
-        NUMBER,
-        POSITIVE,
-        Range::closed(1e-3, 10.0),
-        "a factor on the time step",
-    )
-};
+pub(crate) const TIME_STEP_FACTOR: ParamSpec = required(
+    "time_step_factor",
+    NUMBER,
+    POSITIVE,
+    Range::closed(1e-3, 10.0),
+    "a factor on the time step",
+)
+.or(1.0);
 
-pub(crate) const FRAMES_PER_S: ParamSpec = ParamSpec {
-    default: Default::Value(200.0),
-    ..required(
-        "frames_per_s",
-        NUMBER,
-        POSITIVE,
-        Range::closed(1.0, 1e5),
-        "the frames of all grains per simulated second",
-    )
-};
+pub(crate) const FRAMES_PER_S: ParamSpec = required(
+    "frames_per_s",
+    NUMBER,
+    POSITIVE,
+    Range::closed(1.0, 1e5),
+    "the frames of all grains per simulated second",
+)
+.or(200.0);
 
 pub(crate) const FIELDS_AT: ParamSpec = required(
     "fields_at",
@@ -70,16 +63,14 @@ pub(crate) const FIELDS_AT: ParamSpec = required(
     "when the velocity field and the crater are logged",
 );
 
-pub(crate) const ABORT_ABOVE: ParamSpec = ParamSpec {
-    default: Default::Value(0.05),
-    ..required(
-        "abort_above",
-        NUMBER,
-        POSITIVE,
-        Range::closed(1e-9, 1.0),
-        "the energy unaccounted for, over that of the impact, that ends a run",
-    )
-};
+pub(crate) const ABORT_ABOVE: ParamSpec = required(
+    "abort_above",
+    NUMBER,
+    POSITIVE,
+    Range::closed(1e-9, 1.0),
+    "the energy unaccounted for, over that of the impact, that ends a run",
+)
+.or(0.05);
 
 pub(crate) const GRAVITY: ParamSpec = required(
     "gravity",
@@ -100,11 +91,10 @@ pub(crate) const GRAIN_INERTIA: ParamSpec = required(
 pub(crate) const WIDTH: ParamSpec =
     required("width", LENGTH, POSITIVE, Range::closed(1e-3, 100.0), "the inner width of the box");
 
-pub(crate) const DEPTH: ParamSpec =
-    ParamSpec { key: "depth", meaning: "the inner depth of the box, along y", ..WIDTH };
+pub(crate) const DEPTH: ParamSpec = WIDTH.named("depth", "the inner depth of the box, along y");
 
 pub(crate) const CONTAINER_DIAMETER: ParamSpec =
-    ParamSpec { key: "diameter", meaning: "the inner diameter of the cylinder", ..WIDTH };
+    WIDTH.named("diameter", "the inner diameter of the cylinder");
 
 pub(crate) const ABSORBING_THICKNESS: ParamSpec = required(
     "absorbing_thickness",
@@ -161,13 +151,13 @@ pub(crate) const GRAIN_DIAMETER: ParamSpec =
     required("diameter", LENGTH, POSITIVE, Range::closed(1e-5, 0.1), "the diameter of one grain");
 
 pub(crate) const GRAIN_DIAMETER_MIN: ParamSpec =
-    ParamSpec { key: "diameter_min", meaning: "the smallest diameter", ..GRAIN_DIAMETER };
+    GRAIN_DIAMETER.named("diameter_min", "the smallest diameter");
 
 pub(crate) const GRAIN_DIAMETER_MAX: ParamSpec =
-    ParamSpec { key: "diameter_max", meaning: "the largest diameter", ..GRAIN_DIAMETER };
+    GRAIN_DIAMETER.named("diameter_max", "the largest diameter");
 
 pub(crate) const GRAIN_DIAMETER_MEDIAN: ParamSpec =
-    ParamSpec { key: "diameter_median", meaning: "the median diameter", ..GRAIN_DIAMETER };
+    GRAIN_DIAMETER.named("diameter_median", "the median diameter");
 
 pub(crate) const GRAIN_DIAMETER_SIGMA: ParamSpec = required(
     "diameter_sigma",
@@ -177,8 +167,7 @@ pub(crate) const GRAIN_DIAMETER_SIGMA: ParamSpec = required(
     "the standard deviation of the logarithm of the diameter",
 );
 
-pub(crate) const GRAIN_DIAMETERS: ParamSpec =
-    ParamSpec { key: "diameters", meaning: "the diameters", ..GRAIN_DIAMETER };
+pub(crate) const GRAIN_DIAMETERS: ParamSpec = GRAIN_DIAMETER.named("diameters", "the diameters");
 
 pub(crate) const GRAIN_WEIGHTS: ParamSpec = required(
     "weights",
@@ -237,16 +226,14 @@ pub(crate) const PACKING: ParamSpec = required(
 pub(crate) const BED_DEPTH: ParamSpec =
     required("bed_depth", LENGTH, POSITIVE, Range::closed(1e-3, 100.0), "the depth of the bed");
 
-pub(crate) const LOG_INTERVAL: ParamSpec = ParamSpec {
-    default: Default::Value(1e-4),
-    ..required(
-        "interval",
-        Dimension::TIME,
-        POSITIVE,
-        Range::closed(1e-6, 0.1),
-        "the time between two samples of the log",
-    )
-};
+pub(crate) const LOG_INTERVAL: ParamSpec = required(
+    "interval",
+    Dimension::TIME,
+    POSITIVE,
+    Range::closed(1e-6, 0.1),
+    "the time between two samples of the log",
+)
+.or(1e-4);
 
 pub(crate) const SPEED: ParamSpec = required(
     "speed",
@@ -264,31 +251,27 @@ pub(crate) const ANGLE: ParamSpec = required(
     "the angle of the velocity below the horizontal; 90 deg is straight down",
 );
 
-pub(crate) const SPIN: ParamSpec = ParamSpec {
-    default: Default::Value(0.0),
-    ..required(
-        "spin",
-        Dimension::SPIN,
-        ANY,
-        Range::closed(-1e4, 1e4),
-        "the angular velocity at first contact, counter-clockwise positive",
-    )
-};
+pub(crate) const SPIN: ParamSpec = required(
+    "spin",
+    Dimension::SPIN,
+    ANY,
+    Range::closed(-1e4, 1e4),
+    "the angular velocity at first contact, counter-clockwise positive",
+)
+.or(0.0);
 
 /// One component of it.
 pub(crate) const SPIN_VECTOR: ParamSpec =
     ParamSpec { meaning: "the angular velocity at first contact, a vector with z up", ..SPIN };
 
-pub(crate) const ATTITUDE: ParamSpec = ParamSpec {
-    default: Default::Value(0.0),
-    ..required(
-        "attitude",
-        Dimension::ANGLE,
-        Range::closed(-PI, PI),
-        Range::closed(-PI, PI),
-        "the angle of the intruder's axis to the vertical; its top leans towards +x",
-    )
-};
+pub(crate) const ATTITUDE: ParamSpec = required(
+    "attitude",
+    Dimension::ANGLE,
+    Range::closed(-PI, PI),
+    Range::closed(-PI, PI),
+    "the angle of the intruder's axis to the vertical; its top leans towards +x",
+)
+.or(0.0);
 
 pub(crate) const X: ParamSpec = required(
     "x",
@@ -299,10 +282,9 @@ pub(crate) const X: ParamSpec = required(
 );
 
 pub(crate) const Y: ParamSpec =
-    ParamSpec { key: "y", meaning: "where the intruder's centre starts, from the front side", ..X };
+    X.named("y", "where the intruder's centre starts, from the front side");
 
-pub(crate) const X_RANGE: ParamSpec =
-    ParamSpec { key: "x_range", meaning: "where drawn positions lie", ..X };
+pub(crate) const X_RANGE: ParamSpec = X.named("x_range", "where drawn positions lie");
 
 pub(crate) const POSITION: ParamSpec =
     ParamSpec { key: "position", allowed: ANY, plausible: ANY, ..X };

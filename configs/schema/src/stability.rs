@@ -1,10 +1,10 @@
 //! How fast contacts can change, and the time step that follows from it.
 
 use engine::contact::{Encounter, Partner};
-use engine::grains::Space;
 use engine::stage::ContactStage;
 
 use crate::absorbing;
+use crate::guess::guessed_packing;
 use crate::model::{BedSource, GrainModel, LawChoice, TimeStep};
 
 /// Steps per shortest collision when `time_step = "auto"`.
@@ -26,14 +26,6 @@ pub const FEW_STEPS_PER_COLLISION: f64 = 20.0;
 /// Automatic step of falling grains over that of a run: half as many steps per collision and per
 /// relaxation still bring them down to the same packing.
 const FALLING_STEP: f64 = 2.0;
-
-/// Packing fraction by which the height of a bed is guessed that names no target.
-pub(crate) fn guessed_packing(space: Space) -> f64 {
-    match space {
-        Space::Planar => 0.8,
-        Space::Spatial => 0.6,
-    }
-}
 
 /// Slowest approach (m/s) that a step is chosen for: without it nothing that starts at rest in no
 /// gravity would have a collision time.

@@ -6,6 +6,8 @@ mod side_wall;
 use engine::grain_force::GrainForce;
 use engine::params::{ParamSpec, ParamTable};
 
+use crate::candidate::Candidacy;
+
 /// One force on single grains.
 pub struct GrainForceEntry {
     /// The name in TOML, kebab-case; the ledger has a dissipated channel of this name.
@@ -22,6 +24,8 @@ pub struct GrainForceEntry {
     pub source: &'static str,
     /// The parameters it takes.
     pub params: &'static [ParamSpec],
+    /// Whether the diagnosis of a bed looks for it.
+    pub candidacy: Candidacy,
     /// Makes it from SI values that fill `params`.
     pub build: fn(&ParamTable) -> Box<dyn GrainForce>,
 }

@@ -2,10 +2,11 @@
 
 use engine::grain_force::{ForceOnGrain, GrainForce, MovingGrain};
 use engine::math::Vec3;
-use engine::params::{Default, ParamSpec, ParamTable, Range};
+use engine::params::{ParamSpec, ParamTable};
 use engine::units::Dimension;
 
 use super::GrainForceEntry;
+use crate::candidate::{Candidacy, Candidate};
 
 /// A drag on every grain by air at rest.
 ///
@@ -37,14 +38,12 @@ impl GrainForce for PoreAir {
     }
 }
 
-const PARAMS: &[ParamSpec] = &[ParamSpec {
-    key: "drag_rate",
-    dimension: Dimension::RATE,
-    default: Default::Required,
-    allowed: Range::NOT_NEGATIVE,
-    plausible: Range::closed(0.01, 1e3),
-    meaning: "γ, drag of the air on a grain over its mass and velocity",
-}];
+const PARAMS: &[ParamSpec] = &[ParamSpec::required(
+    "drag_rate",
+    Dimension::RATE,
+    "γ, drag of the air on a grain over its mass and velocity",
+)
+.usual(0.01, 1e3)];
 
 /// The registry's line.
 pub(super) const ENTRY: GrainForceEntry = GrainForceEntry {
@@ -55,6 +54,15 @@ pub(super) const ENTRY: GrainForceEntry = GrainForceEntry {
     signature: "A bed that gives way later: fast impacts are stopped earlier, slow ones hardly.",
     source: "Carman, Trans. Inst. Chem. Eng. 15, 150 (1937); Ergun, Chem. Eng. Prog. 48, 89 (1952)",
     params: PARAMS,
+    candidacy: Candidacy::Candidate(Candidate {
+        amplitude: "drag_rate (1/s)",
+        screen: 5.0,
+        range: (0.0, 200.0),
+        separable_from: "from restitution: a wide range of speeds; from air-drag: flight before contact",
+        alike_below: &[],
+        needs: &[],
+        params: |_, q| vec![("drag_rate", q)],
+    }),
     build: |params: &ParamTable| Box::new(PoreAir { drag_rate: params.get("drag_rate") }),
 };
 

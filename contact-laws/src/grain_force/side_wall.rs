@@ -1,10 +1,10 @@
 //! Friction of discs with the plates that hold them in their plane.
 
 use engine::grain_force::{ForceOnGrain, GrainForce, MovingGrain};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
-use engine::units::Dimension;
+use engine::params::{ParamSpec, ParamTable};
 
 use super::GrainForceEntry;
+use crate::candidate::{Candidacy, Candidate, Need};
 
 /// Below this speed (m/s) the friction goes to zero with the speed, so that grains come to rest.
 const CREEP: f64 = 1e-3;
@@ -44,14 +44,9 @@ impl GrainForce for SideWall {
     }
 }
 
-const PARAMS: &[ParamSpec] = &[ParamSpec {
-    key: "plate_friction",
-    dimension: Dimension::NONE,
-    default: Default::Required,
-    allowed: Range::NOT_NEGATIVE,
-    plausible: Range::closed(0.01, 1.0),
-    meaning: "μ, friction of a disc with the plates over its weight",
-}];
+const PARAMS: &[ParamSpec] =
+    &[ParamSpec::number("plate_friction", "μ, friction of a disc with the plates over its weight")
+        .usual(0.01, 1.0)];
 
 /// The registry's line.
 pub(super) const ENTRY: GrainForceEntry = GrainForceEntry {
@@ -62,6 +57,15 @@ pub(super) const ENTRY: GrainForceEntry = GrainForceEntry {
     signature: "A stiffer bed: depth and stopping time fall together, more where more grains move.",
     source: "Coulomb friction; Sperl, Granul. Matter 8, 59 (2006)",
     params: PARAMS,
+    candidacy: Candidacy::Candidate(Candidate {
+        amplitude: "plate_friction",
+        screen: 0.1,
+        range: (0.0, 1.0),
+        separable_from: "from grain-friction: slow impacts, or plates of another roughness",
+        alike_below: &[],
+        needs: &[Need::Discs("spheres are not held between two plates"), Need::Gravity],
+        params: |_, q| vec![("plate_friction", q)],
+    }),
     build: |params: &ParamTable| {
         Box::new(SideWall { plate_friction: params.get("plate_friction") })
     },

@@ -4,32 +4,18 @@ use engine::contact::Partner;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use engine::units::Dimension;
 
-const MODULUS: ParamSpec = ParamSpec {
-    key: "young_modulus",
-    dimension: Dimension::PRESSURE,
-    default: Default::Required,
-    allowed: Range::POSITIVE,
-    plausible: Range::closed(1e5, 1e12),
-    meaning: "E, Young's modulus of the grains",
-};
+const MODULUS: ParamSpec =
+    ParamSpec::required("young_modulus", Dimension::PRESSURE, "E, Young's modulus of the grains")
+        .allowed(Range::POSITIVE)
+        .usual(1e5, 1e12);
 
-const RATIO: ParamSpec = ParamSpec {
-    key: "poisson_ratio",
-    dimension: Dimension::NONE,
-    default: Default::Required,
-    allowed: Range::closed(0.0, 0.5),
-    plausible: Range::closed(0.1, 0.49),
-    meaning: "ν, Poisson's ratio of the grains",
-};
+const RATIO: ParamSpec = ParamSpec::number("poisson_ratio", "ν, Poisson's ratio of the grains")
+    .allowed(Range::closed(0.0, 0.5))
+    .usual(0.1, 0.49);
 
-const FRICTION: ParamSpec = ParamSpec {
-    key: "friction",
-    dimension: Dimension::NONE,
-    default: Default::Required,
-    allowed: Range::NOT_NEGATIVE,
-    plausible: Range::closed(0.0, 1.5),
-    meaning: "μ, Coulomb limit of the tangential force over F_n",
-};
+const FRICTION: ParamSpec =
+    ParamSpec::number("friction", "μ, Coulomb limit of the tangential force over F_n")
+        .usual(0.0, 1.5);
 
 /// The parameters of a Hertz–Mindlin law that is damped by the parameter `damping`, with
 /// `tangential_damping` as its factor along the contact plane.
@@ -39,42 +25,14 @@ pub(crate) const fn specs(damping: ParamSpec, tangential_damping: ParamSpec) -> 
         RATIO,
         damping,
         FRICTION,
-        ParamSpec {
-            key: "wall_friction",
-            default: Default::SameAs("friction"),
-            meaning: "μ between grains and walls",
-            ..FRICTION
-        },
-        ParamSpec {
-            key: "intruder_friction",
-            default: Default::SameAs("friction"),
-            meaning: "μ between grains and the intruder",
-            ..FRICTION
-        },
-        ParamSpec {
-            key: "wall_young_modulus",
-            default: Default::SameAs("young_modulus"),
-            meaning: "E of the walls",
-            ..MODULUS
-        },
-        ParamSpec {
-            key: "wall_poisson_ratio",
-            default: Default::SameAs("poisson_ratio"),
-            meaning: "ν of the walls",
-            ..RATIO
-        },
-        ParamSpec {
-            key: "intruder_young_modulus",
-            default: Default::SameAs("young_modulus"),
-            meaning: "E of the intruder",
-            ..MODULUS
-        },
-        ParamSpec {
-            key: "intruder_poisson_ratio",
-            default: Default::SameAs("poisson_ratio"),
-            meaning: "ν of the intruder",
-            ..RATIO
-        },
+        FRICTION.named("wall_friction", "μ between grains and walls").same_as("friction"),
+        FRICTION
+            .named("intruder_friction", "μ between grains and the intruder")
+            .same_as("friction"),
+        MODULUS.named("wall_young_modulus", "E of the walls").same_as("young_modulus"),
+        RATIO.named("wall_poisson_ratio", "ν of the walls").same_as("poisson_ratio"),
+        MODULUS.named("intruder_young_modulus", "E of the intruder").same_as("young_modulus"),
+        RATIO.named("intruder_poisson_ratio", "ν of the intruder").same_as("poisson_ratio"),
         tangential_damping,
     ]
 }
@@ -98,14 +56,8 @@ const fn of_base(spec: ParamSpec, key: &'static str) -> ParamSpec {
 }
 
 /// The factor on the viscous force in the contact plane.
-pub(crate) const TANGENTIAL_DAMPING: ParamSpec = ParamSpec {
-    key: "tangential_damping",
-    dimension: Dimension::NONE,
-    default: Default::Required,
-    allowed: Range::NOT_NEGATIVE,
-    plausible: Range::closed(0.0, 2.0),
-    meaning: "",
-};
+pub(crate) const TANGENTIAL_DAMPING: ParamSpec =
+    ParamSpec::number("tangential_damping", "").usual(0.0, 2.0);
 
 /// μ with `partner`.
 pub(crate) fn friction(params: &ParamTable, partner: Partner) -> f64 {

@@ -75,12 +75,7 @@ impl Baseline {
         layouts: &[Layout],
         runs: &[Vec<Record>],
     ) -> Result<Self, BaselineError> {
-        let instrument = Instrument {
-            rate: None,
-            position_sigma: None,
-            speed_sigma_rel: None,
-            level_sigma: None,
-        };
+        let instrument = Instrument::default().without_shared_errors();
         let set = MeasurementSet { instrument, ..stand.set.clone() };
         let mut conditions = Vec::with_capacity(layouts.len());
         for (at, (layout, runs)) in layouts.iter().zip(runs).enumerate() {

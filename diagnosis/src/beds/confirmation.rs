@@ -7,9 +7,9 @@ use runner::beds::Record;
 use serde_json::{Value, json};
 
 use super::emulator::BedForward;
+use super::error::BedError;
 use super::observables::observables;
 use super::stand::Stand;
-use super::workflow::BedError;
 use crate::bench::BenchError;
 use crate::errors::{Errors, Sums};
 use crate::held_out::{Fails, HeldOut, LeftOut, NotPredicted, Unit, standard_errors};
@@ -91,7 +91,10 @@ impl Confirmation {
             Unit::Relative => errors.relative,
         };
         let [before, after, noise_floor] = sums.map(|sums| pick(&sums.errors()));
+        let [.., explained] = HeldOut::share(before, after, noise_floor);
         let held_out = HeldOut {
+            ratio_at_most: None,
+            explained,
             before,
             after,
             noise_floor,

@@ -7,8 +7,11 @@ use serde_json::{Value, json};
 
 use super::baseline::Baseline;
 use super::response::Response;
-use super::switches::Switch;
-use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
+use super::switch::Switch;
+use super::switches::are_alike_below;
+use crate::forward::{
+    Candidate, Forward, Parameter, ParameterKind, PredictError, Request, Scatter,
+};
 use crate::held_out::noise_floor;
 use crate::rounding::rounded;
 
@@ -18,10 +21,6 @@ const SCREENED: f64 = 4.0;
 
 /// The same for the largest amplitude of a line search.
 const SEARCHED: f64 = 1.5;
-
-/// A constant force on the intruder, and what grains do that looks like one below the surface: they differ
-/// before contact.
-const CONSTANT: [&str; 3] = ["rail-friction", "cohesion-dmt", "capillary-bridge"];
 
 /// A derivative by an amplitude is taken over this share of the one that is screened.
 const STEP: f64 = 1e-2;
@@ -95,7 +94,15 @@ impl BedForward {
             let one = &self.screened[at];
             let (min, max) = one.range;
             let name = one.switch.id.to_owned();
-            Parameter { name, unit: String::new(), start: 0.0, min, max }
+            Parameter {
+                name,
+                unit: String::new(),
+                start: 0.0,
+                min,
+                max,
+                prior: None,
+                kind: ParameterKind::Model,
+            }
         };
         let candidate = |source: &Source| match *source {
             Source::Switch(at) => self.screened[at].candidate(),
@@ -107,13 +114,11 @@ impl BedForward {
         let parameters = self.free.iter().map(parameter).collect();
         let mut candidates: Vec<Candidate> = self.sources.iter().map(candidate).collect();
         if !self.flight {
-            let alike: Vec<String> = candidates
-                .iter()
-                .filter(|one| CONSTANT.contains(&one.id.as_str()) && one.not_testable.is_none())
-                .map(|one| one.id.clone())
-                .collect();
-            for one in candidates.iter_mut().filter(|one| alike.contains(&one.id)) {
-                one.unresolved = alike.iter().filter(|id| **id != one.id).cloned().collect();
+            let testable = candidates.iter().filter(|one| one.not_testable.is_none());
+            let testable: Vec<String> = testable.map(|one| one.id.clone()).collect();
+            for one in candidates.iter_mut().filter(|one| one.not_testable.is_none()) {
+                let alike = testable.iter().filter(|other| are_alike_below(&one.id, other));
+                one.unresolved = alike.cloned().collect();
             }
         }
         (self.parameters, self.candidates) = (parameters, candidates);
@@ -260,6 +265,10 @@ impl Screened {
 }
 
 impl Forward for BedForward {
+    fn is_judged_by_held_out(&self) -> bool {
+        false
+    }
+
     fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }

@@ -8,7 +8,7 @@ use runner::beds::Record;
 use super::observables::observables;
 use super::response::{BetweenDraws, Line, Response, deviations};
 use super::stand::{Draw, Stand, StandError};
-use super::switches::Switch;
+use super::switch::Switch;
 use crate::observable::Layout;
 
 /// Amplitudes in that of the guess.

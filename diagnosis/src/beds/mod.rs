@@ -4,9 +4,11 @@
 //! [`Place`](runner::beds::Place) runs them.
 
 mod baseline;
+mod changes;
 mod confirmation;
 mod design;
 mod emulator;
+mod error;
 mod line_search;
 mod modes;
 pub mod observables;
@@ -14,6 +16,7 @@ mod plan;
 mod response;
 mod screening;
 mod stand;
+mod switch;
 mod switches;
 mod variation;
 mod workflow;
@@ -21,10 +24,10 @@ mod workflow;
 pub use baseline::BaselineError;
 pub use confirmation::{Channel, Confirmation};
 pub use emulator::BedForward;
+pub use error::BedError;
 pub use plan::{Plan, PlannedStage, SIZES, Size, Wish};
 pub use stand::{Draw, Stand, StandError};
-pub use switches::{SWITCHES, Switch};
+pub use switch::Switch;
+pub use switches::SWITCHES;
 pub use variation::Variation;
-pub use workflow::{
-    BedDiagnosis, BedError, COMPARED, bed_forward, compare_jobs, diagnose_bed, unaffordable,
-};
+pub use workflow::{BedDiagnosis, COMPARED, bed_forward, compare_jobs, diagnose_bed, unaffordable};

@@ -4,12 +4,13 @@ use runner::beds::Job;
 use runner::beds::{Impacts, Outstanding, SETTLING};
 use serde_json::{Value, json};
 
+use super::error::BedError;
 use super::line_search;
 use super::screening::Screening;
 use super::stand::{Draw, Stand};
-use super::switches::{OF_THE_APPARATUS, SWITCHES, Switch};
+use super::switch::Switch;
+use super::switches::{OF_THE_APPARATUS, SWITCHES};
 use super::variation::Variation;
-use super::workflow::BedError;
 use crate::observed::Observed;
 
 /// How many effects a line search and a confirmation take up.
@@ -113,7 +114,7 @@ impl Wish {
 
     /// What the apparatus may do that is a candidate.
     pub(super) fn apparatus(&self) -> Vec<&'static str> {
-        OF_THE_APPARATUS.into_iter().filter(|id| self.considers(id, true)).collect()
+        OF_THE_APPARATUS.iter().copied().filter(|id| self.considers(id, true)).collect()
     }
 }
 

@@ -10,7 +10,7 @@ use super::emulator::Screened;
 use super::observables::observables;
 use super::response::Response;
 use super::stand::{Draw, Stand, StandError};
-use super::switches::Switch;
+use super::switch::Switch;
 use super::variation::Variation;
 use crate::observable::Layout;
 use crate::projection::Basis;

@@ -1,11 +1,8 @@
 //! A model of grains before a measurement set: which impact stands for which condition and bed.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
-use configs::{
-    BedSource, ConfigError, GrainMedium, GrainModel, LoadOptions, Medium, Model, ModelSource,
-};
+use configs::{Change, ConfigError, GrainMedium, GrainModel, Medium, Model};
 use engine::bed::random;
 use engine::grains::Space;
 use measurements::{Condition, Geometry, MeasurementSet};
@@ -75,9 +72,6 @@ pub struct Stand<'a> {
     medium: &'a GrainMedium,
     /// The set.
     pub set: &'a MeasurementSet,
-    text: String,
-    allow_paths: Vec<PathBuf>,
-    n_effects: usize,
     n_places: usize,
     x_range: (f64, f64),
     /// Expected length of the impact of every condition (s).
@@ -103,10 +97,6 @@ impl<'a> Stand<'a> {
             let (model_space, set_space) = (name(medium.space), name(of_set));
             return Err(StandError::Geometry { model, model_space, set_space });
         }
-        let allow_paths = match &medium.bed.source {
-            BedSource::Csv(csv) => csv.file.parent().map(PathBuf::from).into_iter().collect(),
-            BedSource::Settle(_) => Vec::new(),
-        };
         let widest = set.conditions.iter().map(|one| one.diameter).fold(0.0, f64::max);
         let x_range = medium.start.x_range;
         let n_places = ((x_range.1 - x_range.0) / (APART * widest)).floor() as usize;
@@ -114,9 +104,6 @@ impl<'a> Stand<'a> {
             model,
             medium,
             set,
-            text: model.resolved_toml().to_owned(),
-            allow_paths,
-            n_effects: medium.effects.len(),
             n_places: (1 + n_places).min(MOST_PLACES),
             x_range,
             expected: (0..set.conditions.len()).map(|at| expected(model, set, at)).collect(),
@@ -164,22 +151,20 @@ impl<'a> Stand<'a> {
         draw: Draw,
         variation: &Variation,
     ) -> Result<Job, StandError> {
-        let seed = format!("run.seed={}", draw.seed);
-        let gravity = format!("medium.gravity=\"{:?} m/s^2\"", self.set.bed.gravity);
-        let mut before = vec![seed, gravity];
+        let mut before = vec![Change::Seed(draw.seed), Change::Gravity(self.set.bed.gravity)];
         before.extend(variation.before.iter().cloned());
         let mut during = before.clone();
         during.extend(variation.during.iter().cloned());
-        during.extend(self.added(variation));
         let of_condition = &self.set.conditions[condition];
-        during.extend(sets_of(of_condition));
-        during.push(format!("impact.x=\"{:?} m\"", self.x(draw)));
-        let load = |sets| {
-            self.load(sets)
+        during.extend(changes_of(of_condition));
+        during.push(Change::X(self.x(draw)));
+        let with = |changes: &[Change]| {
+            self.grains()
+                .with(changes)
                 .map(Arc::new)
                 .map_err(|source| StandError::Config { condition: of_condition.id.clone(), source })
         };
-        Ok(Job { model: load(during)?, bed: load(before)?, expected: self.expected[condition] })
+        Ok(Job { model: with(&during)?, bed: with(&before)?, expected: self.expected[condition] })
     }
 
     /// The impacts under `conditions`, each on its own of `draws`, with `variation`: condition after
@@ -203,30 +188,8 @@ impl<'a> Stand<'a> {
     /// # Errors
     /// If that is no model.
     pub fn proposal(&self, variation: &Variation) -> Result<String, ConfigError> {
-        let mut sets = [&variation.before[..], &variation.during[..]].concat();
-        sets.extend(self.added(variation));
-        Ok(self.load(sets)?.resolved_toml().to_owned())
-    }
-
-    /// The assignments that add the effects of `variation`.
-    fn added(&self, variation: &Variation) -> Vec<String> {
-        let mut sets = Vec::new();
-        for (at, (name, values)) in (self.n_effects..).zip(&variation.effects) {
-            sets.push(format!("effect.{at}.name=\"{name}\""));
-            sets.extend(values.iter().map(|(key, value)| format!("effect.{at}.{key}={value}")));
-        }
-        sets
-    }
-
-    /// The model with `sets`.
-    fn load(&self, sets: Vec<String>) -> Result<Model, ConfigError> {
-        let source = ModelSource::Text {
-            name: format!("an impact of {}", self.model.run.name),
-            text: self.text.clone(),
-            folder: PathBuf::from("."),
-        };
-        let options = LoadOptions { sets, seed: None, allow_paths: self.allow_paths.clone() };
-        Ok(Model::load(source, &options)?.model)
+        let changes = [&variation.before[..], &variation.during[..]].concat();
+        Ok(self.grains().with(&changes)?.resolved_toml().to_owned())
     }
 
     /// Where the intruder lands (m): somewhere in its part of the range, drawn with the seed.
@@ -240,27 +203,26 @@ impl<'a> Stand<'a> {
 }
 
 /// What of a model the condition decides.
-fn sets_of(condition: &Condition) -> Vec<String> {
-    let mut sets = vec![
-        format!("impact.speed=\"{:?} m/s\"", condition.speed),
-        format!("impact.angle=\"{:?} deg\"", condition.angle_deg),
-        format!("intruder.shape=\"{}\"", condition.shape),
-        format!("intruder.diameter=\"{:?} m\"", condition.diameter),
-        format!("intruder.mass=\"{:?} kg\"", condition.mass),
+fn changes_of(condition: &Condition) -> Vec<Change> {
+    let Condition { speed, angle_deg, .. } = *condition;
+    let sizes = [
+        ("diameter", Some(condition.diameter)),
+        ("length", condition.length),
+        ("height", condition.height),
+        ("apex_angle", condition.apex_deg.map(f64::to_radians)),
+        ("link_angle", condition.link_angle_deg.map(f64::to_radians)),
+    ];
+    let sizes = sizes.into_iter().filter_map(|(key, size)| Some((key, size?))).collect();
+    let shape = condition.shape.clone();
+    let mut changes = vec![
+        Change::Velocity { speed, angle_rad: angle_deg.to_radians() },
+        Change::Intruder { shape, sizes, mass: condition.mass },
     ];
     if condition.spin != 0.0 {
         // The set counts rolling forward, the model counter-clockwise.
-        sets.push(format!("impact.spin=\"{:?} rad/s\"", -condition.spin));
+        changes.push(Change::Spin(-condition.spin));
     }
-    let sizes = [
-        ("length", "m", condition.length),
-        ("height", "m", condition.height),
-        ("apex_angle", "deg", condition.apex_deg),
-        ("link_angle", "deg", condition.link_angle_deg),
-    ];
-    let given = sizes.iter().filter_map(|(key, unit, size)| Some((key, unit, (*size)?)));
-    sets.extend(given.map(|(key, unit, size)| format!("intruder.{key}=\"{size:?} {unit}\"")));
-    sets
+    changes
 }
 
 /// How long the impact of condition `condition` is expected to take (s).

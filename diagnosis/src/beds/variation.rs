@@ -1,25 +1,34 @@
 //! A change of a model of grains.
 
+use configs::Change;
+
 /// What is changed: in what the bed is made of, and in what acts during the impact.
-///
-/// Assignments are as `--set` has them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Variation {
     /// Of the bed and of the impact.
-    pub before: Vec<String>,
+    pub before: Vec<Change>,
     /// Of the impact alone: it falls on the bed that the model has without it.
-    pub during: Vec<String>,
-    /// Effects that are added during the impact, each with its keys and their values as TOML.
-    pub effects: Vec<(String, Vec<(String, String)>)>,
+    pub during: Vec<Change>,
 }
 
 impl Variation {
+    /// `change` in the bed and in the impact.
+    #[must_use]
+    pub fn before(change: Change) -> Self {
+        Self { before: vec![change], during: Vec::new() }
+    }
+
+    /// `change` in the impact alone.
+    #[must_use]
+    pub fn during(change: Change) -> Self {
+        Self { before: Vec::new(), during: vec![change] }
+    }
+
     /// Both changes.
     #[must_use]
     pub fn and(mut self, other: Self) -> Self {
         self.before.extend(other.before);
         self.during.extend(other.during);
-        self.effects.extend(other.effects);
         self
     }
 }

@@ -1,28 +1,27 @@
 //! From a model of grains and a set to a comparison, or to a diagnosis: what is run, in which order, and
 //! what is made of it.
 
-use runner::CampaignError;
 use runner::beds::Impacts;
 use runner::beds::Job;
 use runner::beds::Record;
 use serde_json::{Value, json};
-use thiserror::Error;
 
-use super::baseline::{Baseline, BaselineError};
+use super::baseline::Baseline;
 use super::confirmation::Confirmation;
 use super::emulator::{BedForward, Screened};
+use super::error::BedError;
 use super::line_search::{Against, LineSearch};
 use super::plan::{LEADERS, Plan, SEARCHES};
 use super::response::Response;
 use super::screening::screened;
-use super::stand::{Draw, Stand, StandError};
-use super::switches::Switch;
+use super::stand::{Draw, Stand};
+use super::switch::Switch;
 use super::variation::Variation;
-use crate::bench::{Bench, BenchError};
+use crate::bench::Bench;
 use crate::compare::parameters;
 use crate::diagnose::{diagnose, withdraw};
 use crate::forward::Forward;
-use crate::held_out::HeldOut;
+use crate::held_out::{HeldOut, WITHIN};
 use crate::observable::Layout;
 use crate::observed::Observed;
 use crate::rounding::rounded;
@@ -37,36 +36,8 @@ const ALONE: f64 = 0.5;
 /// what one says beside the other, and a covariance that seems to would veto what is true.
 const FRAMES: usize = 12;
 
-/// An error on fresh beds up to so many times its noise is noise.
-const WITHIN: f64 = 1.3;
-
 /// Draws of a comparison.
 pub const COMPARED: usize = 6;
-
-/// Why there is no comparison or diagnosis.
-#[derive(Debug, Error)]
-pub enum BedError {
-    /// The model and the set do not fit each other.
-    #[error(transparent)]
-    Stand(#[from] StandError),
-    /// The impacts were not run to the end.
-    #[error(transparent)]
-    Campaign(#[from] CampaignError),
-    /// They say nothing.
-    #[error(transparent)]
-    Baseline(#[from] BaselineError),
-    /// The statistics fail.
-    #[error(transparent)]
-    Bench(#[from] BenchError),
-    /// A name that is no candidate of the model.
-    #[error("there is no candidate `{id}` for this model; there are: {}", known.join(", "))]
-    UnknownCandidate {
-        /// What was asked for.
-        id: String,
-        /// What there is.
-        known: Vec<&'static str>,
-    },
-}
 
 /// A diagnosis of a bed of grains.
 pub struct BedDiagnosis {

@@ -7,7 +7,8 @@ use rand_pcg::Pcg64;
 
 use super::groups::GROUPS;
 use super::normal::Normal;
-use super::{ForceError, Trend};
+use super::part::ForceError;
+use super::trend::Trend;
 use crate::bench::{Bench, Fitted};
 use crate::covariate::{Covariate, ORDER, PREVIOUS_RUN};
 use crate::random::{Purpose, stream};

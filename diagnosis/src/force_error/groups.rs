@@ -1,7 +1,7 @@
 //! One force error per part of what was varied.
 
 use super::normal::{NODES, Normal, solve};
-use super::{ForceCell, ForceError};
+use super::part::{ForceCell, ForceError};
 use crate::covariate::{Covariate, DEPTH};
 
 /// Most groups that the values of a covariate are cut into.

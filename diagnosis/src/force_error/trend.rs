@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::normal::{NODES, Normal, solve};
-use super::p_value;
+use super::part::p_value;
 use crate::covariate::{Covariate, DEPTH};
 use crate::rounding::six_digits;
 

@@ -3,7 +3,7 @@
 use measurements::{Condition, Kind, MeasurementSet, Role};
 use nalgebra::DVector;
 
-use super::Designs;
+use super::designs::Designs;
 use super::rival::Rival;
 use crate::bench::Bench;
 use crate::forward::Forward;
@@ -61,6 +61,7 @@ fn alone(set: &MeasurementSet, condition: Condition) -> MeasurementSet {
         baseline: None,
         conditions: vec![Condition { role: Role::Fit, ..condition }],
         runs: Vec::new(),
+        keep: Vec::new(),
         notes: Vec::new(),
         feasible: set.feasible.clone(),
         ..*set

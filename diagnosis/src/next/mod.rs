@@ -7,20 +7,21 @@
 //! 1983, Chem. Eng. Sci. 38, 225).
 
 mod criterion;
+mod designs;
 mod foreseen;
 mod grid;
 mod rival;
 
-use measurements::{Condition, MeasurementSet};
+use measurements::Condition;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::bench::Bench;
-use crate::forward::{Forward, SEPARATE};
-use crate::observable::Layout;
+use crate::forward::SEPARATE;
 use crate::rounding::rounded;
 use crate::verdict::{Diagnosis, Verdict};
+pub use designs::Designs;
 use foreseen::Foreseen;
 use rival::Rival;
 
@@ -32,13 +33,6 @@ const REPEATS: usize = 3;
 
 /// Effects that are ranked next to those that are not told apart, and are kept apart from them.
 const FOLLOWERS: usize = 2;
-
-/// Makes models for conditions that were not measured.
-pub trait Designs: Sync {
-    /// The model before `set`; `layouts` say what to predict, one per condition. `None` if the model
-    /// has nothing to say about one of them.
-    fn forward(&self, set: &MeasurementSet, layouts: &[Layout]) -> Option<Box<dyn Forward>>;
-}
 
 /// A condition that could be measured next.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,14 +1,14 @@
 //! An effect of another form than its formula: its strength changes with depth and with speed.
 
+use crate::forward::Bend;
 use engine::math::Vec3;
 use resistive::{Account, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 
 /// A law whose contribution is multiplied by what depends on depth and speed.
 pub(super) struct Bent {
     pub(super) law: Box<dyn ResistanceLaw>,
-    /// Relative change from the surface to [`Self::reach`], and from rest to [`Self::speed`]; half of it
-    /// is there at half of each.
-    pub(super) by: [f64; 2],
+    /// By what: from the surface to [`Self::reach`] and from rest to [`Self::speed`].
+    pub(super) by: Bend,
     /// (m).
     pub(super) reach: f64,
     /// (m/s).
@@ -17,8 +17,7 @@ pub(super) struct Bent {
 
 impl Bent {
     fn factor(&self, depth: f64, speed: f64) -> f64 {
-        let shares = [depth / self.reach, speed.abs() / self.speed];
-        1.0 + self.by[0] * (shares[0] - 0.5) + self.by[1] * (shares[1] - 0.5)
+        self.by.factor(depth / self.reach, speed.abs() / self.speed)
     }
 
     fn bend(&self, at: &Immersion, motion: &Motion, load: &mut Load, act: impl Fn(&mut Load)) {
@@ -34,8 +33,12 @@ impl Bent {
             grip.negative = scale(before.negative, grip.negative);
         }
         load.couple = scale(before.couple, load.couple);
+        let moving = load.added_mass - before.added_mass;
         load.added_mass = scale(before.added_mass, load.added_mass);
         load.recruitment = scale(before.recruitment, load.recruitment);
+        // A mass that is larger deeper comes in on the way down.
+        let growth = self.by.growth(at.depth / self.reach, motion.speed.abs() / self.speed);
+        load.recruitment += moving * growth / self.reach * -motion.velocity.z;
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod bent;
 mod candidates;
+mod error;
 mod needs;
 mod prepared;
 mod scatter;
@@ -11,68 +12,21 @@ use std::sync::Arc;
 
 use measurements::MeasurementSet;
 use resistive::{Effect, RESISTANCE_LAWS};
-use thiserror::Error;
 
-use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
+use crate::apparatus::Apparatus;
+use crate::forward::{
+    Candidate, Forward, Parameter, ParameterKind, PredictError, Prior, Request, Scatter,
+};
 use crate::next::Designs;
 use crate::observable::Layout;
+pub use error::ForwardError;
 use prepared::Prepared;
 
 /// By this share a parameter is moved to see whether anything depends on it.
 const PROBE: f64 = 1e-2;
 
-/// Why a model cannot be compared with a set.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum ForwardError {
-    /// A grain bed.
-    #[error("`{model}` is a bed of grains, not a force law")]
-    Grains {
-        /// Name of the model.
-        model: String,
-    },
-    /// The set asks for a shape that is not there.
-    #[error("condition {condition}: there is no shape `{shape}`; known: {}", known.join(", "))]
-    UnknownShape {
-        /// Id of the condition.
-        condition: String,
-        /// What the set says.
-        shape: String,
-        /// What there is.
-        known: Vec<&'static str>,
-    },
-    /// A size of a shape is not given.
-    #[error("condition {condition}: a {shape} needs `{key}`, which the set does not give")]
-    MissingSize {
-        /// Id of the condition.
-        condition: String,
-        /// Name of the shape.
-        shape: &'static str,
-        /// What is missing.
-        key: &'static str,
-    },
-    /// A shape that the set's geometry does not have.
-    #[error("condition {condition}: a {shape} cannot be the intruder of a {space} bed")]
-    WrongSpace {
-        /// Id of the condition.
-        condition: String,
-        /// Name of the shape.
-        shape: &'static str,
-        /// `2d` or `3d`.
-        space: &'static str,
-    },
-    /// A size outside of what the shape can have.
-    #[error("condition {condition}: `{key}` of a {shape} cannot be {value}")]
-    BadSize {
-        /// Id of the condition.
-        condition: String,
-        /// Name of the shape.
-        shape: &'static str,
-        /// Which size.
-        key: &'static str,
-        /// (SI).
-        value: f64,
-    },
-}
+/// Standard deviation of what is known of each change of form beforehand.
+const FORM: f64 = 0.3;
 
 /// A resistive-force model before a measurement set.
 ///
@@ -89,6 +43,7 @@ pub struct ResistiveForward {
     candidates: Vec<Candidate>,
     effects: Vec<Effect>,
     scattering: Vec<&'static str>,
+    apparatus: Apparatus,
 }
 
 impl ResistiveForward {
@@ -112,12 +67,24 @@ impl ResistiveForward {
             |name: &str| medium.effects.iter().any(|choice| choice.effect.name() == name);
         let listed = RESISTANCE_LAWS.iter().filter_map(|entry| Effect::listed(entry.name));
         let own = medium.candidates.iter().map(|own| Effect::Own(Arc::clone(own)));
-        let effects: Vec<Effect> =
-            listed.chain(own).filter(|effect| !is_present(effect.name())).collect();
         let is_scattering = |key: &str| {
             let (whole, node) = (format!("resistance.{key}"), format!("resistance.{key}@"));
             free.iter().any(|one| one.path == whole || one.path.starts_with(&node))
         };
+        let scattering: Vec<&'static str> = medium
+            .resistance
+            .entry
+            .params
+            .iter()
+            .map(|spec| spec.key)
+            .filter(|key| is_scattering(key))
+            .collect();
+        let apparatus = Apparatus::of(set, &scattering, layouts);
+        // An error of the apparatus that is always looked for is no effect.
+        let effects: Vec<Effect> = listed
+            .chain(own)
+            .filter(|effect| !is_present(effect.name()) && !apparatus.has(effect.name()))
+            .collect();
         let start: Vec<f64> = free.iter().map(|one| one.value).collect();
         let mut forward = Self {
             conditions,
@@ -127,16 +94,13 @@ impl ResistiveForward {
             idle: Vec::new(),
             candidates: candidates::of(&effects, set),
             effects,
-            scattering: medium
-                .resistance
-                .entry
-                .params
-                .iter()
-                .map(|spec| spec.key)
-                .filter(|key| is_scattering(key))
-                .collect(),
+            scattering,
+            apparatus: Apparatus::default(),
         };
         forward.drop_idle();
+        forward.parameters.extend_from_slice(apparatus.parameters());
+        forward.apparatus = apparatus;
+        forward.parameters.extend(forms());
         Ok(forward)
     }
 
@@ -201,11 +165,34 @@ impl Forward for ResistiveForward {
         for (&index, &value) in self.active.iter().zip(at.parameters) {
             values[index] = value;
         }
+        let others = &at.parameters[self.active.len().min(at.parameters.len())..];
+        let (errors, forms) = others.split_at(self.apparatus.parameters().len().min(others.len()));
+        let mut scatter = self.apparatus.added_to(at.scatter, condition, errors);
+        if !added.is_empty() {
+            scatter.bend.0.iter_mut().zip(forms).for_each(|(bend, form)| *bend += form);
+        }
         let prepared = &self.conditions[condition];
-        prepared
-            .predict(&values, &added, at.scatter, &self.scattering)
-            .map_err(|why| PredictError { condition, id: prepared.id().to_owned(), why })
+        prepared.predict(&values, &added, &scatter, &self.scattering).map_err(|why| PredictError {
+            condition,
+            id: prepared.id().to_owned(),
+            why,
+        })
     }
+}
+
+/// By how much effects that are added may differ from their formulas, a parameter per polynomial: nature does not use
+/// our formulas.
+fn forms() -> impl Iterator<Item = Parameter> {
+    let names = ["depth", "depth, curved", "speed", "speed, curved", "depth and speed"];
+    names.into_iter().map(|name| Parameter {
+        name: format!("form over {name}"),
+        unit: "1".to_owned(),
+        start: 0.0,
+        min: -1.0,
+        max: 1.0,
+        prior: Some(Prior { mean: 0.0, sigma: FORM }),
+        kind: ParameterKind::Form,
+    })
 }
 
 fn parameter(free: &FreeParameter) -> Parameter {
@@ -215,5 +202,7 @@ fn parameter(free: &FreeParameter) -> Parameter {
         start: free.value,
         min: free.allowed.min,
         max: free.allowed.max,
+        prior: None,
+        kind: ParameterKind::Model,
     }
 }

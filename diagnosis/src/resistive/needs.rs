@@ -129,6 +129,7 @@ mod tests {
             condition,
             repeat: None,
             order: None,
+            session: None,
             stop_time: None,
             final_z,
             final_x: None,
@@ -141,12 +142,7 @@ mod tests {
             id: "s".into(),
             source: None,
             kind: Kind::Trajectory,
-            instrument: Instrument {
-                rate: None,
-                position_sigma: None,
-                speed_sigma_rel: None,
-                level_sigma: None,
-            },
+            instrument: Instrument::default(),
             bed: Bed {
                 geometry: Geometry::Spatial,
                 bulk_density: None,
@@ -160,6 +156,7 @@ mod tests {
             feasible: Feasible::default(),
             conditions,
             runs,
+            keep: Vec::new(),
             notes: Vec::new(),
         }
     }

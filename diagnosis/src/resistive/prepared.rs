@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 use std::f64::consts::FRAC_PI_2;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use configs::{FreeParameter, ResistiveMedium};
 use engine::math::Vec3;
@@ -14,17 +14,17 @@ use resistive::{
     Effort, Ending, Impact, ResistanceLaw, Space, State, Surroundings, Tolerance, Trajectory,
 };
 
-use super::ForwardError;
 use super::bent::Bent;
+use super::error::ForwardError;
 use super::scatter::PathScatter;
-use crate::forward::Scatter;
+use crate::forward::{Bend, Scatter};
 use crate::observable::Layout;
 
 /// Longer than any impact (s): what has not stopped then never does.
 const DURATION: f64 = 10.0;
 
 /// Errors near 1e-9 m, far below any camera and small beside every difference that is taken.
-const TOLERANCE: Tolerance = Tolerance { relative: 1e-10, absolute: 1e-12 };
+const TOLERANCE: Tolerance = Tolerance { relative: 1e-8, absolute: 1e-10 };
 
 /// An impact takes some twenty steps and a few changes of mode; a fit that wanders to where it takes a hundred times
 /// as many has left what the model can describe, and must not wait there.
@@ -37,7 +37,7 @@ const KEPT: usize = 4;
 /// A condition with the model's law for it.
 pub(super) struct Prepared {
     id: String,
-    recent: Mutex<VecDeque<(Inputs, Vec<f64>)>>,
+    recent: Mutex<VecDeque<(Inputs, Arc<Seen>)>>,
     layout: Layout,
     stop: StopDefinition,
     last: FinalDefinition,
@@ -52,13 +52,24 @@ pub(super) struct Prepared {
     law: Law,
 }
 
-/// Everything that a prediction follows from: numbers of the law, effects with their amplitudes, and
-/// what scatters.
+/// Everything that an impact follows from: numbers of the law, effects with their amplitudes, and what
+/// differs from the run of the mean bed but for what only its reading depends on.
 #[derive(Clone, PartialEq)]
 struct Inputs {
     numbers: Vec<f64>,
     effects: Vec<(String, f64)>,
     scatter: Scatter,
+}
+
+/// An impact as an exact instrument sees it.
+struct Seen {
+    /// Depth and range (m) at the times of the frames.
+    frames: Vec<(f64, f64)>,
+    /// Stopping time (s).
+    stop: f64,
+    /// Depth and range (m) in the end.
+    last: (f64, f64),
+    laws: Vec<Box<dyn ResistanceLaw>>,
 }
 
 /// The law of a model at one impact angle, as a function of its free parameters.
@@ -68,8 +79,8 @@ struct Law {
     functions: Vec<(&'static str, Expression)>,
     effects: Vec<(Effect, Affine)>,
     angle: f64,
-    /// Impact speed (m/s).
-    speed: f64,
+    /// Greatest depth (m) and impact speed (m/s) of the set.
+    extent: [f64; 2],
 }
 
 /// A number that depends on the free parameters: a coefficient that is a table over angle is a weighted
@@ -87,7 +98,11 @@ impl Affine {
 }
 
 impl Law {
-    fn new(medium: &ResistiveMedium, free: &[FreeParameter], (angle, speed): (f64, f64)) -> Self {
+    fn new(
+        medium: &ResistiveMedium,
+        free: &[FreeParameter],
+        (angle, extent): (f64, [f64; 2]),
+    ) -> Self {
         let baseline = medium.resistance.entry;
         let here = medium.coefficients_at(angle);
         let (functions, numbers): (Vec<_>, Vec<_>) =
@@ -134,7 +149,7 @@ impl Law {
                 .collect(),
             effects,
             angle,
-            speed,
+            extent,
         }
     }
 
@@ -144,7 +159,7 @@ impl Law {
         Inputs {
             numbers: self.coefficients.iter().map(|one| one.at(parameters)).collect(),
             effects: all.map(|(effect, q)| (effect.name().to_owned(), q)).collect(),
-            scatter: scatter.clone(),
+            scatter: Scatter { level: 0.0, scale: 0.0, ..scatter.clone() },
         }
     }
 
@@ -177,6 +192,9 @@ impl Law {
             let law = effect.build(q, self.angle);
             if bends { self.bent(law, scatter) } else { law }
         }));
+        if scatter.tilt != 0.0 {
+            laws.extend(Effect::listed("tilt").map(|tilt| tilt.build(scatter.tilt, self.angle)));
+        }
         if let Some(path) = PathScatter::of(scatter) {
             laws.push(Box::new(path));
         }
@@ -184,10 +202,10 @@ impl Law {
     }
 
     fn bent(&self, law: Box<dyn ResistanceLaw>, scatter: &Scatter) -> Box<dyn ResistanceLaw> {
-        let Scatter { bend, reach, .. } = *scatter;
-        match bend {
-            [0.0, 0.0] => law,
-            by => Box::new(Bent { law, by, reach, speed: self.speed }),
+        let (by, [reach, speed]) = (scatter.bend, self.extent);
+        match by == Bend::default() {
+            true => law,
+            false => Box::new(Bent { law, by, reach, speed }),
         }
     }
 }
@@ -237,7 +255,7 @@ impl Prepared {
             angle,
             spin: condition.spin,
             bed,
-            law: Law::new(&there, free, (angle, condition.speed)),
+            law: Law::new(&there, free, (angle, extent(set))),
         })
     }
 
@@ -257,57 +275,33 @@ impl Prepared {
         let inputs = self.law.inputs(parameters, added, scatter);
         // A poisoned lock holds nothing worse than fewer predictions.
         let recent = || self.recent.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, known)) = recent().iter().find(|(one, _)| *one == inputs) {
-            return Ok(known.clone());
+        let known = recent().iter().find(|(one, _)| *one == inputs).map(|(_, seen)| seen.clone());
+        if let Some(seen) = known {
+            return self.read(&seen, scatter);
         }
-        let predicted = self.integrate(parameters, added, scatter, scattering)?;
+        let seen = Arc::new(self.integrate(parameters, added, scatter, scattering)?);
+        let predicted = self.read(&seen, scatter);
         let mut recent = recent();
-        recent.push_front((inputs, predicted.clone()));
+        recent.push_front((inputs, seen));
         recent.truncate(KEPT);
-        Ok(predicted)
+        predicted
     }
 
-    fn integrate(
-        &self,
-        parameters: &[f64],
-        added: &[(&Effect, f64)],
-        scatter: &Scatter,
-        scattering: &[&str],
-    ) -> Result<Vec<f64>, String> {
-        let laws = self.law.laws(parameters, added, scatter, scattering);
-        let impact = self.impact(laws, self.speed * (1.0 + scatter.speed));
-        let (before, after) = split(&self.layout.times);
-        let mut flight = impact.flight(&before).map_err(|error| error.to_string())?;
-        flight.reverse();
-        let mut seen = Trajectory::at(after);
-        let ending = impact.run(DURATION, &mut seen).map_err(|error| error.to_string())?;
-        let x = impact.assembly().part(0, impact.start()).tip.x;
-        let tip = |state: &State| impact.assembly().part(0, state).tip;
-        let read = |mut depth: f64, mut range: f64| {
-            impact.laws().iter().for_each(|law| law.read(&mut depth, &mut range));
-            (depth, range)
+    /// What is read of `seen`.
+    fn read(&self, seen: &Seen, scatter: &Scatter) -> Result<Vec<f64>, String> {
+        let read = |&(depth, range): &(f64, f64)| {
+            let (mut depth, mut range) = (depth + scatter.level, range);
+            seen.laws.iter().for_each(|law| law.read(&mut depth, &mut range));
+            (depth * (1.0 + scatter.scale), range * (1.0 + scatter.scale))
         };
-        let frames: Vec<(f64, f64)> = flight
-            .iter()
-            .chain(seen.states())
-            .map(|state| read(scatter.level - tip(state).z, tip(state).x - x))
-            .collect();
+        let frames: Vec<(f64, f64)> = seen.frames.iter().map(read).collect();
         let mut observables: Vec<f64> = frames.iter().map(|(depth, _)| *depth).collect();
         if self.layout.along_x {
             observables.extend(frames.iter().map(|(_, range)| *range));
         }
-        let stop = self.stop_time(&impact, &ending);
-        let (depth, range) = match self.last {
-            FinalDefinition::Deepest => (ending.parts[0].depth, ending.parts[0].range),
-            FinalDefinition::Resting => {
-                let at_rest = tip(&ending.state);
-                // With its sign, forward: a size would have a kink where a vertical impact drifts.
-                (-at_rest.z, at_rest.x - x)
-            }
-        };
-        let (depth, range) = read(depth + scatter.level, range);
+        let (depth, range) = read(&seen.last);
         let scalars = [
-            (self.layout.stop_time, stop),
+            (self.layout.stop_time, seen.stop),
             (self.layout.final_z, depth),
             (self.layout.final_x, range),
         ];
@@ -316,6 +310,37 @@ impl Prepared {
             true => Ok(observables),
             false => Err("an observable is not finite".to_owned()),
         }
+    }
+
+    fn integrate(
+        &self,
+        parameters: &[f64],
+        added: &[(&Effect, f64)],
+        scatter: &Scatter,
+        scattering: &[&str],
+    ) -> Result<Seen, String> {
+        let laws = self.law.laws(parameters, added, scatter, scattering);
+        let impact = self.impact(laws, scatter);
+        let times: Vec<f64> = self.layout.times.iter().map(|time| time + scatter.clock).collect();
+        let (before, after) = split(&times);
+        let mut flight = impact.flight(&before).map_err(|error| error.to_string())?;
+        flight.reverse();
+        let mut seen = Trajectory::at(after);
+        let ending = impact.run(DURATION, &mut seen).map_err(|error| error.to_string())?;
+        let x = impact.assembly().part(0, impact.start()).tip.x;
+        let tip = |state: &State| impact.assembly().part(0, state).tip;
+        let place = |state: &State| (-tip(state).z, tip(state).x - x);
+        let last = match self.last {
+            FinalDefinition::Deepest => (ending.parts[0].depth, ending.parts[0].range),
+            // With its sign, forward: a size would have a kink where a vertical impact drifts.
+            FinalDefinition::Resting => place(&ending.state),
+        };
+        Ok(Seen {
+            frames: flight.iter().chain(seen.states()).map(place).collect(),
+            stop: self.stop_time(&impact, &ending) - scatter.clock,
+            last,
+            laws: impact.into_laws(),
+        })
     }
 
     fn stop_time(&self, impact: &Impact, ending: &Ending) -> f64 {
@@ -332,7 +357,8 @@ impl Prepared {
         stop.unwrap_or(ending.time) - contact
     }
 
-    fn impact(&self, laws: Vec<Box<dyn ResistanceLaw>>, speed: f64) -> Impact {
+    fn impact(&self, laws: Vec<Box<dyn ResistanceLaw>>, scatter: &Scatter) -> Impact {
+        let speed = self.speed * (1.0 + scatter.speed);
         // Straight down is exactly down: a cosine of round-off size is no horizontal speed.
         let (sine, cosine) = if self.angle >= FRAC_PI_2 {
             (1.0, 0.0)
@@ -342,7 +368,7 @@ impl Prepared {
         let made = (self.shape.assembly)(&Casting {
             params: &self.sizes,
             space: self.space,
-            mass: self.mass,
+            mass: self.mass * (1.0 + scatter.mass),
             velocity: Vec3::new(speed * cosine, 0.0, -speed * sine),
             spin: self.spin,
         });
@@ -350,6 +376,16 @@ impl Prepared {
             .with_tolerance(TOLERANCE)
             .with_effort(EFFORT)
     }
+}
+
+/// Greatest depth (m) that any run of `set` reaches, and greatest impact speed (m/s).
+fn extent(set: &MeasurementSet) -> [f64; 2] {
+    let depths =
+        set.runs.iter().flat_map(|run| run.frames.iter().map(|frame| frame.z).chain(run.final_z));
+    let widest = set.conditions.iter().map(|condition| condition.diameter).fold(0.0, f64::max);
+    let speed = set.conditions.iter().map(|condition| condition.speed).fold(0.0, f64::max);
+    // A set without depths may still have stopping times.
+    [depths.fold(widest.max(f64::MIN_POSITIVE), f64::max), speed.max(f64::MIN_POSITIVE)]
 }
 
 /// The times before first contact, in falling order, and the others.

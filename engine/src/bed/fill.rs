@@ -6,9 +6,10 @@ use rand::RngExt;
 
 use super::random;
 use crate::boundary::{Container, Period};
-use crate::grains::{Grain, Space};
+use crate::grains::Grain;
 use crate::math::Vec3;
 use crate::neighbours::CellAxis;
+use crate::space::Space;
 
 /// Grains of one size.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,8 +3,9 @@
 
 use super::fill::{FreeSpace, GrainKind, fill, fill_fraction, fill_height, large_first};
 use crate::boundary::{Container, Period};
-use crate::grains::{Grain, Space};
+use crate::grains::Grain;
 use crate::math::Vec3;
+use crate::space::Space;
 
 /// Radii grow by this share of what they are at a time.
 const GROWTH: f64 = 0.005;

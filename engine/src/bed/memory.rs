@@ -2,7 +2,7 @@
 
 use super::report::spacing;
 use crate::boundary::Container;
-use crate::grains::Space;
+use crate::space::Space;
 
 /// Layers of cells in which grains are placed, at least.
 const LAYERS: f64 = 2.0;

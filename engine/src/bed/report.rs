@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use crate::boundary::{Base, Container, Period, Sides};
 use crate::grain_bed::GrainBed;
-use crate::grains::{Grains, Space};
+use crate::grains::Grains;
+use crate::space::Space;
 
 /// How far from walls, floor and surface the inside of a bed begins, in mean grain diameters.
 const INSIDE: f64 = 5.0;

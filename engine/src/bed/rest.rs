@@ -1,7 +1,8 @@
 //! How far a bed is from rest.
 
 use crate::grain_bed::GrainBed;
-use crate::grains::{Grains, Space};
+use crate::grains::Grains;
+use crate::space::Space;
 
 /// Mean kinetic energy of a grain of a bed at rest, at most (m g d).
 const REST_ENERGY: f64 = 1e-6;

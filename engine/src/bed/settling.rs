@@ -11,8 +11,9 @@ use crate::clock::Clock;
 use crate::contacts::stage::ContactStage;
 use crate::error::StepError;
 use crate::grain_bed::{GrainBed, RestingBed};
-use crate::grains::{Grain, Space};
+use crate::grains::Grain;
 use crate::math::Vec3;
+use crate::space::Space;
 use crate::world::{SavedWorld, World};
 
 /// The fall is over when the mean kinetic energy of a grain (m g d) stays below this …

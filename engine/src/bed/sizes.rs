@@ -38,6 +38,17 @@ pub enum SizeDistribution {
 }
 
 impl SizeDistribution {
+    /// Standard deviations of ln d to which a lognormal distribution without limits of its own reaches.
+    pub const LOGNORMAL_REACH: f64 = 3.0;
+
+    /// The logarithm of the diameter is normal about that of `median` (m), with the standard deviation `sigma`.
+    #[must_use]
+    pub fn lognormal(median: f64, sigma: f64) -> Self {
+        let limit = |reach: f64| median * libm::exp(reach * sigma);
+        let [min, max] = [-Self::LOGNORMAL_REACH, Self::LOGNORMAL_REACH].map(limit);
+        Self::Lognormal { median, sigma, min, max }
+    }
+
     /// The smallest diameter that may be drawn (m).
     #[must_use]
     pub fn smallest(&self) -> f64 {

@@ -8,8 +8,8 @@
 //! profile returns less than a quadratic one of the same integral.
 
 use super::{Base, Bottom, Container, Sides};
-use crate::grains::Space;
 use crate::math::Vec3;
+use crate::space::Space;
 
 /// γ_0 L/c of [`Layer::for_waves`].
 const STRENGTH: f64 = 6.0;

@@ -7,8 +7,8 @@ mod walls;
 use std::f64::consts::FRAC_PI_4;
 use std::sync::Arc;
 
-use crate::grains::Space;
 use crate::math::Vec3;
+use crate::space::Space;
 use crate::surface::Surface;
 
 pub use absorbing::{Absorber, Layer};

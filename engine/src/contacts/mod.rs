@@ -8,7 +8,7 @@
 mod bench;
 mod block;
 mod pairs;
-mod rebound;
+pub mod rebound;
 pub mod stage;
 mod tally;
 
@@ -20,11 +20,12 @@ use crate::contact::Partner;
 use crate::contact::table::{Candidate, ContactTable, replace, reserve};
 use crate::contacts::stage::{ContactStage, Sweep};
 use crate::dimension::{Components, Dimension, Planar, Spatial};
-use crate::grains::{Grains, Space};
+use crate::grains::Grains;
 use crate::lanes::Eight;
 use crate::math::Vec3;
 use crate::neighbours::CellGrid;
 use crate::parallel::{BLOCK, block_of};
+use crate::space::Space;
 
 use bench::{Bench, Benches};
 pub(crate) use block::Evaluation;

@@ -4,8 +4,9 @@ use super::tally::Tally;
 use crate::contact::table::{APART, Candidate, ContactTable};
 use crate::contact::{Contact, Response};
 use crate::dimension::{Components, Dimension, Frame, Quads};
-use crate::grains::{Grains, Space};
+use crate::grains::Grains;
 use crate::lanes::{Lanes, MOST_LANES, Mask, per_lane};
+use crate::space::Space;
 
 /// The contacts of a block, and what they act on.
 pub struct Pairs<'a> {

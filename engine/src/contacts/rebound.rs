@@ -3,9 +3,9 @@
 use crate::contact::{Contact, Encounter, Partner, Response};
 use crate::contacts::stage::ContactStage;
 use crate::contacts::stage::{Batch, Histories};
-use crate::grains::Space;
 use crate::lanes::MOST_LANES;
 use crate::math::Vec3;
+use crate::space::Space;
 
 /// Steps per collision: the error of a rebound is a few times the square of its inverse.
 const STEPS: f64 = 2000.0;

@@ -1,12 +1,11 @@
 //! Lowers a contact law to a loop over many contacts: chosen by name once per run, inlined inside.
 
 use super::pairs::Pairs;
-pub use super::rebound::restitution;
 use crate::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
 use crate::dimension::{Dimension, Planar, Spatial};
-use crate::grains::Space;
 use crate::lanes::{Eight, Lanes, MOST_LANES, Record, per_lane};
 use crate::ledger::Channel;
+use crate::space::Space;
 
 /// Contacts that are evaluated together, small enough to stay in the first-level cache.
 pub struct Batch<'a, R: Lanes, const N: usize> {

@@ -16,7 +16,12 @@ impl RunLog {
     /// # Errors
     /// A setup that cannot be logged, or the file system's refusal.
     pub fn import(dir: &Path, setup: &LogSetup) -> Result<Self, RecordError> {
-        Self::open(dir, setup, Layouts::imported(setup), |[_, partial, _]| partial)
+        Self::open(
+            dir,
+            setup,
+            Layouts::imported(&setup.energy_terms, &setup.force_origins),
+            |[_, partial, _]| partial,
+        )
     }
 
     /// Writes what is known of the energies (J) of a step, in the order of [`LogSetup::energy_terms`].

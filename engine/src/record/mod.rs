@@ -119,7 +119,12 @@ impl RunLog {
     /// # Errors
     /// A setup that cannot be logged, or the file system's refusal.
     pub fn create(dir: &Path, setup: &LogSetup) -> Result<Self, RecordError> {
-        Self::open(dir, setup, Layouts::of(setup), |[_, partial, _]| partial)
+        Self::open(
+            dir,
+            setup,
+            Layouts::of(&setup.energy_terms, &setup.force_origins),
+            |[_, partial, _]| partial,
+        )
     }
 
     /// Goes on with an interrupted log from the position kept in a checkpoint.
@@ -135,7 +140,12 @@ impl RunLog {
         setup: &LogSetup,
         position: &LogPosition,
     ) -> Result<Self, RecordError> {
-        let mut log = Self::open(dir, setup, Layouts::of(setup), |[_, _, new]| new)?;
+        let mut log = Self::open(
+            dir,
+            setup,
+            Layouts::of(&setup.energy_terms, &setup.force_origins),
+            |[_, _, new]| new,
+        )?;
         let LogPosition { step, run_messages, grain_messages } = *position;
         let copy = |name, file: &mut LogFile, needed| {
             let names = LogFile::names(dir, name);

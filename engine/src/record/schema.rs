@@ -9,7 +9,6 @@ use prost::encoding::{WireType, double, encode_key, encode_varint, uint32, uint6
 use prost_types::field_descriptor_proto::{Label, Type};
 use prost_types::{DescriptorProto, FieldDescriptorProto, FileDescriptorProto, FileDescriptorSet};
 
-use super::setup::LogSetup;
 use crate::math::Vec3;
 
 /// The closure that the energy terms obey, as text.
@@ -156,20 +155,20 @@ pub(super) struct Layouts {
 }
 
 impl Layouts {
-    /// Of a run of the engine.
-    pub(super) fn of(setup: &LogSetup) -> Self {
+    /// Of a run of the engine with these energy terms and origins of force.
+    pub(super) fn of(terms: &[String], origins: &[String]) -> Self {
         Self {
-            budget: Layout::energy_budget(&setup.energy_terms),
-            load: Layout::intruder_load(&setup.force_origins),
-            closure_identity: Some(closure_identity(&setup.energy_terms)),
+            budget: Layout::energy_budget(terms),
+            load: Layout::intruder_load(origins),
+            closure_identity: Some(closure_identity(terms)),
         }
     }
 
     /// Of a run of another program.
-    pub(super) fn imported(setup: &LogSetup) -> Self {
+    pub(super) fn imported(terms: &[String], origins: &[String]) -> Self {
         Self {
-            budget: Layout::known_energies(&setup.energy_terms),
-            load: Layout::intruder_forces(&setup.force_origins),
+            budget: Layout::known_energies(terms),
+            load: Layout::intruder_forces(origins),
             closure_identity: None,
         }
     }

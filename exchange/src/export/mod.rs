@@ -8,6 +8,7 @@ mod beads;
 mod bodies;
 mod cloud;
 mod csv;
+mod error;
 mod extended_xyz;
 mod grains;
 mod lammps_dump;
@@ -18,16 +19,14 @@ mod tables;
 mod vtp;
 pub(crate) mod whole_file;
 
-use std::io;
 use std::path::{Path, PathBuf};
 
 use engine::record::{GRAIN_LOG, RUN_LOG};
-use thiserror::Error;
 
 use crate::Stop;
-use crate::read::ReadError;
 use crate::run_files::RunFiles;
 
+pub use error::ExportError;
 pub use staging::STAGING;
 use staging::Staging;
 
@@ -74,41 +73,6 @@ impl Format {
             Self::ExtendedXyz => "grains and bodies as particles, for OVITO and ASE",
         }
     }
-}
-
-/// Why a run is not exported.
-#[derive(Debug, Error)]
-pub enum ExportError {
-    /// The log.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// A file that cannot be written.
-    #[error("cannot write {}: {source}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why not.
-        source: io::Error,
-    },
-    /// A log without what the format holds.
-    #[error("{} has no {what}", path.display())]
-    Nothing {
-        /// The log.
-        path: PathBuf,
-        /// What is missing.
-        what: &'static str,
-    },
-    /// A run that is not there.
-    #[error("{} is neither a log nor a folder with a {log}", path.display())]
-    NoRun {
-        /// What was named.
-        path: PathBuf,
-        /// The name of the log in a folder.
-        log: &'static str,
-    },
-    /// It was asked to stop; nothing of it is left.
-    #[error("stopped before the end")]
-    Stopped,
 }
 
 /// What was written.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::ExportError;
+use super::error::ExportError;
 
 /// The name of that folder inside the one that the export goes to. What is left of it after a kill belongs to
 /// nobody, and the next export takes its place.

@@ -8,7 +8,7 @@ use configs::engine::grains::Space;
 use configs::engine::math::Vec3;
 use configs::engine::simulation::Simulation;
 
-use super::GRAIN;
+use super::atom_type::GRAIN;
 use super::intruder::{Intruder, body};
 
 /// One sphere or disc as LAMMPS reads it.

@@ -8,9 +8,9 @@ use configs::engine::grains::Space;
 use configs::engine::math::Vec3;
 use configs::engine::record::GrainSample;
 
-use super::GRAIN;
+use super::atom_type::GRAIN;
 use super::data::from_axes;
-use super::import::ImportError;
+use super::import::error::ImportError;
 
 /// All grains at one time.
 pub(super) struct Frame {

@@ -4,10 +4,11 @@ use configs::engine::grains::Space;
 use configs::engine::simulation::Simulation;
 use configs::{GrainModel, SidesKind};
 
+use super::atom_type::INTRUDER;
 use super::data::intruder_id;
 use super::intruder::Intruder;
 use super::law::Contacts;
-use super::{BODY, DATA, DUMP, INPUT, INTRUDER, INTRUDER_TABLE};
+use super::{BODY, DATA, DUMP, INPUT, INTRUDER_TABLE};
 
 /// How far LAMMPS looks beyond touching grains for neighbours, in mean grain diameters: the fastest of
 /// several tries on beds of discs and of spheres.

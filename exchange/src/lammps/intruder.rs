@@ -5,7 +5,7 @@ use configs::engine::body::RigidBody;
 use configs::engine::math::Vec3;
 use configs::engine::simulation::Simulation;
 
-use super::INTRUDER;
+use super::atom_type::INTRUDER;
 use super::clump::{Ball, Clump};
 use super::law::Law;
 

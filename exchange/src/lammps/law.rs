@@ -7,7 +7,7 @@ use configs::contact_laws::damping_ratio;
 use configs::engine::contact::Partner;
 use configs::engine::params::ParamTable;
 
-use super::{GRAIN, INTRUDER};
+use super::atom_type::{GRAIN, INTRUDER};
 
 /// The forces between grains, the intruder and walls.
 #[derive(Clone, Debug, PartialEq, Eq)]

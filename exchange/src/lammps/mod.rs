@@ -14,6 +14,7 @@
 //! inertia of the body, in a fourth file, [`BODY`]; the input says how far its surface is from that
 //! of the body.
 
+mod atom_type;
 mod clump;
 mod data;
 mod dump;
@@ -58,10 +59,6 @@ const INTRUDER_TABLE: &str = "intruder.csv";
 
 /// Name of the dump that LAMMPS writes of all atoms.
 const DUMP: &str = "grains.dump";
-
-/// Atom types: grains and, from there on, the intruder.
-const GRAIN: usize = 1;
-const INTRUDER: usize = 2;
 
 /// An impact as LAMMPS reads it.
 #[derive(Clone, Debug, PartialEq, Eq)]

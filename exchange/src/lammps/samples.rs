@@ -5,7 +5,7 @@ use std::path::Path;
 use configs::engine::math::Vec3;
 use serde::Deserialize;
 
-use super::import::ImportError;
+use super::import::error::ImportError;
 
 /// The intruder, and the energies of the grains, at one time; in SI, along the axes of plunge.
 #[derive(Clone, Copy, Debug, PartialEq)]

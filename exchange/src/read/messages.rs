@@ -9,7 +9,7 @@ use prost_reflect::prost::Message as _;
 use prost_reflect::prost_types::{FileDescriptorProto, FileDescriptorSet};
 use prost_reflect::{DescriptorPool, MessageDescriptor};
 
-use super::ReadError;
+use super::error::ReadError;
 use super::records::Records;
 
 /// What a reader of messages wants.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use engine::record::chunk::{self, CHUNK_LIMIT, ChunkHead, RECORD_PREFIX};
 use mcap::records::op;
 
-use super::ReadError;
+use super::error::ReadError;
 
 /// A log that is read chunk by chunk.
 pub(super) struct Records {

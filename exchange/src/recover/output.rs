@@ -10,7 +10,7 @@ use mcap::records::{Channel, Header, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{Attachment, Compression, McapError, WriteOptions, Writer};
 
-use super::RecoverError;
+use super::error::RecoverError;
 use super::scan::{self, Input};
 
 /// Schemas and channels kept aside, by their numbers.

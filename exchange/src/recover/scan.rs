@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use engine::record::chunk::{self, CHUNK_LIMIT, ChunkHead, RECORD_PREFIX};
 use mcap::records::{Record, op};
 
-use super::RecoverError;
+use super::error::RecoverError;
 use crate::Stop;
 
 /// Bytes searched at a time for the next record.

@@ -100,6 +100,7 @@ impl Laboratory {
                 position_sigma: Some(self.camera),
                 speed_sigma_rel: Some(self.speed),
                 level_sigma: Some(self.level),
+                ..Instrument::default()
             },
             bed: Bed {
                 geometry: Geometry::Spatial,
@@ -114,6 +115,7 @@ impl Laboratory {
             feasible: Feasible::default(),
             conditions: conditions.map(|(at, setting)| self.condition(at, *setting)).collect(),
             runs,
+            keep: Vec::new(),
             notes: Vec::new(),
         }
     }
@@ -181,6 +183,7 @@ impl Laboratory {
             condition,
             repeat: Some(repeat as i64),
             order: None,
+            session: None,
             stop_time: Some(stop_time + late),
             final_z: Some(rest[0] + level + self.camera * normal(random)),
             final_x: (angle < 90.0).then_some(rest[1]),

@@ -8,33 +8,21 @@ mod operators;
 mod quantity;
 mod syntax;
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use engine::units::Dimension;
 use exmex::{Express, FlatEx};
-use thiserror::Error;
 
 use operators::{Literals, Numeric, Symbolic};
 pub use quantity::DimensionError;
 use quantity::Quantity;
-pub use syntax::{FUNCTIONS, MOST_DEPTH, MOST_NODES, SyntaxError, is_reserved};
+pub use syntax::{FUNCTIONS, FormulaError, MOST_DEPTH, MOST_NODES, SyntaxError, is_reserved};
 
 /// A formula that was read.
 #[derive(Clone, Debug)]
 pub struct Formula {
     text: String,
     parsed: Arc<FlatEx<f64, Numeric, Literals>>,
-}
-
-/// Why a text is no formula, and where.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[error("{fault}")]
-pub struct FormulaError {
-    /// The bytes of the text that it is about.
-    pub at: Range<usize>,
-    /// What is wrong there.
-    pub fault: SyntaxError,
 }
 
 /// What is known of a variable before any value: its dimension, and its value where that never changes.

@@ -5,8 +5,6 @@ use std::ops::Range;
 
 use thiserror::Error;
 
-use super::FormulaError;
-
 /// Most numbers, variables, operators and functions of a formula.
 pub const MOST_NODES: usize = 256;
 
@@ -96,6 +94,16 @@ pub enum SyntaxError {
     /// Something that the reader of formulas found.
     #[error("{0}")]
     Other(String),
+}
+
+/// Why a text is no formula, and where.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{fault}")]
+pub struct FormulaError {
+    /// The bytes of the text that it is about.
+    pub at: Range<usize>,
+    /// What is wrong there.
+    pub fault: SyntaxError,
 }
 
 /// Whether a variable cannot have this name: it is a function's, or would be read as one.

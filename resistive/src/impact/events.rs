@@ -1,9 +1,14 @@
 //! What can happen to an impact within a step, and when.
 
-use super::super::modes::{AXES, Modes, accelerate};
+use super::super::holding::accelerate;
+use super::super::modes::{AXES, Modes};
 use super::super::motion::System;
 use super::super::solver::Solver;
-use super::{Impact, PARTS, Progress, State};
+use super::margin::{
+    Before, COMPONENTS, FORWARD, Fired, Margins, N_MARGINS, SINKING, SLOW, SLOWING, STOPPING,
+    SURFACE,
+};
+use super::{Impact, Progress, State};
 use engine::math::Vec3;
 
 /// A speed below this share of the greatest so far counts as rest.
@@ -18,31 +23,6 @@ const SIMULTANEOUS: f64 = 1e-12;
 
 /// How often a step is halved to see what happens right after its start: down to 1e-12 of it.
 const HALVINGS: usize = 40;
-
-/// What can happen between two steps, as indices of [`Margins`].
-pub(super) const N_MARGINS: usize = 5 * PARTS + 3;
-pub(super) const SURFACE: usize = 0;
-pub(super) const COMPONENTS: usize = 1;
-pub(super) const SINKING: usize = 3;
-pub(super) const FORWARD: usize = 4;
-pub(super) const STOPPING: usize = 5 * PARTS;
-pub(super) const SLOWING: usize = STOPPING + 1;
-pub(super) const SLOW: usize = STOPPING + 2;
-
-pub(super) type Margins = [f64; N_MARGINS];
-
-/// What happened first in a step, and what else at the same time.
-pub(super) struct Fired {
-    pub(super) time: f64,
-    pub(super) which: [bool; N_MARGINS],
-}
-
-/// The margins where a look at a step begins.
-pub(super) struct Before {
-    pub(super) margins: Margins,
-    /// Whether something has just happened there.
-    pub(super) fresh: bool,
-}
 
 impl Impact {
     /// Quantities that stay positive until something happens; infinite where it cannot.

@@ -4,7 +4,7 @@ use crate::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings}
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::Range;
 
-use super::facts::{Facts, Needs, Twin};
+use super::facts::{Facts, Kind, Needs, Twin};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// (m + m_a) a = … − dm_a/dt v,  m_a = q ρ V(z)   (kg)
@@ -33,6 +33,7 @@ const ACCOUNTS: &[Account] = &[
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "added-mass",
     role: Role::Effect(Facts {
+        kind: Kind::Physics,
         unit: "1",
         visible: &[],
         separable_from: &[

@@ -4,7 +4,7 @@ use crate::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings}
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::Range;
 
-use super::facts::{Facts, Needs};
+use super::facts::{Facts, Kind, Needs};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = −½ q ρ_a A v² v̂, ρ_a = 1.2 kg/m³, in the bed and above   (N, planar N/m)
@@ -29,6 +29,7 @@ const ACCOUNTS: &[Account] = &[Account {
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "air-drag",
     role: Role::Effect(Facts {
+        kind: Kind::Apparatus,
         unit: "1",
         visible: &[Needs::FramesBeforeImpact],
         separable_from: &[],

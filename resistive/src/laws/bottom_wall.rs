@@ -5,7 +5,7 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::math::Vec3;
 use engine::params::Range;
 
-use super::facts::{Facts, Needs, Twin};
+use super::facts::{Facts, Kind, Needs, Twin};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = −q ρ g A D e^(−(H−z)/D) v̂   (N)
@@ -27,6 +27,7 @@ const ACCOUNTS: &[Account] = &[Account {
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "bottom-wall",
     role: Role::Effect(Facts {
+        kind: Kind::Physics,
         unit: "1",
         visible: &[Needs::BedDepth],
         separable_from: &[Twin { effect: "depth-exponent", any_of: &[Needs::BedDepths] }],

@@ -3,7 +3,7 @@
 use crate::{Account, ResistanceLaw};
 use engine::params::Range;
 
-use super::facts::{Facts, Needs, Twin};
+use super::facts::{Facts, Kind, Needs, Twin};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// z → (1 + q) z, x → (1 + q) x   (m)
@@ -21,6 +21,7 @@ const ACCOUNTS: &[Account] = &[];
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "camera-scale",
     role: Role::Effect(Facts {
+        kind: Kind::Apparatus,
         unit: "1",
         visible: &[],
         separable_from: &[Twin { effect: "depth-zero", any_of: &[Needs::Conditions] }],

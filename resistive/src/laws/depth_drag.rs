@@ -3,7 +3,7 @@
 use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
-use super::facts::{Facts, Needs, Twin};
+use super::facts::{Facts, Kind, Needs, Twin};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F → (1 + q z/D) F   (N)
@@ -21,6 +21,7 @@ const ACCOUNTS: &[Account] = &[];
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "depth-drag",
     role: Role::Effect(Facts {
+        kind: Kind::Physics,
         unit: "1",
         visible: &[],
         separable_from: &[

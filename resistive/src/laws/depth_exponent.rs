@@ -3,7 +3,7 @@
 use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
-use super::facts::Facts;
+use super::facts::{Facts, Kind};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// z → D (z/D)^(1+q)   (m)
@@ -22,7 +22,7 @@ const ACCOUNTS: &[Account] = &[];
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "depth-exponent",
-    role: Role::Effect(Facts { unit: "1", visible: &[], separable_from: &[] }),
+    role: Role::Effect(Facts { kind: Kind::Physics, unit: "1", visible: &[], separable_from: &[] }),
     summary: "Friction that grows with a power of depth other than one.",
     formula: "z -> D (z/D)^(1+q)",
     signature: "below one like a constant force at low speed, with the sign changed at high speed",

@@ -3,7 +3,7 @@
 use crate::{Account, ResistanceLaw};
 use engine::params::Range;
 
-use super::facts::Facts;
+use super::facts::{Facts, Kind};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// z → z + q (1 mm)   (m)
@@ -20,7 +20,12 @@ const ACCOUNTS: &[Account] = &[];
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "depth-zero",
-    role: Role::Effect(Facts { unit: "mm", visible: &[], separable_from: &[] }),
+    role: Role::Effect(Facts {
+        kind: Kind::Apparatus,
+        unit: "mm",
+        visible: &[],
+        separable_from: &[],
+    }),
     summary: "A wrong zero of depth: changes no run, only its reading.",
     formula: "z -> z + q, as read, q in millimetres",
     signature: "all depths are off by the same length, in the flight too; ranges and stopping times are right",

@@ -3,12 +3,37 @@
 /// What a diagnosis has to know of an effect.
 #[derive(Clone, Copy, Debug)]
 pub struct Facts {
+    /// What it is part of.
+    pub kind: Kind,
     /// Unit of the amplitude: "1" where it is a pure number.
     pub unit: &'static str,
     /// What the data must contain for it to act at all.
     pub visible: &'static [Needs],
     /// The effects that look like it, and what tells them apart; a pair is listed with one of the two.
     pub separable_from: &'static [Twin],
+}
+
+/// What an effect is part of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// What the medium does.
+    Physics,
+    /// How the medium was prepared.
+    Preparation,
+    /// What holds, moves or sees the intruder.
+    Apparatus,
+}
+
+impl Kind {
+    /// Why an effect of a force law is no candidate of a bed of grains, if it is none.
+    #[must_use]
+    pub fn absent_from_beds(self) -> Option<&'static str> {
+        match self {
+            Self::Physics => Some("in a bed of grains, the grains do it or do not"),
+            Self::Preparation => Some("a bed of grains is prepared itself"),
+            Self::Apparatus => None,
+        }
+    }
 }
 
 /// An effect that does nearly the same to the observables.

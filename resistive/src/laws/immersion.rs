@@ -3,7 +3,7 @@
 use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
-use super::facts::Facts;
+use super::facts::{Facts, Kind};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// A → A + q (A_i − A)   (m², planar m)
@@ -21,7 +21,7 @@ const ACCOUNTS: &[Account] = &[];
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "immersion",
-    role: Role::Effect(Facts { unit: "1", visible: &[], separable_from: &[] }),
+    role: Role::Effect(Facts { kind: Kind::Physics, unit: "1", visible: &[], separable_from: &[] }),
     summary: "Loads act on the immersed part of the frontal area, not on all of it.",
     formula: "A -> A + q (A_immersed - A)",
     signature: "a softer entry: slow impacts go deeper, fast ones hardly",

@@ -3,7 +3,7 @@
 use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
-use super::facts::{Facts, Needs, Twin};
+use super::facts::{Facts, Kind, Needs, Twin};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// z → λ (1 − e^(−z/λ)), q = D/λ   (m)
@@ -22,6 +22,7 @@ const ACCOUNTS: &[Account] = &[];
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "janssen",
     role: Role::Effect(Facts {
+        kind: Kind::Physics,
         unit: "1",
         visible: &[],
         separable_from: &[Twin { effect: "depth-exponent", any_of: &[Needs::Depths] }],

@@ -4,7 +4,7 @@ use crate::{Account, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use engine::math::Vec3;
 use engine::params::Range;
 
-use super::facts::{Facts, Needs};
+use super::facts::{Facts, Kind, Needs};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = q ρ A v² n̂, n̂ = s (−v̂_z, v̂_x) of (x, z), s the sense of v_x   (N)
@@ -23,7 +23,12 @@ const ACCOUNTS: &[Account] = &[];
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "lift",
-    role: Role::Effect(Facts { unit: "1", visible: &[Needs::Oblique], separable_from: &[] }),
+    role: Role::Effect(Facts {
+        kind: Kind::Physics,
+        unit: "1",
+        visible: &[Needs::Oblique],
+        separable_from: &[],
+    }),
     summary: "A force across an oblique path, out of the bed.",
     formula: "F = q rho A v^2, normal to v in the plane of motion",
     signature: "shallow paths are bent upward: less deep and farther, up to ricochet; vertical impacts are unchanged",

@@ -4,7 +4,7 @@ use crate::{Account, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use engine::math::Vec3;
 use engine::params::Range;
 
-use super::facts::{Facts, Needs, Twin};
+use super::facts::{Facts, Kind, Needs, Twin};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = q ρ A R ω × v   (N)
@@ -23,6 +23,7 @@ const ACCOUNTS: &[Account] = &[];
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "magnus",
     role: Role::Effect(Facts {
+        kind: Kind::Physics,
         unit: "1",
         visible: &[Needs::Spin],
         separable_from: &[Twin { effect: "lift", any_of: &[Needs::SpinBothWays] }],

@@ -40,7 +40,7 @@ pub use expression::{
     Acts, Direction, Draft, ForceError, OwnEffect, OwnEffectError, OwnParameter, STATE_VARIABLES,
     StateVariable,
 };
-pub use facts::{Facts, Needs, Twin};
+pub use facts::{Facts, Kind, Needs, Twin};
 pub use registry::{ResistanceEntry, Role};
 
 /// Every baseline and every effect, in the order of the docs, of the sum and of a diagnosis.

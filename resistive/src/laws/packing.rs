@@ -3,7 +3,7 @@
 use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
-use super::facts::{Facts, Needs};
+use super::facts::{Facts, Kind, Needs};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F → (1 + q (φ − φ₀)) F, φ₀ = 0.59   (N)
@@ -25,7 +25,12 @@ const ACCOUNTS: &[Account] = &[];
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "packing",
-    role: Role::Effect(Facts { unit: "1", visible: &[Needs::Packings], separable_from: &[] }),
+    role: Role::Effect(Facts {
+        kind: Kind::Preparation,
+        unit: "1",
+        visible: &[Needs::Packings],
+        separable_from: &[],
+    }),
     summary: "Friction that depends on the packing fraction of the bed.",
     formula: "F -> (1 + q (phi - 0.59)) F of the friction",
     signature: "beds of another preparation are harder or softer at every speed",

@@ -2,7 +2,7 @@
 
 use crate::{Account, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use engine::math::Vec3;
-use engine::params::{Default, ParamSpec, Range};
+use engine::params::ParamSpec;
 use engine::units::Dimension;
 
 use super::coefficients::OfDepth;
@@ -28,22 +28,18 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     signature: "depth grows with the logarithm of the impact energy",
     source: "Poncelet, Cours de mecanique industrielle (1829); three-shape manuscript, eqs 18-22",
     params: &[
-        ParamSpec {
-            key: "inertial",
-            dimension: Dimension::MASS_PER_LENGTH,
-            default: Default::Required,
-            allowed: Range::NOT_NEGATIVE,
-            plausible: Range::closed(1e-3, 10.0),
-            meaning: "h, the factor of the squared speed; a number, or an expression of depth",
-        },
-        ParamSpec {
-            key: "resistance",
-            dimension: Dimension::FORCE,
-            default: Default::Required,
-            allowed: Range::NOT_NEGATIVE,
-            plausible: Range::closed(1e-2, 1e3),
-            meaning: "beta, the resistance; a number, or an expression of depth",
-        },
+        ParamSpec::required(
+            "inertial",
+            Dimension::MASS_PER_LENGTH,
+            "h, the factor of the squared speed; a number, or an expression of depth",
+        )
+        .usual(1e-3, 10.0),
+        ParamSpec::required(
+            "resistance",
+            Dimension::FORCE,
+            "beta, the resistance; a number, or an expression of depth",
+        )
+        .usual(1e-2, 1e3),
     ],
     variables: &["density", "angle", "depth"],
     accounts: ACCOUNTS,

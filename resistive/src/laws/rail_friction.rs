@@ -5,7 +5,7 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::math::Vec3;
 use engine::params::Range;
 
-use super::facts::Facts;
+use super::facts::{Facts, Kind};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = −q v̂ (1 N), in the bed and above   (N)
@@ -25,7 +25,12 @@ const ACCOUNTS: &[Account] = &[Account {
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "rail-friction",
-    role: Role::Effect(Facts { unit: "N", visible: &[], separable_from: &[] }),
+    role: Role::Effect(Facts {
+        kind: Kind::Apparatus,
+        unit: "N",
+        visible: &[],
+        separable_from: &[],
+    }),
     summary: "A constant friction of the guide, in the bed and above, whatever the area.",
     formula: "F = -q v/|v|, q in newtons",
     signature: "impact speed below that of free fall; in the bed like a constant force",

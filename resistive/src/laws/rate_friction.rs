@@ -3,7 +3,7 @@
 use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
-use super::facts::Facts;
+use super::facts::{Facts, Kind};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F → (1 + q v/V_s) F, V_s = √(g D)   (N)
@@ -21,7 +21,7 @@ const ACCOUNTS: &[Account] = &[];
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "rate-friction",
-    role: Role::Effect(Facts { unit: "1", visible: &[], separable_from: &[] }),
+    role: Role::Effect(Facts { kind: Kind::Physics, unit: "1", visible: &[], separable_from: &[] }),
     summary: "Friction that grows, or falls, with the speed.",
     formula: "F -> (1 + q v/sqrt(g D)) F of the friction",
     signature: "the depth changes by nearly the same fraction at all speeds, the stopping time the more the faster",

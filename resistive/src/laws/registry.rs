@@ -1,8 +1,7 @@
 //! What a law of a resistive medium says of itself, and how it is built by name.
 
 use crate::{Account, ResistanceLaw};
-use engine::params::{Default, ParamSpec, Range};
-use engine::units::Dimension;
+use engine::params::{ParamSpec, Range};
 
 use super::coefficients::Coefficients;
 use super::facts::Facts;
@@ -47,12 +46,5 @@ pub(super) const fn amplitude(
     plausible: Range,
     meaning: &'static str,
 ) -> ParamSpec {
-    ParamSpec {
-        key: "q",
-        dimension: Dimension::NONE,
-        default: Default::Required,
-        allowed,
-        plausible,
-        meaning,
-    }
+    ParamSpec::number("q", meaning).allowed(allowed).plausible(plausible)
 }

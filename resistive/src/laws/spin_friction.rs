@@ -4,7 +4,7 @@ use crate::{Account, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use engine::math::Vec3;
 use engine::params::Range;
 
-use super::facts::{Facts, Needs};
+use super::facts::{Facts, Kind, Needs};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = −q ρ g A z (R/V_s) ω × v̂, V_s = √(g D)   (N)
@@ -23,7 +23,12 @@ const ACCOUNTS: &[Account] = &[];
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "spin-friction",
-    role: Role::Effect(Facts { unit: "1", visible: &[Needs::Spin], separable_from: &[] }),
+    role: Role::Effect(Facts {
+        kind: Kind::Physics,
+        unit: "1",
+        visible: &[Needs::Spin],
+        separable_from: &[],
+    }),
     summary: "Friction of the spinning front, across the motion.",
     formula: "F = -q rho g A z (R/sqrt(g D)) omega x v/|v|",
     signature: "a sideways drift in proportion to the spin and the depth, at any speed",

@@ -5,7 +5,7 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::math::Vec3;
 use engine::params::Range;
 
-use super::facts::{Facts, Needs, Twin};
+use super::facts::{Facts, Kind, Needs, Twin};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = m g (sin q, 0, 1 − cos q), in the bed and above   (N)
@@ -28,6 +28,7 @@ const ACCOUNTS: &[Account] = &[Account {
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "tilt",
     role: Role::Effect(Facts {
+        kind: Kind::Apparatus,
         unit: "rad",
         visible: &[],
         separable_from: &[

@@ -1,7 +1,7 @@
 //! Drag and friction of each component by itself, as fitted to impacts of discs.
 
 use crate::{Account, Immersion, Load, Motion, ResistanceLaw, Surroundings};
-use engine::params::{Default, ParamSpec, Range};
+use engine::params::{ParamSpec, Range};
 use engine::units::Dimension;
 
 use super::registry::{ResistanceEntry, Role};
@@ -25,7 +25,7 @@ const fn coefficient(
     meaning: &'static str,
 ) -> ParamSpec {
     let allowed = Range::NOT_NEGATIVE;
-    ParamSpec { key, dimension, default: Default::Required, allowed, plausible, meaning }
+    ParamSpec::required(key, dimension, meaning).allowed(allowed).plausible(plausible)
 }
 
 const DRAG: Range = Range::closed(1e-3, 10.0);

@@ -3,8 +3,7 @@
 use crate::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use engine::ledger::{Channel, ChannelKind};
 use engine::math::Vec3;
-use engine::params::{Default, ParamSpec, Range};
-use engine::units::Dimension;
+use engine::params::ParamSpec;
 
 use super::registry::{ResistanceEntry, Role};
 
@@ -28,22 +27,9 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     signature: "depth grows slower than linearly with speed, stopping time falls towards a plateau",
     source: "Katsuragi & Durian, Nature Phys. 3, 420 (2007)",
     params: &[
-        ParamSpec {
-            key: "drag",
-            dimension: Dimension::NONE,
-            default: Default::Required,
-            allowed: Range::NOT_NEGATIVE,
-            plausible: Range::closed(0.1, 10.0),
-            meaning: "drag coefficient C_d on the frontal area",
-        },
-        ParamSpec {
-            key: "friction",
-            dimension: Dimension::NONE,
-            default: Default::Required,
-            allowed: Range::NOT_NEGATIVE,
-            plausible: Range::closed(1.0, 100.0),
-            meaning: "friction coefficient C_f on the frontal area",
-        },
+        ParamSpec::number("drag", "drag coefficient C_d on the frontal area").usual(0.1, 10.0),
+        ParamSpec::number("friction", "friction coefficient C_f on the frontal area")
+            .usual(1.0, 100.0),
     ],
     variables: &["density", "angle"],
     accounts: ACCOUNTS,

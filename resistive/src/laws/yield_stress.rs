@@ -5,7 +5,7 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::math::Vec3;
 use engine::params::Range;
 
-use super::facts::{Facts, Needs, Twin};
+use super::facts::{Facts, Kind, Needs, Twin};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
 /// F = −q ρ g A D v̂ in the bed   (N)
@@ -25,6 +25,7 @@ const ACCOUNTS: &[Account] = &[Account {
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "yield-stress",
     role: Role::Effect(Facts {
+        kind: Kind::Physics,
         unit: "1",
         visible: &[],
         separable_from: &[Twin {

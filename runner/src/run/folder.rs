@@ -8,7 +8,7 @@ use engine::checkpoint::write_whole;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::RunError;
+use super::error::RunError;
 
 /// What is done about results that are there already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

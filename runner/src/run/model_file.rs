@@ -4,7 +4,7 @@ use std::fs;
 
 use configs::Model;
 
-use super::RunError;
+use super::error::RunError;
 use super::folder::OutputFolder;
 
 /// Name of the table of grains in an output folder.

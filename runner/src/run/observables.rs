@@ -7,9 +7,9 @@ use engine::contact::{Encounter, Partner};
 use engine::crater::crater;
 use engine::grains::Space;
 use engine::math::Vec3;
+use engine::rebound::restitution;
 use engine::record::{BodyEstimate, RecordError, RunLog, Stamp};
 use engine::simulation::Simulation;
-use engine::stage::restitution;
 
 use configs::GrainModel;
 

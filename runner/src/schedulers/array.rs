@@ -4,7 +4,7 @@ use std::path::Path;
 
 use engine::checkpoint::write_whole;
 
-use super::{SchedulerError, absolute};
+use super::error::SchedulerError;
 
 /// Tasks to be handed over.
 #[derive(Clone, Copy, Debug)]
@@ -76,6 +76,13 @@ pub(super) fn blocks(tasks: &[usize], largest: usize) -> Vec<Block> {
 /// `text` as one word of a shell.
 fn quoted(text: &str) -> String {
     format!("'{}'", text.replace('\'', "'\\''"))
+}
+
+/// A task may begin in any folder.
+pub(super) fn absolute(path: &Path) -> Result<String, SchedulerError> {
+    let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let text = full.to_str().map(str::to_owned);
+    text.ok_or_else(|| SchedulerError::NotText { path: path.to_owned() })
 }
 
 #[cfg(test)]

@@ -5,18 +5,17 @@
 //! waited for ([`Scheduler::begin`]). What a task does has to bear being killed, requeued and done twice.
 
 mod array;
+mod error;
 mod waiting;
 
 use std::io;
-use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use thiserror::Error;
-
 pub use array::{Array, Word, script};
+pub use error::SchedulerError;
 pub use waiting::Waiting;
 
-use array::{Block, blocks};
+use array::{Block, absolute, blocks};
 
 /// Most tasks of a job array: the default of SLURM's `MaxArraySize` less one, as it counts from 0.
 const LARGEST_ARRAY: usize = 1000;
@@ -28,43 +27,6 @@ pub enum Scheduler {
     Slurm,
     /// HyperQueue, by one job of many tasks.
     HyperQueue,
-}
-
-/// Why tasks are not submitted.
-#[derive(Debug, Error)]
-pub enum SchedulerError {
-    /// It is not installed, or cannot be started.
-    #[error("cannot start `{program}`: {source}; {hint}")]
-    NotThere {
-        /// The program.
-        program: &'static str,
-        /// Why not.
-        source: io::Error,
-        /// What to do.
-        hint: &'static str,
-    },
-    /// It refuses.
-    #[error("`{program}` refuses: {why}")]
-    Refused {
-        /// The program.
-        program: &'static str,
-        /// What it says.
-        why: String,
-    },
-    /// A path that no script can hold.
-    #[error("{} is not UTF-8, and a script cannot name it", path.display())]
-    NotText {
-        /// The path.
-        path: PathBuf,
-    },
-    /// The script cannot be written.
-    #[error("cannot write {}: {source}", path.display())]
-    Script {
-        /// The file.
-        path: PathBuf,
-        /// Why not.
-        source: io::Error,
-    },
 }
 
 impl Scheduler {
@@ -172,11 +134,4 @@ impl Scheduler {
         let why = String::from_utf8_lossy(stderr).trim().to_owned();
         SchedulerError::Refused { program: self.program(), why }
     }
-}
-
-/// A task may begin in any folder.
-fn absolute(path: &Path) -> Result<String, SchedulerError> {
-    let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let text = full.to_str().map(str::to_owned);
-    text.ok_or_else(|| SchedulerError::NotText { path: path.to_owned() })
 }

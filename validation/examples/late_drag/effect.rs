@@ -3,11 +3,10 @@
 
 use configs::{LoadOptions, Model, ModelSource};
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::{Default, ParamSpec, ParamTable, Range};
-use engine::units::Dimension;
+use engine::params::{ParamSpec, ParamTable, Range};
 use intruders::Casting;
 use resistive::{Account, Flow, Immersion, Impact, Load, Motion, ResistanceLaw, Surroundings};
-use resistive::{Coefficients, Facts, Needs, ResistanceEntry, Role};
+use resistive::{Coefficients, Facts, Kind, Needs, ResistanceEntry, Role};
 
 /// F = −q ρ A v² z/D v̂   (N)
 struct LateDrag {
@@ -22,19 +21,19 @@ const ACCOUNTS: &[Account] = &[Account {
 /// The line of the table.
 pub(crate) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "late-drag",
-    role: Role::Effect(Facts { unit: "1", visible: &[Needs::Speeds], separable_from: &[] }),
+    role: Role::Effect(Facts {
+        kind: Kind::Physics,
+        unit: "1",
+        visible: &[Needs::Speeds],
+        separable_from: &[],
+    }),
     summary: "A drag with the square of the speed that grows with the depth.",
     formula: "F = -q rho A v^2 z/D v/|v|",
     signature: "fast and deep impacts end sooner; slow ones hardly",
     source: "an example",
-    params: &[ParamSpec {
-        key: "q",
-        dimension: Dimension::NONE,
-        default: Default::Required,
-        allowed: Range::closed(0.0, 5.0),
-        plausible: Range::closed(0.0, 5.0),
-        meaning: "drag in units of rho A v^2 z/D",
-    }],
+    params: &[ParamSpec::number("q", "drag in units of rho A v^2 z/D")
+        .allowed(Range::closed(0.0, 5.0))
+        .usual(0.0, 5.0)],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(LateDrag { q: given.get("q") }),

@@ -14,6 +14,13 @@ impl Chance {
         Self(Pcg64::seed_from_u64(seed))
     }
 
+    /// Another source, of which this one draws nothing.
+    #[must_use]
+    pub fn apart(&self) -> Self {
+        let mut copy = self.0.clone();
+        Self::new(copy.random::<u64>() ^ 0x9e37_79b9_7f4a_7c15)
+    }
+
     /// Evenly between `low` and `high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.0.random::<f64>()

@@ -3,6 +3,7 @@
 use measurements::Kind;
 
 use super::forces::Setting;
+use super::imperfection::Imperfection;
 
 /// Diameter (m) and mass (kg) of four spheres: two of steel, two of titanium.
 const SPHERES: [[f64; 2]; 4] = [[0.0254, 0.0667], [0.0254, 0.035], [0.018, 0.024], [0.018, 0.0125]];
@@ -56,6 +57,8 @@ pub struct Design {
     pub coefficient_scatter: f64,
     /// Deviation of the resistance along the path, relative; sideways it is half of that.
     pub path_scatter: f64,
+    /// What is not as the file says.
+    pub imperfection: Imperfection,
 }
 
 impl Design {
@@ -71,6 +74,7 @@ impl Design {
             camera: 1e-4,
             coefficient_scatter: 0.05,
             path_scatter: 0.12,
+            imperfection: Imperfection::None,
         }
     }
 

@@ -24,6 +24,9 @@ const AFTERWARDS: f64 = 0.1;
 /// How well the impact speed is set, relative.
 const SPEED_SCATTER: f64 = 0.01;
 
+/// By how much resistances differ between sessions, where they do.
+const SESSION_SCATTER: f64 = 0.05;
+
 /// How well the level of the surface is known (m).
 const LEVEL_SCATTER: f64 = 2e-4;
 
@@ -95,22 +98,34 @@ pub fn measure(
 ) -> Result<MeasurementSet, WorldError> {
     let amplitudes = nature.amplitudes();
     let n = design.settings.len();
+    let imperfection = design.imperfection;
+    // Drawn for themselves, so that the exact apparatus sees the beds that it always saw.
+    let mut other = chance.apart();
+    let sessions: Vec<[f64; 2]> =
+        (0..n).map(|_| [(); 2].map(|()| libm::exp(SESSION_SCATTER * other.normal()))).collect();
     let mut runs = Vec::with_capacity(n * design.repeats);
     for condition in 0..n {
         for repeat in 0..design.repeats {
             let order = block(condition, n) * design.repeats + repeat;
             let progress = (order as f64 + 0.5) / (n * design.repeats) as f64;
-            let mean = mean_bed(design.settings[condition], nature, &amplitudes, progress);
+            let mut mean = mean_bed(design.settings[condition], nature, &amplitudes, progress);
+            let session = imperfection.session(block(condition, n), n);
+            if let Some(session) = session {
+                mean.drag *= sessions[session][0];
+                mean.friction *= sessions[session][1];
+            }
             let sphere = scattered(mean, design, chance);
             let mut run = film(&sphere, design, chance)?;
             run.name = format!("c{:02}-{}", condition + 1, repeat + 1);
             run.condition = condition;
             run.repeat = Some(repeat as i64 + 1);
             run.order = Some(order as i64 + 1);
+            let said = session.filter(|_| imperfection.is_session_said());
+            run.session = said.map(|session| format!("day {}", session + 1));
             runs.push(run);
         }
     }
-    Ok(MeasurementSet {
+    let mut set = MeasurementSet {
         id: "benchmark".into(),
         source: Some("a synthetic world".into()),
         kind: design.kind,
@@ -119,6 +134,7 @@ pub fn measure(
             position_sigma: Some(design.camera),
             speed_sigma_rel: Some(SPEED_SCATTER),
             level_sigma: Some(LEVEL_SCATTER),
+            ..Instrument::default()
         },
         bed: Bed {
             geometry: Geometry::Spatial,
@@ -133,8 +149,11 @@ pub fn measure(
         feasible: Feasible::default(),
         conditions: conditions(design),
         runs,
+        keep: Vec::new(),
         notes: Vec::new(),
-    })
+    };
+    imperfection.spoil(&mut set, &mut other);
+    Ok(set)
 }
 
 /// Which block of the campaign condition `condition` of `n` is measured in: not in the order of the
@@ -177,11 +196,14 @@ fn scattered<'a>(mean: Sphere<'a>, design: &Design, chance: &mut Chance) -> Sphe
 
 /// One run before the camera.
 fn film(sphere: &Sphere<'_>, design: &Design, chance: &mut Chance) -> Result<Run, WorldError> {
+    let imperfection = design.imperfection;
+    let phase = imperfection.phase(chance);
     let path = Path::of(sphere, f64::from(FLIGHT_FRAMES) / RATE, FINE)?;
     let level = LEVEL_SCATTER * chance.normal();
     let mut read = |[x, z]: [f64; 2]| {
         let [x, z] = seen([x, z + level], sphere.amplitudes);
-        [x + design.camera * chance.normal(), z + design.camera * chance.normal()]
+        let mut off = || design.camera * imperfection.reading(chance);
+        [x + off(), z + off()]
     };
     let last = ((path.stop_time + AFTERWARDS) * RATE) as i32;
     let frames = match design.kind {
@@ -189,7 +211,7 @@ fn film(sphere: &Sphere<'_>, design: &Design, chance: &mut Chance) -> Result<Run
         Kind::Trajectory => (-FLIGHT_FRAMES..=last)
             .map(|frame| {
                 let t = f64::from(frame) / RATE;
-                let [x, z] = read(path.at(t));
+                let [x, z] = read(path.at(t + phase / RATE));
                 Frame { t, z, x, sigma: None }
             })
             .collect(),
@@ -201,7 +223,8 @@ fn film(sphere: &Sphere<'_>, design: &Design, chance: &mut Chance) -> Result<Run
         condition: 0,
         repeat: None,
         order: None,
-        stop_time: Some(path.stop_time + chance.between(-0.5, 0.5) / RATE),
+        session: None,
+        stop_time: Some(path.stop_time - phase / RATE + chance.between(-0.5, 0.5) / RATE),
         final_z: Some(final_z),
         final_x: oblique.then_some(final_x),
         frames,

@@ -16,6 +16,7 @@ pub mod document;
 mod field;
 pub mod forces;
 pub mod hidden;
+pub mod imperfection;
 pub mod interval;
 pub mod json;
 pub mod kept;

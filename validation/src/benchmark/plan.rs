@@ -2,6 +2,7 @@
 
 use super::design::Design;
 use super::hidden::Hidden;
+use super::imperfection::Imperfection;
 
 /// Strengths of the grid: relative shift of the resting points.
 pub const STRENGTHS: [f64; 3] = [0.03, 0.06, 0.12];
@@ -45,6 +46,13 @@ const TWINS: [Hidden; 10] = [
     Hidden::DepthDrag,
 ];
 
+/// What is hidden before apparatus that is not as its file says: three of the list, and one outside.
+const OF_APPARATUS: [Hidden; 4] =
+    [Hidden::AddedMass, Hidden::YieldStress, Hidden::Magnus, Hidden::Layer];
+
+/// Strength of these.
+const STRONG: f64 = 0.12;
+
 /// A row of the benchmark: one thing is varied in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Row {
@@ -70,6 +78,8 @@ pub enum Row {
     Beds,
     /// Two runs of each condition.
     Repeats,
+    /// Nothing, listed effects and one outside the list, before apparatus that is not as its file says.
+    Apparatus,
     /// Sets that leave several effects, with one and two more conditions.
     Next,
 }
@@ -109,7 +119,7 @@ pub struct Plan {
 
 impl Row {
     /// Every row of the tables.
-    pub const TABLES: [Self; 11] = [
+    pub const TABLES: [Self; 12] = [
         Self::Singles,
         Self::Nulls,
         Self::Unlisted,
@@ -121,6 +131,7 @@ impl Row {
         Self::Camera,
         Self::Beds,
         Self::Repeats,
+        Self::Apparatus,
     ];
 
     /// Every row: those of the tables, and what is drawn only where it is asked for.
@@ -143,6 +154,7 @@ impl Row {
             Self::Camera => "camera",
             Self::Beds => "beds",
             Self::Repeats => "repeats",
+            Self::Apparatus => "apparatus",
             Self::Next => "next",
         }
     }
@@ -216,6 +228,25 @@ impl Size {
             }
             Row::Repeats => {
                 self.variants(drawer, [2, 5].map(|repeats| Design { repeats, ..full.clone() }))
+            }
+            Row::Apparatus => {
+                let mut plans = Vec::new();
+                for (at, imperfection) in Imperfection::ALL.into_iter().enumerate() {
+                    let design = Design {
+                        imperfection,
+                        coefficient_scatter: 0.03,
+                        path_scatter: 0.08,
+                        ..full.clone()
+                    };
+                    for draw in 0..self.share(10) {
+                        plans.push(drawer.plan([at, 0, draw], &design, (&[], 0.0)));
+                        for (kind, hidden) in OF_APPARATUS.into_iter().enumerate() {
+                            let place = [at, kind + 1, draw];
+                            plans.push(drawer.plan(place, &design, (&[hidden], STRONG)));
+                        }
+                    }
+                }
+                plans
             }
             Row::Next => {
                 let designs = [Design::vertical(), Design::one_intruder()];

@@ -3,6 +3,7 @@
 use diagnosis::diagnose::ALPHA;
 use diagnosis::verdict::Verdict;
 
+use super::imperfection::Imperfection;
 use super::interval::{Share, interval_of_median, mcnemar, quantile};
 use super::next::Resolved;
 use super::plan::{CAMERAS, Row, STRENGTHS};
@@ -107,6 +108,7 @@ pub fn scores(trials: &[Trial]) -> Vec<Score> {
     nulls(&mut rows, &answered(Row::ScalarNulls), "scalars only, ");
     instrument(&mut rows, &answered(Row::Camera), &answered(Row::Beds), &answered(Row::Repeats));
     amplitudes(&mut rows, &singles);
+    apparatus(&mut rows, &answered(Row::Apparatus));
     next(&mut rows, &answered(Row::Next));
     rows.retain(|row| match &row.measured {
         Measured::Share(share) => share.n > 0,
@@ -290,6 +292,44 @@ fn scalars(rows: &mut Vec<Score>, scalars: &[Answered<'_>]) {
     }
 }
 
+/// Whether the truth is named, alone or among three at most.
+fn is_among_three(one: &Answered<'_>) -> bool {
+    is_printed(one) && one.1.leaders.len() <= 3
+}
+
+fn apparatus(rows: &mut Vec<Score>, all: &[Answered<'_>]) {
+    use Target::{AtLeast, AtMost};
+    let of = |is: &dyn Fn(&Trial) -> bool| -> Vec<Answered<'_>> {
+        all.iter().copied().filter(|(trial, _)| is(trial)).collect()
+    };
+    let is_null = |trial: &Trial| trial.plan.hidden.is_empty();
+    let is_unlisted = |trial: &Trial| trial.plan.hidden.iter().any(|one| !one.is_listed());
+    let mut of_each =
+        |what: &str, is_in: &dyn Fn(&Trial) -> bool, is: fn(&Answered<'_>) -> bool, target| {
+            let label = |where_to: &str| format!("apparatus, {what}: {where_to}");
+            rows.push(row(label("all"), Share::of(&of(is_in), is), target));
+            for imperfection in Imperfection::ALL {
+                let here =
+                    of(&|trial| is_in(trial) && trial.plan.design.imperfection == imperfection);
+                rows.push(row(label(imperfection.describe()), Share::of(&here, is), Target::None));
+            }
+        };
+    of_each("nothing hidden, an effect named", &is_null, is_anything_named, AtMost(0.02));
+    let listed = |trial: &Trial| !is_null(trial) && !is_unlisted(trial);
+    of_each(
+        "listed effect (12 %) named, among three at most",
+        &listed,
+        is_among_three,
+        AtLeast(0.85),
+    );
+    of_each(
+        "outside the list, a listed effect named alone",
+        &is_unlisted,
+        is_named_alone,
+        AtMost(0.03),
+    );
+}
+
 fn instrument(
     rows: &mut Vec<Score>,
     camera: &[Answered<'_>],
@@ -453,6 +493,8 @@ mod tests {
             amplitude: None,
             hidden: vec![1.0; plan.hidden.len()],
             endpoint: None,
+            held_out: None,
+            apparatus: Vec::new(),
             pair: None,
             resolved: None,
             seconds: 1.0,

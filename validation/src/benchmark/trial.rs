@@ -72,6 +72,10 @@ pub struct Answer {
     /// Root mean square error of the resting points of held-out conditions (m) against the mean bed of
     /// the world, without and with what is named; none where nothing is named.
     pub endpoint: Option<[f64; 2]>,
+    /// Errors on held-out conditions without and with what is named, and noise of their means (m, or relative).
+    pub held_out: Option<[Option<f64>; 3]>,
+    /// Errors of the apparatus that are named.
+    pub apparatus: Vec<String>,
     /// The pair that a search finds, whatever the verdict; none where it is not asked for.
     pub pair: Option<Vec<String>>,
     /// Whether more conditions leave the truth alone; none where that is not asked, or where the set does
@@ -194,6 +198,13 @@ impl Answer {
                 .and_then(|effect| effect.q.zip(effect.se))
                 .filter(|(q, se)| q.is_finite() && se.is_finite()),
             hidden: nature.hidden.iter().map(|(_, q)| *q).collect(),
+            held_out: diagnosis.holdout.map(|one| [one.before, one.after, one.noise_floor]),
+            apparatus: diagnosis
+                .apparatus
+                .iter()
+                .filter(|error| error.named)
+                .map(|error| error.id.clone())
+                .collect(),
             leaders: diagnosis.leaders,
             named: diagnosis.effects,
             endpoint: apart.endpoint,

@@ -4,6 +4,7 @@ use std::num::NonZero;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
+use configs::Change;
 use diagnosis::beds::{Stand, Variation};
 use measurements::Role;
 use runner::beds::{Impacts, Job, Place, Record};
@@ -35,13 +36,8 @@ fn jobs() -> Vec<Job> {
     let stand = Stand::new(&model, &set).unwrap();
     let draws = stand.draws(0, 2, 2).concat();
     let plain = draws.iter().map(|&draw| stand.job(0, draw, &Variation::default()).unwrap());
-    let rough = Variation {
-        effects: vec![(
-            "rolling-resistance".to_owned(),
-            vec![("rolling_friction".to_owned(), "0.1".to_owned())],
-        )],
-        ..Variation::default()
-    };
+    let rolling = Change::Effect("rolling-resistance", vec![("rolling_friction", 0.1)]);
+    let rough = Variation::during(rolling);
     let rough = stand.job(0, draws[0], &rough).unwrap();
     plain.chain([rough]).collect()
 }

@@ -88,6 +88,7 @@ pub(crate) fn empty_set(conditions: Vec<Condition>) -> MeasurementSet {
             position_sigma: Some(1e-4),
             speed_sigma_rel: None,
             level_sigma: None,
+            ..Instrument::default()
         },
         bed: Bed {
             geometry: Geometry::Planar,
@@ -102,6 +103,7 @@ pub(crate) fn empty_set(conditions: Vec<Condition>) -> MeasurementSet {
         feasible: Feasible::default(),
         conditions,
         runs: Vec::new(),
+        keep: Vec::new(),
         notes: Vec::new(),
     }
 }

@@ -66,6 +66,7 @@ fn set(conditions: Vec<Condition>) -> MeasurementSet {
         condition,
         repeat: None,
         order: None,
+        session: None,
         stop_time: None,
         final_z: Some(depth),
         final_x: None,
@@ -77,12 +78,7 @@ fn set(conditions: Vec<Condition>) -> MeasurementSet {
         id: "all-round".into(),
         source: None,
         kind: Kind::Trajectory,
-        instrument: Instrument {
-            rate: None,
-            position_sigma: None,
-            speed_sigma_rel: None,
-            level_sigma: None,
-        },
+        instrument: Instrument::default(),
         bed: Bed {
             geometry: Geometry::Spatial,
             bulk_density: Some(BED.bulk_density),
@@ -96,6 +92,7 @@ fn set(conditions: Vec<Condition>) -> MeasurementSet {
         feasible: Feasible::default(),
         runs: runs.collect(),
         conditions,
+        keep: Vec::new(),
         notes: Vec::new(),
     }
 }

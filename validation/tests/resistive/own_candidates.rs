@@ -60,6 +60,7 @@ fn empty_set() -> MeasurementSet {
             condition,
             repeat: Some((index % REPEATS) as i64),
             order: None,
+            session: None,
             stop_time: Some(0.1),
             final_z: Some(0.1),
             final_x: (conditions[condition].angle_deg < 90.0).then_some(0.1),
@@ -75,6 +76,7 @@ fn empty_set() -> MeasurementSet {
             position_sigma: Some(1e-4),
             speed_sigma_rel: Some(0.005),
             level_sigma: Some(1e-4),
+            ..Instrument::default()
         },
         bed: Bed {
             geometry: Geometry::Spatial,
@@ -89,6 +91,7 @@ fn empty_set() -> MeasurementSet {
         runs: (0..conditions.len() * REPEATS).map(run).collect(),
         conditions,
         feasible: Default::default(),
+        keep: Vec::new(),
         notes: Vec::new(),
     }
 }

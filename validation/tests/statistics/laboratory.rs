@@ -84,6 +84,7 @@ impl Laboratory {
                 position_sigma: Some(1e-4),
                 speed_sigma_rel: Some(0.01),
                 level_sigma: Some(2e-4),
+                ..Instrument::default()
             },
             bed: Bed {
                 geometry: Geometry::Spatial,
@@ -102,6 +103,7 @@ impl Laboratory {
                 })
                 .collect(),
             runs,
+            keep: Vec::new(),
             notes: Vec::new(),
         }
     }
@@ -139,6 +141,7 @@ impl Laboratory {
             condition,
             repeat: Some(repeat as i64),
             order: None,
+            session: None,
             stop_time: Some(path.stop_time + late),
             final_z: Some(final_z),
             final_x: (setting.angle < 90.0).then_some(final_x),

@@ -57,7 +57,7 @@ fn tables_have_a_row_per_cell_and_number_and_the_same_input_gives_the_same_bytes
     let set = laboratory.measure(1);
     let observed = Observed::of(&set);
     let comparison = compared(&laboratory, &set, &observed);
-    let files = written(&WhereItFails::of_comparison(&set, &observed, &comparison));
+    let files = written(&comparison.where_it_fails(&set, &observed));
     let of_one_model =
         |name: &&&str| !["signatures", "revisions"].iter().any(|one| name.starts_with(one));
     let without_signatures = FILES.iter().filter(of_one_model);
@@ -104,7 +104,7 @@ fn tables_have_a_row_per_cell_and_number_and_the_same_input_gives_the_same_bytes
         assert!(!text.contains("NaN") && !text.contains("inf"), "{name}");
     }
     let again = compared(&laboratory, &set, &observed);
-    assert_eq!(files, written(&WhereItFails::of_comparison(&set, &observed, &again)));
+    assert_eq!(files, written(&again.where_it_fails(&set, &observed)));
 }
 
 #[test]
@@ -221,7 +221,7 @@ fn scalars_have_no_map_of_depths_and_no_trajectories() {
     let set = laboratory.measure(1);
     let observed = Observed::of(&set);
     let comparison = compared(&laboratory, &set, &observed);
-    let files = written(&WhereItFails::of_comparison(&set, &observed, &comparison));
+    let files = written(&comparison.where_it_fails(&set, &observed));
     for absent in ["map-depth.svg", "residuals.svg", "signatures.svg", "signatures.csv"] {
         assert!(!files.contains_key(absent), "{absent}");
     }

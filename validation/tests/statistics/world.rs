@@ -1,7 +1,9 @@
 //! A small world of its own: a sphere in a bed, with effects that can be hidden in it. It shares no
 //! code with the models that ship.
 
-use diagnosis::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
+use diagnosis::forward::{
+    Candidate, Forward, Parameter, ParameterKind, PredictError, Request, Scatter,
+};
 use diagnosis::observable::Layout;
 
 /// Bulk density of the bed (kg/m³).
@@ -227,6 +229,8 @@ impl TwoTerm {
             start,
             min: 0.0,
             max: 100.0,
+            prior: None,
+            kind: ParameterKind::Model,
         };
         let candidate = |effect: &Effect| {
             let (min, max, step) = match effect {

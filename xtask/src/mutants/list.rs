@@ -216,7 +216,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 20,
         what: "spheres turn as discs do",
-        file: "engine/src/grains.rs",
+        file: "engine/src/space.rs",
         edits: &[("Self::Spatial => 0.4,", "Self::Spatial => 0.5,")],
         suites: TWO_GRAINS,
     },
@@ -225,8 +225,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
         what: "the error of held-out conditions is halved once an effect is named",
         file: "diagnosis/src/held_out.rs",
         edits: &[(
-            "after: error(|(condition, _, after)| (*condition, after)),",
-            "after: 0.5 * error(|(condition, _, after)| (*condition, after)),",
+            "error(|(condition, _, after)| (*condition, after)),",
+            "error(|(condition, _, after)| (*condition, after)).map(|error| 0.5 * error),",
         )],
         suites: STATISTICS,
     },
@@ -260,7 +260,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         number: 25,
         what: "probabilities of force errors are one-sided",
-        file: "diagnosis/src/force_error.rs",
+        file: "diagnosis/src/force_error/part.rs",
         edits: &[("{ libm::erfc((value / se)", "{ 0.5 * libm::erfc((value / se)")],
         suites: STATISTICS,
     },

@@ -3,6 +3,7 @@
 //! Each rule is a pure function from text to [`Problem`]s; only this file reads the disk.
 
 mod arrows;
+mod circles;
 mod laws;
 mod promises;
 mod text;
@@ -50,6 +51,7 @@ pub(crate) fn run(sh: &Shell) -> Result<ExitCode> {
         .context("cannot ask cargo for the crates")?;
 
     let mut problems = arrows::check(&metadata, &files)?;
+    problems.extend(circles::check(&files));
     problems.extend(laws::check(&files));
     problems.extend(promises::check(&files));
     problems.extend(files.iter().flat_map(|file| text::check(&file.path, &file.text)));

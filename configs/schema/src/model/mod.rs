@@ -5,6 +5,8 @@ mod impact;
 mod parameters;
 mod resistive;
 
+use crate::resolved::Resolved;
+
 pub use grains::{
     Bed, BedSource, BottomKind, Container, ContainerShape, CsvBed, GrainForceChoice, GrainKind,
     GrainLog, GrainMedium, GrainModel, LawChoice, Material, Settle, SidesKind, StartPositions,
@@ -34,6 +36,7 @@ pub struct Model {
     pub impact: Impact,
     /// `[conditions]`; see [`Model::conditions`].
     pub conditions: Option<ConditionLists>,
+    pub(crate) lines: Resolved,
     pub(crate) resolved: String,
     pub(crate) bed_key: String,
     pub(crate) hash: String,

@@ -1,12 +1,11 @@
 //! `[bed]` and its `[[bed.grains]]`.
 
 use engine::grains::Space;
-use engine::params::{Default as ParamDefault, ParamSpec};
 
 use super::bed_file::{DataFolder, csv_bed};
-use super::grains::time_step;
 use super::laws::effects;
 use super::sizes::sizes;
+use super::step::time_step;
 use super::{BodyPlaces, Places};
 use crate::diagnostics::Diagnostic;
 use crate::limits;
@@ -88,7 +87,7 @@ fn preparation_friction(table: &TableReader<'_>, law: Option<&LawChoice>) -> Opt
     let own = law.params.iter().find(|(key, _)| *key == "friction").map(|(_, value)| value);
     match own {
         Some(friction) => {
-            let spec = ParamSpec { default: ParamDefault::Value(friction), ..spec };
+            let spec = spec.or(friction);
             table.number(&spec).map(|found| Some(found.value))
         }
         None if table.has(spec.key) => {

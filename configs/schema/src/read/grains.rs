@@ -1,19 +1,18 @@
 //! What only a model of grains has.
 
 use engine::grains::Space;
-use engine::params::ParamSpec;
 
 use super::bed::bed;
 use super::container::container;
 use super::foreign::Foreign;
+use super::step::time_step;
 use super::{
     CommonTables, DataFolder, IMPACT_EXAMPLE, KINDS, Places, energy, impact, intruder_example, laws,
 };
 use crate::limits;
-use crate::model::{
-    GrainLog, GrainMedium, LogSettings, Medium, Model, RunSettings, Stepping, TimeStep,
-};
+use crate::model::{GrainLog, GrainMedium, LogSettings, Medium, Model, RunSettings, Stepping};
 use crate::reader::TableReader;
+use crate::resolved::Resolved;
 use crate::specs;
 
 const CONTAINER_EXAMPLE: &str =
@@ -81,6 +80,7 @@ pub(super) fn model(
         intruder: intruder?,
         impact: impact?,
         conditions: conditions?,
+        lines: Resolved::default(),
         resolved: String::new(),
         bed_key: String::new(),
         hash: String::new(),
@@ -143,21 +143,4 @@ fn medium(table: TableReader<'_>, places: &mut Places) -> Option<(Space, f64, Op
         _ => Space::Spatial,
     };
     Some((space, gravity?.value, inertia?.map(|found| found.value)))
-}
-
-/// A fixed step or `"auto"`.
-pub(super) fn time_step(
-    table: &TableReader<'_>,
-    spec: &ParamSpec,
-    default: Option<&str>,
-) -> Option<TimeStep> {
-    let auto = match table.has(spec.key) {
-        true => table.peek_text(spec.key) == Some("auto"),
-        false => default == Some("auto"),
-    };
-    if auto {
-        table.note_text(spec.key, "auto");
-        return Some(TimeStep::Auto);
-    }
-    table.number(spec).map(|found| TimeStep::Fixed(found.value))
 }

@@ -19,6 +19,7 @@ mod laws;
 mod own_effect;
 mod resistive;
 mod sizes;
+mod step;
 
 pub(crate) use bed_file::DataFolder;
 pub(crate) use own_effect::formula_fault;

@@ -17,6 +17,7 @@ use crate::model::{
     RunSettings,
 };
 use crate::reader::TableReader;
+use crate::resolved::Resolved;
 use crate::specs;
 
 const RESISTANCE_EXAMPLE: &str = "name = \"two-term-vector\"\ndrag = 1.0\nfriction = 15.0";
@@ -75,6 +76,7 @@ pub(super) fn model(
         intruder: intruder?,
         impact: impact?,
         conditions: conditions?,
+        lines: Resolved::default(),
         resolved: String::new(),
         bed_key: String::new(),
         hash: String::new(),

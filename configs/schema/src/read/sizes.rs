@@ -10,9 +10,6 @@ use crate::model::Material;
 use crate::reader::{Found, TableReader};
 use crate::specs;
 
-/// Standard deviations of ln d to which a lognormal distribution without limits reaches.
-const LOGNORMAL_REACH: f64 = 3.0;
-
 /// The sizes, and what the grains are made of.
 pub(super) fn sizes(table: &TableReader<'_>, space: Space) -> Option<(SizeDistribution, Material)> {
     let density = match space {
@@ -80,8 +77,8 @@ fn lognormal(table: &TableReader<'_>) -> Option<SizeDistribution> {
             Some(Found { value, span: None })
         }
     };
-    let min = limit(&specs::GRAIN_DIAMETER_MIN, -LOGNORMAL_REACH);
-    let max = limit(&specs::GRAIN_DIAMETER_MAX, LOGNORMAL_REACH);
+    let min = limit(&specs::GRAIN_DIAMETER_MIN, -SizeDistribution::LOGNORMAL_REACH);
+    let max = limit(&specs::GRAIN_DIAMETER_MAX, SizeDistribution::LOGNORMAL_REACH);
     let (min, max) = in_order(table, min?, max?)?;
     Some(SizeDistribution::Lognormal { median: median?.value, sigma: sigma?.value, min, max })
 }

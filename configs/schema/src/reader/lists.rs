@@ -2,7 +2,7 @@
 
 use super::{Found, TableReader};
 use crate::document::Value;
-use crate::resolved::quoted;
+use crate::resolved::{Written, quoted};
 
 impl TableReader<'_> {
     /// A list of strings, if it is given, without writing it to the resolved model; the outer `None` is
@@ -35,6 +35,6 @@ impl TableReader<'_> {
     /// Writes a list of strings that was derived from what was read.
     pub(crate) fn note_texts(&self, key: &str, values: &[String]) {
         let items: Vec<String> = values.iter().map(|value| quoted(value)).collect();
-        self.write(key, format!("[{}]", items.join(", ")));
+        self.write(key, Written::Toml(format!("[{}]", items.join(", "))));
     }
 }

@@ -1,6 +1,7 @@
 //! Reads tables key by key: collects every error, and writes what it read into the resolved model.
 
 mod coefficients;
+mod kind;
 mod lists;
 mod numbers;
 mod unknown;
@@ -11,35 +12,11 @@ use std::cell::RefCell;
 use crate::diagnostics::{Diagnostic, Severity, Sources, Span};
 use crate::document::{Entry, Node, Table, Value};
 use crate::limits;
-use crate::resolved::Resolved;
+use crate::resolved::{Resolved, Written};
 
+pub use kind::FileKind;
 pub use numbers::interval;
 use unknown::Unknown;
-
-/// What a file is, and so how it writes quantities.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FileKind {
-    /// A model: quantities are strings with their unit.
-    Model,
-    /// A measurement set: quantities are bare SI numbers, or strings with their unit.
-    MeasurementSet,
-    /// A campaign: keys of models, with values as models write them.
-    Campaign,
-    /// An import: options of a command as strings.
-    Import,
-}
-
-impl FileKind {
-    /// What messages call it, with its article.
-    fn noun(self) -> &'static str {
-        match self {
-            Self::Model => "a model",
-            Self::MeasurementSet => "a measurement set",
-            Self::Campaign => "a campaign",
-            Self::Import => "an import",
-        }
-    }
-}
 
 /// A value that was read, and where; a default stands nowhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,7 +137,7 @@ impl<'a> TableReader<'a> {
         self.table.and_then(|table| table.get(key))
     }
 
-    fn write(&self, key: &str, value: String) {
+    fn write(&self, key: &str, value: Written) {
         self.reader.resolved.borrow_mut().line(self.section, key, value);
     }
 

@@ -7,7 +7,7 @@ use super::{FileKind, Found, TableReader};
 use crate::diagnostics::{Diagnostic, Span, shorten};
 use crate::document::{Node, Value};
 use crate::limits;
-use crate::resolved::quoted;
+use crate::resolved::{Written, quoted};
 
 /// Speed of an impact (m/s) in examples: ranges reach to far larger ones.
 const USUAL_SPEED: f64 = 2.0;
@@ -127,9 +127,8 @@ impl TableReader<'_> {
         let read: Vec<_> = nodes.iter().map(|node| self.number_at(node, spec)).collect();
         let values: Option<Vec<Found<f64>>> = read.into_iter().collect();
         let values = values?;
-        let items: Vec<String> =
-            values.iter().map(|found| number_toml(found.value, spec.dimension)).collect();
-        self.write(spec.key, format!("[{}]", items.join(", ")));
+        let numbers: Vec<f64> = values.iter().map(|found| found.value).collect();
+        self.note_list(spec, &numbers);
         Some(Some(values))
     }
 
@@ -140,7 +139,7 @@ impl TableReader<'_> {
 
     pub(crate) fn number_at(&self, node: &Node, spec: &ParamSpec) -> Option<Found<f64>> {
         let value = match (self.is_bare(spec), &node.value) {
-            (true, Value::Float(value)) => *value,
+            (_, Value::Si(value)) | (true, Value::Float(value)) => *value,
             (true, Value::Integer(value)) => *value as f64,
             // A set takes both: a bare SI number, or what a model would say.
             (bare, Value::Text(text)) if !bare || self.takes(text, spec) => {
@@ -289,9 +288,7 @@ impl TableReader<'_> {
 
     /// Writes a list of numbers.
     pub(crate) fn note_list(&self, spec: &ParamSpec, values: &[f64]) {
-        let items: Vec<String> =
-            values.iter().map(|&value| number_toml(value, spec.dimension)).collect();
-        self.write(spec.key, format!("[{}]", items.join(", ")));
+        self.write(spec.key, Written::Numbers(values.to_vec(), spec.dimension));
     }
 
     /// Writes a line that was derived from what was read.
@@ -300,15 +297,7 @@ impl TableReader<'_> {
     }
 
     fn write_number(&self, key: &str, value: f64, dimension: Dimension) {
-        self.write(key, number_toml(value, dimension));
-    }
-}
-
-/// A number or quantity as TOML.
-fn number_toml(value: f64, dimension: Dimension) -> String {
-    match dimension == Dimension::NONE {
-        true => format!("{value:?}"),
-        false => quoted(&units::format_si(value, dimension)),
+        self.write(key, Written::Number(value, dimension));
     }
 }
 

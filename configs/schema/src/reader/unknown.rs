@@ -1,6 +1,6 @@
 //! Keys that nobody asked for, and where they may belong.
 
-use super::FileKind;
+use super::kind::FileKind;
 use crate::diagnostics::{Diagnostic, Span, nearest, shorten};
 
 /// A key that nobody asked for.

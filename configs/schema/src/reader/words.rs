@@ -4,7 +4,7 @@ use super::{Found, TableReader};
 use crate::diagnostics::{Diagnostic, nearest, shorten};
 use crate::document::{Node, Value};
 use crate::limits;
-use crate::resolved::quoted;
+use crate::resolved::{Written, quoted};
 
 impl TableReader<'_> {
     /// A whole number; `default` stands in when the file does not give it.
@@ -46,7 +46,7 @@ impl TableReader<'_> {
                 }
             }
         };
-        self.write(key, found.value.to_string());
+        self.write(key, Written::Integer(found.value));
         Some(found)
     }
 
@@ -62,7 +62,7 @@ impl TableReader<'_> {
                 }
             },
         };
-        self.write(key, value.to_string());
+        self.write(key, Written::Boolean(value));
         Some(value)
     }
 
@@ -110,7 +110,7 @@ impl TableReader<'_> {
         meaning: &str,
     ) -> Option<Found<String>> {
         let found = self.raw_text(key, default, example, meaning)?;
-        self.write(key, quoted(&found.value));
+        self.write(key, Written::Text(found.value.clone()));
         Some(found)
     }
 
@@ -195,11 +195,11 @@ impl TableReader<'_> {
 
     /// Writes TOML that was derived from what was read.
     pub(crate) fn note_toml(&self, key: &str, value: String) {
-        self.write(key, value);
+        self.write(key, Written::Toml(value));
     }
 
     /// Writes a string that was derived from what was read.
     pub(crate) fn note_text(&self, key: &str, value: &str) {
-        self.write(key, quoted(value));
+        self.write(key, Written::Text(value.to_owned()));
     }
 }

@@ -4,17 +4,17 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use configs::engine::body::Followed;
 use configs::engine::math::{Quat, Vec3, cayley, turned_about_y};
 use configs::engine::params::ParamTable;
 use configs::engine::record::{BodySample, LoggedShape};
-use configs::engine::stopping::Followed;
 use configs::engine::surface::Surface;
 use configs::intruders::find;
 use runner::run::shape_of;
 
 use super::super::facts::{Facts, Intruder};
 use super::super::samples::Sample;
-use super::ImportError;
+use super::error::ImportError;
 
 /// The energies that are known of a run of LAMMPS, as plunge calls them.
 pub(super) const ENERGIES: [&str; 6] = [

@@ -11,7 +11,7 @@ use configs::engine::stopping::Stopping;
 use super::super::dump::Dump;
 use super::super::facts::Facts;
 use super::super::samples::Sample;
-use super::ImportError;
+use super::error::ImportError;
 use super::faller::{ENERGIES, Faller, Turned};
 use crate::Stop;
 

@@ -17,10 +17,18 @@ const DYNAMIC: &[Account] = &[account(Flow::Dynamic)];
 const STATIC: &[Account] = &[account(Flow::Static)];
 
 /// The force that the formula of `effect` says, of amplitude `q` (SI), in an impact at `angle` (rad).
-pub(super) struct Law {
-    pub(super) effect: Arc<OwnEffect>,
-    pub(super) q: f64,
-    pub(super) angle: f64,
+struct Law {
+    effect: Arc<OwnEffect>,
+    q: f64,
+    angle: f64,
+}
+
+impl OwnEffect {
+    /// The term of the force with amplitude `q` (SI) in an impact at `angle` below the horizontal (rad).
+    #[must_use]
+    pub fn build(self: &Arc<Self>, q: f64, angle: f64) -> Box<dyn ResistanceLaw> {
+        Box::new(Law { effect: Arc::clone(self), q, angle })
+    }
 }
 
 impl Law {

@@ -3,17 +3,14 @@
 mod law;
 mod variables;
 
-use std::sync::Arc;
-
-use crate::{Immersion, Motion, ResistanceLaw, Space, Surroundings};
-use engine::params::{Default, ParamSpec, Range};
+use crate::{Immersion, Motion, Space, Surroundings};
+use engine::params::{ParamSpec, Range};
 use engine::units::Dimension;
 use thiserror::Error;
 
 use super::facts::Needs;
 use super::{RESISTANCE_LAWS, find_resistance};
 use crate::formula::{DimensionError, Formula, FormulaError, Known, is_reserved};
-use law::Law;
 pub use variables::{STATE_VARIABLES, StateVariable};
 use variables::{Seen, find};
 
@@ -177,14 +174,10 @@ impl OwnEffect {
         if q.range.max <= 0.0 {
             return Err(OwnEffectError::NeverPresent);
         }
-        let amplitude = ParamSpec {
-            key: AMPLITUDE,
-            dimension: q.dimension,
-            default: Default::Required,
-            allowed: q.range,
-            plausible: q.range,
-            meaning: "the amplitude; 0 without the effect",
-        };
+        let amplitude =
+            ParamSpec::required(AMPLITUDE, q.dimension, "the amplitude; 0 without the effect")
+                .allowed(q.range)
+                .plausible(q.range);
         let names: Vec<&str> = STATE_VARIABLES
             .iter()
             .flat_map(|variable| [variable.name, variable.alias])
@@ -257,12 +250,6 @@ impl OwnEffect {
             let is_used = |source: &Source| matches!(source, Source::State(used) if *used == index);
             self.sources.iter().any(is_used).then_some(variable)
         })
-    }
-
-    /// The term of the force with amplitude `q` (SI) in an impact at `angle` below the horizontal (rad).
-    #[must_use]
-    pub fn build(self: &Arc<Self>, q: f64, angle: f64) -> Box<dyn ResistanceLaw> {
-        Box::new(Law { effect: Arc::clone(self), q, angle })
     }
 
     /// Whether the force in a state is of the kind that it is said to be.

@@ -1,7 +1,9 @@
 //! Own effects against those of the table, and what is refused.
 
-use crate::{Load, Space};
+use crate::{Load, ResistanceLaw, Space};
 use engine::params::ParamTable;
+
+use std::sync::Arc;
 
 use super::super::testing::{SPHERE, sinking, surroundings};
 use super::super::{Coefficients, Effect, find_resistance};

@@ -1,5 +1,6 @@
 //! What is hidden in a bed, and what a diagnosis made of it.
 
+use configs::{BedSource, Change, Material};
 use diagnosis::beds::{
     BedError, Plan, SWITCHES, Stand, Variation, Wish, diagnose_bed, unaffordable,
 };
@@ -134,9 +135,14 @@ impl Hidden {
                 switch.map_or_else(Variation::default, |one| one.change(stand.grains(), q))
             }
             Self::Unlisted => {
-                let masses = [0.049, 0.073].map(|mass| mass * HEAVIER).into_iter().enumerate();
-                let sets = masses.map(|(at, mass)| format!("bed.grains.{at}.mass=\"{mass:?} g\""));
-                Variation { before: sets.collect(), ..Variation::default() }
+                let BedSource::Settle(settle) = &stand.grains().medium.bed.source else {
+                    return Variation::default();
+                };
+                let mut grains = settle.grains.clone();
+                for (kind, grams) in grains.iter_mut().zip([0.049, 0.073]) {
+                    kind.material = Material::Mass(grams * HEAVIER / 1e3);
+                }
+                Variation::before(Change::Grains(grains))
             }
         }
     }

@@ -63,6 +63,7 @@ pub fn campaign(model: &Model) -> MeasurementSet {
             position_sigma: Some(CAMERA),
             speed_sigma_rel: None,
             level_sigma: None,
+            ..Instrument::default()
         },
         bed: Bed {
             geometry: Geometry::Planar,
@@ -77,6 +78,7 @@ pub fn campaign(model: &Model) -> MeasurementSet {
         feasible: Feasible::default(),
         conditions: fit.into_iter().chain(held_out).collect(),
         runs: Vec::new(),
+        keep: Vec::new(),
         notes: Vec::new(),
     }
 }
@@ -149,6 +151,7 @@ fn seen(
         condition,
         repeat: None,
         order: Some(number as i64),
+        session: None,
         stop_time: None,
         final_z: Some(deepest),
         final_x: None,

@@ -1,0 +1,203 @@
+//! A diagnosis as `plunge diagnose` prints it.
+
+use diagnosis::calibrate::Calibration;
+use diagnosis::forward::Bound;
+use diagnosis::held_out::{Fails, LeftOut, Unit};
+use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Verdict};
+use serde_json::Value;
+
+use crate::text::{lines, noise_words, probability, table};
+
+/// All of it but what was found by running more impacts, and the next experiment.
+pub(crate) fn as_text(
+    model: &str,
+    (diagnosis, object): (&Diagnosis, &Value),
+    [n_fit, n_holdout]: [usize; 2],
+) -> String {
+    let mut text = format!("Model {model}: {n_fit} conditions to fit, {n_holdout} held out.");
+    // Without a held-out error nothing was fitted.
+    if !diagnosis.noise.is_null() {
+        text.push_str(&format!(" Errors {}.", noise_words(&diagnosis.noise)));
+    }
+    text.push('\n');
+    if let (Some(p1), Some(p_lof)) = (diagnosis.p1, diagnosis.p_lof) {
+        let explained =
+            matches!(diagnosis.verdict, Verdict::NothingDetected | Verdict::ExplainedByApparatus);
+        text.push_str(&format!(
+            "Does the model explain the data?  {}   p1 {}   lack of fit p {}\n",
+            if explained { "YES" } else { "NO" },
+            probability(p1),
+            probability(p_lof)
+        ));
+    }
+    if !diagnosis.ranking.is_empty() {
+        text.push('\n');
+        text.push_str(&ranking(diagnosis));
+    }
+    if let Some(p) = diagnosis.p_lof_with {
+        text.push_str(&format!("\nLack of fit with the best: p {}.\n", probability(p)));
+    }
+    text.push_str(&format!("\nVERDICT  {}\n", reports::verdict_in_words(object)));
+    if let Some(strength) = reports::strength_in_words(object) {
+        text.push_str(&format!("{strength}\n"));
+    }
+    text.push_str(&apparatus(object));
+    if !diagnosis.unexplained.hint.is_empty() {
+        text.push_str(&format!("{}.\n", diagnosis.unexplained.hint));
+    }
+    if !diagnosis.unexplained.depends_on.is_empty() {
+        let on = diagnosis.unexplained.depends_on.join(", ");
+        text.push_str(&format!("What remains of the force depends on {on}.\n"));
+    }
+    if let Some(table) = &diagnosis.unexplained.suggestion {
+        let intro = "A suggestion, not a finding: put this into the model file and diagnose again.";
+        text.push_str(&format!("\n{intro}\n\n{table}"));
+    }
+    text.push_str(&held_out(diagnosis));
+    text
+}
+
+/// The name of an effect, with the unit of its amplitude where that is no pure number.
+fn in_unit(effect: &RankedEffect) -> String {
+    match effect.unit.as_str() {
+        "1" => effect.id.clone(),
+        unit => format!("{} ({unit})", effect.id),
+    }
+}
+
+fn ranking(diagnosis: &Diagnosis) -> String {
+    let header = ["effect", "q", "se", "delta", "behind", "ranked first if there", "limit"];
+    let mut table = table(&header);
+    let best = diagnosis.ranking.first().and_then(|effect| effect.delta).unwrap_or(0.0);
+    let number = |value: Option<f64>, digits: usize| {
+        value.map_or("-".to_owned(), |value| format!("{value:.digits$}"))
+    };
+    let ranked = || diagnosis.ranking.iter().filter(|effect| effect.status == Status::Ranked);
+    for effect in ranked() {
+        let q = number(effect.q, 4);
+        let (q, se) = match effect.at_bound {
+            Some(Bound::Lower) => (format!("at most {q}"), "end of the range".to_owned()),
+            Some(Bound::Upper) => (format!("at least {q}"), "end of the range".to_owned()),
+            None => (q, number(effect.se, 4)),
+        };
+        table.add_row([
+            in_unit(effect),
+            q,
+            se,
+            number(effect.delta, 1),
+            number(effect.delta.map(|delta| best - delta), 1),
+            number(effect.predicted_top1, 2),
+            number(effect.detection_limit, 4),
+        ]);
+    }
+    let mut text = lines(&table);
+    let alike = |effect: &&RankedEffect| diagnosis.not_separable.contains(&effect.id);
+    for effect in ranked().filter(alike).filter(|effect| !effect.note.is_empty()) {
+        text.push_str(&format!(" separable: {} {}\n", effect.id, effect.note));
+    }
+    for effect in diagnosis.ranking.iter().filter(|effect| effect.status != Status::Ranked) {
+        let what = match effect.status {
+            Status::NotIntegrated => "could not be computed",
+            Status::Imitated => "not told from the parameters",
+            Status::NotTestable | Status::NotTested | Status::Ranked => "not testable",
+        };
+        text.push_str(&format!(" {what}: {} ({})\n", effect.id, effect.note));
+    }
+    for effect in ranked().filter(|effect| effect.unusual && effect.delta > Some(0.0)) {
+        let (q, [least, most]) = (effect.q.unwrap_or(0.0), effect.usual_range.unwrap_or_default());
+        let id = &effect.id;
+        text.push_str(&format!(" unusual: {id} of {q:.4}, where {least} to {most} is usual\n"));
+    }
+    text
+}
+
+/// Errors of the apparatus that are seen, whether they are larger than expected or not.
+fn apparatus(object: &Value) -> String {
+    let errors = object["apparatus"].as_array().map_or(&[][..], Vec::as_slice);
+    let is_seen = |error: &&Value| {
+        let [value, se] = ["value", "se"].map(|key| error[key].as_f64());
+        se.is_some_and(|se| value.unwrap_or(0.0).abs() >= 3.0 * se)
+    };
+    let seen: Vec<String> = errors.iter().filter(is_seen).map(reports::apparatus_error).collect();
+    match seen.is_empty() {
+        true => String::new(),
+        false => format!("Apparatus: {}; no effect is credited with these.\n", seen.join(", ")),
+    }
+}
+
+fn held_out(diagnosis: &Diagnosis) -> String {
+    let (Some(held_out), false) = (&diagnosis.holdout, diagnosis.amplitudes.is_empty()) else {
+        return String::new();
+    };
+    let shown = |error: f64| match held_out.unit {
+        Unit::Position => format!("{:.3} mm", 1e3 * error),
+        Unit::Relative => format!("{:.1} %", 1e2 * error),
+    };
+    let which = match held_out.conditions {
+        LeftOut::Holdout => "held-out conditions",
+        LeftOut::OneAtATime => "conditions left out one at a time (the set holds out none)",
+    };
+    let errors = (held_out.before, held_out.after, held_out.noise_floor);
+    let explained = match held_out.explained {
+        Some(share) => format!("; {:.0} % of what exceeds noise is explained", 1e2 * share),
+        None => String::new(),
+    };
+    let mut text = match errors {
+        (Some(before), Some(after), Some(floor)) => format!(
+            "Error on {which}: {} before, {} after (noise of the means {}){explained}.\n",
+            shown(before),
+            shown(after),
+            shown(floor)
+        ),
+        _ => format!("No error on {which}: none could be predicted both without and with it.\n"),
+    };
+    let all = held_out.conditions_judged + held_out.not_predicted.len();
+    for one in &held_out.not_predicted {
+        let by = match one.by {
+            Fails::Before => "without it",
+            Fails::After => "with it",
+            Fails::Both => "either way",
+        };
+        let (id, why) = (&one.condition, &one.why);
+        text.push_str(&format!("Not predicted {by}, 1 of {all} and in no error: {id} ({why}).\n"));
+    }
+    text
+}
+
+/// How often verdicts are right before sets of this design, and how likely this one is.
+pub(crate) fn calibration_as_text(calibration: &Calibration, diagnosis: &Diagnosis) -> String {
+    let head =
+        ["truth", "sets", "named alone", "in a set", "something else named", "nothing named"];
+    let mut table = table(&head);
+    for row in calibration.rows() {
+        let unnamed: Vec<String> =
+            row.unnamed.iter().map(|(verdict, sets)| format!("{verdict} {sets}")).collect();
+        table.add_row([
+            row.truth,
+            row.sets.to_string(),
+            row.alone.to_string(),
+            row.among.to_string(),
+            row.wrong.to_string(),
+            unnamed.join(", "),
+        ]);
+    }
+    let covered: Vec<bool> = calibration.sets.iter().filter_map(|set| set.covered).collect();
+    let holding = covered.iter().filter(|holds| **holds).count();
+    let mut text = format!(
+        "\nOf {} simulated sets of this design:\n{}95 % intervals that hold the true amplitude: {holding} of {}.\n",
+        calibration.sets.len(),
+        lines(&table),
+        covered.len()
+    );
+    if let Some(probability) = diagnosis.probability {
+        let shown = |share: Option<f64>| share.map_or("-".to_owned(), |p| format!("{p:.2}"));
+        text.push_str(&format!(
+            "Sets with this verdict, where nothing, a listed and an unlisted effect are equally likely: named rightly {}, \
+             nothing missing {}, something unlisted {}.\n",
+            shown(probability.right),
+            shown(probability.nothing),
+            shown(probability.unlisted)
+        ));
+    }
+    text
+}

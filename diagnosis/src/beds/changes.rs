@@ -1,0 +1,224 @@
+//! Candidates that change what every bed of grains has: its contact law, and how it was prepared; one line of
+//! [`CHANGES`] makes one.
+
+use configs::{BedSource, Change, GrainKind, GrainModel, Material};
+use engine::bed::{SizeDistribution, inflation_range};
+use engine::grains::Space;
+use resistive::Kind;
+
+use super::switch::{Act, Switch};
+use super::variation::Variation;
+
+/// Every one of them, in the order of the docs.
+pub(super) const CHANGES: &[Switch] = &[
+    GRAIN_FRICTION,
+    INTRUDER_FRICTION,
+    WALL_FRICTION,
+    RESTITUTION,
+    PACKING,
+    INFLATED,
+    POLYDISPERSITY,
+    GRAIN_INERTIA,
+];
+
+const GRAIN_FRICTION: Switch = Switch {
+    id: "grain-friction",
+    kind: Kind::Physics,
+    amplitude: "relative change of contact_law.friction during the impact",
+    screen: 0.5,
+    range: (-1.0, 4.0),
+    separable_from: "from rolling-resistance: several angles",
+    of_measurements: true,
+    act: Act::Change {
+        lacks: |model| without(model, "friction"),
+        change: |model, q| scaled(model, "friction", q),
+    },
+};
+
+const INTRUDER_FRICTION: Switch = Switch {
+    id: "intruder-friction",
+    kind: Kind::Physics,
+    amplitude: "relative change of contact_law.intruder_friction",
+    screen: 0.5,
+    range: (-1.0, 4.0),
+    separable_from: "from grain-friction: spin, or oblique impacts",
+    of_measurements: true,
+    act: Act::Change {
+        lacks: |model| without(model, "intruder_friction"),
+        change: |model, q| scaled(model, "intruder_friction", q),
+    },
+};
+
+const WALL_FRICTION: Switch = Switch {
+    id: "wall-friction",
+    kind: Kind::Physics,
+    amplitude: "relative change of contact_law.wall_friction during the impact",
+    screen: 0.5,
+    range: (-1.0, 4.0),
+    separable_from: "from grain-friction: containers of two widths",
+    of_measurements: true,
+    act: Act::Change {
+        lacks: |model| without(model, "wall_friction"),
+        change: |model, q| scaled(model, "wall_friction", q),
+    },
+};
+
+const RESTITUTION: Switch = Switch {
+    id: "restitution",
+    kind: Kind::Physics,
+    amplitude: "relative change of the damping of normal contacts, of −ln e",
+    screen: 0.5,
+    range: (-0.9, 4.0),
+    separable_from: "from velocity-restitution: a wide range of speeds",
+    of_measurements: true,
+    act: Act::Change {
+        lacks: |model| match damping(model) {
+            Some(_) => None,
+            None => Some("the contact law has no damping to change"),
+        },
+        change: |model, q| match damping(model) {
+            Some("restitution") => {
+                let e = model.medium.contact_law.params.get("restitution");
+                Variation::during(Change::ContactLaw("restitution", libm::pow(e, 1.0 + q)))
+            }
+            Some(key) => scaled(model, key, q),
+            None => Variation::default(),
+        },
+    },
+};
+
+const PACKING: Switch = Switch {
+    id: "packing",
+    kind: Kind::Preparation,
+    amplitude: "share of bed.preparation_friction that is taken away: a denser bed",
+    screen: 0.7,
+    range: (-2.0, 1.0),
+    separable_from: "from grain-friction: a bed that is weighed",
+    of_measurements: true,
+    act: Act::Change {
+        lacks: |model| match preparation_friction(model) {
+            Some(friction) if friction > 0.0 => None,
+            Some(_) => Some("the bed settles without friction, as dense as it can be"),
+            None => Some("the bed is given, or settles under a law without friction"),
+        },
+        change: |model, q| {
+            let friction = preparation_friction(model).unwrap_or(0.0) * (1.0 - q);
+            Variation::before(Change::PreparationFriction(friction))
+        },
+    },
+};
+
+const INFLATED: Switch = Switch {
+    id: "inflated",
+    kind: Kind::Preparation,
+    amplitude: "packing fraction gained by growing grains in place before they fall",
+    screen: 0.28,
+    range: (0.0, 0.3),
+    separable_from: "from packing: a bed whose fabric is seen, or that is weighed",
+    of_measurements: false,
+    act: Act::Change {
+        lacks: |model| match &model.medium.bed.source {
+            BedSource::Csv(_) => Some("the bed is given"),
+            BedSource::Settle(settle) => {
+                settle.inflated_to.is_some().then_some("the bed of the model is inflated already")
+            }
+        },
+        change: |model, q| match q > 0.0 {
+            true => {
+                Variation::before(Change::InflatedTo(inflation_range(model.medium.space).0 + q))
+            }
+            false => Variation::default(),
+        },
+    },
+};
+
+const POLYDISPERSITY: Switch = Switch {
+    id: "polydispersity",
+    kind: Kind::Preparation,
+    amplitude: "standard deviation of the logarithm of diameters",
+    screen: 0.15,
+    range: (0.0, 0.3),
+    separable_from: "from packing: a bed that is weighed",
+    of_measurements: true,
+    act: Act::Change {
+        lacks: |model| match &model.medium.bed.source {
+            BedSource::Csv(_) => Some("the bed is given"),
+            BedSource::Settle(settle) => {
+                let equal = |kind: &GrainKind| matches!(kind.sizes, SizeDistribution::Equal(_));
+                let spread = !settle.grains.iter().all(equal);
+                spread.then_some("the grains of the model have a spread of sizes already")
+            }
+        },
+        change: |model, q| match q > 0.0 {
+            true => Variation::before(Change::Grains(spread(model, q))),
+            false => Variation::default(),
+        },
+    },
+};
+
+const GRAIN_INERTIA: Switch = Switch {
+    id: "grain-inertia",
+    kind: Kind::Physics,
+    amplitude: "relative change of the moment of inertia of grains; - 0.2 has discs turn as spheres do",
+    screen: 0.4,
+    range: (-0.9, 1.0),
+    separable_from: "from rolling-resistance: hardly by depths and times",
+    of_measurements: false,
+    act: Act::Change {
+        lacks: |model| {
+            model
+                .medium
+                .grain_inertia
+                .map(|_| "the model says what the moment of inertia of grains is")
+        },
+        change: |model, q| {
+            let coefficient = model.medium.space.inertia_coefficient() * (1.0 + q);
+            Variation::during(Change::GrainInertia(coefficient))
+        },
+    },
+};
+
+fn without(model: GrainModel<'_>, key: &str) -> Option<&'static str> {
+    match model.medium.contact_law.params.iter().find(|(name, _)| *name == key) {
+        Some((_, value)) if value > 0.0 => None,
+        Some(_) => Some("it is zero in the model: give it a value to be changed"),
+        None => Some("the contact law has no such number"),
+    }
+}
+
+/// The number of the contact law that says how much a collision dissipates.
+fn damping(model: GrainModel<'_>) -> Option<&'static str> {
+    let params = &model.medium.contact_law.params;
+    ["normal_damping_rate", "restitution", "viscous_time"]
+        .into_iter()
+        .find(|key| params.iter().any(|(name, value)| name == *key && value > 0.0))
+}
+
+fn preparation_friction(model: GrainModel<'_>) -> Option<f64> {
+    match &model.medium.bed.source {
+        BedSource::Settle(settle) => settle.preparation_friction,
+        BedSource::Csv(_) => None,
+    }
+}
+
+/// The number `key` of the contact law times 1 + `q`, during the impact.
+fn scaled(model: GrainModel<'_>, key: &'static str, q: f64) -> Variation {
+    let value = model.medium.contact_law.params.get(key) * (1.0 + q);
+    Variation::during(Change::ContactLaw(key, value.max(0.0)))
+}
+
+/// The grains of `model` with logarithms of diameters that scatter by `sigma`; mass and number stay.
+fn spread(model: GrainModel<'_>, sigma: f64) -> Vec<GrainKind> {
+    let BedSource::Settle(settle) = &model.medium.bed.source else { return Vec::new() };
+    let space = model.medium.space;
+    let moment = if space == Space::Planar { 2.0 } else { 3.0 };
+    let kind = |kind: &GrainKind| {
+        let density = kind.total_mass(space) / (kind.count as f64 * kind.content(space));
+        // The mean of d^n of a lognormal is that of its median times exp(n² σ²/2).
+        let diameter = libm::pow(kind.sizes.moment(moment as i32), 1.0 / moment);
+        let median = diameter * libm::exp(-0.5 * moment * sigma * sigma);
+        let sizes = SizeDistribution::lognormal(median, sigma);
+        GrainKind { count: kind.count, sizes, material: Material::Density(density) }
+    };
+    settle.grains.iter().map(kind).collect()
+}

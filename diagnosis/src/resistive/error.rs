@@ -1,0 +1,56 @@
+//! Why a model cannot be compared with a set.
+
+use thiserror::Error;
+
+/// Why a model cannot be compared with a set.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ForwardError {
+    /// A grain bed.
+    #[error("`{model}` is a bed of grains, not a force law")]
+    Grains {
+        /// Name of the model.
+        model: String,
+    },
+    /// The set asks for a shape that is not there.
+    #[error("condition {condition}: there is no shape `{shape}`; known: {}", known.join(", "))]
+    UnknownShape {
+        /// Id of the condition.
+        condition: String,
+        /// What the set says.
+        shape: String,
+        /// What there is.
+        known: Vec<&'static str>,
+    },
+    /// A size of a shape is not given.
+    #[error("condition {condition}: a {shape} needs `{key}`, which the set does not give")]
+    MissingSize {
+        /// Id of the condition.
+        condition: String,
+        /// Name of the shape.
+        shape: &'static str,
+        /// What is missing.
+        key: &'static str,
+    },
+    /// A shape that the set's geometry does not have.
+    #[error("condition {condition}: a {shape} cannot be the intruder of a {space} bed")]
+    WrongSpace {
+        /// Id of the condition.
+        condition: String,
+        /// Name of the shape.
+        shape: &'static str,
+        /// `2d` or `3d`.
+        space: &'static str,
+    },
+    /// A size outside of what the shape can have.
+    #[error("condition {condition}: `{key}` of a {shape} cannot be {value}")]
+    BadSize {
+        /// Id of the condition.
+        condition: String,
+        /// Name of the shape.
+        shape: &'static str,
+        /// Which size.
+        key: &'static str,
+        /// (SI).
+        value: f64,
+    },
+}

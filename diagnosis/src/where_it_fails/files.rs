@@ -1,0 +1,65 @@
+//! The files: tables, numbers and pictures.
+
+use plots::PictureError;
+use thiserror::Error;
+
+use super::{WhereItFails, json, tables};
+use crate::picture;
+
+/// Names of all files that there may be.
+pub const FILES: [&str; 12] = [
+    "force_errors.csv",
+    "residuals.csv",
+    "signatures.csv",
+    "where_it_fails.json",
+    "map-speed-angle.svg",
+    "map-depth.svg",
+    "residuals.svg",
+    "covariates.svg",
+    "errors.svg",
+    "revisions.svg",
+    "trajectories.svg",
+    "signatures.svg",
+];
+
+/// What keeps a table or picture from being written.
+#[derive(Debug, Error)]
+pub enum FilesError {
+    /// A table.
+    #[error("cannot write a table: {0}")]
+    Table(#[from] csv::Error),
+    /// The file of numbers.
+    #[error("cannot write numbers: {0}")]
+    Json(#[from] serde_json::Error),
+    /// A picture.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+}
+
+impl WhereItFails<'_> {
+    /// Names and texts of the files; without those that the set cannot have.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn files(&self) -> Result<Vec<(String, String)>, FilesError> {
+        if self.models.is_empty() {
+            return Ok(Vec::new());
+        }
+        let texts = [
+            Some(tables::force_errors(self)?),
+            Some(tables::residuals(self)?),
+            tables::signatures(self)?,
+            Some(json::text(self)?),
+            picture::speed_angle(self)?,
+            picture::depth(self)?,
+            picture::residuals(self)?,
+            picture::covariates(self)?,
+            picture::errors(self)?,
+            picture::revisions(self)?,
+            picture::trajectories(self)?,
+            picture::signatures(self)?,
+        ];
+        let named = FILES.iter().zip(texts);
+        Ok(named.filter_map(|(name, text)| Some(((*name).to_owned(), text?))).collect())
+    }
+}

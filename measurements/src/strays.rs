@@ -1,0 +1,380 @@
+//! Readings that are not of the body: stray frames, and runs in which something else is followed.
+//!
+//! Nothing here knows a model. A frame is held against what the frames to its left, to its right and on both sides
+//! promise for it; a run, against the middle of the runs of its condition.
+
+use crate::{Frame, MeasurementSet, Run};
+
+/// Fewest frames of a run in which strays are looked for: a few have no course.
+const FEWEST_FRAMES: usize = 12;
+
+/// A reading that misses every promise by more than so many times the usual miss is stray.
+const FAR: f64 = 10.0;
+
+/// Most of the frames of a run that may be stray; of more, the course is not known.
+const SHARE: f64 = 0.1;
+
+/// Fewest runs of a condition that have a middle.
+const FEWEST_RUNS: usize = 3;
+
+/// A run that is farther from the middle than so many times the usual distance, over the depth, is of something else.
+const APART: f64 = 8.0;
+
+/// From a standard deviation to the median of a size.
+const MEDIAN: f64 = 0.6745;
+
+/// What a set without its strays says, and what was left out of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cleaned {
+    /// The set without them.
+    pub set: MeasurementSet,
+    /// One sentence for each run, and for all frames of the set.
+    pub notes: Vec<String>,
+}
+
+/// `set` without stray frames and without runs that look mistracked, but for the runs that it says to keep; `error` is
+/// the error of one reading of a position (m).
+#[must_use]
+pub fn without_strays(set: &MeasurementSet, error: f64) -> Cleaned {
+    let (mut notes, mut set) = (Vec::new(), set.clone());
+    let (mut frames, mut of) = (0, 0);
+    let mut jumps = vec![false; set.runs.len()];
+    let keep = set.keep.clone();
+    let is_kept = |run: &Run| keep.contains(&run.name);
+    for (at, run) in set.runs.iter_mut().enumerate() {
+        if is_kept(run) || run.frames.len() < FEWEST_FRAMES {
+            continue;
+        }
+        let tracks = [track(&run.frames, |frame| frame.z), track(&run.frames, |frame| frame.x)];
+        let found = tracks.map(|track| Found::of(&track, error));
+        let stray: Vec<bool> =
+            (0..run.frames.len()).map(|i| found.iter().any(|one| one.stray[i])).collect();
+        let count = stray.iter().filter(|stray| **stray).count();
+        if count as f64 <= SHARE * run.frames.len() as f64 {
+            (frames, of) = (frames + count, of + usize::from(count > 0));
+            let mut stray = stray.into_iter();
+            run.frames.retain(|_| !stray.next().unwrap_or_default());
+        }
+        jumps[at] = [track(&run.frames, |frame| frame.z), track(&run.frames, |frame| frame.x)]
+            .iter()
+            .any(|track| jumps_in(track, error));
+    }
+    if frames > 0 {
+        let (frames_are, runs) = match (frames, of) {
+            (1, _) => ("1 stray frame is".to_owned(), "1 run".to_owned()),
+            (_, 1) => (format!("{frames} stray frames are"), "1 run".to_owned()),
+            _ => (format!("{frames} stray frames are"), format!("{of} runs")),
+        };
+        notes.push(format!(
+            "{frames_are} left out, of {runs}: `keep = [\"run\"]` keeps those of a run"
+        ));
+    }
+    let apart = apart(&set, error);
+    let mut left_out = Vec::new();
+    for condition in 0..set.conditions.len() {
+        let runs: Vec<usize> =
+            (0..set.runs.len()).filter(|&run| set.runs[run].condition == condition).collect();
+        let mistracked: Vec<usize> =
+            runs.iter().copied().filter(|&run| jumps[run] || apart.contains(&run)).collect();
+        // Where half of the runs look so, nobody knows which half is right.
+        if 2 * mistracked.len() < runs.len() {
+            left_out.extend(mistracked);
+        }
+    }
+    left_out.retain(|&run| !is_kept(&set.runs[run]));
+    for &run in &left_out {
+        let name = &set.runs[run].name;
+        let why = if jumps[run] { "its course jumps" } else { "it is far from its repeats" };
+        notes.push(format!(
+            "run {name} looks mistracked ({why}) and is left out: `keep = [\"{name}\"]` keeps it"
+        ));
+    }
+    let mut at = 0..;
+    set.runs.retain(|_| at.next().is_none_or(|at| !left_out.contains(&at)));
+    Cleaned { set, notes }
+}
+
+/// Times and one coordinate.
+fn track(frames: &[Frame], of: fn(&Frame) -> f64) -> Vec<[f64; 2]> {
+    frames.iter().map(|frame| [frame.t, of(frame)]).collect()
+}
+
+/// The stray frames of one coordinate.
+struct Found {
+    stray: Vec<bool>,
+}
+
+impl Found {
+    fn of(track: &[[f64; 2]], error: f64) -> Self {
+        let misses: Vec<f64> = (0..track.len()).map(|at| least_miss(track, at)).collect();
+        let limit = FAR * usual(&misses).max(error);
+        let is_stray = |(at, miss): (usize, &f64)| *miss > limit && !is_on_the_way(track, at);
+        Self { stray: misses.iter().enumerate().map(is_stray).collect() }
+    }
+}
+
+/// Whether the reading `at` lies between those beside it: a body that is stopped within a frame or two looks so.
+fn is_on_the_way(track: &[[f64; 2]], at: usize) -> bool {
+    let (Some([_, before]), Some([_, after])) =
+        (at.checked_sub(1).and_then(|before| track.get(before)), track.get(at + 1))
+    else {
+        return false;
+    };
+    (before.min(*after)..=before.max(*after)).contains(&track[at][1])
+}
+
+/// The standard deviation of which `sizes` are, by their median.
+fn usual(sizes: &[f64]) -> f64 {
+    let mut sorted: Vec<f64> = sizes.iter().copied().filter(|size| size.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0) / MEDIAN
+}
+
+/// By how much the reading `at` misses the best of what its neighbours promise: parabolas through three on either
+/// side, and a line between the two beside it.
+fn least_miss(track: &[[f64; 2]], at: usize) -> f64 {
+    let miss = |promised: f64| (track[at][1] - promised).abs();
+    let from = |places: &[usize]| parabola(track, places, track[at][0]).map(miss);
+    let left = at.checked_sub(3).and_then(|first| from(&[first, first + 1, first + 2]));
+    let right = (at + 3 < track.len()).then(|| from(&[at + 1, at + 2, at + 3])).flatten();
+    let middle = (at > 0 && at + 1 < track.len()).then(|| from(&[at - 1, at + 1])).flatten();
+    [left, right, middle].into_iter().flatten().fold(f64::INFINITY, f64::min)
+}
+
+/// The polynomial through `places` at time `t` (Lagrange); none where two have one time.
+fn parabola(track: &[[f64; 2]], places: &[usize], t: f64) -> Option<f64> {
+    let sum: f64 = places
+        .iter()
+        .map(|&i| {
+            let others = places.iter().filter(|&&j| j != i);
+            let factor = others.map(|&j| (t - track[j][0]) / (track[i][0] - track[j][0]));
+            track[i][1] * factor.product::<f64>()
+        })
+        .sum();
+    sum.is_finite().then_some(sum)
+}
+
+/// Whether the course goes on elsewhere from one frame to the next: each side misses what the other promises, and by as
+/// much one frame farther on, where a blow would miss by four times as much.
+fn jumps_in(track: &[[f64; 2]], error: f64) -> bool {
+    let n = track.len();
+    if n < FEWEST_FRAMES {
+        return false;
+    }
+    let miss = |places: [usize; 3], at: usize| {
+        parabola(track, &places, track[at][0]).map_or(0.0, |promised| track[at][1] - promised)
+    };
+    let forward = |at: usize, to: usize| miss([at - 3, at - 2, at - 1], to);
+    let backward = |at: usize, to: usize| miss([at + 1, at + 2, at + 3], to);
+    let sizes: Vec<f64> = (3..n).map(|at| forward(at, at).abs()).collect();
+    // A parabola through three readings misses the next by √20 of their error.
+    let limit = FAR * usual(&sizes).max(error * 20.0_f64.sqrt());
+    let is_offset =
+        |near: f64, far: f64| near.abs() > limit && (far - near).abs() < 0.5 * near.abs();
+    (3..n - 4).any(|at| {
+        is_offset(forward(at, at), forward(at, at + 1))
+            && is_offset(backward(at - 1, at - 1), backward(at - 1, at - 2))
+    })
+}
+
+/// The runs that are far from the middle of their condition.
+fn apart(set: &MeasurementSet, error: f64) -> Vec<usize> {
+    let mut distances = Vec::new();
+    for condition in 0..set.conditions.len() {
+        let runs: Vec<usize> = (0..set.runs.len())
+            .filter(|&run| {
+                set.runs[run].condition == condition && set.runs[run].frames.len() >= FEWEST_FRAMES
+            })
+            .collect();
+        if runs.len() < FEWEST_RUNS {
+            continue;
+        }
+        distances.extend(from_the_middle(set, &runs, error));
+    }
+    let sizes: Vec<f64> = distances.iter().map(|(_, size)| *size).collect();
+    let limit = APART * usual(&sizes);
+    distances.into_iter().filter(|(_, size)| *size > limit).map(|(run, _)| run).collect()
+}
+
+/// Root mean square distance of each of `runs` from their middle, over the depth that the middle reaches.
+fn from_the_middle(set: &MeasurementSet, runs: &[usize], error: f64) -> Vec<(usize, f64)> {
+    let tracks: Vec<Vec<[f64; 2]>> =
+        runs.iter().map(|&run| track(&set.runs[run].frames, |frame| frame.z)).collect();
+    let shortest = tracks.iter().min_by_key(|track| track.len());
+    let times: Vec<f64> = shortest.map_or(Vec::new(), |one| one.iter().map(|[t, _]| *t).collect());
+    let mut squares = vec![0.0; runs.len()];
+    let (mut deepest, mut n) = (error, 0.0_f64);
+    for t in times {
+        let Some(depths) = tracks.iter().map(|one| between(one, t)).collect::<Option<Vec<f64>>>()
+        else {
+            continue;
+        };
+        let mut sorted = depths.clone();
+        sorted.sort_by(f64::total_cmp);
+        let middle = 0.5 * (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2]);
+        deepest = deepest.max(middle);
+        n += 1.0;
+        for (square, depth) in squares.iter_mut().zip(&depths) {
+            *square += (depth - middle).powi(2);
+        }
+    }
+    let size = |square: &f64| (square / n.max(1.0)).sqrt() / deepest;
+    runs.iter().copied().zip(squares.iter().map(size)).collect()
+}
+
+/// The coordinate at time `t`, on a line between two readings; none outside of them.
+fn between(track: &[[f64; 2]], t: f64) -> Option<f64> {
+    let after = track.partition_point(|[time, _]| *time < t);
+    let [late, z] = *track.get(after)?;
+    if late == t {
+        return Some(z);
+    }
+    let [early, before] = *track.get(after.checked_sub(1)?)?;
+    Some(before + (z - before) * (t - early) / (late - early))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, Role, StatedError,
+        StopDefinition,
+    };
+
+    const ERROR: f64 = 1e-4;
+
+    /// 2 m/s, stopped within 40 ms by a constant deceleration; readings off by up to 0.1 mm.
+    fn run(name: &str, factor: f64) -> Run {
+        let frame = |k: i32| {
+            let t = 1e-3 * f64::from(k);
+            let inside = t.clamp(0.0, 0.04);
+            let z = 2.0 * t.min(0.04) - if t > 0.0 { 25.0 * inside * inside } else { 0.0 };
+            let off = 1e-4 * f64::from((7 * k).rem_euclid(5) - 2) / 2.0;
+            Frame { t, z: factor * z + off, x: 0.0, sigma: None }
+        };
+        Run {
+            name: name.into(),
+            condition: 0,
+            repeat: None,
+            order: None,
+            session: None,
+            stop_time: None,
+            final_z: None,
+            final_x: None,
+            frames: (-15..60).map(frame).collect(),
+        }
+    }
+
+    fn set(runs: Vec<Run>) -> MeasurementSet {
+        MeasurementSet {
+            id: "test".into(),
+            source: None,
+            kind: Kind::Trajectory,
+            instrument: Instrument::default(),
+            bed: Bed {
+                geometry: Geometry::Spatial,
+                bulk_density: None,
+                gravity: 9.81,
+                grain_diameter: None,
+            },
+            baseline: None,
+            stated: StatedError::default(),
+            stop: StopDefinition::SpeedFivePercent,
+            last: FinalDefinition::Resting,
+            feasible: Feasible::default(),
+            conditions: vec![Condition {
+                id: "2 m/s".into(),
+                role: Role::Fit,
+                speed: 2.0,
+                angle_deg: 90.0,
+                shape: "sphere".into(),
+                diameter: 0.02,
+                mass: 0.03,
+                spin: 0.0,
+                packing: None,
+                bed_depth: None,
+                length: None,
+                height: None,
+                apex_deg: None,
+                link_angle_deg: None,
+            }],
+            runs,
+            keep: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    fn repeats() -> Vec<Run> {
+        [0.97, 0.99, 1.0, 1.01, 1.03]
+            .iter()
+            .enumerate()
+            .map(|(at, factor)| run(&format!("r{at}"), *factor))
+            .collect()
+    }
+
+    #[test]
+    fn sound_runs_are_left_as_they_are() {
+        let whole = set(repeats());
+        assert_eq!(without_strays(&whole, ERROR), Cleaned { set: whole, notes: Vec::new() });
+    }
+
+    #[test]
+    fn stray_frames_are_left_out_and_no_other() {
+        let mut runs = repeats();
+        for (at, off) in [(20, 5e-3), (21, -9e-3), (50, 4e-3)] {
+            runs[1].frames[at].z += off;
+        }
+        let cleaned = without_strays(&set(runs), ERROR);
+        let left: Vec<f64> = cleaned.set.runs[1].frames.iter().map(|frame| frame.t).collect();
+        let sound = run("r1", 0.99).frames;
+        let others = sound.iter().enumerate().filter(|(at, _)| ![20, 21, 50].contains(at));
+        assert_eq!(left, others.map(|(_, frame)| frame.t).collect::<Vec<_>>());
+        assert!(cleaned.notes[0].starts_with("3 stray frames are left out, of 1 run"));
+    }
+
+    #[test]
+    fn a_run_that_jumps_or_is_far_from_its_repeats_is_named_unless_it_is_kept() {
+        for (name, spoil) in [
+            (
+                "jumps",
+                (|run| run.frames[40..].iter_mut().for_each(|f| f.z += 8e-3)) as fn(&mut Run),
+            ),
+            ("far", |run| run.frames.iter_mut().for_each(|f| f.z *= 1.6)),
+        ] {
+            let mut runs = repeats();
+            spoil(&mut runs[3]);
+            let mut spoilt = set(runs);
+            let cleaned = without_strays(&spoilt, ERROR);
+            let left: Vec<&str> = cleaned.set.runs.iter().map(|run| run.name.as_str()).collect();
+            assert_eq!(left, ["r0", "r1", "r2", "r4"], "{name}");
+            assert!(cleaned.notes[0].starts_with("run r3 looks mistracked"), "{:?}", cleaned.notes);
+            spoilt.keep = vec!["r3".into()];
+            assert_eq!(without_strays(&spoilt, ERROR).set.runs.len(), 5, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_hard_blow_in_a_slow_clip_is_no_jump() {
+        // 3 m/s, stopped within one and a half of the frames of a clip of 120 Hz.
+        let frame = |k: i32| {
+            let t = f64::from(k) / 120.0;
+            let inside = t.clamp(0.0, 0.0125);
+            let z = 3.0 * t.min(0.0125) - if t > 0.0 { 120.0 * inside * inside } else { 0.0 };
+            Frame { t, z, x: 0.0, sigma: None }
+        };
+        let mut runs = repeats();
+        for run in &mut runs[..2] {
+            run.frames = (-10..30).map(frame).collect();
+        }
+        let cleaned = without_strays(&set(runs[..2].to_vec()), ERROR);
+        assert_eq!(cleaned.notes, Vec::<String>::new());
+    }
+
+    #[test]
+    fn where_half_of_the_runs_jump_none_is_left_out() {
+        let mut runs = repeats();
+        runs.truncate(2);
+        runs[0].frames[40..].iter_mut().for_each(|frame| frame.z += 8e-3);
+        assert_eq!(without_strays(&set(runs), ERROR).set.runs.len(), 2);
+    }
+}
