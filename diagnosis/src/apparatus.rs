@@ -263,12 +263,15 @@ mod tests {
             values[at(name).expect("it is looked for")] = 0.01;
             apparatus.added_to(&Scatter::default(), condition, &values)
         };
-        assert_eq!([0, 1].map(|c| alone("speed-scale", c).speed), [0.01; 2]);
+        let are = |values: [f64; 2], expected: [f64; 2]| {
+            values.iter().zip(expected).all(|(value, expected)| (value - expected).abs() < 1e-15)
+        };
+        assert!(are([0, 1].map(|c| alone("speed-scale", c).speed), [0.01; 2]));
         let body = apparatus.parameters().iter().find(|one| one.name.starts_with("mass ("));
         let body = body.map(|one| one.name.clone()).expect("a body");
-        assert_eq!([0, 1].map(|c| alone(&body, c).mass), [0.01, 0.0]);
+        assert!(are([0, 1].map(|c| alone(&body, c).mass), [0.01, 0.0]));
         // Half of the runs of the first condition, and all of the second, are of session b.
-        let of_b = [0, 1].map(|c| alone("session (b, friction)", c).coefficients);
-        assert_eq!(of_b, [vec![0.0, 0.005], vec![0.0, 0.01]]);
+        let of_b = [0, 1].map(|c| alone("session (b, friction)", c).coefficients[1]);
+        assert!(are(of_b, [0.005, 0.01]));
     }
 }

@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::compare::parameters;
 use crate::force_error::ForceErrors;
-use crate::forward::{Candidate, Forward};
+use crate::forward::{Candidate, Forward, ParameterKind};
 use crate::held_out::{CLEAR, HeldOut, NEARER};
 use crate::lack_of_fit::lack_of_fit;
 use crate::marginal::marginals;
@@ -418,14 +418,16 @@ fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {
     Diagnosis::cannot_tell(ranked(bench, None), why)
 }
 
-/// Value and unit of every parameter at `point`.
+/// Value and unit of every parameter of the model at `point`.
 fn values(forward: &dyn Forward, point: &Point) -> Map<String, Value> {
     let each = forward.parameters().iter().zip(&point.parameters);
-    each.map(|(parameter, value)| {
-        let entry = json!({ "value": rounded(*value), "unit": parameter.unit });
-        (parameter.name.clone(), entry)
-    })
-    .collect()
+    let of_the_model = each.filter(|(parameter, _)| parameter.kind == ParameterKind::Model);
+    of_the_model
+        .map(|(parameter, value)| {
+            let entry = json!({ "value": rounded(*value), "unit": parameter.unit });
+            (parameter.name.clone(), entry)
+        })
+        .collect()
 }
 
 /// The ranked effects, best first, then those that were not ranked.

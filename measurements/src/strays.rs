@@ -226,7 +226,7 @@ fn from_the_middle(set: &MeasurementSet, runs: &[usize], error: f64) -> Vec<(usi
 fn between(track: &[[f64; 2]], t: f64) -> Option<f64> {
     let after = track.partition_point(|[time, _]| *time < t);
     let [late, z] = *track.get(after)?;
-    if late == t {
+    if late <= t {
         return Some(z);
     }
     let [early, before] = *track.get(after.checked_sub(1)?)?;
