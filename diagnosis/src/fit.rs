@@ -9,7 +9,7 @@ use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use crate::forward::{Forward, PredictError};
+use crate::forward::{Forward, ParameterKind, PredictError};
 use crate::observed::Observed;
 use crate::sensitivity::Point;
 use crate::weights::Weight;
@@ -107,6 +107,19 @@ impl Data<'_> {
     pub(crate) fn fit_parameters(&self, start: &Point) -> Result<Fit, PredictError> {
         let scales = self.scales(start);
         let held = (0..scales.len()).map(|at| at >= start.parameters.len()).collect();
+        self.fit_but(start, &scales, held)
+    }
+
+    /// Fits the parameters and the amplitudes of the effects of `start` as their formulas have them: a fall of χ² by one
+    /// amplitude is not that by several numbers of its form.
+    ///
+    /// # Errors
+    /// If the model cannot be integrated at the start or at the end.
+    pub(crate) fn fit_as_listed(&self, start: &Point) -> Result<Fit, PredictError> {
+        let scales = self.scales(start);
+        let parameters = self.forward.parameters().iter();
+        let held = parameters.map(|parameter| parameter.kind == ParameterKind::Form);
+        let held = held.chain(start.effects.iter().map(|_| false)).collect();
         self.fit_but(start, &scales, held)
     }
 

@@ -223,7 +223,7 @@ fn refit(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Score {
 
 /// The same with derivatives of its own, from there, if the model can be integrated around it.
 fn polish(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) {
-    if let Ok(fit) = bench.data(&fitted.weights).fit(&score.point) {
+    if let Ok(fit) = bench.data(&fitted.weights).fit_as_listed(&score.point) {
         score.delta = (fitted.fit.chi2 - fit.chi2).max(0.0);
         score.standard_error = fit.standard_error(fit.covariance.nrows() - 1);
         score.point = fit.point;
