@@ -82,7 +82,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
             }
             None => {
                 floors.push(None);
-                forwards.push(Box::new(model.forward(&measured, flags)?));
+                forwards.push(Box::new(model.forward_before_exact_apparatus(&measured, flags)?));
             }
         }
     }

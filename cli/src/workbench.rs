@@ -275,8 +275,31 @@ impl Candidate {
         measured: &Measured,
         flags: &Flags,
     ) -> Result<ResistiveForward, CommandError> {
+        self.forward_before(&measured.set, measured, flags)
+    }
+
+    /// Likewise, before an apparatus without errors that runs share: how wrong a model is counts as it is.
+    ///
+    /// # Errors
+    /// Likewise.
+    pub(crate) fn forward_before_exact_apparatus(
+        &self,
+        measured: &Measured,
+        flags: &Flags,
+    ) -> Result<ResistiveForward, CommandError> {
+        let instrument = measured.set.instrument.without_shared_errors();
+        let exact = MeasurementSet { instrument, ..measured.set.clone() };
+        self.forward_before(&exact, measured, flags)
+    }
+
+    fn forward_before(
+        &self,
+        set: &MeasurementSet,
+        measured: &Measured,
+        flags: &Flags,
+    ) -> Result<ResistiveForward, CommandError> {
         let layouts = measured.observed.layouts();
-        let forward = ResistiveForward::new(&self.loaded.model, &measured.set, &layouts)
+        let forward = ResistiveForward::new(&self.loaded.model, set, &layouts)
             .map_err(|error| CommandError::bad_input(format!("{}: {error}", self.name)))?;
         if !forward.idle().is_empty() {
             let (n, first) = (forward.idle().len(), &forward.idle()[0]);

@@ -71,8 +71,6 @@ pub struct ModelComparison {
     pub model: String,
     /// Refitted: value, standard error and unit of each.
     pub parameters: Map<String, Value>,
-    /// Errors that runs share, as the fit finds them.
-    pub apparatus: Map<String, Value>,
     /// Weighted sum of squares per number that was fitted to; about 1 for a model that is right.
     #[serde(serialize_with = "six_digits")]
     pub chi2_per_n: f64,
@@ -191,7 +189,6 @@ fn compare_one(
     Ok(ModelComparison {
         model: name.to_owned(),
         parameters: parameters(bench.forward, &fitted.fit),
-        apparatus: apparatus(bench.forward, &fitted.fit),
         chi2_per_n: measured.norm_squared() / measured.len() as f64,
         p_lof,
         rms: Rms { fit: json(&failing.fit), holdout: json(&failing.holdout) },
@@ -216,25 +213,6 @@ pub fn parameters(forward: &dyn Forward, fit: &Fit) -> Map<String, Value> {
                 "se": se,
                 "unit": parameter.unit,
                 "at_bound": at_bound,
-            });
-            (parameter.name.clone(), entry)
-        })
-        .collect()
-}
-
-/// Errors that runs share, as the fit finds them: value, standard error, unit, and the standard deviation of what is
-/// known beforehand.
-#[must_use]
-pub fn apparatus(forward: &dyn Forward, fit: &Fit) -> Map<String, Value> {
-    let values = forward.parameters().iter().zip(&fit.point.parameters).enumerate();
-    values
-        .filter(|(_, (parameter, _))| parameter.kind == ParameterKind::Apparatus)
-        .map(|(at, (parameter, value))| {
-            let entry = json!({
-                "value": rounded(*value),
-                "se": fit.standard_error(at).map_or(Value::Null, rounded),
-                "unit": parameter.unit,
-                "prior_sigma": parameter.prior.map_or(Value::Null, |prior| rounded(prior.sigma)),
             });
             (parameter.name.clone(), entry)
         })

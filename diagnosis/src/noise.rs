@@ -105,8 +105,9 @@ impl Noise {
             .filter(|(condition, _)| condition.runs.len() > 1)
             .map(|(condition, sensitivity)| Term::new(condition, sensitivity))
             .collect();
-        let likelihood = Likelihood { terms, instrument: *instrument };
-        let start = self.to_logarithms(instrument);
+        let unstated = Unstated::of(instrument, sensitivities);
+        let likelihood = Likelihood { terms, instrument: *instrument, unstated };
+        let start = self.to_logarithms(unstated);
         let mut simplex = vec![start.clone()];
         for axis in 0..start.len() {
             let mut corner = start.clone();
@@ -122,25 +123,24 @@ impl Noise {
             })
             .ok()
             .and_then(|result| result.state().get_best_param().cloned());
-        best.map_or(*self, |at| from_logarithms(&at, instrument))
+        best.map_or(*self, |at| from_logarithms(&at, instrument, unstated))
     }
 
-    /// The logarithms of what is learned from repeats: reading, coefficients and path; then what the set states
-    /// nothing of, impact speed, level and, where frames have a rate, the clock.
-    fn to_logarithms(self, instrument: &Instrument) -> Vec<f64> {
+    /// The logarithms of what is learned from repeats: reading, coefficients and path; then what is `unstated`.
+    fn to_logarithms(self, unstated: Unstated) -> Vec<f64> {
         let Spread { coefficient, path, speed, level, clock } = self.spread;
         let mut all = vec![libm::log(self.reading), libm::log(coefficient), libm::log(path)];
         let mut add = |value: f64, start: f64, (low, high): (f64, f64)| {
             let value = if value > 0.0 { value } else { start };
             all.push(libm::log(value.clamp(low, high)));
         };
-        if instrument.speed_sigma_rel.is_none() {
+        if unstated.speed {
             add(speed, 3e-3, SPEED_BOUNDS);
         }
-        if instrument.level_sigma.is_none() {
+        if unstated.level {
             add(level, 1e-4, LEVEL_BOUNDS);
         }
-        if let Some(rate) = instrument.rate {
+        if let Some(rate) = unstated.rate {
             add(clock * rate, 0.05, FRAMES_BOUNDS);
         }
         all
@@ -202,7 +202,27 @@ fn scaled_columns(matrix: &DMatrix<f64>, scale: &DVector<f64>) -> DMatrix<f64> {
     scaled
 }
 
-fn from_logarithms(at: &[f64], instrument: &Instrument) -> Noise {
+/// What a set does not state of the scatter from run to run, and its numbers depend on.
+#[derive(Clone, Copy, Debug)]
+struct Unstated {
+    speed: bool,
+    level: bool,
+    /// Of the frames (1/s), where the clock scatters.
+    rate: Option<f64>,
+}
+
+impl Unstated {
+    fn of(instrument: &Instrument, sensitivities: &[Sensitivity]) -> Self {
+        let matters = |input: fn(&Sensitivity) -> bool| sensitivities.iter().any(input);
+        Self {
+            speed: instrument.speed_sigma_rel.is_none() && matters(Sensitivity::depends_on_speed),
+            level: instrument.level_sigma.is_none() && matters(Sensitivity::depends_on_level),
+            rate: instrument.rate.filter(|_| matters(Sensitivity::depends_on_clock)),
+        }
+    }
+}
+
+fn from_logarithms(at: &[f64], instrument: &Instrument, unstated: Unstated) -> Noise {
     let (low, high) = SPREAD_BOUNDS;
     let least = least_position_error(instrument) / position_error(instrument);
     let reading = libm::exp(at[0]).clamp(least, READING_MOST);
@@ -211,13 +231,13 @@ fn from_logarithms(at: &[f64], instrument: &Instrument) -> Noise {
     let mut others = at[3..].iter();
     let mut next =
         |(low, high): (f64, f64)| others.next().map_or(0.0, |log| libm::exp(*log).clamp(low, high));
-    if instrument.speed_sigma_rel.is_none() {
+    if unstated.speed {
         spread.speed = next(SPEED_BOUNDS);
     }
-    if instrument.level_sigma.is_none() {
+    if unstated.level {
         spread.level = next(LEVEL_BOUNDS);
     }
-    if let Some(rate) = instrument.rate {
+    if let Some(rate) = unstated.rate {
         spread.clock = next(FRAMES_BOUNDS) / rate;
     }
     Noise { source: NoiseSource::Repeats, reading, spread }
@@ -287,6 +307,7 @@ pub(crate) fn log_determinant(factor: &Cholesky<f64, nalgebra::Dyn>) -> f64 {
 struct Likelihood {
     terms: Vec<Term>,
     instrument: Instrument,
+    unstated: Unstated,
 }
 
 impl CostFunction for Likelihood {
@@ -294,7 +315,7 @@ impl CostFunction for Likelihood {
     type Output = f64;
 
     fn cost(&self, at: &Self::Param) -> Result<f64, argmin::core::Error> {
-        let noise = from_logarithms(at, &self.instrument);
+        let noise = from_logarithms(at, &self.instrument, self.unstated);
         let total = self.terms.iter().map(|term| term.cost(&noise)).sum::<Option<f64>>();
         Ok(total.unwrap_or(f64::INFINITY))
     }

@@ -156,6 +156,26 @@ impl Sensitivity {
         Self { inputs, mean, slope: ways.clone(), curvature }
     }
 
+    /// Whether the observables follow the impact speed.
+    pub(crate) fn depends_on_speed(&self) -> bool {
+        self.depends_on(Input::Speed)
+    }
+
+    /// Whether they follow the level of the surface.
+    pub(crate) fn depends_on_level(&self) -> bool {
+        self.depends_on(Input::Level)
+    }
+
+    /// Whether they follow the zero of the clock.
+    pub(crate) fn depends_on_clock(&self) -> bool {
+        self.depends_on(Input::Clock)
+    }
+
+    fn depends_on(&self, input: Input) -> bool {
+        let mut columns = self.inputs.iter().zip(self.slope.column_iter());
+        columns.any(|(one, column)| *one == input && column.iter().any(|slope| *slope != 0.0))
+    }
+
     /// Standard deviation of each input.
     #[must_use]
     pub fn spread(&self, spread: &Spread) -> DVector<f64> {

@@ -83,13 +83,15 @@ impl Recommendation {
 }
 
 /// Every feasible condition that can be predicted, best first; nothing unless `diagnosis` names
-/// several effects that it does not tell apart. Equal input gives equal bytes.
+/// several effects that it does not tell apart, or would if they were above the noise. Equal input gives equal bytes.
 pub fn judged(
     bench: &Bench<'_>,
     designs: &dyn Designs,
     diagnosis: &Diagnosis,
 ) -> Vec<Recommendation> {
-    let (Verdict::NotSeparable, Some(proposed)) = (diagnosis.verdict, &diagnosis.proposed) else {
+    let is_open = matches!(diagnosis.verdict, Verdict::NotSeparable | Verdict::BelowNoise);
+    let (true, Some(proposed)) = (is_open && diagnosis.leaders.len() > 1, &diagnosis.proposed)
+    else {
         return Vec::new();
     };
     let rivals = rivals(bench, diagnosis);
@@ -128,7 +130,7 @@ pub fn recommend(
 fn rivals(bench: &Bench<'_>, diagnosis: &Diagnosis) -> Vec<Rival> {
     let Some(proposed) = &diagnosis.proposed else { return Vec::new() };
     let best = diagnosis.ranking.first().and_then(|effect| effect.delta).unwrap_or(0.0);
-    let is_named = |id: &String| diagnosis.not_separable.contains(id);
+    let is_named = |id: &String| diagnosis.leaders.contains(id);
     let ranked = || diagnosis.ranking.iter();
     let named = ranked().filter(|effect| is_named(&effect.id));
     let followers = ranked().filter(|effect| !is_named(&effect.id)).take(FOLLOWERS);

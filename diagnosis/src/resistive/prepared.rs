@@ -8,7 +8,7 @@ use configs::{FreeParameter, ResistiveMedium};
 use engine::math::Vec3;
 use engine::params::{Default, ParamTable};
 use intruders::{Casting, ShapeEntry};
-use measurements::{Condition, FinalDefinition, Geometry, MeasurementSet, StopDefinition};
+use measurements::{Condition, FinalDefinition, Geometry, MeasurementSet, Role, StopDefinition};
 use resistive::{Coefficients, Effect, Expression, ResistanceEntry};
 use resistive::{
     Effort, Ending, Impact, ResistanceLaw, Space, State, Surroundings, Tolerance, Trajectory,
@@ -378,14 +378,17 @@ impl Prepared {
     }
 }
 
-/// Greatest depth (m) that any run of `set` reaches, and greatest impact speed (m/s).
+/// Greatest depth (m) that any run reaches of the conditions that `set` does not hold out, and greatest impact speed
+/// (m/s) of these.
 fn extent(set: &MeasurementSet) -> [f64; 2] {
-    let depths =
-        set.runs.iter().flat_map(|run| run.frames.iter().map(|frame| frame.z).chain(run.final_z));
-    let widest = set.conditions.iter().map(|condition| condition.diameter).fold(0.0, f64::max);
-    let speed = set.conditions.iter().map(|condition| condition.speed).fold(0.0, f64::max);
+    let is_seen = |condition: &&Condition| condition.role == Role::Fit;
+    let depths = set.runs.iter().filter(|run| is_seen(&&set.conditions[run.condition]));
+    let depths = depths.flat_map(|run| run.frames.iter().map(|frame| frame.z).chain(run.final_z));
+    let seen = || set.conditions.iter().filter(is_seen);
+    let widest = seen().map(|condition| condition.diameter).fold(f64::MIN_POSITIVE, f64::max);
+    let speed = seen().map(|condition| condition.speed).fold(f64::MIN_POSITIVE, f64::max);
     // A set without depths may still have stopping times.
-    [depths.fold(widest.max(f64::MIN_POSITIVE), f64::max), speed.max(f64::MIN_POSITIVE)]
+    [depths.fold(widest, f64::max), speed]
 }
 
 /// The times before first contact, in falling order, and the others.

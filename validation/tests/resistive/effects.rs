@@ -78,7 +78,8 @@ fn set(conditions: Vec<Condition>) -> MeasurementSet {
         id: "all-round".into(),
         source: None,
         kind: Kind::Trajectory,
-        instrument: Instrument::default(),
+        // Errors of an exact apparatus are candidates, to be looked for as effects are.
+        instrument: Instrument::default().without_shared_errors(),
         bed: Bed {
             geometry: Geometry::Spatial,
             bulk_density: Some(BED.bulk_density),

@@ -45,14 +45,14 @@ fn where_nothing_is_hidden_nothing_is_found() {
 #[test]
 fn a_hidden_effect_is_named_or_stands_in_the_set_that_is_named() {
     for (effect, amplitude, seed) in [
-        (Effect::Viscous, 1.5, 1),
+        (Effect::Viscous, 4.0, 1),
         (Effect::Yield, 1.8, 2),
-        (Effect::DepthExponent, 0.2, 3),
+        (Effect::DepthExponent, 0.3, 3),
         (Effect::Buoyancy, 3.0, 4),
-        (Effect::DepthDrag, 0.4, 5),
+        (Effect::DepthDrag, 1.0, 5),
         (Effect::Lift, 0.1, 6),
     ] {
-        let laboratory = Laboratory::hiding(effect, amplitude);
+        let laboratory = Laboratory::quiet(effect, amplitude);
         let found = diagnosis(&laboratory, &laboratory.measure(seed));
         let told = match found.verdict {
             Verdict::Supported => &found.effects,
@@ -70,7 +70,7 @@ fn a_hidden_effect_is_named_or_stands_in_the_set_that_is_named() {
 
 #[test]
 fn exact_twins_are_never_told_apart() {
-    let mut laboratory = Laboratory::hiding(Effect::MoreMass, 0.25);
+    let mut laboratory = Laboratory::quiet(Effect::MoreMass, 0.25);
     // With one mass, mass added and weight taken away rescale the same equation.
     laboratory.settings.iter_mut().for_each(|setting| setting.mass = 0.0667);
     let effects = [Effect::Lift, Effect::LessWeight, Effect::MoreMass];
@@ -226,7 +226,7 @@ fn an_effect_that_uses_up_all_that_was_measured_is_not_named() {
 
 #[test]
 fn the_keys_of_the_json_are_those_that_users_rely_on() {
-    let laboratory = Laboratory::hiding(Effect::Buoyancy, 3.0);
+    let laboratory = Laboratory::quiet(Effect::Buoyancy, 3.0);
     let json = diagnosis(&laboratory, &laboratory.measure(1)).to_json().expect("it has JSON");
     assert!(json["strength_reasons"].as_array().is_some_and(Vec::is_empty), "{json}");
     for key in ["verdict", "strength", "effects", "not_separable", "ranking", "p1", "p_lof"] {
