@@ -137,11 +137,6 @@ impl Apparatus {
         }
     }
 
-    /// Whether the error called `name` is looked for.
-    pub(crate) fn has(&self, name: &str) -> bool {
-        self.parameters.iter().any(|parameter| parameter.name == name)
-    }
-
     /// The parameters, in an order of their own.
     pub(crate) fn parameters(&self) -> &[Parameter] {
         &self.parameters
@@ -170,6 +165,19 @@ impl Apparatus {
         }
         all
     }
+}
+
+/// Whether the effect called `name` is an error of the apparatus that is looked for beside every effect: one that `set`
+/// does not say to be absent.
+pub(crate) fn is_looked_for(set: &MeasurementSet, name: &str) -> bool {
+    let instrument = &set.instrument;
+    let stated = match name {
+        "camera-scale" => instrument.scale_sigma_rel,
+        "depth-zero" => instrument.zero_sigma,
+        "tilt" => instrument.tilt_sigma_deg,
+        _ => return false,
+    };
+    stated != Some(0.0)
 }
 
 /// Standard deviation of the zero of the clock (s); none where no time is read from a clip.
@@ -244,7 +252,9 @@ mod tests {
             set.instrument.scale_sigma_rel = Some(0.0);
         });
         assert_eq!(sigma(&stated, "time-zero"), Some(2e-4));
-        assert!(!stated.has("camera-scale") && stated.has("speed-scale"));
+        assert!(
+            sigma(&stated, "camera-scale").is_none() && sigma(&stated, "speed-scale").is_some()
+        );
         let (_, exact) = before(|set| set.instrument = set.instrument.without_shared_errors());
         assert!(exact.parameters().is_empty(), "{exact:?}");
     }

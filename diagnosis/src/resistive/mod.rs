@@ -13,7 +13,7 @@ use std::sync::Arc;
 use measurements::MeasurementSet;
 use resistive::{Effect, RESISTANCE_LAWS};
 
-use crate::apparatus::Apparatus;
+use crate::apparatus::{Apparatus, is_looked_for};
 use crate::forward::{
     Candidate, Forward, Parameter, ParameterKind, PredictError, Prior, Request, Scatter,
 };
@@ -83,7 +83,7 @@ impl ResistiveForward {
         // An error of the apparatus that is always looked for is no effect.
         let effects: Vec<Effect> = listed
             .chain(own)
-            .filter(|effect| !is_present(effect.name()) && !apparatus.has(effect.name()))
+            .filter(|effect| !is_present(effect.name()) && !is_looked_for(set, effect.name()))
             .collect();
         let start: Vec<f64> = free.iter().map(|one| one.value).collect();
         let mut forward = Self {
