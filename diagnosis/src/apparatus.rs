@@ -4,7 +4,7 @@
 //! or one of [`defaults`]. So no effect is credited with what a clock, a scale or a balance explains as well
 //! (Kennedy & O'Hagan 2001, J. R. Stat. Soc. B 63, 425, on calibration with discrepancies that have priors).
 
-use measurements::{Condition, Kind, MeasurementSet};
+use measurements::{Condition, Kind, MeasurementSet, Role};
 
 use crate::forward::{Parameter, ParameterKind, Prior, Scatter};
 use crate::observable::Layout;
@@ -60,7 +60,12 @@ impl Apparatus {
         let mut all = Self { coefficients: coefficients.len(), ..Self::default() };
         let instrument = &set.instrument;
         let or = |stated: Option<f64>, default: f64| stated.unwrap_or(default);
-        let is_timed = layouts.iter().any(|one| one.stop_time || !one.times.is_empty());
+        // What is held out chooses nothing, not even what is looked for.
+        let fitted = || {
+            let each = layouts.iter().zip(&set.conditions);
+            each.filter(|(_, condition)| condition.role == Role::Fit).map(|(layout, _)| layout)
+        };
+        let is_timed = fitted().any(|one| one.stop_time || !one.times.is_empty());
         if let Some(sigma) = clock_sigma(set).filter(|_| is_timed) {
             all.add(Fault::Clock, "time-zero", "s", sigma);
         }
@@ -72,7 +77,7 @@ impl Apparatus {
         all.add(Fault::Speed, "speed-scale", "1", speed);
         all.add(Fault::Scale, "camera-scale", "1", or(instrument.scale_sigma_rel, defaults::SCALE));
         // Straight down and seen from where it leans to, gravity that leans is as good as upright.
-        if layouts.iter().any(|one| one.along_x || one.final_x) {
+        if fitted().any(|one| one.along_x || one.final_x) {
             let tilt = or(instrument.tilt_sigma_deg, defaults::TILT_DEG).to_radians();
             all.add(Fault::Tilt, "tilt", "rad", tilt);
         }

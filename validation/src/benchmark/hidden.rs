@@ -221,6 +221,12 @@ impl Hidden {
         self.form().id
     }
 
+    /// Whether it is an error of the apparatus, which a diagnosis looks for beside every effect.
+    #[must_use]
+    pub fn is_of_apparatus(self) -> bool {
+        matches!(self, Self::Tilt | Self::CameraScale | Self::DepthZero)
+    }
+
     /// Whether the list has it.
     #[must_use]
     pub fn is_listed(self) -> bool {

@@ -90,11 +90,12 @@ impl Target {
 /// A trial that was answered.
 type Answered<'a> = (&'a Trial, &'a Answer);
 
-/// Every row, from `trials` of any rows of the benchmark; rows without trials are left out.
+/// Every row, but of sets that hide errors of the apparatus, from `trials` of any rows of the benchmark; rows without trials are left out.
 #[must_use]
 pub fn scores(trials: &[Trial]) -> Vec<Score> {
     let answered = |row: Row| -> Vec<Answered<'_>> {
-        let of_row = trials.iter().filter(|trial| trial.plan.row == row);
+        let is_effect = |trial: &&Trial| !trial.plan.hidden.iter().any(|one| one.is_of_apparatus());
+        let of_row = trials.iter().filter(|trial| trial.plan.row == row).filter(is_effect);
         of_row.filter_map(|trial| Some((trial, trial.answer()?))).collect()
     };
     let mut rows = Vec::new();
