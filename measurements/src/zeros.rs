@@ -23,9 +23,10 @@ const OF_MEAN: f64 = 4.0;
 const OF_RUN: f64 = 6.0;
 const OF_SPEED: f64 = 5.0;
 
-/// An offset below this (m) is not worth a word, and one above that is an error.
+/// An offset below this (m) is not worth a word, and one above that is an error: it is more than the zero of depth of a
+/// careful laboratory, which a diagnosis takes into account.
 const NOTABLE: f64 = 5e-4;
-const WRONG: f64 = 1e-3;
+const WRONG: f64 = 4e-3;
 
 /// Share of a frame's time, and so of the way in it, that a clock may be off: contact falls between frames.
 const FRAME: f64 = 0.75;
