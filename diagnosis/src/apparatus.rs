@@ -206,14 +206,15 @@ fn clock_sigma(set: &MeasurementSet) -> Option<f64> {
 
 /// `value` to four digits, without zeros at its end.
 fn four_digits(value: f64) -> f64 {
-    let size = 10f64.powi(3 - value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32);
+    let digits = libm::log10(value.abs().max(f64::MIN_POSITIVE)).floor() as i32;
+    let size = 10f64.powi(3 - digits);
     (value * size).round() / size
 }
 
 fn is_same_body(one: &Condition, other: &Condition) -> bool {
     one.shape == other.shape
-        && one.diameter == other.diameter
-        && one.mass == other.mass
+        && one.diameter.total_cmp(&other.diameter).is_eq()
+        && one.mass.total_cmp(&other.mass).is_eq()
         && one.length == other.length
         && one.height == other.height
         && one.apex_deg == other.apex_deg

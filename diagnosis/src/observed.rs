@@ -142,7 +142,7 @@ impl Observed {
     }
 
     /// From how many independent numbers the scatter of runs is known: the frames of one run are no more than
-    /// [`OF_A_RUN`] of them. Infinite where nothing is learned from repeats.
+    /// four of them. Infinite where nothing is learned from repeats.
     #[must_use]
     pub fn freedom(&self) -> f64 {
         let of = |&index: &usize| {

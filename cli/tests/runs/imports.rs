@@ -95,7 +95,7 @@ fn an_import_is_repeated_by_its_file_and_refused_over_another_set() {
     fs::write(here.path().join("ball_h05_r1.csv"), table(15.0, 77)).expect("a table");
     let message = import(&["my/import.toml", "-o", "third"]).fails(2);
     assert!(message.contains("ball_h05_r1.csv: it is not what it was"), "{message}");
-    let wrong = set.replace("schema", "shema");
+    let wrong = set.replace("schema", "scheme");
     fs::write(here.path().join("my/import.toml"), wrong).expect("a file");
     let message = import(&["my/import.toml", "-o", "third"]).fails(2);
     assert!(message.contains("the table [import] is missing"), "{message}");

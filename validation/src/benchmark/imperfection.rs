@@ -1,6 +1,6 @@
 //! What laboratories have beside the effect that they look for: apparatus that is not as its file says.
 
-use measurements::MeasurementSet;
+use measurements::{Condition, MeasurementSet};
 
 use super::chance::Chance;
 
@@ -116,7 +116,8 @@ impl Imperfection {
             }
             Self::Mass => {
                 let one = set.conditions[chance.below(set.conditions.len())].mass;
-                for condition in set.conditions.iter_mut().filter(|c| c.mass == one) {
+                let is_one = |condition: &&mut Condition| condition.mass.total_cmp(&one).is_eq();
+                for condition in set.conditions.iter_mut().filter(is_one) {
                     condition.mass *= 1.0 + 0.05 * sign;
                 }
             }
