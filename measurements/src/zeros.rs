@@ -23,10 +23,13 @@ const OF_MEAN: f64 = 4.0;
 const OF_RUN: f64 = 6.0;
 const OF_SPEED: f64 = 5.0;
 
-/// An offset below this (m) is not worth a word, and one above that is an error: it is more than the zero of depth of a
-/// careful laboratory, which a diagnosis takes into account.
+/// An offset below this (m) is not worth a word, and one of a single run above that is an error.
 const NOTABLE: f64 = 5e-4;
-const WRONG: f64 = 4e-3;
+const WRONG: f64 = 1e-3;
+
+/// An offset of all runs alike above this (m) is an error; below, a diagnosis takes it into account as that of the zero of
+/// depth.
+const WRONG_ALIKE: f64 = 4e-3;
 
 /// Share of a frame's time, and so of the way in it, that a clock may be off: contact falls between frames.
 const FRAME: f64 = 0.75;
@@ -241,7 +244,7 @@ fn of_depths(contacts: &[RunContact], level: f64, zero: f64) -> Option<Offset> {
     let alone = contacts.iter().any(|one| one.is_off);
     let slow = mean(|one| one.sinking).abs() * time.value.abs();
     let severity = match () {
-        () if alone || late || off(WRONG.max(granted)) => Severity::Wrong,
+        () if alone || late || off(WRONG_ALIKE.max(granted)) => Severity::Wrong,
         () if off(NOTABLE) || (beyond(time) && slow > NOTABLE) => Severity::Notable,
         () => return None,
     };
