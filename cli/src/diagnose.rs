@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use configs::edit::add_effects;
 use diagnosis::bench::Bench;
-use diagnosis::calibrate::calibrate;
+use diagnosis::calibrate::{Size, calibrate};
 use diagnosis::diagnose::diagnose;
 use diagnosis::next::recommend;
 use diagnosis::verdict::{Diagnosis, Verdict};
@@ -64,7 +64,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let calibration = match args.calibrate {
         false => None,
         true => {
-            let found = calibrate(&bench, &diagnosis, flags.seed);
+            let found = calibrate(&bench, &diagnosis, Size::default(), flags.seed);
             let calibration = found.map_err(|error| failed(error, &model.name))?;
             diagnosis.probability = Some(calibration.probability(&diagnosis));
             Some(calibration)

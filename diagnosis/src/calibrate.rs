@@ -19,11 +19,22 @@ use crate::random::{Purpose, normal, stream};
 use crate::sensitivity::Point;
 use crate::verdict::{Diagnosis, Probability, Status, Verdict};
 
-/// Sets in which nothing is missing, and in which something is that no list has.
-const OTHERS: usize = 24;
+/// How many sets are simulated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// Sets in which nothing is missing, and as many in which something is that no list has.
+    pub others: usize,
+    /// Sets in which effects are missing; every effect that these data can show is in as many as any other, in one at
+    /// least.
+    pub listed: usize,
+}
 
-/// Sets in which effects are missing; every effect that these data can show is in as many as any other.
-const LISTED: usize = 48;
+impl Default for Size {
+    /// About a hundred sets.
+    fn default() -> Self {
+        Self { others: 24, listed: 48 }
+    }
+}
 
 /// An effect is there with this many of its detection limits at least, and with half of what is usual at most of it.
 const LIMITS: f64 = 2.0;
@@ -89,6 +100,7 @@ pub struct Row {
 pub fn calibrate(
     bench: &Bench<'_>,
     diagnosis: &Diagnosis,
+    size: Size,
     seed: u64,
 ) -> Result<Calibration, BenchError> {
     let Some(baseline) = &diagnosis.baseline else { return Err(BenchError::NoErrors) };
@@ -99,7 +111,7 @@ pub fn calibrate(
         .enumerate()
         .map(|(at, condition)| RunNoise::of(bench, baseline, (at, condition)))
         .collect::<Result<Vec<_>, _>>()?;
-    let truths = truths(bench, diagnosis);
+    let truths = truths(bench, diagnosis, size);
     let sets = truths
         .par_iter()
         .enumerate()
@@ -124,7 +136,7 @@ pub fn calibrate(
 }
 
 /// What is to be true in each set.
-fn truths(bench: &Bench<'_>, diagnosis: &Diagnosis) -> Vec<Truth> {
+fn truths(bench: &Bench<'_>, diagnosis: &Diagnosis, size: Size) -> Vec<Truth> {
     let candidates = bench.forward.candidates();
     let effects: Vec<Truth> = diagnosis
         .ranking
@@ -140,9 +152,10 @@ fn truths(bench: &Bench<'_>, diagnosis: &Diagnosis) -> Vec<Truth> {
             Some(Truth::Effect(index, q))
         })
         .collect();
-    let each = LISTED.div_ceil(effects.len().max(1));
-    let listed = (0..each).flat_map(|_| effects.iter().cloned()).take(LISTED.max(effects.len()));
-    let others = (0..OTHERS).flat_map(|_| [Truth::Nothing, Truth::Unlisted]);
+    let each = size.listed.div_ceil(effects.len().max(1));
+    let listed =
+        (0..each).flat_map(|_| effects.iter().cloned()).take(size.listed.max(effects.len()));
+    let others = (0..size.others).flat_map(|_| [Truth::Nothing, Truth::Unlisted]);
     others.chain(listed).collect()
 }
 
@@ -302,7 +315,8 @@ impl Calibration {
         let all: f64 = same.iter().map(|set| weight(set)).sum();
         let share = |is: &dyn Fn(&Simulated) -> bool| {
             let some: f64 = same.iter().filter(|set| is(set)).map(|set| weight(set)).sum();
-            (all > 0.0).then(|| some / all)
+            // The sum of nothing is minus zero.
+            (all > 0.0).then(|| some.abs() / all)
         };
         Probability {
             right: share(&|set| set.is_right()),

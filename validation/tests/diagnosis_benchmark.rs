@@ -1,10 +1,11 @@
 //! A few worlds of the benchmark of the diagnosis, with claims that can fail.
 
 use diagnosis::bench::{Bench, DEFAULT_SEED};
+use diagnosis::calibrate::{self, calibrate};
 use diagnosis::diagnose::diagnose;
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
-use diagnosis::verdict::{Diagnosis, Verdict};
+use diagnosis::verdict::{Diagnosis, Status, Verdict};
 use measurements::MeasurementSet;
 use validation::benchmark::design::Design;
 use validation::benchmark::hidden::Hidden;
@@ -119,4 +120,29 @@ fn an_effect_is_found_before_an_apparatus_that_is_off() {
         let found = before(imperfection, vec![Hidden::Magnus], 502);
         assert_eq!(found.effects, ["magnus"], "{imperfection:?}: {:?}", found.unexplained);
     }
+}
+
+#[test]
+fn simulated_sets_of_a_design_are_diagnosed_and_counted() {
+    let mut design = Design::vertical();
+    design.settings.truncate(8);
+    let design = Design { held_out: 2, repeats: 4, ..design };
+    let plan = Plan { row: Row::Vertical, seed: 503, design, hidden: Vec::new(), strength: 0.0 };
+    let (_, set) = draw(&plan).expect("it can be drawn");
+    let model = baseline().expect("the shipped model loads");
+    let observed = Observed::of(&set);
+    let forward = ResistiveForward::new(&model, &set, &observed.layouts()).expect("it fits");
+    let bench = Bench { set: &set, observed: &observed, forward: &forward };
+    let diagnosis = diagnose(&bench, DEFAULT_SEED).expect("spheres stop");
+    let size = calibrate::Size { others: 3, listed: 1 };
+    let found = calibrate(&bench, &diagnosis, size, DEFAULT_SEED).expect("it can be simulated");
+    let of = |truth: &str| found.sets.iter().filter(|set| set.truth == truth).collect::<Vec<_>>();
+    assert_eq!((of("nothing").len(), of("unlisted").len()), (3, 3));
+    // One null in a hundred leads to a name.
+    assert!(of("nothing").iter().all(|set| set.named.is_empty()), "{:?}", of("nothing"));
+    // Every effect that these data can show is missing in one set at least, and one of them is found.
+    let ranked = diagnosis.ranking.iter().filter(|effect| effect.status == Status::Ranked);
+    assert!(ranked.map(|effect| &effect.id).all(|id| !of(id).is_empty()));
+    assert!(found.sets.iter().any(|set| set.named.contains(&set.truth)), "{:?}", found.sets);
+    assert_eq!(found.rows().iter().map(|row| row.sets).sum::<usize>(), found.sets.len());
 }
