@@ -75,7 +75,7 @@ pub(crate) struct Tables {
     /// Unit of times, likewise.
     #[arg(long, value_name = "UNIT")]
     pub(crate) time_unit: Option<String>,
-    /// Take a fall that does not accelerate by gravity as it is.
+    /// Accept a fall whose acceleration differs from gravity.
     #[arg(long)]
     pub(crate) trust_units: bool,
     /// Gravity; 9.81 m/s^2 unless said.

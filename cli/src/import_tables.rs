@@ -108,7 +108,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     }
 }
 
-/// The import.toml that is to be repeated, if it is one.
+/// The import.toml to repeat, if the argument is one.
 fn import_file(args: &Args) -> Option<&Path> {
     let is_toml = |path: &&PathBuf| path.extension().is_some_and(|ending| ending == "toml");
     match &args.files[..] {

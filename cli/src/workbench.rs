@@ -278,7 +278,7 @@ impl Candidate {
         self.forward_before(&measured.set, measured, flags)
     }
 
-    /// Likewise, before an apparatus without errors that runs share: how wrong a model is counts as it is.
+    /// The same with an apparatus that has no errors shared by runs: `compare` reports the whole error of a model.
     ///
     /// # Errors
     /// Likewise.

@@ -3,7 +3,7 @@
 use engine::grains::Space;
 use engine::params::ParamSpec;
 
-/// Whether an effect is looked for in measurements of a bed whose model does not have it.
+/// Whether the diagnosis of a bed looks for an effect that the model does not have.
 #[derive(Clone, Copy)]
 pub enum Candidacy {
     /// It is.
@@ -43,7 +43,7 @@ pub struct MeanGrain {
     pub volume: f64,
 }
 
-/// Something that an effect cannot do without.
+/// What an effect needs to act.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Need {
     /// Grains in a plane; with the reason why spheres do not have the effect.
@@ -75,7 +75,7 @@ impl Need {
                 (gravity <= 0.0).then_some("its amplitude is in weights, and there is no gravity")
             }
             Self::HertzLaw => (!has("young_modulus"))
-                .then_some("it acts on a Hertz law, and the contact law is none"),
+                .then_some("it acts on a Hertz law, and the contact law has no elastic constants"),
             Self::LawWithout(key) => has(key).then_some("the contact law has it"),
         }
     }

@@ -1,13 +1,14 @@
-//! What the apparatus may have wrong in many runs alike, and how well that is known.
+//! Errors of the apparatus that many runs share, and how well each is known.
 //!
-//! Each is a parameter of every model, beside its coefficients, with a prior around zero: a stated standard deviation,
-//! or one of [`defaults`]. So no effect is credited with what a clock, a scale or a balance explains as well
+//! Each error is a parameter of every model, beside its coefficients, with a prior around zero: a stated standard
+//! deviation, or one of [`defaults`]. An effect therefore gets no credit for what a wrong clock, scale or mass explains
 //! (Kennedy & O'Hagan 2001, J. R. Stat. Soc. B 63, 425, on calibration with discrepancies that have priors).
 
 use measurements::{Condition, Kind, MeasurementSet, Role};
 
 use crate::forward::{Parameter, ParameterKind, Prior, Scatter};
 use crate::observable::Layout;
+use crate::rounding::to_digits;
 
 /// Standard deviations where a set states none.
 pub mod defaults {
@@ -27,10 +28,13 @@ pub mod defaults {
     pub const SESSION: f64 = 0.05;
 }
 
-/// Beyond so many standard deviations of its prior, nothing is looked for.
+/// The range of each parameter, in standard deviations of its prior.
 const RANGE: f64 = 20.0;
 
-/// Something that may be wrong in many runs alike.
+/// Most bodies, and most sessions, that have parameters of their own: each costs a column of every fit.
+const MOST: usize = 64;
+
+/// One kind of shared error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fault {
     Clock,
@@ -42,7 +46,7 @@ enum Fault {
     Session { session: usize, coefficient: usize },
 }
 
-/// What may be wrong before one set.
+/// The shared errors of one measurement set.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Apparatus {
     faults: Vec<Fault>,
@@ -55,12 +59,12 @@ pub(crate) struct Apparatus {
 }
 
 impl Apparatus {
-    /// Before `set`, whose model has these `coefficients` and whose observables are `layouts`.
+    /// Those of `set`, for a model with these `coefficients`; `layouts` are the observables of its conditions.
     pub(crate) fn of(set: &MeasurementSet, coefficients: &[&str], layouts: &[Layout]) -> Self {
         let mut all = Self { coefficients: coefficients.len(), ..Self::default() };
         let instrument = &set.instrument;
         let or = |stated: Option<f64>, default: f64| stated.unwrap_or(default);
-        // What is held out chooses nothing, not even what is looked for.
+        // Held-out conditions must not decide which errors are fitted.
         let fitted = || {
             let each = layouts.iter().zip(&set.conditions);
             each.filter(|(_, condition)| condition.role == Role::Fit).map(|(layout, _)| layout)
@@ -76,7 +80,7 @@ impl Apparatus {
         let speed = or(instrument.speed_bias_sigma_rel, defaults::SPEED);
         all.add(Fault::Speed, "speed-scale", "1", speed);
         all.add(Fault::Scale, "camera-scale", "1", or(instrument.scale_sigma_rel, defaults::SCALE));
-        // Straight down and seen from where it leans to, gravity that leans is as good as upright.
+        // Depth alone depends on the tilt to second order only.
         if fitted().any(|one| one.along_x || one.final_x) {
             let tilt = or(instrument.tilt_sigma_deg, defaults::TILT_DEG).to_radians();
             all.add(Fault::Tilt, "tilt", "rad", tilt);
@@ -87,7 +91,7 @@ impl Apparatus {
     }
 
     fn add(&mut self, fault: Fault, name: impl Into<String>, unit: &str, sigma: f64) {
-        // A stated zero says that it is exact.
+        // A stated zero means that the quantity is exact.
         if sigma > 0.0 && sigma.is_finite() {
             self.faults.push(fault);
             self.parameters.push(Parameter {
@@ -103,37 +107,39 @@ impl Apparatus {
     }
 
     fn add_bodies(&mut self, set: &MeasurementSet, sigma: f64) {
-        let mut bodies: Vec<&Condition> = Vec::new();
-        for condition in &set.conditions {
-            let known = bodies.iter().position(|body| is_same_body(body, condition));
-            self.bodies.push(known.unwrap_or(bodies.len()));
-            if known.is_none() {
-                bodies.push(condition);
-            }
+        let (bodies, which) = bodies(set);
+        self.bodies = which;
+        if bodies.len() > MOST {
+            return;
         }
         for (body, first) in bodies.iter().enumerate() {
             let (shape, diameter, mass) = (&first.shape, 1e3 * first.diameter, 1e3 * first.mass);
-            let name =
-                format!("mass ({shape} of {} mm, {} g)", four_digits(diameter), four_digits(mass));
+            let name = format!(
+                "mass ({shape} of {} mm, {} g)",
+                to_digits(diameter, 4),
+                to_digits(mass, 4)
+            );
             self.add(Fault::Mass { body }, name, "1", sigma);
         }
     }
 
     fn add_sessions(&mut self, set: &MeasurementSet, coefficients: &[&str], sigma: f64) {
-        let mut names: Vec<&str> = set.runs.iter().filter_map(|r| r.session.as_deref()).collect();
-        names.sort_unstable();
-        names.dedup();
-        if names.len() < 2 {
+        let names = sessions(set);
+        if names.len() < 2 || names.len() > MOST {
             return;
         }
-        self.sessions = (0..set.conditions.len())
-            .map(|condition| {
-                let runs = || set.runs.iter().filter(move |run| run.condition == condition);
-                let all = runs().count().max(1) as f64;
-                let of = |name: &str| runs().filter(|r| r.session.as_deref() == Some(name)).count();
-                names.iter().map(|name| of(name) as f64 / all).collect()
-            })
-            .collect();
+        self.sessions = vec![vec![0.0; names.len()]; set.conditions.len()];
+        let mut counts = vec![0.0; set.conditions.len()];
+        for run in &set.runs {
+            counts[run.condition] += 1.0;
+            let session = run.session.as_deref().and_then(|name| names.binary_search(&name).ok());
+            if let Some(session) = session {
+                self.sessions[run.condition][session] += 1.0;
+            }
+        }
+        for (shares, count) in self.sessions.iter_mut().zip(&counts) {
+            shares.iter_mut().for_each(|share| *share /= f64::max(*count, 1.0));
+        }
         for (session, name) in names.iter().enumerate() {
             for (coefficient, key) in coefficients.iter().enumerate() {
                 let fault = Fault::Session { session, coefficient };
@@ -142,12 +148,12 @@ impl Apparatus {
         }
     }
 
-    /// The parameters, in an order of their own.
+    /// The parameters; [`Apparatus::added_to`] takes their values in this order.
     pub(crate) fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
 
-    /// `scatter` of a run under `condition` with these `values` of the parameters beside it.
+    /// `scatter` of a run under `condition`, with the shared errors `values` added.
     pub(crate) fn added_to(&self, scatter: &Scatter, condition: usize, values: &[f64]) -> Scatter {
         let mut all = scatter.clone();
         for (fault, &value) in self.faults.iter().zip(values) {
@@ -172,8 +178,40 @@ impl Apparatus {
     }
 }
 
-/// Whether the effect called `name` is an error of the apparatus that is looked for beside every effect: one that `set`
-/// does not say to be absent.
+/// The sessions of `set`, sorted.
+fn sessions(set: &MeasurementSet) -> Vec<&str> {
+    let mut names: Vec<&str> = set.runs.iter().filter_map(|run| run.session.as_deref()).collect();
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+/// The distinct bodies of `set`, and which of them falls in each condition.
+fn bodies(set: &MeasurementSet) -> (Vec<&Condition>, Vec<usize>) {
+    let mut bodies: Vec<&Condition> = Vec::new();
+    let mut which = Vec::with_capacity(set.conditions.len());
+    for condition in &set.conditions {
+        let known = bodies.iter().position(|body| is_same_body(body, condition));
+        which.push(known.unwrap_or(bodies.len()));
+        if known.is_none() {
+            bodies.push(condition);
+        }
+    }
+    (bodies, which)
+}
+
+/// Which shared errors of `set` are too many to be fitted, in sentences.
+pub(crate) fn too_many(set: &MeasurementSet) -> Vec<String> {
+    let counts = [(sessions(set).len(), "sessions"), (bodies(set).0.len(), "bodies")];
+    let sentence = |&(count, what): &(usize, &str)| {
+        (count > MOST)
+            .then(|| format!("{count} {what}: their own errors are fitted for up to {MOST}"))
+    };
+    counts.iter().filter_map(sentence).collect()
+}
+
+/// Whether the effect called `name` is a shared error that every fit includes; `set` excludes it by a standard deviation
+/// of zero.
 pub(crate) fn is_looked_for(set: &MeasurementSet, name: &str) -> bool {
     let instrument = &set.instrument;
     let stated = match name {
@@ -204,13 +242,6 @@ fn clock_sigma(set: &MeasurementSet) -> Option<f64> {
     frame.map(|frame| defaults::FRAMES * frame)
 }
 
-/// `value` to four digits, without zeros at its end.
-fn four_digits(value: f64) -> f64 {
-    let digits = libm::log10(value.abs().max(f64::MIN_POSITIVE)).floor() as i32;
-    let size = 10f64.powi(3 - digits);
-    (value * size).round() / size
-}
-
 fn is_same_body(one: &Condition, other: &Condition) -> bool {
     one.shape == other.shape
         && one.diameter.total_cmp(&other.diameter).is_eq()
@@ -224,6 +255,7 @@ fn is_same_body(one: &Condition, other: &Condition) -> bool {
 mod tests {
     use super::*;
     use crate::test_sets::{condition, scalar_run, set};
+    use measurements::Run;
 
     fn before(change: impl Fn(&mut MeasurementSet)) -> (MeasurementSet, Apparatus) {
         let conditions = vec![condition(1.0, 90.0), condition(2.0, 60.0)];
@@ -289,5 +321,17 @@ mod tests {
         // Half of the runs of the first condition, and all of the second, are of session b.
         let of_b = [0, 1].map(|c| alone("session (b, friction)", c).coefficients[1]);
         assert!(are(of_b, [0.005, 0.01]));
+    }
+
+    #[test]
+    fn a_session_for_every_run_is_too_many_and_is_said() {
+        let (set, apparatus) = before(|set| {
+            let one = set.runs[0].clone();
+            set.runs = (0..=MOST)
+                .map(|at| Run { session: Some(format!("s{at}")), ..one.clone() })
+                .collect();
+        });
+        assert!(!apparatus.parameters().iter().any(|one| one.name.starts_with("session")));
+        assert_eq!(too_many(&set), ["65 sessions: their own errors are fitted for up to 64"]);
     }
 }

@@ -1,7 +1,8 @@
-//! How often verdicts come true before sets of one design: sets are simulated, diagnosed and counted.
+//! How often verdicts are right for sets of one design: sets are simulated, diagnosed and counted.
 //!
-//! Each simulated set has the conditions, repeats and noise of the measured one, errors of the apparatus and forms of
-//! effects from their priors, and one truth: nothing, an effect, or a force in no list.
+//! Each simulated set has the conditions, repeats and noise of the measured one, and errors of the apparatus and forms
+//! of effects drawn from their priors. What is missing in it is nothing, one effect, or a force outside the list. The
+//! noise is the one that the fit assumes, so the counts are optimistic.
 
 use std::collections::BTreeMap;
 
@@ -36,13 +37,13 @@ impl Default for Size {
     }
 }
 
-/// An effect is there with this many of its detection limits at least, and with half of what is usual at most of it.
+/// Least amplitude of a simulated effect, in detection limits; half of the usual maximum, where that is more.
 const LIMITS: f64 = 2.0;
 
-/// Greatest relative change of the resistance over depth by a force in no list.
+/// Greatest relative change of the resistance over depth by a force outside the list.
 const UNLISTED: f64 = 0.6;
 
-/// Nodes of depth between which that change is straight.
+/// Nodes of depth between which that change is linear.
 const NODES: usize = 12;
 
 /// What is true in a simulated set.
@@ -67,7 +68,7 @@ pub struct Simulated {
     pub covered: Option<bool>,
 }
 
-/// What came of all of them.
+/// The simulated sets and their verdicts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Calibration {
     /// One entry per set.
@@ -225,7 +226,7 @@ fn simulate(
     Some(observed)
 }
 
-/// A relative change of the resistance over depth that no listed effect has: a wave of random length and phase.
+/// A relative change of the resistance over depth: a wave of random length and phase, which no listed effect has.
 fn unlisted(random: &mut Pcg64) -> Vec<f64> {
     let [waves, phase] = [random.random_range(1.0..3.0), random.random_range(0.0..1.0)];
     let size = random.random_range(0.5 * UNLISTED..UNLISTED);

@@ -124,8 +124,7 @@ impl Judge<'_> {
         }
         let held_out = HeldOut::of(self.bench, &self.weighed, &self.leader)?;
         let leader = self.name(self.ranking.scores[0].candidate());
-        // Nature does not use our formulas: what is left beside the leader counts where it can be seen in what was
-        // held out.
+        // Real effects do not follow formulas exactly: a lack of fit counts only if held-out conditions show it.
         let is_of_its_form =
             self.bench.forward.is_judged_by_held_out() && held_out.is_within_noise();
         if adequate(p_leader) || is_of_its_form {
@@ -164,7 +163,8 @@ impl Judge<'_> {
         self.refuse((p_lof, p_leader), hint)
     }
 
-    /// None of the candidates; below noise, where the model misses what was held out by little more than that.
+    /// The verdict none-of-the-candidates, or below-noise if the model misses held-out conditions by little more than
+    /// their noise.
     fn refuse(&self, p: (Option<f64>, Option<f64>), hint: String) -> Result<Diagnosis, BenchError> {
         let held_out = HeldOut::of(self.bench, &self.baseline, &self.baseline)?;
         if self.bench.forward.is_judged_by_held_out() && held_out.is_above_noise() == Some(false) {
@@ -183,8 +183,8 @@ impl Judge<'_> {
         self.diagnosis(Verdict::BelowNoise, &self.baseline, p, (hint, Some(held_out)))
     }
 
-    /// Why an effect with this error on held-out conditions is too small to be named, if it is; the most of the best
-    /// that could be there is said with it.
+    /// The reason why an effect with this error on held-out conditions is too small to be named, with the largest
+    /// amplitude that these data allow; `None` for an effect that is large enough.
     fn too_small(&self, held_out: &HeldOut) -> Option<String> {
         if !self.bench.forward.is_judged_by_held_out() {
             return None;
@@ -285,7 +285,7 @@ impl Judge<'_> {
     }
 }
 
-/// What a verdict without an effect is called: whether errors of the apparatus are named in `fitted`.
+/// The verdict without an effect: it depends on whether `fitted` has a named error of the apparatus.
 fn nothing(bench: &Bench<'_>, fitted: &Fitted) -> Verdict {
     let errors = ApparatusError::all(bench.forward, &fitted.fit);
     match errors.iter().any(|error| error.named) {

@@ -38,8 +38,8 @@ pub struct HeldOut {
     pub conditions_judged: usize,
     /// The others, which no error counts.
     pub not_predicted: Vec<NotPredicted>,
-    /// Upper end of what `after` over `before` may be, were the conditions others (one-sided, 90 %): resampled over the
-    /// held-out conditions and, left out one at a time, those that were fitted to; none of fewer than three.
+    /// One-sided 90 % bound of `after` over `before`, by resampling conditions: the held-out ones, and the fitted ones
+    /// left out one at a time. `None` for fewer than three conditions, and where no effect is proposed.
     #[serde(serialize_with = "six_digits_or_null")]
     pub ratio_at_most: Option<f64>,
     /// How much the logarithm of the predictive density rises by what is proposed, over the
@@ -96,16 +96,16 @@ pub enum LeftOut {
 /// within what few held-out conditions say by chance.
 const REFUTED: f64 = 3.0;
 
-/// An error of the model on held-out conditions below so many times the noise of their means is nothing to explain.
+/// Least error of the model on held-out conditions, over the noise of their means, for which an effect may be named.
 pub const CLEAR: f64 = 1.5;
 
-/// What is named leaves at most this share of the error on held-out conditions.
+/// Largest share of the error on held-out conditions that may remain with the effect.
 pub const NEARER: f64 = 0.75;
 
-/// An error on held-out conditions up to so many times the noise of their means is noise.
+/// Largest error on held-out conditions, over the noise of their means, that counts as noise.
 pub const WITHIN: f64 = 1.3;
 
-/// Choices of conditions among which the share is looked at, and of how many conditions at least.
+/// Number of resamples of the conditions, and the least number of conditions to resample.
 const CHOICES: usize = 1000;
 const FEWEST: usize = 3;
 
@@ -127,13 +127,14 @@ impl HeldOut {
             true => (LeftOut::OneAtATime, &bench.observed.fit),
             false => (LeftOut::Holdout, &bench.observed.holdout),
         };
+        let is_proposed = !after.fit.point.effects.is_empty();
         let in_turn = |fitted: &Fitted| Predicted::left_out(bench, after, fitted);
         let fitted_to: Vec<Pair> = match conditions {
-            LeftOut::OneAtATime => Vec::new(),
-            LeftOut::Holdout => {
+            LeftOut::Holdout if is_proposed => {
                 let fit = &bench.observed.fit;
                 in_both(bench.observed, fit, in_turn(before)?, in_turn(after)?).0
             }
+            _ => Vec::new(),
         };
         let predict = |fitted: &Fitted| match conditions {
             LeftOut::Holdout => Predicted::unseen(bench, after, fitted, judged),
@@ -141,11 +142,8 @@ impl HeldOut {
         };
         let (both, not_predicted) =
             in_both(bench.observed, judged, predict(before)?, predict(after)?);
-        // Few conditions say little of a share: those that were fitted to are left out in turn beside them.
-        let all: Vec<&Pair> = match conditions {
-            LeftOut::OneAtATime => both.iter().collect(),
-            LeftOut::Holdout => both.iter().chain(&fitted_to).collect(),
-        };
+        // A few held-out conditions do not determine the ratio: fitted conditions are left out in turn as well.
+        let all: Vec<&Pair> = both.iter().chain(&fitted_to).collect();
         let error = |which: fn(&(usize, Predicted, Predicted)) -> (usize, &Predicted)| {
             let mut sums = Sums::default();
             for (condition, predicted) in both.iter().map(which) {
@@ -170,7 +168,7 @@ impl HeldOut {
             conditions,
             conditions_judged: compared.len(),
             not_predicted,
-            ratio_at_most: ratio_at_most(bench.observed, &all, unit),
+            ratio_at_most: is_proposed.then(|| ratio_at_most(bench.observed, &all, unit)).flatten(),
             log_density_gain: both.iter().map(|(_, b, a)| a.log_density - b.log_density).sum(),
         })
     }
@@ -235,7 +233,7 @@ impl HeldOut {
     }
 }
 
-/// Upper end of the error with what is proposed over that without it, over choices of the conditions.
+/// One-sided 90 % bound of the error with the effect over the error without it, by resampling conditions.
 fn ratio_at_most(observed: &Observed, all: &[&Pair], unit: Unit) -> Option<f64> {
     let error = |condition: usize, one: &Predicted| {
         let mut sums = Sums::default();

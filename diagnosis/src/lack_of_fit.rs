@@ -80,8 +80,8 @@ fn at_least(chi2: f64, freedom: f64) -> Option<f64> {
     ChiSquared::new(freedom).ok().map(|distribution| distribution.sf(chi2))
 }
 
-/// Whitened directions that are no lack of fit: what the parameters and amplitudes of `fitted` can do. A parameter that
-/// its prior holds has done what it can in the fit, and is none of them.
+/// Whitened directions that do not count as lack of fit: those of the free parameters and amplitudes of `fitted`. A
+/// parameter that its prior determines is left out, because the fit already uses all the freedom that the prior gives.
 fn imitated(bench: &Bench<'_>, fitted: &Fitted) -> DMatrix<f64> {
     let measured = bench.data(&fitted.weights).measured();
     let parameters = bench.forward.parameters();

@@ -7,6 +7,7 @@ use measurements::{
 use nalgebra::DVector;
 use runner::beds::STOPPED;
 
+use crate::apparatus::too_many;
 use crate::observable::{Layout, Observable};
 use crate::resampling::{common_grid, depth_and_range, stopped_at};
 
@@ -107,6 +108,7 @@ impl Observed {
         };
         let (fit, holdout) = (with_role(Role::Fit), with_role(Role::Holdout));
         notes.extend(note_readings(set));
+        notes.extend(too_many(set));
         let mut observed = Self { conditions, fit, holdout, notes };
         let assumed = set.kind == Kind::Trajectory
             && set.states_errors()

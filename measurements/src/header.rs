@@ -142,10 +142,10 @@ fn missing(name: &str, spec: &ColumnSpec, found: &[String], row: &Row, findings:
     let first = found.first().map(|name| name.to_lowercase()).unwrap_or_default();
     let program = match () {
         () if first.starts_with("mass") => {
-            "\nthis is a table of Tracker: plunge import makes a set of it as it is"
+            "\nthis is a table of Tracker: plunge import makes a set of it"
         }
         () if found.iter().any(|name| name == "TRACK_ID") => {
-            "\nthis is a table of TrackMate: plunge import makes a set of it as it is"
+            "\nthis is a table of TrackMate: plunge import makes a set of it"
         }
         () => "",
     };

@@ -1,12 +1,13 @@
 //! From a folder to a checked [`MeasurementSet`].
 
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
 use configs::paths::{self, PathError};
 use configs::reader::{FileKind, Reader};
-use configs::{Color, Diagnostic, Sources, document as toml, limits, render_all, shorten};
+use configs::{Color, Diagnostic, Sources, document as toml, limits, nearest, render_all, shorten};
 use thiserror::Error;
 
 use super::agreement::Agreement;
@@ -79,6 +80,21 @@ impl From<Findings> for SetError {
     }
 }
 
+/// Reports names in `keep` that are not runs.
+fn refuse_unknown_kept(set: &MeasurementSet, findings: &mut Findings) {
+    let names: BTreeSet<&str> = set.runs.iter().map(|run| run.name.as_str()).collect();
+    for name in set.keep.iter().filter(|name| !names.contains(name.as_str())) {
+        let near = nearest(name, names.iter().copied());
+        let help = near.map(|near| format!("did you mean `{near}`?"));
+        let message =
+            format!("`keep` names the run `{}`, which the set does not have", shorten(name));
+        findings.report(
+            Diagnostic::error(message)
+                .help(help.unwrap_or_else(|| "write names from the column `run`".to_owned())),
+        );
+    }
+}
+
 impl MeasurementSet {
     /// Reads and checks the set in the folder `path`, or whose `measurement.toml` is `path`.
     ///
@@ -110,6 +126,7 @@ impl MeasurementSet {
         if findings.errors() > 0 {
             return Err(findings.into());
         }
+        refuse_unknown_kept(&set, &mut findings);
         order::sort(&mut set.runs);
         speeds::fill(&mut set, &document.places, &mut findings);
         if findings.errors() > 0 {

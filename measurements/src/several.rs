@@ -45,7 +45,7 @@ fn matches(named: &FileName, folder: &Path, findings: &mut Findings) -> Vec<File
         }
         Err(error) => {
             findings.report(
-                Diagnostic::error(format!("`{shown}` is no pattern: {}", error.msg))
+                Diagnostic::error(format!("`{shown}` is not a pattern: {}", error.msg))
                     .at(named.span, "`*` is any text, `?` one character, `[ab]` one of these"),
             );
             Vec::new()

@@ -1,23 +1,23 @@
-//! Readings that are not of the body: stray frames, and runs in which something else is followed.
+//! Readings that are not of the body: stray frames, and runs in which the tracker follows something else.
 //!
-//! Nothing here knows a model. A frame is held against what the frames to its left, to its right and on both sides
-//! promise for it; a run, against the middle of the runs of its condition.
+//! No model is used. A frame is compared with what the frames before it, after it and on both sides predict; a run, with
+//! the median of the runs of its condition.
 
 use crate::{Frame, MeasurementSet, Run};
 
-/// Fewest frames of a run in which strays are looked for: a few have no course.
+/// Fewest frames of a run that is searched for strays.
 const FEWEST_FRAMES: usize = 12;
 
-/// A reading that misses every promise by more than so many times the usual miss is stray.
+/// A reading is stray if it differs from every prediction by more than this many standard deviations.
 const FAR: f64 = 10.0;
 
-/// Most of the frames of a run that may be stray; of more, the course is not known.
+/// Largest share of stray frames in a run; with more, the path is not known and all frames are kept.
 const SHARE: f64 = 0.1;
 
-/// Fewest runs of a condition that have a middle.
+/// Fewest runs of a condition that have a median.
 const FEWEST_RUNS: usize = 3;
 
-/// A run that is farther from the middle than so many times the usual distance, over the depth, is of something else.
+/// A run is mistracked if its distance from the median, relative to the depth, exceeds the usual one by this factor.
 const APART: f64 = 8.0;
 
 /// From a standard deviation to the median of a size.

@@ -22,8 +22,8 @@ pub enum BedError {
     /// The statistics fail.
     #[error(transparent)]
     Bench(#[from] BenchError),
-    /// A name that is no candidate of the model.
-    #[error("there is no candidate `{id}` for this model; there are: {}", known.join(", "))]
+    /// The name is not a candidate of the model.
+    #[error("`{id}` is not a candidate for this model; candidates: {}", known.join(", "))]
     UnknownCandidate {
         /// What was asked for.
         id: String,

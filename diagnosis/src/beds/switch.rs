@@ -36,7 +36,7 @@ pub(super) enum Act {
     Effect(Candidate),
     /// It changes what the model has.
     Change {
-        /// Why it is no candidate for a model, if it is none.
+        /// The reason why it is not a candidate for a model; `None` for a candidate.
         lacks: fn(GrainModel<'_>) -> Option<&'static str>,
         /// The model with it.
         change: fn(GrainModel<'_>, f64) -> Variation,
@@ -58,7 +58,7 @@ impl Switch {
         }
     }
 
-    /// Why it is no candidate for `model`, if it is none.
+    /// The reason why it is not a candidate for `model`; `None` for a candidate.
     #[must_use]
     pub fn lacks(&self, model: GrainModel<'_>) -> Option<&'static str> {
         let medium = model.medium;

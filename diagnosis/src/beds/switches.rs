@@ -1,4 +1,4 @@
-//! Every candidate of a bed of grains: the effects of the registries that are one, then what every bed has.
+//! Every candidate of a bed of grains: the effects of the registries that are candidates, then what every bed has.
 
 use std::sync::LazyLock;
 
@@ -40,7 +40,7 @@ mod tests {
 
     use super::*;
 
-    /// Why the effect called `name` is no candidate of the diagnosis of a bed, if it is none.
+    /// The reason why the diagnosis of a bed does not look for the effect called `name`; `None` for a candidate.
     fn reason(name: &str) -> Option<&'static str> {
         let laws = LAWS.iter().map(|law| (law.name, law.candidacy));
         let forces = GRAIN_FORCES.iter().map(|force| (force.name, force.candidacy));

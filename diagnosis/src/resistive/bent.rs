@@ -7,7 +7,7 @@ use resistive::{Account, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 /// A law whose contribution is multiplied by what depends on depth and speed.
 pub(super) struct Bent {
     pub(super) law: Box<dyn ResistanceLaw>,
-    /// By what: from the surface to [`Self::reach`] and from rest to [`Self::speed`].
+    /// The relative change: from the surface to [`Self::reach`] and from rest to [`Self::speed`].
     pub(super) by: Bend,
     /// (m).
     pub(super) reach: f64,

@@ -20,7 +20,7 @@ use crate::forward::{
 use crate::next::Designs;
 use crate::observable::Layout;
 pub use error::ForwardError;
-use prepared::Prepared;
+use prepared::{Prepared, extent};
 
 /// By this share a parameter is moved to see whether anything depends on it.
 const PROBE: f64 = 1e-2;
@@ -60,8 +60,9 @@ impl ResistiveForward {
             return Err(ForwardError::Grains { model: model.run.name.clone() });
         };
         let free = medium.free_parameters();
+        let extent = extent(set);
         let conditions = (0..set.conditions.len())
-            .map(|index| Prepared::new(medium, &free, set, index, &layouts[index]))
+            .map(|index| Prepared::new(medium, &free, (set, extent), index, &layouts[index]))
             .collect::<Result<_, _>>()?;
         let is_present =
             |name: &str| medium.effects.iter().any(|choice| choice.effect.name() == name);
@@ -80,7 +81,7 @@ impl ResistiveForward {
             .filter(|key| is_scattering(key))
             .collect();
         let apparatus = Apparatus::of(set, &scattering, layouts);
-        // An error of the apparatus that is always looked for is no effect.
+        // Errors of the apparatus are parameters of every fit, not effects.
         let effects: Vec<Effect> = listed
             .chain(own)
             .filter(|effect| !is_present(effect.name()) && !is_looked_for(set, effect.name()))

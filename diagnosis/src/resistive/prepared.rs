@@ -214,7 +214,7 @@ impl Prepared {
     pub(super) fn new(
         medium: &ResistiveMedium,
         free: &[FreeParameter],
-        set: &MeasurementSet,
+        (set, extent): (&MeasurementSet, [f64; 2]),
         index: usize,
         layout: &Layout,
     ) -> Result<Self, ForwardError> {
@@ -255,7 +255,7 @@ impl Prepared {
             angle,
             spin: condition.spin,
             bed,
-            law: Law::new(&there, free, (angle, extent(set))),
+            law: Law::new(&there, free, (angle, extent)),
         })
     }
 
@@ -378,9 +378,8 @@ impl Prepared {
     }
 }
 
-/// Greatest depth (m) that any run reaches of the conditions that `set` does not hold out, and greatest impact speed
-/// (m/s) of these.
-fn extent(set: &MeasurementSet) -> [f64; 2] {
+/// Greatest depth (m) and impact speed (m/s) over the conditions of `set` that are not held out.
+pub(super) fn extent(set: &MeasurementSet) -> [f64; 2] {
     let is_seen = |condition: &&Condition| condition.role == Role::Fit;
     let depths = set.runs.iter().filter(|run| is_seen(&&set.conditions[run.condition]));
     let depths = depths.flat_map(|run| run.frames.iter().map(|frame| frame.z).chain(run.final_z));

@@ -96,7 +96,7 @@ impl Bodies {
     /// The body of a run with these labels, which messages call `run`.
     ///
     /// # Errors
-    /// If nothing says its shape, size or mass, or one is no such quantity.
+    /// If nothing says its shape, size or mass, or one is not such a quantity.
     pub(super) fn of(
         &self,
         run: &str,

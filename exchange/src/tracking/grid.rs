@@ -119,7 +119,7 @@ impl<'a> Grid<'a> {
     /// The track in these columns of `rows`, of which it takes those that hold numbers.
     ///
     /// # Errors
-    /// A cell that is no number, or a row that is wider than its header.
+    /// A cell that is not a number, or a row that is wider than its header.
     pub(super) fn track(
         &self,
         layout: &str,
@@ -177,8 +177,10 @@ impl<'a> Grid<'a> {
             Number::Missing => Ok(None),
             Number::Other => {
                 let name = &self.headings[at].name;
-                let what =
-                    format!("\"{}\" in the column `{name}` is no number", configs::shorten(cell));
+                let what = format!(
+                    "\"{}\" in the column `{name}` is not a number",
+                    configs::shorten(cell)
+                );
                 let right = match cell.contains(',') && cell.contains(|c: char| c.is_ascii_digit())
                 {
                     true => {

@@ -121,7 +121,7 @@ pub(super) fn text(files: &[PathBuf], hashes: &[String], options: &Options, out:
     text
 }
 
-/// `path` as it is called from `folder`, with `/` between its parts.
+/// `path` relative to `folder`, with `/` between its parts.
 fn relative(path: &Path, folder: &Path) -> String {
     let absolute =
         |path: &Path| plain(&std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));

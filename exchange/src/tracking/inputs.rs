@@ -46,7 +46,7 @@ const TABLES: [&str; 6] = ["csv", "tsv", "txt", "dat", "lvm", "tab"];
 /// The tables in a folder, sorted.
 ///
 /// # Errors
-/// If there is none.
+/// If the folder cannot be read or holds no table.
 pub(super) fn tables_in(folder: &Path) -> Result<Vec<PathBuf>, Fault> {
     let shown = folder.display().to_string();
     let entries = std::fs::read_dir(folder).map_err(|error| {
@@ -73,7 +73,7 @@ fn fitting(pattern: &str) -> Result<Vec<PathBuf>, Fault> {
     let paths = glob::glob(pattern).map_err(|error| {
         Fault::new(
             pattern,
-            format!("this is no pattern: {}", error.msg),
+            format!("this is not a pattern: {}", error.msg),
             "`*` is any text, `?` one character",
         )
     })?;

@@ -36,7 +36,7 @@ impl Options {
         ("grain_diameter", "the mean diameter of the grains"),
     ];
 
-    /// Sets an option; a key that is none is not taken.
+    /// Sets an option; an unknown key is ignored.
     pub fn set(&mut self, key: &str, value: impl Into<String>) {
         if let Some((known, _)) = Self::KEYS.iter().find(|(known, _)| *known == key) {
             self.0.insert(known, value.into());

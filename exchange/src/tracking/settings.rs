@@ -141,7 +141,7 @@ impl<'a> Settings<'a> {
     /// The quantity of an option (SI) for a run with these labels.
     ///
     /// # Errors
-    /// If it is none of `dimension`.
+    /// If the text is not a quantity of `dimension`.
     pub(super) fn quantity(
         &self,
         key: &str,
@@ -154,7 +154,7 @@ impl<'a> Settings<'a> {
     /// A position on the axis of the table (m, or px times the scale) for a run with these labels.
     ///
     /// # Errors
-    /// If it is no length, or pixels without a scale.
+    /// If it is not a length, or pixels without a scale.
     pub(super) fn position(
         &self,
         key: &str,
@@ -177,7 +177,7 @@ impl<'a> Settings<'a> {
             }
             (None, _) => Err(Fault::new(
                 &flag(key),
-                format!("\"{text}\" is no number of pixels"),
+                format!("\"{text}\" is not a number of pixels"),
                 "write 812px",
             )),
         }
@@ -224,7 +224,7 @@ fn scale(options: &Options) -> Result<Option<f64>, Fault> {
         Fault::new("--scale", what, "write the length of a pixel, such as 0.21mm/px")
     };
     let length = ["/px", "/pixel"].iter().find_map(|per| text.trim().strip_suffix(per));
-    let length = length.ok_or_else(|| fault(format!("\"{text}\" is no length per pixel")))?;
+    let length = length.ok_or_else(|| fault(format!("\"{text}\" is not a length per pixel")))?;
     let value = parse(length, Dimension::LENGTH).map_err(|error| fault(error.reason()))?;
     match value > 0.0 {
         true => Ok(Some(value)),
@@ -244,7 +244,7 @@ fn rate(options: &Options) -> Result<Option<f64>, Fault> {
         Ok(value) if value > 0.0 => Ok(Some(value)),
         _ => Err(Fault::new(
             "--rate",
-            format!("\"{text}\" is no rate of frames"),
+            format!("\"{text}\" is not a frame rate"),
             "write 650Hz or 650fps",
         )),
     }

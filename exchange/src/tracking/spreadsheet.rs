@@ -13,7 +13,7 @@ pub(super) const ENDINGS: [&str; 4] = ["xlsx", "xlsm", "xls", "ods"];
 /// The sheets with numbers of the file that messages call `file`.
 ///
 /// # Errors
-/// If it is no spreadsheet, or holds no table.
+/// If it is not a spreadsheet, or holds no table.
 pub(super) fn read(file: &str, stem: &str, bytes: &[u8]) -> Result<Vec<Sheet>, Fault> {
     let refused = |error: calamine::Error| {
         let what = format!("this cannot be read as a spreadsheet: {error}");

@@ -13,12 +13,12 @@ const SEPARATORS: [(Option<u8>, &str); 4] =
 /// The table in `bytes`, the content of the file that messages call `file`.
 ///
 /// # Errors
-/// If it is no text, or a quoted cell does not end on its line.
+/// If it is not text, or a quoted cell does not end on its line.
 pub(super) fn read(file: &str, stem: &str, bytes: &[u8]) -> Result<Sheet, Fault> {
     let mut notes = Vec::new();
     let text = decode(bytes, &mut notes);
     if text.contains('\0') {
-        let what = "this is no text";
+        let what = "this is not text";
         let right = "a table is text, or a spreadsheet named .xlsx, .xls or .ods";
         return Err(Fault::new(file, what, right));
     }

@@ -26,7 +26,7 @@ pub(super) struct Known<'a> {
 /// Names and contents of the set itself.
 ///
 /// # Errors
-/// If an option of the bed is none.
+/// If an option of the bed is not a quantity.
 pub(super) fn files(
     known: &Known<'_>,
     notes: &[String],

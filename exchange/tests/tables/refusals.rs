@@ -45,7 +45,7 @@ fn programs() {
     let text = formats::kinovea(&drops).replacen("3,200 ", "3,2x0 ", 1);
     has(
         &told("a.txt", &text, &[]),
-        &["a.txt:5: \"3,2x0\" is no number", "a row is a time, x and y"],
+        &["a.txt:5: \"3,2x0\" is not a number", "a row is a time, x and y"],
     );
     let text = formats::loggerpro(&drops[0]).replace("Position", "Potential");
     has(
@@ -67,7 +67,7 @@ fn programs() {
 fn plain_tables() {
     let drops = formats::two();
     let text = formats::long(&drops).replace("a1,10cm,50", "a1,10cm,x50");
-    has(&told("a.csv", &text, &[]), &["a.csv:", "in the column `time [ms]` is no number"]);
+    has(&told("a.csv", &text, &[]), &["a.csv:", "in the column `time [ms]` is not a number"]);
     let text = formats::wide(&drops).replace(';', ",");
     has(&told("a.csv", &text, &[]), &["cells stand below 3 names", "semicolons or tabs"]);
     let text = formats::bare(&drops[0]).replace("t y\n", "");
@@ -110,11 +110,11 @@ fn units_and_scales() {
     has(&told("a.csv", &slow, &[]), &["accelerates at 0.9"]);
     has(
         &told("a.csv", &pixels, &[("scale", "0.2")]),
-        &["--scale: \"0.2\" is no length per pixel", "0.21mm/px"],
+        &["--scale: \"0.2\" is not a length per pixel", "0.21mm/px"],
     );
     has(
         &told("a.csv", &pixels, &[("rate", "650")]),
-        &["--rate: \"650\" is no rate of frames", "650Hz"],
+        &["--rate: \"650\" is not a frame rate", "650Hz"],
     );
     has(
         &told("a.csv", &pixels, &[("diameter", "25,4 mm")]),

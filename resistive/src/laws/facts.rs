@@ -25,7 +25,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Why an effect of a force law is no candidate of a bed of grains, if it is none.
+    /// The reason why the diagnosis of a bed of grains does not look for an effect of a force law; `None` for a candidate.
     #[must_use]
     pub fn absent_from_beds(self) -> Option<&'static str> {
         match self {

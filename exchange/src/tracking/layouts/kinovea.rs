@@ -68,7 +68,7 @@ fn add(sheet: &Sheet, row: &Row, track: &mut Track) -> Result<(), Fault> {
         Number::Value(value) => Ok(Some(value)),
         Number::Missing => Ok(None),
         Number::Other => {
-            let what = format!("\"{}\" is no number", configs::shorten(row.cell(at)));
+            let what = format!("\"{}\" is not a number", configs::shorten(row.cell(at)));
             Err(sheet
                 .fault(what, "a row is a time, x and y, with blanks between them")
                 .at(row.line))
