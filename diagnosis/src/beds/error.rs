@@ -23,7 +23,7 @@ pub enum BedError {
     #[error(transparent)]
     Bench(#[from] BenchError),
     /// The name is not a candidate of the model.
-    #[error("`{id}` is not a candidate for this model; candidates: {}", known.join(", "))]
+    #[error("there is no candidate `{id}` for this model; there are: {}", known.join(", "))]
     UnknownCandidate {
         /// What was asked for.
         id: String,
