@@ -19,9 +19,9 @@ pub(crate) struct Args {
     /// folder of that name with a measurement set.
     #[arg(required_unless_present = "list")]
     name: Option<String>,
-    /// The shipped model to start from.
-    #[arg(long, value_name = "SHIPPED", default_value = "vertical-2d")]
-    from: String,
+    /// The shipped model to start from: the one of that name if there is one, else vertical-2d.
+    #[arg(long, value_name = "SHIPPED")]
+    from: Option<String>,
     /// List the shipped models.
     #[arg(long)]
     list: bool,
@@ -34,7 +34,9 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> CommandResult {
-    table_file::refuse(Path::new(&args.from))?;
+    if let Some(from) = &args.from {
+        table_file::refuse(Path::new(from))?;
+    }
     let name = match (&args.name, args.list) {
         (Some(name), false) => name,
         _ => return list(args.json),
@@ -48,7 +50,10 @@ pub(crate) fn run(args: &Args) -> CommandResult {
             "`{name}` is not a valid name: use 1 to 64 of a-z, 0-9, - and _"
         )));
     }
-    let shipped = find_shipped(&args.from).ok_or_else(|| unknown(&args.from))?;
+    let shipped = match &args.from {
+        Some(from) => find_shipped(from).ok_or_else(|| unknown(from))?,
+        None => find_shipped(name).unwrap_or(&SHIPPED[0]),
+    };
     let file = PathBuf::from(format!("{name}.toml"));
     write_new(&file, &starter(shipped, name))?;
     match (args.json, args.quiet) {

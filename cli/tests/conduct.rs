@@ -36,6 +36,15 @@ fn a_new_model_checks_and_is_never_overwritten() {
 }
 
 #[test]
+fn a_new_model_with_the_name_of_a_shipped_one_starts_from_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let new = plunge(folder.path(), &["new", "hemisphere-3d"]);
+    assert!(text(&new.stdout).contains("from hemisphere-3d"), "{}", text(&new.stdout));
+    let written = std::fs::read_to_string(folder.path().join("hemisphere-3d.toml"));
+    assert!(written.expect("the model").contains("shape = \"hemisphere\""));
+}
+
+#[test]
 fn bad_input_is_status_2_with_a_message_on_stderr_and_nothing_on_stdout() {
     let folder = tempfile::tempdir().expect("a folder");
     for arguments in [

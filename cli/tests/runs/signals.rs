@@ -181,3 +181,26 @@ fn comparisons_and_diagnoses_of_resistive_models_end_at_once_and_write_nothing()
         assert!(!out.exists());
     }
 }
+
+#[test]
+fn campaigns_end_at_once_while_their_beds_settle() {
+    let here = folder();
+    let file = here.path().join("campaign.toml");
+    let text = "\
+[campaign]
+name = \"large-beds\"
+models = [\"small-2d.toml\"]
+
+[set]
+bed.grains.0.count = 20000
+container.width = \"1 m\"
+
+[product]
+impact.speed = [\"1 m/s\", \"2 m/s\"]
+";
+    fs::write(&file, text).expect("a campaign");
+    fs::copy(small_model(), here.path().join("small-2d.toml")).expect("a model");
+    let out = here.path().join("out");
+    let sweep = || Call::new(["sweep", "--quiet", "--out"]).arg(&out).arg(&file);
+    ends_at_once(sweep, GOES_ON);
+}

@@ -42,6 +42,8 @@ fn metres(value: f64) -> String {
 /// A time to three digits, which is enough to act on.
 fn seconds(value: f64) -> String {
     let (factor, unit) = match value {
+        v if v < 1e-9 => return format!("{:e} s", rounded(value, 2)),
+        v if v < 1e-6 => (1e9, "ns"),
         v if v < 1e-3 => (1e6, "us"),
         v if v < 1.0 => (1e3, "ms"),
         _ => (1.0, "s"),
