@@ -248,6 +248,7 @@ fn is_same_body(one: &Condition, other: &Condition) -> bool {
         && one.mass.total_cmp(&other.mass).is_eq()
         && one.length == other.length
         && one.height == other.height
+        && one.shaft_diameter == other.shaft_diameter
         && one.apex_deg == other.apex_deg
 }
 

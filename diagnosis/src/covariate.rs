@@ -28,7 +28,7 @@ pub struct Covariate {
 pub(crate) type OfCondition = (Covariate, fn(&Condition) -> Option<f64>);
 
 /// Every number of a condition, which a force error may depend on where it differs.
-pub(crate) const OF_CONDITIONS: [OfCondition; 11] = [
+pub(crate) const OF_CONDITIONS: [OfCondition; 12] = [
     (covariate("speed", "impact speed", "m/s"), |condition| Some(condition.speed)),
     (covariate("angle_deg", "angle from the horizontal", "deg"), |condition| {
         Some(condition.angle_deg)
@@ -39,6 +39,9 @@ pub(crate) const OF_CONDITIONS: [OfCondition; 11] = [
     (covariate("packing", "packing fraction", "1"), |condition| condition.packing),
     (covariate("bed_depth", "depth of the bed", "m"), |condition| condition.bed_depth),
     (covariate("height", "height", "m"), |condition| condition.height),
+    (covariate("shaft_diameter", "diameter of the shaft", "m"), |condition| {
+        condition.shaft_diameter
+    }),
     (covariate("apex_deg", "apex angle", "deg"), |condition| condition.apex_deg),
     (covariate("length", "length", "m"), |condition| condition.length),
     (covariate("link_angle_deg", "angle of the link to the vertical", "deg"), |condition| {
@@ -74,6 +77,7 @@ mod tests {
             bed_depth: Some(7.0),
             length: Some(8.0),
             height: Some(9.0),
+            shaft_diameter: Some(12.0),
             apex_deg: Some(10.0),
             link_angle_deg: Some(11.0),
             ..set
@@ -92,12 +96,14 @@ mod tests {
             bed_depth,
             length,
             height,
+            shaft_diameter,
             apex_deg,
             link_angle_deg,
         } = all.clone();
         let seen: Vec<Option<f64>> = OF_CONDITIONS.iter().map(|(_, of)| of(&all)).collect();
         let numbers = [speed, angle_deg, diameter, mass, spin].map(Some);
-        let optional = [packing, bed_depth, length, height, apex_deg, link_angle_deg];
+        let optional =
+            [packing, bed_depth, length, height, shaft_diameter, apex_deg, link_angle_deg];
         for number in numbers.into_iter().chain(optional) {
             assert!(number.is_some() && seen.contains(&number), "{number:?} in {seen:?}");
         }

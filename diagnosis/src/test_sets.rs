@@ -20,6 +20,7 @@ pub(crate) fn condition(speed: f64, angle_deg: f64) -> Condition {
         bed_depth: None,
         length: None,
         height: None,
+        shaft_diameter: None,
         apex_deg: None,
         link_angle_deg: None,
     }

@@ -12,6 +12,7 @@ use resistive::{Compact, Silhouette};
 use crate::body::Body;
 use crate::outline::{Draft, Revolved};
 use crate::registry::{Casting, Launchable, ShapeEntry};
+use crate::shaft::{SHAFT, WithShaft};
 use crate::specs::{DIAMETER, section};
 
 /// The registry's line.
@@ -46,11 +47,13 @@ const PARAMS: &[ParamSpec] = &[
         plausible: Range::closed(PI / 18.0, PI * 150.0 / 180.0),
         meaning: "full angle at the tip; with the diameter of the base it gives the height",
     },
+    SHAFT,
 ];
 
 fn assembly(casting: &Casting) -> Launchable {
     let shape = Wedge::new(casting.params, casting.space);
     let (reach, inertia) = (shape.reach(), casting.mass * shape.inertia_per_mass().y);
+    let shape = WithShaft::new(shape, casting.params, casting.space);
     let body = Compact::new(Arc::new(shape), reach, casting.mass, inertia);
     Launchable {
         assembly: Box::new(body),

@@ -11,6 +11,7 @@ use resistive::{Compact, Silhouette};
 use crate::body::Body;
 use crate::outline::{Draft, Revolved};
 use crate::registry::{Casting, Launchable, ShapeEntry};
+use crate::shaft::{SHAFT, WithShaft};
 use crate::specs::{DIAMETER, section};
 use crate::sphere::Cap;
 
@@ -35,12 +36,13 @@ pub(crate) const HEMISPHERE: ShapeEntry = ShapeEntry {
     assembly,
 };
 
-const PARAMS: &[ParamSpec] = &[DIAMETER];
+const PARAMS: &[ParamSpec] = &[DIAMETER, SHAFT];
 
 fn assembly(casting: &Casting) -> Launchable {
     let shape = Dome::new(casting.params, casting.space);
     let (reach, inertia) =
         (shape.whole.radius - shape.below(), casting.mass * shape.inertia_per_mass().y);
+    let shape = WithShaft::new(shape, casting.params, casting.space);
     Launchable {
         assembly: Box::new(Compact::new(Arc::new(shape), reach, casting.mass, inertia)),
         start: Compact::at_surface(casting.velocity, casting.spin),

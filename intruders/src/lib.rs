@@ -12,6 +12,7 @@ mod outline;
 mod parry_surface;
 mod registry;
 mod rod;
+mod shaft;
 mod specs;
 mod sphere;
 mod two_link_chain;

@@ -26,10 +26,11 @@ const UNITS: [(f64, f64, &str); 7] = [
     (1.0, 1e-6, "is the mass in mg?"),
 ];
 
-/// Refuses conditions whose intruders would be lighter or heavier than any body.
+/// Refuses conditions whose intruders would be lighter or heavier than any body, or have a shaft that no body has.
 pub(super) fn check(reader: &Reader<'_>, conditions: &[Condition], places: &[ConditionPlaces]) {
     for (condition, places) in conditions.iter().zip(places) {
         one(reader, condition, places);
+        shaft(reader, condition, places);
     }
 }
 
@@ -39,7 +40,9 @@ fn one(reader: &Reader<'_>, condition: &Condition, places: &ConditionPlaces) {
         volume(condition).map(|volume| mass * condition.mass / (volume * size.powi(3)))
     };
     let Some(found) = density(1.0, 1.0) else { return };
-    if (DENSITY.0..=DENSITY.1).contains(&found) {
+    // The mass is that of the body and its shaft, which is as long as it may be.
+    let is_shafted = condition.shaft_diameter.is_some();
+    if found >= DENSITY.0 && (found <= DENSITY.1 || is_shafted) {
         return;
     }
     let likely = UNITS.iter().find(|(size, mass, _)| {
@@ -57,6 +60,10 @@ fn one(reader: &Reader<'_>, condition: &Condition, places: &ConditionPlaces) {
             }
             format!("{question} then write {}", lines.join(" and "))
         }
+        None if may_have_a_shaft(shape) => format!(
+            "a diameter is in metres, a mass in kilograms; if the mass is that of a longer body, write \
+             shaft_diameter = {diameter} for what follows the {shape}"
+        ),
         None => "a diameter is in metres, a mass in kilograms".to_owned(),
     };
     reader.report(
@@ -67,6 +74,28 @@ fn one(reader: &Reader<'_>, condition: &Condition, places: &ConditionPlaces) {
         .with(places.mass, "in kilograms")
         .help(help),
     );
+}
+
+/// Whether a body of this shape may have a shaft.
+fn may_have_a_shaft(shape: &str) -> bool {
+    matches!(shape, "cylinder" | "hemisphere" | "cone")
+}
+
+/// Refuses shafts of shapes that have none, and those wider than the body before them.
+fn shaft(reader: &Reader<'_>, condition: &Condition, places: &ConditionPlaces) {
+    let Condition { diameter, shape, shaft_diameter: Some(shaft), .. } = condition else { return };
+    let (what, help) = match may_have_a_shaft(shape) {
+        false => (
+            format!("a {shape} has no shaft"),
+            "a cylinder, hemisphere or cone may have one".to_owned(),
+        ),
+        true if shaft > diameter => (
+            format!("a shaft of {shaft} m is wider than its {shape}, {diameter} m"),
+            format!("write shaft_diameter = {diameter} or less"),
+        ),
+        true => return,
+    };
+    reader.report(Diagnostic::error(what).at(places.shaft, "a shaft").help(help));
 }
 
 /// A number as it is written, without the noise of a multiplication.

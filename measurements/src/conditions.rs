@@ -16,6 +16,7 @@ pub(super) struct ConditionPlaces {
     pub(super) angle: Option<Span>,
     pub(super) diameter: Option<Span>,
     pub(super) mass: Option<Span>,
+    pub(super) shaft: Option<Span>,
 }
 
 /// Shapes that a set may name, each with the keys that it should have besides the diameter.
@@ -73,11 +74,12 @@ fn condition(table: TableReader<'_>, absent: &mut Absent) -> Option<(Condition, 
     let diameter = table.number(&keys::DIAMETER);
     let mass = table.number(&keys::MASS);
     let spin = table.number(&keys::SPIN);
-    let [packing, bed_depth, length, height, apex, link_angle] = [
+    let [packing, bed_depth, length, height, shaft, apex, link_angle] = [
         &keys::PACKING,
         &keys::BED_DEPTH,
         &keys::LENGTH_OF_LINK,
         &keys::HEIGHT,
+        &keys::SHAFT_DIAMETER,
         &keys::APEX,
         &keys::LINK_ANGLE,
     ]
@@ -94,6 +96,7 @@ fn condition(table: TableReader<'_>, absent: &mut Absent) -> Option<(Condition, 
         angle: table.span_of("angle_deg"),
         diameter: table.span_of("diameter"),
         mass: table.span_of("mass"),
+        shaft: table.span_of("shaft_diameter"),
     };
     let wanted = SHAPES.iter().find(|(name, _)| Some(*name) == shape).map_or(&[][..], |row| row.1);
     for key in ["role", "packing", "bed_depth"].iter().chain(wanted) {
@@ -116,6 +119,7 @@ fn condition(table: TableReader<'_>, absent: &mut Absent) -> Option<(Condition, 
         bed_depth,
         length,
         height,
+        shaft_diameter: shaft,
         apex_deg: apex,
         link_angle_deg: link_angle,
     };

@@ -143,6 +143,13 @@ pub(super) const LENGTH_OF_LINK: ParamSpec =
     key("length", LENGTH, POSITIVE, (1e-3, 10.0), "the length of a link");
 pub(super) const HEIGHT: ParamSpec =
     key("height", LENGTH, POSITIVE, (1e-4, 10.0), "the height of a cylinder or cone");
+pub(super) const SHAFT_DIAMETER: ParamSpec = key(
+    "shaft_diameter",
+    LENGTH,
+    POSITIVE,
+    (1e-4, 10.0),
+    "the diameter of a shaft behind a cylinder, hemisphere or cone, which follows it into the bed",
+);
 pub(super) const APEX: ParamSpec = key(
     "apex_deg",
     NUMBER,

@@ -240,6 +240,8 @@ pub struct Condition {
     pub length: Option<f64>,
     /// Height of a cylinder or cone (m).
     pub height: Option<f64>,
+    /// Diameter of a shaft behind a cylinder, hemisphere or cone, which follows it into the bed (m).
+    pub shaft_diameter: Option<f64>,
     /// Full apex angle of a cone (deg).
     pub apex_deg: Option<f64>,
     /// Angle of a link's axis to the vertical (deg).

@@ -126,6 +126,7 @@ fn of_condition(condition: &Condition) -> impl Iterator<Item = Number> {
         (&BED_DEPTH, condition.bed_depth),
         (&SIZE, condition.length),
         (&SIZE, condition.height),
+        (&SIZE, condition.shaft_diameter),
     ];
     numbers.into_iter().filter_map(|(kind, value)| Some((kind, value?)))
 }

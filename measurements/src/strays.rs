@@ -297,6 +297,7 @@ mod tests {
                 bed_depth: None,
                 length: None,
                 height: None,
+                shaft_diameter: None,
                 apex_deg: None,
                 link_angle_deg: None,
             }],

@@ -235,6 +235,7 @@ impl Toml {
         self.number("bed_depth", condition.bed_depth);
         self.number("length", condition.length);
         self.number("height", condition.height);
+        self.number("shaft_diameter", condition.shaft_diameter);
         self.number("apex_deg", condition.apex_deg);
         self.number("link_angle_deg", condition.link_angle_deg);
     }

@@ -209,6 +209,7 @@ fn changes_of(condition: &Condition) -> Vec<Change> {
         ("diameter", Some(condition.diameter)),
         ("length", condition.length),
         ("height", condition.height),
+        ("shaft_diameter", condition.shaft_diameter),
         ("apex_angle", condition.apex_deg.map(f64::to_radians)),
         ("link_angle", condition.link_angle_deg.map(f64::to_radians)),
     ];

@@ -91,7 +91,8 @@ fn bodies(set: &MeasurementSet) -> Vec<Condition> {
 
 fn is_same_body(a: &Condition, b: &Condition) -> bool {
     let sizes = |one: &Condition| {
-        (one.diameter, one.mass, one.length, one.height, one.apex_deg, one.link_angle_deg)
+        let body = (one.diameter, one.mass, one.length, one.height, one.shaft_diameter);
+        (body, one.apex_deg, one.link_angle_deg)
     };
     a.shape == b.shape && sizes(a) == sizes(b)
 }

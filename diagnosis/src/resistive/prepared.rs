@@ -405,6 +405,7 @@ fn sizes(shape: &'static ShapeEntry, condition: &Condition) -> Result<ParamTable
             "diameter" => Some(condition.diameter),
             "length" => condition.length,
             "height" => condition.height,
+            "shaft_diameter" => condition.shaft_diameter,
             "apex_angle" => condition.apex_deg.map(f64::to_radians),
             "link_angle" | "link_angle_1" => link,
             "link_angle_2" => link.map(|angle| -angle),

@@ -134,6 +134,7 @@ impl Laboratory {
             bed_depth: None,
             length: None,
             height: None,
+            shaft_diameter: None,
             apex_deg: None,
             link_angle_deg: None,
         }

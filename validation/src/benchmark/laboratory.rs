@@ -253,6 +253,7 @@ fn conditions(design: &Design) -> Vec<Condition> {
         bed_depth: Some(setting.bed_depth),
         length: None,
         height: None,
+        shaft_diameter: None,
         apex_deg: None,
         link_angle_deg: None,
     })

@@ -72,6 +72,7 @@ pub(crate) fn condition(speed: f64, role: Role) -> Condition {
         bed_depth: None,
         length: None,
         height: None,
+        shaft_diameter: None,
         apex_deg: None,
         link_angle_deg: None,
     }

@@ -38,6 +38,7 @@ fn vertical(speed: f64) -> Condition {
         bed_depth: Some(0.1),
         length: None,
         height: None,
+        shaft_diameter: None,
         apex_deg: None,
         link_angle_deg: None,
     }

@@ -40,6 +40,7 @@ fn condition(index: usize, speed: f64, angle: f64, mass: f64) -> Condition {
         bed_depth: None,
         length: None,
         height: None,
+        shaft_diameter: None,
         apex_deg: None,
         link_angle_deg: None,
     }

@@ -182,6 +182,7 @@ fn condition(at: usize, setting: &Setting, role: Role) -> Condition {
         bed_depth: None,
         length: None,
         height: None,
+        shaft_diameter: None,
         apex_deg: None,
         link_angle_deg: None,
     }

@@ -24,8 +24,20 @@ pub(super) fn in_grains(
         false => Some(false),
     };
     let wall_span = table.span_of("recessive_wall");
+    let shaft_span = table.span_of("shaft_diameter");
     let reader = table.reader;
     let intruder = intruder(table, space, places, |shape| shape.is_of(space))?;
+    let has_shaft = |&(key, value): &(&str, f64)| key == "shaft_diameter" && value > 0.0;
+    if intruder.params.iter().any(|one| has_shaft(&one)) {
+        reader.report(
+            Diagnostic::error("a bed of grains knows no `shaft_diameter`")
+                .at(shaft_span, "a shaft that follows the body into the bed")
+                .help(
+                    "write recessive_wall = true for a shaft as wide as the top, which is not felt",
+                ),
+        );
+        return None;
+    }
     let recessive_wall = recessive_wall?;
     if recessive_wall && intruder.shape.under_shaft.is_none() {
         let with_top = intruders::SHAPES.iter().filter(|shape| shape.under_shaft.is_some());
