@@ -31,8 +31,13 @@ pub(crate) const DURATION: ParamSpec = required(
     "the longest simulated time",
 );
 
-pub(crate) const TIME_STEP: ParamSpec =
-    required("time_step", Dimension::TIME, POSITIVE, Range::closed(1e-9, 1e-3), "the time between two steps of an impact");
+pub(crate) const TIME_STEP: ParamSpec = required(
+    "time_step",
+    Dimension::TIME,
+    POSITIVE,
+    Range::closed(1e-9, 1e-3),
+    "the time between two steps of an impact",
+);
 
 pub(crate) const PREPARATION_TIME_STEP: ParamSpec =
     TIME_STEP.named("preparation_time_step", "the time step while settling");
