@@ -1,6 +1,7 @@
 //! Files in and out of plunge: what reads, repairs and converts logs.
 
 pub mod export;
+pub mod frames;
 pub mod lammps;
 pub mod read;
 pub mod recover;

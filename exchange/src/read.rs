@@ -18,11 +18,11 @@ use std::path::Path;
 use engine::record::chunk;
 use mcap::records::Record;
 
-use fields::{EnergyFields, StateFields};
+use fields::{EnergyFields, LoadFields, StateFields};
 use records::Records;
 
 pub use error::ReadError;
-pub use series::{BodyState, BodyStates, Closing, EnergyBudgets};
+pub use series::{BodyLoads, BodyState, BodyStates, Closing, EnergyBudgets};
 
 /// What is kept of a log; the rest takes no memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,6 +31,8 @@ pub enum Keep {
     States,
     /// The states of the bodies and the energy budget.
     StatesAndEnergy,
+    /// The states of the bodies, the forces on them and the energy budget.
+    All,
 }
 
 /// What a log says of its run.
@@ -40,6 +42,8 @@ pub struct RunRecord {
     pub metadata: BTreeMap<String, String>,
     /// The bodies, in the order in which the log introduces them.
     pub bodies: Vec<BodyStates>,
+    /// The forces of the ground on bodies, as far as they were to be kept and the log has them.
+    pub loads: Vec<BodyLoads>,
     /// The energy budget, if it was to be kept and the log has one.
     pub energy: Option<EnergyBudgets>,
     /// Whether the log is finished; one that is not ends with its last whole chunk.
@@ -64,19 +68,28 @@ pub fn read_run(path: &Path, keep: Keep) -> Result<RunRecord, ReadError> {
             reading.take(record, &damaged)?;
         }
     }
-    let Reading { metadata, bodies, energy, .. } = reading;
+    let Reading { metadata, bodies, loads, energy, .. } = reading;
     if bodies.iter().all(|body| body.states.is_empty()) {
         return Err(ReadError::NoBodies { path: path.to_owned() });
     }
-    Ok(RunRecord { metadata, bodies, energy, complete: records.complete() })
+    Ok(RunRecord { metadata, bodies, loads, energy, complete: records.complete() })
 }
 
 /// What messages of a channel are decoded into.
 enum Channel {
     /// The state of the body with this index.
     State(usize, StateFields),
+    /// The forces on the body with this index among the loads.
+    Load(usize, LoadFields),
     Energy(EnergyFields),
     Other,
+}
+
+/// What a channel is about.
+enum Kind {
+    State,
+    Load,
+    Energy,
 }
 
 /// A log while it is being read.
@@ -88,6 +101,7 @@ struct Reading<'a> {
     channels: BTreeMap<u16, Channel>,
     metadata: BTreeMap<String, String>,
     bodies: Vec<BodyStates>,
+    loads: Vec<BodyLoads>,
     energy: Option<EnergyBudgets>,
 }
 
@@ -100,6 +114,7 @@ impl<'a> Reading<'a> {
             channels: BTreeMap::new(),
             metadata: BTreeMap::new(),
             bodies: Vec::new(),
+            loads: Vec::new(),
             energy: None,
         }
     }
@@ -122,6 +137,12 @@ impl<'a> Reading<'a> {
                     let state = fields.read(&data).map_err(|e| damaged(e.to_string()))?;
                     self.bodies[*body].states.push(state);
                 }
+                Some(Channel::Load(body, fields)) => {
+                    let (time, force) = fields.read(&data).map_err(|e| damaged(e.to_string()))?;
+                    let loads = &mut self.loads[*body];
+                    loads.time.push(time);
+                    loads.force.push(force);
+                }
                 Some(Channel::Energy(fields)) => {
                     if let Some(energy) = &mut self.energy {
                         fields.read(&data, energy).map_err(|e| damaged(e.to_string()))?;
@@ -143,24 +164,32 @@ impl<'a> Reading<'a> {
             topic: topic.clone(),
             why,
         };
-        let body = topic.strip_prefix("/intruder/").and_then(|rest| rest.strip_suffix("/state"));
-        let is_energy = topic == "/energy/budget" && self.keep == Keep::StatesAndEnergy;
-        if body.is_none() && !is_energy {
-            return Ok(Channel::Other);
-        }
+        let of_body = topic.strip_prefix("/intruder/").and_then(|rest| rest.rsplit_once('/'));
+        let kind = match of_body {
+            Some((_, "state")) => Kind::State,
+            Some((_, "load")) if self.keep == Keep::All => Kind::Load,
+            None if topic == "/energy/budget" && self.keep != Keep::States => Kind::Energy,
+            _ => return Ok(Channel::Other),
+        };
+        let body = of_body.map_or_else(String::new, |(name, _)| name.to_owned());
         let (name, descriptor) = self
             .schemas
             .get(&channel.schema_id)
             .ok_or_else(|| refusal("its messages come without a descriptor".to_owned()))?;
         let message = messages::described(name, descriptor).map_err(refusal)?;
-        match body {
-            Some(body) => {
+        match kind {
+            Kind::State => {
                 let fields = StateFields::of(message).map_err(refusal)?;
-                let states = Vec::new();
-                self.bodies.push(BodyStates { name: body.to_owned(), states });
+                self.bodies.push(BodyStates { name: body, states: Vec::new() });
                 Ok(Channel::State(self.bodies.len() - 1, fields))
             }
-            None => {
+            Kind::Load => {
+                let fields = LoadFields::of(message).map_err(refusal)?;
+                let (time, force) = (Vec::new(), Vec::new());
+                self.loads.push(BodyLoads { name: body, time, force });
+                Ok(Channel::Load(self.loads.len() - 1, fields))
+            }
+            Kind::Energy => {
                 let fields = EnergyFields::of(message).map_err(refusal)?;
                 self.energy = Some(fields.empty());
                 Ok(Channel::Energy(fields))

@@ -200,7 +200,7 @@ impl Placed {
 }
 
 /// `text` as it stands between tags.
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 

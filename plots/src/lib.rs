@@ -1,10 +1,11 @@
-//! Pictures of a report, as SVG: the same input gives the same bytes.
+//! Pictures of a report, as SVG or pixels: the same input gives the same bytes.
 //!
 //! [`svg`] renders what is drawn on a [`Canvas`]; a [`Hover`] is a place that shows its value under the pointer, and
-//! [`legend`] explains signs and colours.
+//! [`legend`] explains signs and colours. A [`sheet`] is a picture of many grains.
 
 mod canvas;
 pub mod legend;
+pub mod sheet;
 
 use std::cell::RefCell;
 

@@ -4,8 +4,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::ExportError;
-use super::grains::{Frame, FrameWriter, Grain};
+use super::grains::FrameWriter;
 use super::whole_file::WholeFile;
+use crate::frames::{Frame, Grain};
 
 /// What a line holds. `body` is 0 for a grain and counts bodies from 1, in the order of their names.
 const PROPERTIES: &str =

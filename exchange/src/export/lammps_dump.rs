@@ -4,8 +4,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::ExportError;
-use super::grains::{Frame, FrameWriter, Grain};
+use super::grains::FrameWriter;
 use super::whole_file::WholeFile;
+use crate::frames::{Frame, Grain};
 
 /// `grains.dump`, in SI units. Columns: `id type radius x y z vx vy vz speed force`. Grains are of type 1,
 /// bodies of one type each from 2 on, in the order of their names.

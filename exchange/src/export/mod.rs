@@ -1,12 +1,9 @@
 //! Runs as files of other programs: tables for notebooks, grains for ParaView and OVITO.
 //!
 //! A [`Format`] is one file of this folder: tables of numbers go through `tables.rs`, states of grains
-//! through `grains.rs`, with the bodies of `bodies.rs`. An export is written into a folder inside the one it
+//! through `grains.rs`. An export is written into a folder inside the one it
 //! goes to (`staging.rs`), and its files are moved there once all of them are whole.
 
-mod beads;
-mod bodies;
-mod cloud;
 mod csv;
 mod error;
 mod extended_xyz;
@@ -14,7 +11,6 @@ mod grains;
 mod lammps_dump;
 mod parquet;
 mod staging;
-mod surfaces;
 mod tables;
 mod vtp;
 pub(crate) mod whole_file;

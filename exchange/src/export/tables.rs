@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use prost_reflect::{DynamicMessage, FieldDescriptor, Kind, MessageDescriptor, Value};
 
-use super::cloud::{CloudColumn, CloudReader};
 use super::{ExportError, Exported};
 use crate::Stop;
+use crate::frames::cloud::{CloudColumn, CloudReader};
 use crate::read::messages::{Receiver, Refusal, each_message};
 
 /// A number in a table.

@@ -4,9 +4,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::ExportError;
-use super::bodies::Body;
-use super::grains::{Frame, FrameWriter, Grain};
+use super::grains::FrameWriter;
 use super::whole_file::WholeFile;
+use crate::frames::{Body, Frame, Grain};
 
 /// `grains-000000.vtp` … with `grains.pvd`, and the same of `bodies`, in SI units. Grains are points with
 /// `radius`, `velocity`, `speed`, `force`, `id`; bodies are surfaces, whose points have a `velocity` and the

@@ -38,6 +38,35 @@ impl StateFields {
     }
 }
 
+/// Where a load message has the forces of the ground.
+pub(super) struct LoadFields {
+    message: MessageDescriptor,
+    time: FieldDescriptor,
+    forces: Vec<VectorField>,
+}
+
+impl LoadFields {
+    /// Finds the fields in `message`: every vector that is neither a torque nor the weight is a force of the
+    /// ground.
+    pub(super) fn of(message: MessageDescriptor) -> Result<Self, String> {
+        let is_force = |field: &FieldDescriptor| {
+            let is_vector = matches!(field.kind(), Kind::Message(_));
+            is_vector && field.name() != "gravity" && !field.name().ends_with("_torque")
+        };
+        let forces = message.fields().filter(is_force);
+        let forces = forces.map(|field| VectorField::of(&message, field.name()));
+        let forces = forces.collect::<Result<_, _>>()?;
+        Ok(Self { time: number(&message, "time_s")?, forces, message })
+    }
+
+    /// The time (s) and the force (N).
+    pub(super) fn read(&self, data: &[u8]) -> Result<(f64, Vec3), DecodeError> {
+        let message = DynamicMessage::decode(self.message.clone(), data)?;
+        let force = self.forces.iter().fold(Vec3::zeros(), |sum, one| sum + one.value(&message));
+        Ok((value(&message, &self.time), force))
+    }
+}
+
 /// Where an energy message has what we read of it.
 pub(super) struct EnergyFields {
     message: MessageDescriptor,

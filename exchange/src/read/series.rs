@@ -24,6 +24,17 @@ pub struct BodyState {
     pub velocity: Vec3,
 }
 
+/// The force of the ground on a body over the time of its run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BodyLoads {
+    /// Its name in the topics of the log.
+    pub name: String,
+    /// Simulated time since the start of the run (s).
+    pub time: Vec<f64>,
+    /// The sum of everything that acts on it but its weight, at each time (N).
+    pub force: Vec<Vec3>,
+}
+
 /// The energy budget over the time of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnergyBudgets {

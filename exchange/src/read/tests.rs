@@ -25,6 +25,13 @@ fn state(step: u64, index: usize) -> BodyState {
     }
 }
 
+/// The force of the ground that the log has on body `index` at `step`, and the weight of any.
+fn load(step: u64, index: usize) -> Vec3 {
+    Vec3::new(index as f64, 0.0, step as f64)
+}
+
+const WEIGHT: Vec3 = Vec3::new(0.0, 0.0, -7.0);
+
 /// Starts a log whose surface lies at 0.5 m and writes it up to the step `last`.
 fn written(folder: &TempDir, last: u64) -> RunLog {
     let body = |name: &str| LoggedBody {
@@ -40,7 +47,7 @@ fn written(folder: &TempDir, last: u64) -> RunLog {
         bodies: vec![body("ball"), body("disc")],
         container: None,
         energy_terms: vec!["kinetic_intruder_J".to_owned(), "dissipated_x_J".to_owned()],
-        force_origins: vec!["contact".to_owned()],
+        force_origins: vec!["contact".to_owned(), "gravity".to_owned()],
         arrow_m_per_newton: 1.0,
         metadata: [("name".to_owned(), "small".to_owned())].into(),
         attachments: Vec::new(),
@@ -54,7 +61,7 @@ fn written(folder: &TempDir, last: u64) -> RunLog {
             let position = position + Vec3::new(0.0, 0.0, 0.5);
             let sample = BodySample { position, velocity, spin: Vec3::zeros(), depth_m: depth };
             log.body_state(at, index, &sample).unwrap();
-            let (forces, torques) = ([Vec3::zeros()], [Vec3::zeros()]);
+            let (forces, torques) = ([load(step, index), WEIGHT], [Vec3::zeros(); 2]);
             let load = BodyLoad { forces: &forces, torques: &torques, contacts: 1, area: 0.0 };
             log.body_load(at, index, &load).unwrap();
         }
@@ -67,6 +74,19 @@ fn finished() -> (TempDir, PathBuf) {
     written(&folder, 25).finish().unwrap();
     let path = folder.path().join(RUN_LOG);
     (folder, path)
+}
+
+#[test]
+fn the_force_of_the_ground_is_all_but_the_weight() {
+    let (_folder, path) = finished();
+    let run = read_run(&path, Keep::All).unwrap();
+    for (index, loads) in run.loads.iter().enumerate() {
+        assert_eq!(loads.name, run.bodies[index].name);
+        assert_eq!(loads.time.len(), 26);
+        assert_eq!(loads.force, (0..26).map(|step| load(step, index)).collect::<Vec<_>>());
+    }
+    assert_eq!(run.loads.len(), 2);
+    assert!(read_run(&path, Keep::StatesAndEnergy).unwrap().loads.is_empty());
 }
 
 #[test]

@@ -10,11 +10,11 @@ const RINGS: u32 = 23;
 
 /// A surface of triangles, counter-clockwise seen from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Surface {
-    /// (m).
-    pub(super) corners: Vec<[f64; 3]>,
-    /// Indices of corners.
-    pub(super) triangles: Vec<[u32; 3]>,
+pub struct Surface {
+    /// The corners (m).
+    pub corners: Vec<[f64; 3]>,
+    /// Indices of corners, three to a triangle.
+    pub triangles: Vec<[u32; 3]>,
 }
 
 /// A place and a turn, from one frame to another.

@@ -10,7 +10,7 @@ const UINT32: usize = 5;
 
 /// Reads messages `foxglove.PointCloud`.
 #[derive(Clone, Debug)]
-pub(super) struct CloudReader {
+pub(crate) struct CloudReader {
     message: MessageDescriptor,
     timestamp: FieldDescriptor,
     stride: FieldDescriptor,
@@ -20,21 +20,21 @@ pub(super) struct CloudReader {
 
 /// One cloud.
 #[derive(Clone, Debug)]
-pub(super) struct Cloud {
+pub(crate) struct Cloud {
     /// Simulated time (s).
-    pub(super) time: f64,
+    pub(crate) time: f64,
     /// What every point has, in the order of the message.
-    pub(super) columns: Vec<CloudColumn>,
+    pub(crate) columns: Vec<CloudColumn>,
     stride: usize,
     data: Value,
 }
 
 /// A number that every point of a cloud has.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct CloudColumn {
-    pub(super) name: String,
+pub(crate) struct CloudColumn {
+    pub(crate) name: String,
     /// Whether it is an identifier rather than a quantity.
-    pub(super) counts: bool,
+    pub(crate) counts: bool,
     offset: usize,
 }
 
@@ -43,7 +43,7 @@ impl CloudReader {
     ///
     /// # Errors
     /// What the message lacks, in a sentence.
-    pub(super) fn of(message: &MessageDescriptor) -> Result<Self, String> {
+    pub(crate) fn of(message: &MessageDescriptor) -> Result<Self, String> {
         let field = |name: &str| {
             let found = message.get_field_by_name(name);
             found.ok_or_else(|| format!("{} has no field `{name}`", message.full_name()))
@@ -61,7 +61,7 @@ impl CloudReader {
     ///
     /// # Errors
     /// What is wrong with it, in a sentence.
-    pub(super) fn read(&self, data: &[u8]) -> Result<Cloud, String> {
+    pub(crate) fn read(&self, data: &[u8]) -> Result<Cloud, String> {
         let message =
             DynamicMessage::decode(self.message.clone(), data).map_err(|e| e.to_string())?;
         let stride = message.get_field(&self.stride).as_u32().unwrap_or(0) as usize;
@@ -87,13 +87,13 @@ impl Cloud {
     ///
     /// # Errors
     /// That it is missing, in a sentence.
-    pub(super) fn column(&self, name: &str) -> Result<&CloudColumn, String> {
+    pub(crate) fn column(&self, name: &str) -> Result<&CloudColumn, String> {
         let found = self.columns.iter().find(|column| column.name == name);
         found.ok_or_else(|| format!("its points have no `{name}`"))
     }
 
     /// The points, each as its bytes.
-    pub(super) fn points(&self) -> impl Iterator<Item = &[u8]> {
+    pub(crate) fn points(&self) -> impl Iterator<Item = &[u8]> {
         let data = self.data.as_bytes().map_or(&[][..], |bytes| &bytes[..]);
         data.chunks_exact(self.stride)
     }
@@ -101,12 +101,12 @@ impl Cloud {
 
 impl CloudColumn {
     /// The quantity in a point.
-    pub(super) fn quantity(&self, point: &[u8]) -> f32 {
+    pub(crate) fn quantity(&self, point: &[u8]) -> f32 {
         f32::from_le_bytes(self.word(point))
     }
 
     /// The identifier in a point.
-    pub(super) fn count(&self, point: &[u8]) -> u32 {
+    pub(crate) fn count(&self, point: &[u8]) -> u32 {
         u32::from_le_bytes(self.word(point))
     }
 

@@ -9,24 +9,28 @@ use super::surfaces::{Pose, Surface, UPRIGHT, ball, barrel, cross};
 
 /// A body at one time.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Body {
+pub struct Body {
+    /// Its name in the topics of the log.
+    pub name: String,
+    /// Centre of mass; z points up from the undisturbed surface (m).
+    pub centre: [f64; 3],
     /// What it looks like.
-    pub(super) surface: Surface,
+    pub surface: Surface,
     /// Velocities of the corners of the surface (m/s).
-    pub(super) velocities: Vec<[f64; 3]>,
+    pub velocities: Vec<[f64; 3]>,
     /// What stands for it among particles.
-    pub(super) beads: Vec<MovingBead>,
+    pub beads: Vec<MovingBead>,
 }
 
 /// A bead at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct MovingBead {
-    /// (m).
-    pub(super) position: [f64; 3],
-    /// (m).
-    pub(super) radius: f64,
-    /// (m/s).
-    pub(super) velocity: [f64; 3],
+pub struct MovingBead {
+    /// Centre (m).
+    pub position: [f64; 3],
+    /// Radius (m).
+    pub radius: f64,
+    /// Velocity (m/s).
+    pub velocity: [f64; 3],
 }
 
 /// A body in its own frame.
@@ -102,7 +106,13 @@ impl Bodies {
                 let position = pose.apply(bead.centre);
                 MovingBead { position, radius: bead.radius, velocity: motion.at(position) }
             });
-            Some(Body { beads: beads.collect(), surface, velocities })
+            Some(Body {
+                name: name.clone(),
+                centre: motion.centre,
+                beads: beads.collect(),
+                surface,
+                velocities,
+            })
         });
         placed.collect()
     }
