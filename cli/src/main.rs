@@ -18,6 +18,7 @@ mod export;
 mod import;
 mod import_args;
 mod import_tables;
+mod movie;
 mod new;
 mod new_set;
 mod next;
@@ -69,6 +70,8 @@ enum Command {
     Sweep(sweep::Args),
     /// Make the HTML report of a run, a list of runs, a campaign, a comparison or a diagnosis again.
     Report(report::Args),
+    /// Make a film of an impact, or pictures at single times.
+    Movie(movie::Args),
     /// Write a run or an impact as files of other programs: tables, grains for viewers, a LAMMPS input.
     Export(export::Args),
     /// Make a measurement set of tables of tracking programs; or a log of a run of LAMMPS.
@@ -107,6 +110,7 @@ fn main() -> ExitCode {
         Command::New(args) => new::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Report(args) => report::run(&args),
+        Command::Movie(args) => movie::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Import(args) => import::run(&args),
         Command::Recover(args) => recover::run(&args),
@@ -135,6 +139,7 @@ impl Command {
             | Self::Effects(_)
             | Self::New(_)
             | Self::Report(_)
+            | Self::Movie(_)
             | Self::Export(_)
             | Self::Import(_)
             | Self::Recover(_)

@@ -11,10 +11,12 @@ mod comparison;
 mod diagnosis;
 mod figure;
 mod list;
+pub mod movie;
 mod numbers;
 mod page;
 mod published;
 pub mod run;
+pub mod scene;
 mod set;
 
 use std::collections::BTreeMap;

@@ -19,13 +19,12 @@ pub struct Pixels {
 }
 
 impl Sheet {
-    /// The sheet on white, each of its pixels `scale` of the picture's; the same sheet gives the same bytes.
+    /// The sheet on white, scaled to the width of a picture of `size`; the same sheet gives the same bytes.
     ///
     /// # Errors
     /// If it has no pixel, or more than memory holds.
-    pub fn pixels(&self, scale: f64) -> Result<Pixels, PictureError> {
-        let size = [self.size.0, self.size.1].map(|side| (scale * f64::from(side)).round() as u32);
-        let [w, h] = size;
+    pub fn pixels(&self, (w, h): (u32, u32)) -> Result<Pixels, PictureError> {
+        let scale = f64::from(w) / f64::from(self.size.0.max(1));
         let too_large = || PictureError(format!("a picture of {w} x {h} pixels"));
         let mut painting = Painting { map: Pixmap::new(w, h).ok_or_else(too_large)?, scale };
         painting.map.fill(colour(PAPER));
@@ -189,7 +188,9 @@ mod tests {
     use super::*;
 
     fn painted(marks: Vec<Mark>, clip: Option<[f64; 4]>) -> Pixels {
-        Sheet { size: (40, 30), layers: vec![Layer { clip, marks }] }.pixels(2.0).expect("pixels")
+        Sheet { size: (40, 30), layers: vec![Layer { clip, marks }] }
+            .pixels((80, 60))
+            .expect("pixels")
     }
 
     fn dark(pixels: &Pixels) -> usize {
