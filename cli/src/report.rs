@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use exchange::run_files::{RunFiles, is_log};
-use reports::run::Course;
+use reports::run::{Course, Seen};
 use reports::{FILE, ReportError};
 use runner::run::{ListSummary, Summary};
 use serde_json::json;
@@ -49,7 +49,11 @@ pub(crate) fn of_run(folder: &Path, summary: &Summary, quiet: bool) -> Option<Co
             return None;
         }
     };
-    leave(folder, || reports::run::page(summary, &course), quiet);
+    let page = || {
+        let seen = Seen::read(folder, summary, &course);
+        reports::run::page(summary, &course, &seen)
+    };
+    leave(folder, page, quiet);
     Some(course)
 }
 

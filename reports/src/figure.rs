@@ -2,11 +2,20 @@
 
 use crate::page::Part;
 
-/// The picture `svg` under `caption`; its width is that of the page, at most its own.
+/// The picture `svg` under `caption`, at least as wide as it was drawn.
 pub(crate) fn figure(svg: &str, caption: &str) -> Part {
+    let (svg, caption) = panel(svg, caption);
+    Part::Figure(svg, caption)
+}
+
+/// The picture `svg` and its `caption`, as one of several side by side.
+pub(crate) fn panel(svg: &str, caption: &str) -> (String, String) {
     // In a page the kind of its elements is known; of a file it has to say it by an address.
     let svg = svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
-    Part::Figure(svg.trim_end().to_owned(), caption.to_owned())
+    let label = caption.replace('&', "&amp;").replace('"', "&quot;").replace('<', "&lt;");
+    // Whoever cannot see it hears what it shows; it is not read letter by letter.
+    let named = format!("<svg role=\"img\" aria-label=\"{label}\" ");
+    (svg.trim_end().replacen("<svg ", &named, 1), caption.to_owned())
 }
 
 #[cfg(test)]

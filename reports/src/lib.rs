@@ -79,6 +79,9 @@ pub enum ReportError {
     /// The log of a run.
     #[error(transparent)]
     Log(#[from] ReadError),
+    /// What is seen of a run.
+    #[error(transparent)]
+    Scene(#[from] scene::SceneError),
     /// The folder of a campaign.
     #[error(transparent)]
     Campaign(#[from] FolderError),
@@ -108,7 +111,9 @@ pub fn of_folder(folder: &Path) -> Result<String, ReportError> {
             Some(_) => of_list(&serde_json::from_value(value).map_err(why)?),
             None => {
                 let summary: Summary = serde_json::from_value(value).map_err(why)?;
-                run::page(&summary, &run::Course::read(folder)?)
+                let course = run::Course::read(folder)?;
+                let seen = run::Seen::read(folder, &summary, &course);
+                run::page(&summary, &course, &seen)
             }
         };
     }

@@ -43,6 +43,15 @@ pub(crate) enum Part {
     Answer(String),
     /// A figure as SVG, and what it shows.
     Figure(String, String),
+    /// Small figures side by side, each with what it shows.
+    Panels(Vec<(String, String)>),
+    /// The scenes of a run as JSON, and the frame to begin with.
+    Player {
+        data: String,
+        frame: usize,
+    },
+    /// Words and what they mean.
+    Terms(Vec<(&'static str, &'static str)>),
     Table(Table),
     Cards(Vec<Card>),
     /// Something to paste.
@@ -81,6 +90,12 @@ impl Table {
 }
 
 impl Page {
+    /// Whether something on it plays.
+    fn plays(&self) -> bool {
+        let mut parts = self.sections.iter().flat_map(|section| &section.parts);
+        parts.any(|part| matches!(part, Part::Player { .. }))
+    }
+
     pub(crate) fn html(&self) -> Result<String, ReportError> {
         // Names and texts are of files from anywhere.
         Ok(configs::printable(&self.render()?))

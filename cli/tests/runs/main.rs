@@ -17,6 +17,7 @@ mod folders;
 mod imports;
 mod kill;
 mod log;
+mod movies;
 mod recover;
 mod reports;
 mod resistive;

@@ -19,20 +19,39 @@ fn figures(page: &str) -> (usize, usize) {
 }
 
 #[test]
-fn a_run_of_either_medium_leaves_a_page_with_its_path_and_its_energies() {
+fn a_run_of_either_medium_leaves_a_page_with_its_motion_and_its_energies() {
     let (grains, law) = (folder(), folder());
     Call::run(grains.path()).done();
     resistive(law.path(), &[]);
-    for (folder, losses) in
-        [(grains.path(), "lost to sliding"), (law.path(), "lost to depth friction")]
+    // Depth, velocity, force, acceleration and energy; of a bed its three moments and its crater too.
+    for (folder, losses, expected) in
+        [(grains.path(), "lost to sliding", 9), (law.path(), "lost to depth friction", 5)]
     {
         let page = report(folder);
         let (figures, values) = figures(&page);
-        // A hundred and twenty columns in each of four panels, fewer where samples are.
-        assert!(figures == 2 && values > 200, "{figures} figures, {values} values");
+        // A hundred and twenty columns in each panel, fewer where samples are.
+        assert!(figures == expected && values > 200, "{figures} figures, {values} values");
         assert!(page.contains(losses), "{losses}");
         assert!(!page.contains("://") && !page.contains("NaN"), "no address, and only numbers");
     }
+}
+
+#[test]
+fn a_page_shows_the_grains_and_says_how_to_log_them_where_they_were_not() {
+    let (logged, not) = (folder(), folder());
+    Call::run(logged.path()).done();
+    Call::run(not.path()).set(&["log.grains=false"]).done();
+    let page = report(logged.path());
+    let data = page.split("id=\"scenes\">").nth(1).and_then(|from| from.split("</script>").next());
+    let data: serde_json::Value = serde_json::from_str(data.expect("scenes")).expect("JSON");
+    let frames = data["times"].as_array().expect("times").len();
+    let view = &data["views"][0];
+    assert_eq!(view["n"], 300, "all grains of a small bed");
+    for of_frames in ["bodies", "forces", "frames"] {
+        assert_eq!(view[of_frames].as_array().map(Vec::len), Some(frames), "{of_frames}");
+    }
+    let page = report(not.path());
+    assert!(!page.contains("id=\"scenes\"") && page.contains("--set log.grains=true"), "{page}");
 }
 
 #[test]
@@ -67,7 +86,7 @@ fn a_list_has_a_page_and_so_has_each_of_its_runs() {
     let conditions = ["conditions.speed=[\"1 m/s\", \"2 m/s\"]", "conditions.angle=[\"45 deg\"]"];
     resistive(out.path(), &conditions);
     for member in ["001", "002"] {
-        assert_eq!(figures(&report(&out.path().join(member))).0, 2, "{member}");
+        assert_eq!(figures(&report(&out.path().join(member))).0, 5, "{member}");
     }
     let page = report(out.path());
     assert_eq!(figures(&page), (1, 4), "two conditions in two panels");

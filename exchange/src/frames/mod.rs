@@ -3,6 +3,7 @@
 mod beads;
 mod bodies;
 pub(crate) mod cloud;
+mod joined;
 mod surfaces;
 
 use std::ops::ControlFlow;
@@ -18,6 +19,7 @@ use crate::read::ReadError;
 use crate::read::messages::{Receiver, Refusal, each_message};
 use bodies::Bodies;
 use cloud::{Cloud, CloudReader};
+use joined::joined_to_the_lowest;
 
 pub use engine::crater::CraterPoint;
 
@@ -63,7 +65,7 @@ impl Frame {
     }
 
     /// The mean surface of the bed around the vertical axis through `x`, `y` (m), in rings one mean diameter
-    /// wide (planar: intervals to both sides). A grain on which no force acts is in the air, not of the bed.
+    /// wide (planar: intervals to both sides). Of the bed are grains that a chain of contacts joins to its lowest.
     #[must_use]
     pub fn crater(&self, x: f64, y: f64) -> Vec<CraterPoint> {
         let space = if self.is_planar() { Space::Planar } else { Space::Spatial };
@@ -81,7 +83,7 @@ impl Frame {
                 id: grain.id,
             })
             .collect();
-        let lies: Vec<bool> = self.grains.iter().map(|grain| grain.force > 0.0).collect();
+        let lies = joined_to_the_lowest(&self.grains);
         match grains.is_empty() {
             true => Vec::new(),
             false => crater(&Grains::new(space, &grains), &lies, (x, y)),

@@ -7,6 +7,7 @@ use exchange::run_files::RunFiles;
 
 use super::sparkline::sparkline;
 use super::thin::places;
+use crate::scene::Forces;
 
 /// Most samples of a curve.
 const SAMPLES: usize = 320;
@@ -18,6 +19,8 @@ pub struct Course {
     pub(super) bodies: Vec<BodyStates>,
     /// The energy budget; none if the log has none.
     pub(super) energy: Option<EnergyBudgets>,
+    /// The forces of the ground.
+    pub(super) forces: Forces,
     /// Whether the log is whole.
     pub(super) complete: bool,
 }
@@ -28,12 +31,23 @@ impl Course {
     /// # Errors
     /// If its log cannot be read.
     pub fn read(run: &Path) -> Result<Self, ReadError> {
-        let log = read_run(&RunFiles::of(run).log, Keep::StatesAndEnergy)?;
+        let log = read_run(&RunFiles::of(run).log, Keep::All)?;
         Ok(Self {
             bodies: log.bodies.iter().map(thinned).collect(),
             energy: log.energy.as_ref().map(thinned_budget),
+            forces: Forces::of(&log.loads),
             complete: log.complete,
         })
+    }
+
+    /// The state of the first body at the sample nearest to `time` (s).
+    pub(super) fn first_at(&self, time: f64) -> Option<&BodyState> {
+        let states = &self.bodies.first()?.states;
+        let after =
+            states.partition_point(|state| state.time < time).min(states.len().checked_sub(1)?);
+        let before = after.saturating_sub(1);
+        let off = |at: usize| (states[at].time - time).abs();
+        states.get(if off(before) < off(after) { before } else { after })
     }
 
     /// Depth and speed of the first body over time, each as a line of `width` characters.

@@ -205,6 +205,7 @@ impl Budget {
             .x_labels(times)
             .x_desc(if times > 0 { TIME } else { "" })
             .y_labels(6)
+            .y_label_formatter(&|value| plots::short(*value))
             .label_style(small())
             .y_desc(format!("energy ({prefix}J)"))
             .axis_desc_style(letters())
@@ -244,6 +245,8 @@ impl Budget {
             .disable_x_mesh()
             .x_labels(TIMES)
             .y_labels(3)
+            .x_label_formatter(&|value| plots::short(*value))
+            .y_label_formatter(&|value| plots::short(*value))
             .label_style(small())
             .x_desc(TIME)
             .y_desc(format!("missing (1e{exponent})"))
@@ -304,7 +307,12 @@ mod tests {
             values: vec![vec![1.0, 0.0], vec![0.2, 0.7], vec![0.0, 0.49]],
             closing: Some(Closing { unaccounted: vec![0.0, -0.01], closure: vec![0.0, 0.01] }),
         };
-        Course { bodies: Vec::new(), energy: Some(budget), complete: true }
+        Course {
+            bodies: Vec::new(),
+            energy: Some(budget),
+            forces: crate::scene::Forces::default(),
+            complete: true,
+        }
     }
 
     #[test]

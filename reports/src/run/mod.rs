@@ -1,34 +1,40 @@
 //! The report of one run: where the intruder went, and where its energy went.
 
 mod course;
+mod crater;
 mod energy;
+mod impact;
 mod pair;
 mod path;
+mod player;
 mod sparkline;
 mod thin;
 
 use runner::run::{BedSummary, ForceSummary, LinkSummary, StopSummary, Summary};
 
 pub use course::Course;
+pub use impact::Seen;
 pub(crate) use pair::page as pair_page;
 pub use pair::picture as pair_picture;
 pub use sparkline::sparkline;
 
 use crate::ReportError;
-use crate::figure::figure;
+use crate::figure::{figure, panel};
 use crate::numbers::{fixed, share, with_prefix};
 use crate::page::{Number, Page, Part, Section, Table};
 
-/// The page of the run that `summary` and `course` are of.
+/// The page of the run that `summary`, `course` and `seen` are of.
 ///
 /// # Errors
-/// If a figure cannot be drawn.
-pub fn page(summary: &Summary, course: &Course) -> Result<String, ReportError> {
+/// If a figure cannot be drawn, or the log of grains cannot be read again.
+pub fn page(summary: &Summary, course: &Course, seen: &Seen) -> Result<String, ReportError> {
     let sections = [
-        Section::new("Path", path_section(summary, course)?),
+        Section::new("Impact", impact::parts(seen, course)?),
+        Section::new("Motion and force", motion(summary, course, seen)?),
         Section::new("Energy", energy_section(summary, course)?),
         Section::new("Links", links(&summary.links)),
         Section::new("Bed", bed(summary.bed.as_ref())),
+        Section::new("Terms", vec![Part::Terms(terms(summary))]),
     ];
     let page = Page {
         title: summary.name.clone(),
@@ -83,10 +89,11 @@ fn headline(summary: &Summary) -> Vec<Number> {
     ]
 }
 
-fn path_section(summary: &Summary, course: &Course) -> Result<Vec<Part>, ReportError> {
-    let caption = "Depth of the lowest point below the undisturbed surface, and distance along the \
-                   horizontal motion; velocity downward and along it. The dashed line is the stop.";
-    let mut parts = vec![figure(&path::picture(course, summary)?, caption)];
+fn motion(summary: &Summary, course: &Course, seen: &Seen) -> Result<Vec<Part>, ReportError> {
+    let mut panels = path::pictures(course, summary)?;
+    panels.extend(impact::crater(seen)?);
+    let panels = panels.iter().map(|(svg, caption)| panel(svg, caption));
+    let mut parts = vec![Part::Panels(panels.collect())];
     if !course.complete {
         parts.push(Part::Text("The log is cut: curves go as far as it does.".to_owned()));
     }
@@ -174,4 +181,46 @@ fn bed(bed: Option<&BedSummary>) -> Vec<Part> {
     }
     let warnings = bed.warnings.iter().map(|warning| Part::Text(format!("Warning: {warning}.")));
     [Part::Table(table)].into_iter().chain(warnings).collect()
+}
+
+/// What words of the page mean.
+fn terms(summary: &Summary) -> Vec<(&'static str, &'static str)> {
+    let mut terms = vec![
+        (
+            "depth",
+            "of the lowest point of the body below the undisturbed surface, positive downward",
+        ),
+        ("range", "horizontal distance from the point of contact to where the body ends"),
+        ("angle", "of the velocity at contact from the horizontal: 90\u{b0} is straight down"),
+        (
+            "stopping time",
+            "from contact until the velocity, or a component of it, is zero for the first time; it can be late, \
+             because a body creeps",
+        ),
+        (
+            "at rest after",
+            "from contact until the speed stays below a small share of the speed at contact; it can come before the \
+             stopping time",
+        ),
+        ("energy supplied", "the motion of the body at contact, and what it gives by sinking"),
+        (
+            "closure",
+            "the largest energy that no account holds at any time, over the energy at impact: how well the \
+             calculation keeps its books",
+        ),
+    ];
+    if summary.bed.is_some() {
+        terms.push((
+            "sliding, normal and tangential damping",
+            "what contacts dissipate: by friction while they slide, and \
+                    by their dashpots",
+        ));
+        terms.push(("springs", "what contacts hold as they are pressed together"));
+        terms.push((
+            "packing fraction",
+            "volume of the grains over that of the bed, in a plane the same of areas",
+        ));
+        terms.push(("coordination", "mean number of contacts of a grain"));
+    }
+    terms
 }

@@ -222,7 +222,8 @@ mod tests {
             values: vec![vec![0.0, 0.25], vec![4.0, 4.5], vec![0.0, 8.0]],
             closing: None,
         };
-        let course = Course { bodies: Vec::new(), energy: Some(energy), complete: true };
+        let forces = crate::scene::Forces::default();
+        let course = Course { bodies: Vec::new(), energy: Some(energy), forces, complete: true };
         let grains = of_energies(&course, ["kinetic_grains", "potential_grains"], 1.0);
         // Sums of powers of two: exact.
         assert_eq!(grains, [[(0.0, 0.0), (0.5, 0.75)]]);

@@ -1,4 +1,4 @@
-//! Depth, distance and velocity over time.
+//! Depth, velocity, force and acceleration over time.
 
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, Hover, PictureError, colour, letters, svg};
@@ -10,7 +10,7 @@ use super::thin::places;
 use exchange::read::{BodyState, BodyStates};
 
 /// Size of a panel (pixels).
-const PANEL: (u32, u32) = (470, 300);
+const PANEL: (u32, u32) = (400, 280);
 
 /// Columns that say their values.
 const COLUMNS: usize = 120;
@@ -24,71 +24,129 @@ struct Curve {
     points: Vec<(f64, f64)>,
 }
 
-/// One of the two panels.
+/// A panel: a figure of its own.
 struct Panel {
     axis: &'static str,
     unit: &'static str,
     curves: Vec<Curve>,
+    /// Time (ms), least and greatest, of what a curve is the mean of.
+    band: Vec<[f64; 3]>,
     /// Which way the axis runs.
     downward: bool,
 }
 
-/// The panels of `course`, the stop as `summary` has it.
-pub(super) fn picture(course: &Course, summary: &Summary) -> Result<String, PictureError> {
+/// Figures of `course` over time, each with what it shows: depth, velocity, force and acceleration. The stop is as
+/// `summary` has it.
+pub(super) fn pictures(
+    course: &Course,
+    summary: &Summary,
+) -> Result<Vec<(String, String)>, PictureError> {
     let moves_along = course.bodies.iter().any(moves_along);
+    let stop = summary.stop.stopping_time_s.map(|stop| 1e3 * stop);
+    let force = force(course, moves_along);
+    let grey = !force.band.is_empty();
     let panels = [
-        Panel {
-            axis: "position (mm)",
-            unit: "mm",
-            curves: curves(course, moves_along, |body, state, along| {
-                let start = body.states.first().map_or(0.0, |first| first.position.x);
-                1e3 * if along { state.position.x - start } else { state.depth }
-            }),
-            downward: true,
-        },
-        Panel {
-            axis: "velocity (m/s)",
-            unit: "m/s",
-            curves: curves(course, moves_along, |_, state, along| {
-                if along { state.velocity.x } else { -state.velocity.z }
-            }),
-            downward: false,
-        },
+        (position(course, moves_along), DEPTH),
+        (velocity(course, moves_along), VELOCITY),
+        (force, if grey { FORCE_AND_RANGE } else { FORCE }),
+        (acceleration(course, moves_along), ACCELERATION),
     ];
-    let rows: Vec<(Sign, String)> =
-        panels[0].curves.iter().map(|curve| (curve.sign, curve.name.clone())).collect();
-    let stop = summary.stop.stopping_time_s;
-    svg((2 * PANEL.0, PANEL.1 + legend::height(rows.len())), |area| {
-        let (charts, below) = area.split_vertically(PANEL.1);
-        for (panel, chart) in panels.iter().zip(charts.split_evenly((1, 2))) {
-            panel.draw(&chart, stop)?;
-        }
-        legend::draw(&below, &rows)
-    })
+    let there = panels.into_iter().filter(|(panel, _)| !panel.curves.is_empty());
+    there.map(|(panel, caption)| Ok((panel.picture(stop)?, caption.to_owned()))).collect()
 }
 
-/// Whether a body goes anywhere but down: by more than a thousandth of its depth.
+const DEPTH: &str = "Depth of the lowest point of the body below the undisturbed surface. The vertical dashed line is \
+                     the stopping time.";
+const VELOCITY: &str = "Velocity of the centre of mass, downward positive.";
+const FORCE: &str =
+    "Force of the ground on the body, without its weight: the mean over short spans of time.";
+const FORCE_AND_RANGE: &str = "Force of the ground on the body, without its weight: the mean over short spans of time \
+                               and, in grey, the least and the greatest magnitude within them.";
+const ACCELERATION: &str = "Acceleration of the centre of mass between two samples, upward positive: what the body is \
+                            braked by, in it the weight.";
+
+fn position(course: &Course, moves_along: bool) -> Panel {
+    let curves = curves(course, moves_along, ["downward", "along the surface"], |body, along| {
+        let start = body.states.first().map_or(0.0, |first| first.position.x);
+        let place = |state: &BodyState| if along { state.position.x - start } else { state.depth };
+        body.states.iter().map(|state| (state.time, 1e3 * place(state))).collect()
+    });
+    let axis = if moves_along { "position (mm)" } else { "depth (mm)" };
+    Panel { axis, unit: "mm", curves, band: Vec::new(), downward: true }
+}
+
+fn velocity(course: &Course, moves_along: bool) -> Panel {
+    let curves = curves(course, moves_along, ["downward", "along the surface"], |body, along| {
+        let of = |state: &BodyState| if along { state.velocity.x } else { -state.velocity.z };
+        body.states.iter().map(|state| (state.time, of(state))).collect()
+    });
+    Panel { axis: "velocity (m/s)", unit: "m/s", curves, band: Vec::new(), downward: false }
+}
+
+fn force(course: &Course, moves_along: bool) -> Panel {
+    let forces = &course.forces;
+    let curves = curves(course, moves_along, ["upward", "along the surface"], |body, along| {
+        let times = forces.time.iter();
+        times
+            .filter_map(|time| {
+                let [x, _, z] = forces.on(&body.name, *time)?;
+                Some((*time, if along { x } else { z }))
+            })
+            .collect()
+    });
+    // The magnitude is that of the curve where there is one, and it points up.
+    let single = !moves_along && forces.ranges.len() == 1;
+    let ranges = forces.ranges.iter().flatten().filter(|_| single);
+    let band = forces.time.iter().zip(ranges).map(|(time, [low, high])| [1e3 * time, *low, *high]);
+    Panel { axis: "force (N)", unit: "N", curves, band: band.collect(), downward: false }
+}
+
+fn acceleration(course: &Course, moves_along: bool) -> Panel {
+    let curves = curves(course, moves_along, ["upward", "along the surface"], |body, along| {
+        let of = |state: &BodyState| if along { state.velocity.x } else { state.velocity.z };
+        let between = |pair: &[BodyState]| {
+            let [before, after] = [&pair[0], &pair[1]];
+            let rate = (of(after) - of(before)) / (after.time - before.time);
+            (0.5 * (before.time + after.time), rate)
+        };
+        body.states.windows(2).map(between).filter(|(_, rate)| rate.is_finite()).collect()
+    });
+    Panel {
+        axis: "acceleration (m/s\u{b2})",
+        unit: "m/s\u{b2}",
+        curves,
+        band: Vec::new(),
+        downward: false,
+    }
+}
+
+/// Whether a body goes anywhere but down: by more than a fiftieth of its depth.
 fn moves_along(body: &BodyStates) -> bool {
     let start = body.states.first().map_or(0.0, |first| first.position.x);
     let most = |of: &dyn Fn(&BodyState) -> f64| {
         body.states.iter().fold(0.0_f64, |most, state| most.max(of(state).abs()))
     };
-    most(&|state| state.position.x - start) > 1e-3 * most(&|state| state.depth)
+    most(&|state| state.position.x - start) > 0.02 * most(&|state| state.depth)
 }
 
+/// A curve for each body, and for each of two `directions` where bodies move along; `points` are times (s) and values.
 fn curves(
     course: &Course,
     moves_along: bool,
-    value: impl Fn(&BodyStates, &BodyState, bool) -> f64,
+    directions: [&str; 2],
+    points: impl Fn(&BodyStates, bool) -> Vec<(f64, f64)>,
 ) -> Vec<Curve> {
     let one = course.bodies.len() == 1;
     let mut curves = Vec::new();
     for (at, body) in course.bodies.iter().enumerate() {
-        let directions = if moves_along { &[false, true][..] } else { &[false] };
-        for &along in directions {
-            let direction = if along { "along the surface" } else { "downward" };
-            let points =
-                body.states.iter().map(|state| (1e3 * state.time, value(body, state, along)));
+        let ways = if moves_along { &[false, true][..] } else { &[false] };
+        for &along in ways {
+            let direction = directions[usize::from(along)];
+            let points = points(body, along).into_iter().map(|(time, value)| (1e3 * time, value));
+            let points: Vec<_> = points.collect();
+            if points.is_empty() {
+                continue;
+            }
             curves.push(Curve {
                 name: if one {
                     direction.to_owned()
@@ -97,7 +155,7 @@ fn curves(
                 },
                 sign: if along { Sign::Dashed(colour(at)) } else { Sign::Line(colour(at)) },
                 along,
-                points: points.collect(),
+                points,
             });
         }
     }
@@ -105,8 +163,25 @@ fn curves(
 }
 
 impl Panel {
+    fn picture(&self, stop: Option<f64>) -> Result<String, PictureError> {
+        let rows: Vec<(Sign, String)> =
+            self.curves.iter().map(|curve| (curve.sign, curve.name.clone())).collect();
+        // What a single curve is, the axis says.
+        let rows = if rows.len() > 1 { rows } else { Vec::new() };
+        let legend = if rows.is_empty() { 0 } else { legend::height(rows.len()) };
+        svg((PANEL.0, PANEL.1 + legend), |area| {
+            let (chart, below) = area.split_vertically(PANEL.1);
+            self.draw(&chart, stop)?;
+            legend::draw(&below, &rows)
+        })
+    }
+
     fn draw(&self, area: &Area<'_>, stop: Option<f64>) -> Drawn {
-        let points = || self.curves.iter().flat_map(|curve| &curve.points);
+        let points = || {
+            let band =
+                self.band.iter().flat_map(|[time, low, high]| [(*time, *low), (*time, *high)]);
+            self.curves.iter().flat_map(|curve| curve.points.iter().copied()).chain(band)
+        };
         let last = points().fold(0.0_f64, |last, point| last.max(point.0)).max(1e-9);
         let low = points().fold(0.0_f64, |low, point| low.min(point.1));
         let high = points().fold(1e-9_f64, |high, point| high.max(point.1));
@@ -122,13 +197,22 @@ impl Panel {
             .configure_mesh()
             .x_labels(6)
             .y_labels(6)
+            .x_label_formatter(&|value| plots::short(*value))
+            .y_label_formatter(&|value| plots::short(*value))
+            .label_style(letters())
             .x_desc("time (ms)")
             .y_desc(self.axis)
             .axis_desc_style(letters())
             .light_line_style(WHITE)
             .bold_line_style(plots::GREY)
             .draw()?;
-        if let Some(stop) = stop.map(|stop| 1e3 * stop).filter(|stop| *stop <= last) {
+        let lower = self.band.iter().map(|[time, low, _]| (*time, *low));
+        let upper = self.band.iter().rev().map(|[time, _, high]| (*time, *high));
+        let outline: Vec<(f64, f64)> = lower.chain(upper).collect();
+        if !outline.is_empty() {
+            chart.draw_series([Polygon::new(outline, plots::GREY.filled())])?;
+        }
+        if let Some(stop) = stop.filter(|stop| *stop <= last) {
             let line = [(stop, low), (stop, high)];
             chart.draw_series(DashedLineSeries::new(line, 4, 4, BLACK.stroke_width(1)))?;
         }

@@ -15,6 +15,8 @@ pub struct Forces {
     pub span: f64,
     /// By body: its name and its mean force in each span (N).
     pub bodies: Vec<(String, Vec<[f64; 3]>)>,
+    /// By body: the force in the first step (N).
+    starts: Vec<[f64; 3]>,
     /// By body: the least and the greatest magnitude in each span (N).
     pub ranges: Vec<Vec<[f64; 2]>>,
 }
@@ -43,15 +45,23 @@ impl Forces {
             let (mean, range) = averaged(load, first, span, n);
             forces.bodies.push((load.name.clone(), mean));
             forces.ranges.push(range);
+            let start = load.force.first().map_or([0.0; 3], |force| [force.x, force.y, force.z]);
+            forces.starts.push(start);
         }
         forces
     }
 
-    /// The mean force on a body in the span around `time` (N); none if the log has no loads of it.
+    /// The mean force on a body in the span around `time` (N), in the first step that of this step: a body that just
+    /// touches bears none. None if the log has no loads of it.
     #[must_use]
     pub fn on(&self, body: &str, time: f64) -> Option<[f64; 3]> {
-        let (_, force) = self.bodies.iter().find(|(name, _)| name == body)?;
-        force.get(self.place(time)).copied()
+        let at = self.bodies.iter().position(|(name, _)| name == body)?;
+        let begins = self.time.first().is_some_and(|first| time <= first - 0.5 * self.span);
+        if begins {
+            self.starts.get(at).copied()
+        } else {
+            self.bodies[at].1.get(self.place(time)).copied()
+        }
     }
 
     /// When the sum of all forces is greatest, and how great (s, N).
@@ -130,6 +140,7 @@ mod tests {
         let [_, _, early] = forces.on("ball", 0.001).expect("a force");
         assert!((early - 2.0).abs() < 0.06, "{early}");
         assert_eq!(forces.ranges[0][10], [1.0, 3.0]);
+        assert_eq!(forces.on("ball", 0.0), Some([0.0, 0.0, 3.0]), "the first step alone");
         assert_eq!(forces.on("cone", 0.001), None);
     }
 

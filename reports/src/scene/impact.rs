@@ -96,6 +96,12 @@ impl Impact {
         Ok(Self { log, forces, surfaces: [at_start, at_end], ..impact })
     }
 
+    /// What the colours of `quantity` end at (SI).
+    #[must_use]
+    pub fn top_of(&self, quantity: Quantity) -> f64 {
+        self.tops[quantity.index()]
+    }
+
     /// How far (m) a grain is from where it was in the first frame.
     #[must_use]
     pub fn displacement(&self, grain: &Grain) -> f64 {

@@ -23,7 +23,7 @@ pub(crate) const PATH: [u8; 3] = [0, 114, 178];
 pub(crate) const LINES: [u8; 3] = [120, 128, 136];
 
 /// The longest arrow in parts of the height of a picture.
-const ARROW: f64 = 0.32;
+const ARROW: f64 = 0.22;
 
 /// The picture of `scene`, `width` pixels wide, its height so that lengths are the same in both directions; or of
 /// the `size` given, which the bed then fills as far as it can.
@@ -88,10 +88,15 @@ impl Axes {
         quantity: Quantity,
     ) -> Vec<Mark> {
         let top = impact.tops[quantity.index()];
-        let disc = |disc: &super::Disc| Mark::Disc {
-            centre: self.at([disc.place[0], disc.place[1]]),
-            radius: DRAWN * self.scale * disc.radius,
-            colour: ramp(disc.values[quantity.index()], top),
+        // Where grains lie over each other, a darker rim tells them apart.
+        let rims = view.look == Look::Above || view.slice.is_some();
+        let disc = |disc: &super::Disc| {
+            let centre = self.at([disc.place[0], disc.place[1]]);
+            let colour = ramp(disc.values[quantity.index()], top);
+            let radius = self.scale * disc.radius;
+            let rim = Mark::Disc { centre, radius, colour: colour.map(rim) };
+            let drawn = if rims { radius - 1.0_f64.min(0.15 * radius) } else { DRAWN * radius };
+            rims.then_some(rim).into_iter().chain([Mark::Disc { centre, radius: drawn, colour }])
         };
         let mut marks = Vec::new();
         let mut bodies: Vec<_> = scene.bodies.iter().collect();
@@ -102,12 +107,12 @@ impl Axes {
                 Look::Side => discs.len(),
                 Look::Above => discs.partition_point(|disc| disc.place[2] < body.near),
             };
-            marks.extend(discs[..below].iter().map(disc));
+            marks.extend(discs[..below].iter().flat_map(disc));
             discs = &discs[below..];
             let corners = body.corners.iter().map(|corner| self.at(*corner)).collect();
             marks.push(Mark::Polygon { corners, colour: BODY });
         }
-        marks.extend(discs.iter().map(disc));
+        marks.extend(discs.iter().flat_map(disc));
         if view.look == Look::Side {
             let points = self.u.map(|u| self.at([u, 0.0])).to_vec();
             marks.push(Mark::Line { points, colour: INK, width: 1.0, dash: 5.0 });
@@ -205,12 +210,12 @@ impl Axes {
     }
 
     fn title(&self, impact: &Impact, scene: &Scene) -> Vec<Mark> {
-        let mut words = format!("{:.1} ms", 1e3 * scene.time);
+        let mut words = format!("{:.1} ms after contact", 1e3 * scene.time);
         if !impact.forces.bodies.is_empty() {
             let sum = scene.forces.iter().fold([0.0; 3], |sum, force| {
                 [sum[0] + force.newton[0], sum[1] + force.newton[1], 0.0]
             });
-            words.push_str(&format!(", force {}", crate::numbers::with_prefix(norm(sum), "N")));
+            words.push_str(&format!("; force {}", crate::numbers::with_prefix(norm(sum), "N")));
         }
         vec![Mark::Text {
             place: [self.place[0], 16.0],
@@ -220,6 +225,11 @@ impl Axes {
             upright: false,
         }]
     }
+}
+
+/// A channel of the colour of a rim.
+fn rim(channel: u8) -> u8 {
+    (0.7 * f64::from(channel)) as u8
 }
 
 fn line(points: Vec<[f64; 2]>, colour: [u8; 3]) -> Mark {

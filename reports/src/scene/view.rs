@@ -75,7 +75,8 @@ impl View {
             let margin = (3.0 * body).max(1.1 * depth);
             [(low - margin).max(bed[0]), (high + margin).min(bed[1])]
         };
-        let top = (0.4 * depth).max(1.15 * body).max(0.3 * body + impact.top);
+        // Room for the arrow over a body that has just begun to sink.
+        let top = (0.4 * depth).max(1.6 * body).max(0.6 * body + impact.top);
         let (near, whole) = match look {
             Look::Side => {
                 let low = (-depth - body.max(0.5 * depth)).max(z[0]);

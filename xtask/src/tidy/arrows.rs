@@ -48,7 +48,7 @@ const ALLOWED: [(&str, &[&str]); 16] = [
 ];
 
 /// Crates of others that are kept behind one of ours (two where a second reads what the first writes).
-const ONLY: [(&str, &[&str]); 40] = [
+const ONLY: [(&str, &[&str]); 45] = [
     ("annotate-snippets", &["configs"]),
     ("anyhow", &["plunge", "xtask"]),
     ("askama", &["reports"]),
@@ -64,6 +64,8 @@ const ONLY: [(&str, &[&str]); 40] = [
     ("comfy-table", &["plunge"]),
     ("exmex", &["resistive"]),
     ("foxglove", &["engine"]),
+    ("flate2", &["reports"]),
+    ("gif", &["reports"]),
     ("glob", &["measurements", "exchange"]),
     ("http-range-header", &["plunge"]),
     ("httparse", &["plunge"]),
@@ -73,11 +75,13 @@ const ONLY: [(&str, &[&str]); 40] = [
     ("mcap", &["engine", "exchange"]),
     // The fits of `diagnosis` speak the version that `levenberg-marquardt` is built on.
     ("nalgebra", &["engine", "resistive", "measurements", "diagnosis", "validation"]),
+    ("noto-sans-mono-bitmap", &["plots"]),
     ("num-traits", &["engine"]),
     ("parquet", &["exchange"]),
     ("parry3d-f64", &["intruders"]),
     ("plotters", &["plots", "diagnosis", "validation", "reports"]),
     ("plotters-backend", &["plots"]),
+    ("png", &["reports"]),
     ("postcard", &["engine", "fuzz"]),
     ("prost-reflect", &["exchange"]),
     ("rayon", &["engine", "diagnosis", "validation"]),
@@ -87,6 +91,7 @@ const ONLY: [(&str, &[&str]); 40] = [
     ("sobol_burley", &["runner"]),
     ("statrs", &["diagnosis", "validation"]),
     ("toml", &["configs"]),
+    ("tiny-skia", &["plots"]),
     ("toml_edit", &["configs", "fixtures"]),
     ("wide", &["engine"]),
     ("xshell", &["xtask"]),
