@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use reports::run::Course;
 use runner::run::{
-    BedSummary, CostSummary, Existing, LinkSummary, ListSummary, Outcome, Places, Scatter, Summary,
+    BedSummary, CostSummary, Existing, IntrusionSummary, LinkSummary, ListSummary, Outcome, Places,
+    Scatter, Summary,
 };
 
 use crate::common::Common;
@@ -86,26 +87,26 @@ fn one_as_text(summary: &Summary, course: Option<&Course>, out: &Path) -> String
     let time = |time: Option<f64>| {
         time.map_or_else(|| "not reached".to_owned(), |time| format!("{time:.4} s"))
     };
-    line(
-        "stopping time",
-        format!(
-            "{} (vertical {}, horizontal {})",
-            time(stop.stopping_time_s),
-            time(stop.stopping_time_z_s),
-            time(stop.stopping_time_x_s)
-        ),
-    );
-    line("at rest after", time(stop.rest_time_s));
+    let is_pushed = summary.intrusion.is_some();
+    if !is_pushed {
+        let times = [stop.stopping_time_s, stop.stopping_time_z_s, stop.stopping_time_x_s];
+        let [whole, vertical, horizontal] = times.map(time);
+        line("stopping time", format!("{whole} (vertical {vertical}, horizontal {horizontal})"));
+        line("at rest after", time(stop.rest_time_s));
+    }
     line("depth", format!("{:.2} mm", 1e3 * stop.depth_m));
     line("range", format!("{:.2} mm", 1e3 * stop.range_m));
     if let Some([depth, speed]) = course.map(|course| course.sparklines(SPARKLINE)) {
         line("depth over time", depth);
         line("speed over time", speed);
     }
+    if let Some(push) = &summary.intrusion {
+        line("pushed to", push_as_text(push));
+    }
     if let Some(bed) = &summary.bed {
         line("bed", bed_as_text(bed));
     }
-    if let Some(forces) = &summary.forces {
+    if let Some(forces) = summary.forces.as_ref().filter(|_| !is_pushed) {
         line("friction overtakes", time(forces.static_overtakes_s));
         let newton =
             |force: Option<f64>| force.map_or("-".to_owned(), |force| format!("{force:.4} N"));
@@ -115,11 +116,14 @@ fn one_as_text(summary: &Summary, course: Option<&Course>, out: &Path) -> String
     for (index, link) in summary.links.iter().enumerate() {
         line(&format!("link {}", index + 1), link_as_text(link));
     }
-    line("energy at impact", format!("{:.4e} J, of which in the end", energy.initial));
+    match is_pushed {
+        true => line("energy", "in the end".to_owned()),
+        false => line("energy at impact", format!("{:.4e} J, of which in the end", energy.initial)),
+    }
     let mut share = |name: &str, value: f64, note: &str| {
-        // An intruder let go from rest has no energy of impact to take shares of.
+        // An intruder let go from rest has no energy of impact to take shares of, one on a drive little.
         let amount = match energy.initial {
-            initial if initial > 0.0 => format!("{:8.2} %", 100.0 * value / initial),
+            initial if initial > 0.0 && !is_pushed => format!("{:8.2} %", 100.0 * value / initial),
             _ => format!("{value:12.4e} J"),
         };
         line(&format!("  {name}"), format!("{amount}  {note}").trim_end().to_owned());
@@ -141,10 +145,19 @@ fn one_as_text(summary: &Summary, course: Option<&Course>, out: &Path) -> String
     }
     if let (Some(unaccounted), Some(closure)) = (energy.unaccounted, energy.closure) {
         share("unaccounted for", -unaccounted, "");
-        line("closure", format!("{closure:.1e} of the energy at impact, at worst"));
+        let whole = if is_pushed { "given to the bed" } else { "at impact" };
+        line("closure", format!("{closure:.1e} of the energy {whole}, at worst"));
     }
     line("cost", cost_as_text(cost));
     format!("{text}\n-> {}\n", out.display())
+}
+
+fn push_as_text(push: &IntrusionSummary) -> String {
+    let last = push.depth_m.last().zip(push.force_z.last()).zip(push.force_x.last());
+    let force = last.map_or_else(String::new, |((depth, up), along)| {
+        format!("; last {up:.4} N upward, {along:.4} N along x, {:.2} mm deep", 1e3 * depth)
+    });
+    format!("{:.2} mm, with {:.4e} J of the drive{force}", 1e3 * push.to_depth_m, push.work)
 }
 
 fn bed_as_text(bed: &BedSummary) -> String {

@@ -60,6 +60,10 @@ pub trait Mechanism: Send + Sync {
     fn stops_with_its_tips(&self) -> bool {
         false
     }
+    /// Work (J) in the last step of a drive that makes it move as it does; `None` where nothing drives it.
+    fn drive_work(&self) -> Option<f64> {
+        None
+    }
     /// Everything that changes during a run.
     fn save(&self) -> Vec<f64>;
     /// Takes back what [`Mechanism::save`] gave; `false` if it does not fit.
@@ -180,6 +184,22 @@ impl RigidBody {
     #[must_use]
     pub fn surface(&self) -> &dyn Surface {
         &*self.part[0].surface
+    }
+
+    /// Moves on for `dt` (s) with the velocity that it has, on a drive that no contact moves.
+    pub(crate) fn glide(&mut self, dt: f64) {
+        let half_way = self.velocity * (0.5 * dt);
+        let position_half = self.position + half_way;
+        self.position += self.velocity * dt;
+        self.hold_on();
+        self.part[0].placement.position_half = position_half;
+    }
+
+    /// Stands where it is, on a drive: contacts with it are those with a wall that moves.
+    pub(crate) fn hold_on(&mut self) {
+        self.place();
+        let placement = &mut self.part[0].placement;
+        (placement.inverse_mass, placement.inertia) = (0.0, f64::INFINITY);
     }
 
     fn angular_momentum_of(&self, spin: Vec3) -> Vec3 {

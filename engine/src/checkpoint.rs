@@ -15,7 +15,7 @@ use thiserror::Error;
 const MAGIC: &[u8; 8] = b"plunge\0\x01";
 
 /// Number of the layout of the payloads; a change of any saved type raises it.
-pub const FORMAT: u32 = 11;
+pub const FORMAT: u32 = 12;
 
 const HEADER: usize = 8 + 4 + 32 + 32;
 

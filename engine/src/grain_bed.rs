@@ -32,6 +32,9 @@ const INTRUDER_MARGIN: f64 = 0.4;
 /// The way of an intruder in a step that is surely short enough, in radii of the smallest grain.
 const SAFE_WAY: f64 = 0.1;
 
+/// The account of a drive that moves the intruder.
+const DRIVE: &str = "drive";
+
 /// A bed of grains under gravity.
 pub struct GrainBed {
     /// The grains.
@@ -340,7 +343,7 @@ impl GrainBed {
     }
 
     /// The terms of the ledger of this bed with `intruder`: motion, gravity, the channels of the laws,
-    /// then those of the boundaries.
+    /// then those of the boundaries and of a drive.
     #[must_use]
     pub fn terms(&self, intruder: &dyn Mechanism) -> Vec<Term> {
         let kinetic = |name: &'static str| Term { name: name.into(), kind: TermKind::Kinetic };
@@ -368,6 +371,9 @@ impl GrainBed {
         terms.extend(grain_force::terms(&self.forces));
         if self.has_recessive(intruder) {
             terms.push(channel("recessive-wall", ChannelKind::Input));
+        }
+        if intruder.drive_work().is_some() {
+            terms.push(channel(DRIVE, ChannelKind::Input));
         }
         terms
     }
@@ -416,6 +422,7 @@ impl GrainBed {
         if self.has_recessive(intruder) {
             entries.push(self.recessive.work());
         }
+        entries.extend(intruder.drive_work());
     }
 
     /// What grains cover of each part of the intruder, as of the last step.

@@ -17,6 +17,7 @@ mod contacts;
 pub mod course;
 pub mod crater;
 mod dimension;
+pub mod driven;
 pub mod error;
 pub mod feature;
 pub mod footprint;

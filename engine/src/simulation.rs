@@ -116,7 +116,7 @@ impl Simulation {
         Err(StepError::OpenBudget {
             step: self.world.clock.step,
             unaccounted: self.world.books.ledger.balance().unaccounted,
-            scale: self.energy_scale,
+            scale: self.energy_scale(),
             closure,
             limit: self.settings.abort_above,
             suggested_dt: 0.5 * self.settings.dt,
@@ -147,7 +147,18 @@ impl Simulation {
     /// gains in falling its own size, if it is let go from rest.
     #[must_use]
     pub fn closure(&self) -> f64 {
-        self.world.books.ledger.closure(self.energy_scale)
+        self.world.books.ledger.closure(self.energy_scale())
+    }
+
+    /// What the closure is counted in (J): the energy of the impact, or, of an intruder on a drive, that and what
+    /// it has given to the bed.
+    fn energy_scale(&self) -> f64 {
+        match self.world.intruder.drive_work() {
+            Some(_) => {
+                self.energy_scale + self.courses.iter().map(Course::given).sum::<f64>().abs()
+            }
+            None => self.energy_scale,
+        }
     }
 
     /// Kinetic energy of the intruder at the start (J).

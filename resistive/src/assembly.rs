@@ -84,6 +84,11 @@ pub trait Assembly: Send + Sync {
         false
     }
 
+    /// Whether a drive keeps its velocity, which does what work that takes.
+    fn is_driven(&self) -> bool {
+        false
+    }
+
     /// Whether an impact of it is over when every tip has stopped sinking; else when it is at rest.
     fn ends_with_its_tips(&self) -> bool {
         false

@@ -6,6 +6,7 @@
 //! the x–z plane, depth counted downward from the undisturbed surface at z = 0.
 
 pub mod assembly;
+mod driven;
 mod error;
 pub mod formula;
 mod holding;
@@ -22,6 +23,7 @@ use engine::ledger::Channel;
 use engine::math::Vec3;
 
 pub use assembly::{Assembly, Compact, Part, PartLoad, State};
+pub use driven::Driven;
 pub use error::ImpactError;
 pub use impact::{Effort, Ending, Impact, PartStop};
 pub use laws::{

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::assembly::{PARTS, Part, State};
 use super::holding::accelerate;
 use super::modes::{AXES, Modes};
-use super::motion::System;
+use super::motion::{Loaded, System};
 use super::observe::{Observer, Stretch};
 use super::{Flow, Impact, Load, Motion};
 use engine::ledger::{ChannelKind, Ledger, Term, TermKind};
@@ -28,6 +28,7 @@ enum Entry {
     Rotation(usize),
     Height(usize),
     Account { law: usize, flow: Flow },
+    Drive,
 }
 
 /// What a recorder hands on at each sample.
@@ -125,7 +126,7 @@ impl<'a, F: FnMut(&Sample<'_>)> Recorder<'a, F> {
                     let (height, mass) = assembly.weight_at(part, state);
                     mass * system.bed.gravity * height
                 }
-                Entry::Account { .. } => 0.0,
+                Entry::Account { .. } | Entry::Drive => 0.0,
             })
             .collect();
         for part in 0..assembly.n_parts() {
@@ -156,6 +157,11 @@ impl<'a, F: FnMut(&Sample<'_>)> Recorder<'a, F> {
                 let loaded = system.visit(part, &state, modes, |number, before, after| {
                     added.push((number, *before, *after));
                 });
+                let drive = power_of_drive(system, part, &state, &loaded);
+                let drives = entries.iter().zip(work.iter_mut());
+                drives
+                    .filter(|(entry, _)| matches!(entry, Entry::Drive))
+                    .for_each(|(_, work)| *work += half * weight * drive);
                 for (number, before, after) in added {
                     let powers = powers(&loaded.part, &loaded.motion, &before, &after);
                     given[part] += half * weight * (powers[0] + powers[1] + powers[2]);
@@ -208,7 +214,7 @@ impl<'a, F: FnMut(&Sample<'_>)> Recorder<'a, F> {
         for ((value, work), term) in values.iter_mut().zip(&mut self.work).zip(self.ledger.terms())
         {
             *value += *work;
-            // The ledger adds up what is lost; what is held it takes as it is.
+            // The ledger adds up what is lost or put in; what is held it takes as it is.
             if term.kind != TermKind::Channel(ChannelKind::Stored) {
                 *work = 0.0;
             }
@@ -242,6 +248,13 @@ impl<F: FnMut(&Sample<'_>)> Observer for Recorder<'_, F> {
             self.sample(&impact.system(), time, state, &modes);
         }
     }
+}
+
+/// Power (W) of the drive that keeps the velocity of a part, against the medium and its weight.
+fn power_of_drive(system: &System<'_>, index: usize, state: &State, loaded: &Loaded) -> f64 {
+    let (_, mass) = system.assembly.weight_at(index, state);
+    let force = loaded.on_part().force - Vec3::z() * (mass * system.bed.gravity);
+    -force.dot(&loaded.part.velocity) - loaded.load.couple * loaded.part.spin
 }
 
 /// Powers (W) that a part gives up to what a law added: to its dynamic, its static terms, and to the
@@ -295,6 +308,9 @@ fn entries(system: &System<'_>) -> (Vec<Entry>, Vec<Term>) {
             let name = own.unwrap_or(account.channel.name.into());
             add(entry, name, TermKind::Channel(account.channel.kind));
         }
+    }
+    if system.assembly.is_driven() {
+        add(Entry::Drive, "drive".into(), TermKind::Channel(ChannelKind::Input));
     }
     (entries, terms)
 }

@@ -211,7 +211,7 @@ impl GrainModel<'_> {
         let intruder = self.launched_intruder(&bed, condition)?;
         let settings = Settings {
             dt: self.time_step()?,
-            duration: self.model.run.duration,
+            duration: self.model.time(condition),
             abort_above: self.model.energy.abort_above,
         };
         Ok(Simulation::new(bed, intruder, settings))

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::diagnostics::{Sources, Span};
 use crate::document::{Node, Table, Value};
 use crate::load::{ConfigError, Loaded, understood};
-use crate::model::{BedSource, GrainKind, GrainModel, Material, Model};
+use crate::model::{BedSource, GrainKind, GrainModel, IMPACT, INTRUSION, Material, Model};
 use crate::read::DataFolder;
 use engine::bed::SizeDistribution;
 
@@ -78,6 +78,7 @@ impl Change {
     fn apply(&self, root: &mut Table, span: Span) {
         let number = |value: f64| Node { span, value: Value::Si(value) };
         let text = |value: &str| Node { span, value: Value::Text(value.to_owned()) };
+        let start = if root.get(INTRUSION).is_some() { INTRUSION } else { IMPACT };
         let mut put = |table: &str, key: &str, node: Node| {
             if let Some(table) = root.below(table) {
                 table.put(key, node);
@@ -108,11 +109,11 @@ impl Change {
                 put("intruder", "mass", number(*mass));
             }
             Self::Velocity { speed, angle_rad } => {
-                put("impact", "speed", number(*speed));
-                put("impact", "angle", number(*angle_rad));
+                put(start, "speed", number(*speed));
+                put(start, "angle", number(*angle_rad));
             }
-            Self::Spin(value) => put("impact", "spin", number(*value)),
-            Self::X(value) => put("impact", "x", number(*value)),
+            Self::Spin(value) => put(start, "spin", number(*value)),
+            Self::X(value) => put(start, "x", number(*value)),
         }
     }
 }

@@ -45,8 +45,7 @@ impl Estimate {
     pub fn of(model: GrainModel<'_>) -> Self {
         let n_grains = model.n_grains();
         // At most `limits::STEPS`, so the cast is exact.
-        let steps =
-            stability::time_step(model).map(|step| steps_in(model.model.run.duration, step));
+        let steps = stability::time_step(model).map(|step| steps_in(model.model.longest(), step));
         // Too large a number becomes the largest.
         let container_bytes = model.container_bytes() as u64;
         Self {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use engine::body::{Mechanism, RigidBody};
+use engine::driven::Driven;
 use engine::grain_bed::GrainBed;
 use engine::launch::height_in_touch;
 use engine::math::{Quat, Vec3, turned_about_y};
@@ -66,7 +67,10 @@ impl GrainModel<'_> {
         let inertia = shape.inertia_per_mass * intruder.mass;
         let mut body = RigidBody::new(&intruder.name, surface, intruder.mass, inertia);
         body.launch(start, turned_about_y(self.attitude()), launch.velocity(), launch.spin);
-        Ok(Box::new(body))
+        Ok(match launch.pushed_to {
+            Some(_) => Box::new(Driven::new(body)),
+            None => Box::new(body),
+        })
     }
 
     /// How many bodies the intruder is made of.

@@ -40,7 +40,7 @@ impl Model {
     ) -> Result<Self, ConfigError> {
         let text = self.edited(|document| {
             document.remove("conditions");
-            let impact = &mut document["impact"];
+            let impact = &mut document[self.impact.table()];
             impact["speed"] = value(format!("{} m/s", condition.speed));
             impact["angle"] = value(format!("{} rad", condition.angle_rad));
             if let Some(grains) = self.grains() {

@@ -256,6 +256,27 @@ pub(crate) const ANGLE: ParamSpec = required(
     "the angle of the velocity below the horizontal; 90 deg is straight down",
 );
 
+pub(crate) const INTRUSION_SPEED: ParamSpec = ParamSpec {
+    meaning: "the speed at which a drive pushes the intruder",
+    allowed: POSITIVE,
+    plausible: Range::closed(1e-4, 10.0),
+    ..SPEED
+};
+
+pub(crate) const INTRUSION_ANGLE: ParamSpec = ParamSpec {
+    meaning: "the angle of the way of the intruder below the horizontal; 90 deg is straight down",
+    ..ANGLE
+}
+.or(FRAC_PI_2);
+
+pub(crate) const INTRUSION_DEPTH: ParamSpec = required(
+    "depth",
+    LENGTH,
+    POSITIVE,
+    Range::closed(1e-4, 10.0),
+    "the depth of the lowest point at which the drive stops",
+);
+
 pub(crate) const SPIN: ParamSpec = required(
     "spin",
     Dimension::SPIN,

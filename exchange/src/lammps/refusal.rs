@@ -34,6 +34,9 @@ pub(super) fn checked<'a>(
     if intruder.shape.links.is_some() {
         refused.push(format!("bodies on a joint: an intruder that is a {}", intruder.shape.name));
     }
+    if model.model.impact.pushed_to.is_some() {
+        refused.push("a push at a set speed ([intrusion])".to_owned());
+    }
     if intruder.recessive_wall {
         refused.push("a recessive wall (intruder.recessive_wall)".to_owned());
     }

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use super::drawing::shape_of;
 use super::folder::OutputFolder;
+use super::intrusion::Push;
 use super::log_texts::{arrow_m_per_newton, attachments, metadata, opening};
 use super::model_file::model_text;
 use super::observables::Observables;
@@ -42,12 +43,14 @@ pub(super) struct Setting<'a> {
 struct Saved {
     simulation: Snapshot,
     log: LogPosition,
+    push: Option<Push>,
 }
 
 /// A run between two steps.
 struct Run<'a> {
     simulation: Simulation,
     observables: Observables<'a>,
+    push: Option<Push>,
     log: RunLog,
     folder: &'a OutputFolder,
     key: [u8; 32],
@@ -93,7 +96,7 @@ impl Setting<'_> {
             condition,
             &run.simulation,
             &start,
-            self.bed_summary,
+            (self.bed_summary, run.push.as_ref()),
             cost,
         );
         if let Some(warning) = self.floor_warning(&run.simulation) {
@@ -166,7 +169,7 @@ impl Setting<'_> {
                 None
             }
         };
-        if let Some(Saved { simulation: snapshot, log }) = saved {
+        if let Some(Saved { simulation: snapshot, log, push }) = saved {
             match RunLog::resume(folder.path(), &setup, &log) {
                 Ok(log) => {
                     if !simulation.restore(snapshot) {
@@ -175,6 +178,7 @@ impl Setting<'_> {
                     return Ok(Run {
                         simulation,
                         observables,
+                        push,
                         log,
                         folder,
                         key,
@@ -197,9 +201,18 @@ impl Setting<'_> {
             }
         }
         let log = RunLog::create(folder.path(), &setup)?;
-        let mut run =
-            Run { simulation, observables, log, folder, key, steps_per_frame, checkpoint_every };
-        run.log.event(run.stamp(), EventLevel::Info, &opening(condition))?;
+        let push = Push::of(self.grains.model, condition);
+        let mut run = Run {
+            simulation,
+            observables,
+            push,
+            log,
+            folder,
+            key,
+            steps_per_frame,
+            checkpoint_every,
+        };
+        run.log.event(run.stamp(), EventLevel::Info, &opening(self.grains.model, condition))?;
         run.record()?;
         Ok(run)
     }
@@ -298,14 +311,19 @@ impl Run<'_> {
 
     fn save(&mut self) -> Result<(), RunError> {
         self.log.flush()?;
-        let saved = Saved { simulation: self.simulation.save(), log: self.log.position() };
+        let push = self.push.clone();
+        let saved = Saved { simulation: self.simulation.save(), log: self.log.position(), push };
         checkpoint::save(&self.folder.file("checkpoint"), &self.key, &saved)?;
         Ok(())
     }
 
     fn record(&mut self) -> Result<(), RunError> {
         let at = self.stamp();
-        let Self { simulation, observables, log, .. } = self;
+        let Self { simulation, observables, log, push, .. } = self;
+        if let (Some(push), [body, ..]) = (push, simulation.intruder().bodies()) {
+            let depth = simulation.surface() - body.lowest();
+            push.see(depth, body.contact.force, body.contact.torque);
+        }
         let balance = simulation.ledger().balance();
         log.energy(at, &balance.values, balance.unaccounted, simulation.closure())?;
         let footprints = simulation.bed().footprints();

@@ -18,9 +18,14 @@ pub(super) fn arrow_m_per_newton(wide: f64, weight: f64) -> f64 {
 }
 
 /// The first event of a log.
-pub(super) fn opening(condition: &Condition) -> String {
+pub(super) fn opening(model: &Model, condition: &Condition) -> String {
     let (speed, angle) = (condition.speed, condition.angle_deg());
-    format!("impact at {speed} m/s, {angle} deg from the horizontal")
+    match model.launch(condition).pushed_to {
+        Some(depth) => {
+            format!("pushed at {speed} m/s, {angle} deg from the horizontal, to {depth} m")
+        }
+        None => format!("impact at {speed} m/s, {angle} deg from the horizontal"),
+    }
 }
 
 /// The metadata that every log has.

@@ -5,6 +5,7 @@ mod drawing;
 mod error;
 mod folder;
 mod grains;
+mod intrusion;
 mod log_texts;
 mod model_file;
 mod observables;
@@ -25,7 +26,7 @@ pub use error::RunError;
 pub use folder::Existing;
 pub use summary::{
     ActivitySummary, BedSummary, CostSummary, EnergySummary, FinalEnergy, ForceSummary, Group,
-    ImpactSummary, LinkSummary, ListSummary, Scatter, StopSummary, Summary,
+    ImpactSummary, IntrusionSummary, LinkSummary, ListSummary, Scatter, StopSummary, Summary,
 };
 
 use folder::{Found, OutputFolder};

@@ -13,6 +13,7 @@ use resistive::{Ending, Impact, Recorder, Sample};
 
 use super::drawing::shape_of;
 use super::folder::OutputFolder;
+use super::intrusion::Push;
 use super::log_texts::{arrow_m_per_newton, attachments, metadata, opening};
 use super::summary::Watched;
 use super::{Control, CostSummary, Progress, RunError, Summary, Task};
@@ -41,7 +42,7 @@ pub(super) fn run(
     let setup = log_setup(resistive, task, condition, &impact, &terms);
     let mut log = RunLog::create(folder.path(), &setup)?;
     let start = Stamp { step: 0, time_s: 0.0 };
-    log.event(start, EventLevel::Info, &opening(condition))?;
+    log.event(start, EventLevel::Info, &opening(resistive.model, condition))?;
 
     let scale = energy_scale(&impact);
     let frames_per_s = resistive.model.log.frames_per_s;
@@ -53,7 +54,7 @@ pub(super) fn run(
             failed = writer.write(sample).err();
         }
     });
-    let ended = impact.run(resistive.model.run.duration, &mut recorder);
+    let ended = impact.run(resistive.model.time(condition), &mut recorder);
     let (ledger, given) = (recorder.ledger().clone(), *recorder.given());
     let given = &given[..impact.assembly().n_parts()];
     drop(recorder);
@@ -64,11 +65,13 @@ pub(super) fn run(
         Ok(ending) => ending,
         Err(error) => return Err(writer.give_up(error)),
     };
+    // A drive puts in what the medium takes, however slow it is.
+    let scale = scale + if impact.assembly().is_driven() { given.iter().sum::<f64>() } else { 0.0 };
     let (closure, limit) = (ledger.closure(scale), resistive.model.energy.abort_above);
     if closure > limit {
         return Err(writer.give_up(RunError::OpenBudget { closure, limit }));
     }
-    let watched = watch(&impact, &ending)?;
+    let watched = watch(&impact, &ending, Push::of(resistive.model, condition))?;
     control.progress(&progress(task, &ending, &impact));
     writer.conclude(&ending)?;
     let cost = CostSummary {
@@ -87,8 +90,8 @@ pub(super) fn run(
 
 /// The forces of an impact that ends as `ending` says, on samples of its own: what the summary says does
 /// not hang on the interval of the log.
-fn watch(impact: &Impact, ending: &Ending) -> Result<Watched, RunError> {
-    let mut watched = Watched::default();
+fn watch(impact: &Impact, ending: &Ending, push: Option<Push>) -> Result<Watched, RunError> {
+    let mut watched = Watched::new(push);
     // A body that is held where it starts has no time to divide.
     let interval = if ending.time > 0.0 { ending.time / SAMPLES_OF_FORCE } else { 1.0 };
     let mut recorder = Recorder::new(impact, interval, |sample| watched.see(sample));

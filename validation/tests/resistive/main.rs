@@ -8,5 +8,6 @@ mod late_drag;
 mod ledger;
 mod own_candidates;
 mod own_effects;
+mod pushed;
 mod rest;
 mod rig;

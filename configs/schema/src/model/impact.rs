@@ -55,7 +55,23 @@ pub struct Impact {
     /// Angle of the axis to the vertical in the x–z plane (rad), positive when the top leans towards
     /// +x.
     pub attitude_rad: f64,
+    /// Depth of the lowest point (m) to which a drive pushes the intruder at this speed and angle (`[intrusion]`);
+    /// `None` where it moves freely.
+    pub pushed_to: Option<f64>,
 }
+
+impl Impact {
+    /// The table of the model file that says it.
+    #[must_use]
+    pub fn table(&self) -> &'static str {
+        if self.pushed_to.is_some() { INTRUSION } else { IMPACT }
+    }
+}
+
+/// The table of an intruder that moves freely after first contact.
+pub(crate) const IMPACT: &str = "impact";
+/// The table of one that a drive pushes.
+pub(crate) const INTRUSION: &str = "intrusion";
 
 /// How a body comes in at first contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +85,8 @@ pub struct Launch {
     /// Angle of the axis to the vertical in the x–z plane (rad), positive when the top leans towards
     /// +x.
     pub attitude_rad: f64,
+    /// Depth of the lowest point (m) to which a drive pushes the body with this velocity, if one does.
+    pub pushed_to: Option<f64>,
 }
 
 impl Launch {
@@ -82,6 +100,13 @@ impl Launch {
             (libm::sin(self.angle_rad), libm::cos(self.angle_rad))
         };
         Vec3::new(cosine, 0.0, -sine) * self.speed
+    }
+
+    /// How long (s) a run lasts at most that may last `duration` (s): a push is over at its depth.
+    #[must_use]
+    pub fn time(&self, duration: f64) -> f64 {
+        let sinking = -self.velocity().z;
+        self.pushed_to.map_or(duration, |depth| duration.min(depth / sinking))
     }
 }
 

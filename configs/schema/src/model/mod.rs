@@ -12,8 +12,8 @@ pub use grains::{
     GrainLog, GrainMedium, GrainModel, LawChoice, Material, Settle, SidesKind, StartPositions,
     Stepping, TimeStep,
 };
-pub(crate) use impact::degrees;
 pub use impact::{Condition, ConditionLists, Impact, Intruder, Launch, StartX};
+pub(crate) use impact::{IMPACT, INTRUSION, degrees};
 pub use parameters::{FreeParameter, ParameterError};
 pub use resistive::{
     AngleTable, Coefficient, EffectChoice, ResistanceChoice, ResistiveMedium, ResistiveModel,
@@ -32,7 +32,7 @@ pub struct Model {
     pub medium: Medium,
     /// `[intruder]`.
     pub intruder: Intruder,
-    /// `[impact]`.
+    /// `[impact]` or `[intrusion]`.
     pub impact: Impact,
     /// `[conditions]`; see [`Model::conditions`].
     pub conditions: Option<ConditionLists>,
@@ -144,12 +144,24 @@ impl Model {
         conditions
     }
 
+    /// How long a run under `condition` lasts at most (s).
+    #[must_use]
+    pub fn time(&self, condition: &Condition) -> f64 {
+        self.launch(condition).time(self.run.duration)
+    }
+
+    /// How long a run lasts at most, under any condition (s).
+    #[must_use]
+    pub fn longest(&self) -> f64 {
+        self.conditions().iter().map(|condition| self.time(condition)).fold(0.0, f64::max)
+    }
+
     /// How the intruder comes in at `condition`.
     #[must_use]
     pub fn launch(&self, condition: &Condition) -> Launch {
         let Condition { speed, angle_rad, .. } = *condition;
-        let Impact { spin, attitude_rad, .. } = self.impact;
-        Launch { speed, angle_rad, spin, attitude_rad }
+        let Impact { spin, attitude_rad, pushed_to, .. } = self.impact;
+        Launch { speed, angle_rad, spin, attitude_rad, pushed_to }
     }
 
     /// The model as TOML with every value in SI and every default written out. It loads to the

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use engine::params::{ParamSpec, ParamTable};
 use intruders::Casting;
+use resistive::{Assembly, Driven, Impact, ResistanceLaw, Space, Surroundings};
 use resistive::{Coefficients, Effect, Expression, OwnEffect, ResistanceEntry};
-use resistive::{Impact, ResistanceLaw, Space, Surroundings};
 
 use super::{Condition, Intruder, Launch, Model};
 use crate::diagnostics::Span;
@@ -107,7 +107,11 @@ impl ResistiveMedium {
             spin: launch.spin.y,
         });
         let laws = self.laws_at(launch.angle_rad);
-        Impact::new(launchable.assembly, laws, self.surroundings(), launchable.start)
+        let assembly: Box<dyn Assembly> = match launch.pushed_to {
+            Some(_) => Box::new(Driven::new(launchable.assembly)),
+            None => launchable.assembly,
+        };
+        Impact::new(assembly, laws, self.surroundings(), launchable.start)
     }
 
     /// What laws are told of the medium.

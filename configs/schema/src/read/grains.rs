@@ -5,10 +5,9 @@ use engine::grains::Space;
 use super::bed::bed;
 use super::container::container;
 use super::foreign::Foreign;
+use super::impact::Pushed::IntoGrains;
 use super::step::time_step;
-use super::{
-    CommonTables, DataFolder, IMPACT_EXAMPLE, KINDS, Places, energy, impact, intruder_example, laws,
-};
+use super::{CommonTables, DataFolder, KINDS, Places, energy, impact, intruder_example, laws};
 use crate::limits;
 use crate::model::{GrainLog, GrainMedium, LogSettings, Medium, Model, RunSettings, Stepping};
 use crate::reader::TableReader;
@@ -52,8 +51,11 @@ pub(super) fn model(
     let effects = laws::effects_of_run(tables, space, contact_law.as_ref());
     let intruder =
         impact::in_grains(root.table("intruder", Some(intruder_example(space))), space, places);
-    let impact_table = root.table("impact", Some(IMPACT_EXAMPLE));
-    let impact = impact::impact_on_grains(&impact_table, space, places);
+    let impact_table = impact::start_table(root);
+    let impact = match impact::is_pushed(root) {
+        true => impact::intrusion(&impact_table, intruder.as_ref(), (IntoGrains, places)),
+        false => impact::impact_on_grains(&impact_table, space, places),
+    };
     let start = impact::start_positions(&impact_table, (space, container.as_ref()), places);
     impact_table.finish();
     let conditions = impact::conditions_on_grains(root.table("conditions", None), places);

@@ -5,11 +5,13 @@ use engine::math::Vec3;
 use engine::params::ParamSpec;
 use intruders::ShapeEntry;
 
-use super::{BodyPlaces, Places, mass};
+use super::{BodyPlaces, IMPACT_EXAMPLE, Places, mass};
 use crate::diagnostics::{Diagnostic, Span};
 use crate::document::{Node, Value};
 use crate::limits;
-use crate::model::{ConditionLists, Container, Impact, Intruder, StartPositions};
+use crate::model::{
+    ConditionLists, Container, IMPACT, INTRUSION, Impact, Intruder, StartPositions,
+};
 use crate::reader::{Found, TableReader};
 use crate::specs;
 
@@ -120,7 +122,7 @@ pub(super) fn impact(table: &TableReader<'_>, places: &mut Places) -> Option<Imp
     let velocity = velocity(table, places);
     let spin = turning(table);
     let (speed, angle_rad) = velocity?;
-    Some(Impact { speed, angle_rad, spin: spin?, attitude_rad: 0.0 })
+    Some(Impact { speed, angle_rad, spin: spin?, attitude_rad: 0.0, pushed_to: None })
 }
 
 /// How the intruder comes into a bed of grains; the table is not finished.
@@ -142,7 +144,66 @@ pub(super) fn impact_on_grains(
     let attitude = table.optional_number(&specs::ATTITUDE);
     let (speed, angle_rad) = velocity?;
     let attitude_rad = attitude?.map_or(0.0, |found| found.value);
-    Some(Impact { speed, angle_rad, spin: spin?, attitude_rad })
+    Some(Impact { speed, angle_rad, spin: spin?, attitude_rad, pushed_to: None })
+}
+
+/// The table that says how the intruder moves: `[impact]`, or `[intrusion]` where a drive pushes it. Both are
+/// reported.
+pub(super) fn start_table<'a>(root: &TableReader<'a>) -> TableReader<'a> {
+    let pushed = root.has(INTRUSION);
+    if pushed && root.has(IMPACT) {
+        root.reader.report(
+            Diagnostic::error("both [impact] and [intrusion] are given")
+                .at(root.span_of(INTRUSION), "moves the intruder at a set speed")
+                .with(root.span_of(IMPACT), "lets it go at first contact")
+                .help("keep one of the two"),
+        );
+    }
+    root.table(if pushed { INTRUSION } else { IMPACT }, Some(IMPACT_EXAMPLE))
+}
+
+/// Whether `table` is that of an intruder which a drive pushes.
+pub(super) fn is_pushed(root: &TableReader<'_>) -> bool {
+    root.span_of(INTRUSION).is_some()
+}
+
+/// `[intrusion]`: how a drive pushes `intruder`; the table is not finished.
+pub(super) fn intrusion(
+    table: &TableReader<'_>,
+    intruder: Option<&Intruder>,
+    (medium, places): (Pushed, &mut Places),
+) -> Option<Impact> {
+    let speed = table.number(&specs::INTRUSION_SPEED);
+    let angle = table.number(&specs::INTRUSION_ANGLE);
+    let depth = table.number(&specs::INTRUSION_DEPTH);
+    places.speed = table.span_of("speed");
+    places.angle = table.span_of("angle");
+    let attitude = match medium {
+        Pushed::IntoGrains => table.optional_number(&specs::ATTITUDE)?,
+        Pushed::IntoResistance => None,
+    };
+    if let Some(chain) = intruder.filter(|intruder| intruder.shape.links.is_some()) {
+        table.reader.report(
+            Diagnostic::error(format!("a drive cannot push a {}", chain.shape.name))
+                .at(table.header(), "moves one rigid body")
+                .help("write [impact] for a chain, or another shape below [intruder]"),
+        );
+        return None;
+    }
+    Some(Impact {
+        speed: speed?.value,
+        angle_rad: angle?.value,
+        spin: Vec3::zeros(),
+        attitude_rad: attitude.map_or(0.0, |found| found.value),
+        pushed_to: Some(depth?.value),
+    })
+}
+
+/// What a drive pushes an intruder into.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pushed {
+    IntoGrains,
+    IntoResistance,
 }
 
 /// Speed (m/s) and angle below the horizontal (rad).

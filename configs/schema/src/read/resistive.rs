@@ -7,14 +7,15 @@ use resistive::{Effect, OwnEffect, RESISTANCE_LAWS, ResistanceEntry, Role};
 
 use super::fit::free;
 use super::foreign::Foreign;
+use super::impact::Pushed::IntoResistance;
 use super::laws::given_twice;
 use super::own_effect::{EXPRESSION, Purpose, own_effect};
-use super::{CommonTables, IMPACT_EXAMPLE, KINDS, Places, energy, impact, intruder_example};
+use super::{CommonTables, KINDS, Places, energy, impact, intruder_example};
 use crate::diagnostics::{Diagnostic, Span, nearest, shorten};
 use crate::limits;
 use crate::model::{
-    Coefficient, EffectChoice, LogSettings, Medium, Model, ResistanceChoice, ResistiveMedium,
-    RunSettings,
+    Coefficient, EffectChoice, IMPACT, INTRUSION, LogSettings, Medium, Model, ResistanceChoice,
+    ResistiveMedium, RunSettings,
 };
 use crate::reader::TableReader;
 use crate::resolved::Resolved;
@@ -47,9 +48,14 @@ pub(super) fn model(
     let example = intruder_example(space.unwrap_or(Space::Spatial));
     let intruder_table = root.table("intruder", Some(example));
     let intruder = space.and_then(|space| impact::in_resistance(intruder_table, space, places));
-    let impact_table = root.table("impact", Some(IMPACT_EXAMPLE));
-    foreign.keys(&impact_table, "impact", &["x", "y", "position", "x_range", "attitude"]);
-    let impact = impact::impact(&impact_table, places);
+    let impact_table = impact::start_table(root);
+    let is_pushed = impact::is_pushed(root);
+    let table_name = if is_pushed { INTRUSION } else { IMPACT };
+    foreign.keys(&impact_table, table_name, &["x", "y", "position", "x_range", "attitude"]);
+    let impact = match is_pushed {
+        true => impact::intrusion(&impact_table, intruder.as_ref(), (IntoResistance, places)),
+        false => impact::impact(&impact_table, places),
+    };
     impact_table.finish();
     let conditions_table = root.table("conditions", None);
     foreign.keys(&conditions_table, "conditions", &["x", "positions"]);

@@ -33,6 +33,7 @@ pub(super) fn of(
         energy: energy(facts, [first, last].map(|at| faller.energies(at))),
         bed: Some(facts.bed.clone()),
         forces: None,
+        intrusion: None,
         links: Vec::new(),
         cost: cost(facts, last.sample.step, &output),
     }

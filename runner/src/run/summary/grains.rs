@@ -8,9 +8,11 @@ use engine::ledger::{ChannelKind, TermKind};
 use engine::simulation::Simulation;
 use engine::stopping::Stopping;
 
+use crate::run::intrusion::Push;
+
 use super::resistive::LinkCourse;
 use super::{
-    ActivitySummary, BedSummary, CostSummary, EnergySummary, FinalEnergy, ImpactSummary,
+    ActivitySummary, BedSummary, CostSummary, DRIVE, EnergySummary, FinalEnergy, ImpactSummary,
     LinkSummary, StopSummary, Summary, by_channel,
 };
 
@@ -180,13 +182,20 @@ impl Summary {
         condition: &Condition,
         simulation: &Simulation,
         start: &FinalEnergy,
-        bed: &BedSummary,
+        (bed, push): (&BedSummary, Option<&Push>),
         cost: CostSummary,
     ) -> Self {
         let model = grains.model;
         let ledger = simulation.ledger();
         let end = FinalEnergy::held_by(simulation);
         let initial = simulation.impact_energy();
+        let input = by_channel(ledger, ChannelKind::Input);
+        let work = input.get(DRIVE).copied().unwrap_or(0.0);
+        let intrusion = push.map(|push| push.summary(work));
+        let mut stop = stop(simulation);
+        if let Some(intrusion) = &intrusion {
+            stop.stopped = intrusion.is_complete(stop.depth_m);
+        }
         let activity = simulation.activity();
         let activity = ActivitySummary {
             largest_moving_share: activity.largest_share(),
@@ -205,7 +214,7 @@ impl Summary {
                 x_m: grains.start_x(condition),
                 position_index: condition.position_index,
             },
-            stop: stop(simulation),
+            stop,
             energy: EnergySummary {
                 initial,
                 at_end: FinalEnergy {
@@ -215,7 +224,7 @@ impl Summary {
                     elastic: end.elastic.zip(start.elastic).map(|(end, start)| end - start),
                 },
                 dissipated: by_channel(ledger, ChannelKind::Dissipated),
-                input: by_channel(ledger, ChannelKind::Input),
+                input,
                 unaccounted: Some(ledger.balance().unaccounted),
                 closure: Some(simulation.closure()),
             },
@@ -225,6 +234,7 @@ impl Summary {
                 ..bed.clone()
             }),
             forces: None,
+            intrusion,
             links: links(simulation),
             cost,
         }

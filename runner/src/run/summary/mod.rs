@@ -31,6 +31,9 @@ pub struct Summary {
     /// Of a resistive force.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub forces: Option<ForceSummary>,
+    /// Of an intruder that a drive pushes.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub intrusion: Option<IntrusionSummary>,
     /// Of a chain, from its first link.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub links: Vec<LinkSummary>,
@@ -45,6 +48,24 @@ pub struct ImpactSummary {
     pub angle_deg: f64,
     pub x_m: f64,
     pub position_index: usize,
+}
+
+/// The force along the way of a push: means over equal parts of the depth, from the surface down. `torque_y` is
+/// about the centre of mass.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
+pub struct IntrusionSummary {
+    pub to_depth_m: f64,
+    /// Of the drive, against the bed and the weight.
+    #[serde(rename = "work_J")]
+    pub work: f64,
+    pub depth_m: Vec<f64>,
+    #[serde(rename = "force_x_N")]
+    pub force_x: Vec<f64>,
+    #[serde(rename = "force_z_N")]
+    pub force_z: Vec<f64>,
+    #[serde(rename = "torque_y_Nm")]
+    pub torque_y: Vec<f64>,
 }
 
 /// When and where the intruder stopped; a time that was not reached is null.
@@ -140,6 +161,9 @@ pub struct CostSummary {
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub grain_steps_per_s: Option<f64>,
 }
+
+/// The account of the drive of a push, as [`by_channel`] spells it.
+const DRIVE: &str = "drive";
 
 /// The channels of `ledger` of one kind, by their names in `snake_case` (J).
 fn by_channel(ledger: &Ledger, kind: ChannelKind) -> BTreeMap<String, f64> {

@@ -6,8 +6,11 @@ use engine::math::Vec3;
 use resistive::{Ending, Impact, PartStop, Sample};
 use serde::{Deserialize, Serialize};
 
+use crate::run::intrusion::Push;
+
 use super::{
-    CostSummary, EnergySummary, FinalEnergy, ImpactSummary, StopSummary, Summary, by_channel,
+    CostSummary, DRIVE, EnergySummary, FinalEnergy, ImpactSummary, IntrusionSummary, StopSummary,
+    Summary, by_channel,
 };
 
 /// The static and the dynamic part of the force, over all bodies; what was not reached is null.
@@ -87,6 +90,7 @@ pub(in crate::run) struct Watched {
     /// The last sample in motion.
     last: Option<Forces>,
     static_overtakes: Option<f64>,
+    push: Option<Push>,
 }
 
 /// Forces of the medium on all bodies at one time.
@@ -109,6 +113,11 @@ pub(in crate::run) struct Ended {
 }
 
 impl Watched {
+    /// Of a run in which `push` is gathered, if a drive pushes the intruder.
+    pub(in crate::run) fn new(push: Option<Push>) -> Self {
+        Self { push, ..Self::default() }
+    }
+
     pub(in crate::run) fn see(&mut self, sample: &Sample<'_>) {
         if sample.number == 0 {
             self.at_start.clone_from(&sample.ledger.balance().values);
@@ -119,6 +128,9 @@ impl Watched {
         }
         let (mut dynamic, mut friction) = (Vec3::zeros(), Vec3::zeros());
         for part in sample.parts {
+            if let Some(push) = &mut self.push {
+                push.see(part.part.immersion.depth, part.dynamic + part.friction, part.torque);
+            }
             dynamic += part.dynamic;
             friction += part.friction;
         }
@@ -176,8 +188,13 @@ impl Ended {
             false => vertical.zip(horizontal).map(|(z, x)| z.max(x)),
         };
         let largest = |value: fn(&PartStop) -> f64| parts.iter().map(value).fold(0.0, f64::max);
+        let deepest = parts.iter().map(|part| part.depth).fold(0.0, f64::max);
+        let stopped = match self.intrusion() {
+            Some(intrusion) => intrusion.is_complete(deepest),
+            None => self.ending.stopped,
+        };
         StopSummary {
-            stopped: self.ending.stopped,
+            stopped,
             stopping_time_s: stopping,
             stopping_time_z_s: vertical,
             stopping_time_x_s: horizontal,
@@ -185,6 +202,11 @@ impl Ended {
             depth_m: largest(|part| part.depth),
             range_m: largest(|part| part.range),
         }
+    }
+
+    fn intrusion(&self) -> Option<IntrusionSummary> {
+        let work = by_channel(&self.ledger, ChannelKind::Input).get(DRIVE).copied();
+        Some(self.watched.push.as_ref()?.summary(work.unwrap_or(0.0)))
     }
 
     fn forces(&self) -> ForceSummary {
@@ -281,6 +303,7 @@ impl Summary {
             energy: ended.energy(scale),
             bed: None,
             forces: Some(ended.forces()),
+            intrusion: ended.intrusion(),
             links: ended.links(),
             cost,
         }
