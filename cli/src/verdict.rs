@@ -21,8 +21,12 @@ pub(crate) fn as_text(
     }
     text.push('\n');
     if let (Some(p1), Some(p_lof)) = (diagnosis.p1, diagnosis.p_lof) {
-        let explained =
-            matches!(diagnosis.verdict, Verdict::NothingDetected | Verdict::ExplainedByApparatus);
+        let explained = matches!(
+            diagnosis.verdict,
+            Verdict::NothingDetected
+                | Verdict::ExplainedByApparatus
+                | Verdict::ExplainedByPreparation
+        );
         text.push_str(&format!(
             "Does the model explain the data?  {}   p1 {}   lack of fit p {}\n",
             if explained { "YES" } else { "NO" },
@@ -113,16 +117,24 @@ fn ranking(diagnosis: &Diagnosis) -> String {
 
 /// Errors of the apparatus that are seen, whether they are larger than expected or not.
 fn apparatus(object: &Value) -> String {
-    let errors = object["apparatus"].as_array().map_or(&[][..], Vec::as_slice);
+    let shared = |key: &str, name: &str| {
+        let seen = seen(&object[key]);
+        match seen.is_empty() {
+            true => String::new(),
+            false => format!("{name}: {}; no effect is credited with these.\n", seen.join(", ")),
+        }
+    };
+    shared("preparation", "Preparation") + &shared("apparatus", "Apparatus")
+}
+
+/// Those of `errors` that are three standard errors away from zero.
+fn seen(errors: &Value) -> Vec<String> {
+    let errors = errors.as_array().map_or(&[][..], Vec::as_slice);
     let is_seen = |error: &&Value| {
         let [value, se] = ["value", "se"].map(|key| error[key].as_f64());
         se.is_some_and(|se| value.unwrap_or(0.0).abs() >= 3.0 * se)
     };
-    let seen: Vec<String> = errors.iter().filter(is_seen).map(reports::apparatus_error).collect();
-    match seen.is_empty() {
-        true => String::new(),
-        false => format!("Apparatus: {}; no effect is credited with these.\n", seen.join(", ")),
-    }
+    errors.iter().filter(is_seen).map(reports::apparatus_error).collect()
 }
 
 fn held_out(diagnosis: &Diagnosis) -> String {

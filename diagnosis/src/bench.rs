@@ -1,6 +1,7 @@
 //! A model on the bench: fitted to measurements, under the noise that its own trajectories give.
 
 use measurements::{Kind, MeasurementSet};
+use nalgebra::DMatrix;
 use thiserror::Error;
 
 use crate::fit::{Data, Fit};
@@ -166,10 +167,25 @@ impl Bench<'_> {
         sensitivity: &Sensitivity,
         noise: &Noise,
     ) -> Result<Weight, BenchError> {
-        let own = self.forward.own_covariance(condition, &point.effects);
+        let own = self.own_covariance(condition, &point.effects, noise);
         Weight::new(&self.observed.conditions[condition], sensitivity, noise, own).ok_or_else(
             || BenchError::Singular { id: self.observed.conditions[condition].id.clone() },
         )
+    }
+
+    /// Covariance of what the model predicts with `effects`: of the means of its runs, and of what conditions differ by
+    /// beyond them.
+    pub(crate) fn own_covariance(
+        &self,
+        condition: usize,
+        effects: &[(usize, f64)],
+        noise: &Noise,
+    ) -> Option<DMatrix<f64>> {
+        let own = self.forward.own_covariance(condition, effects)?;
+        Some(match self.forward.spread_of_runs(condition) {
+            Some(spread) => own + noise.between * spread,
+            None => own,
+        })
     }
 
     fn weigh(&self, point: &Point, noise: &Noise) -> Result<(Vec<Weight>, Noise), BenchError> {

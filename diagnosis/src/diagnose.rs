@@ -10,10 +10,10 @@ use crate::bench::{Bench, BenchError, Fitted};
 use crate::compare::parameters;
 use crate::force_error::ForceErrors;
 use crate::forward::{Candidate, Forward, ParameterKind};
-use crate::held_out::{CLEAR, HeldOut, NEARER};
+use crate::held_out::HeldOut;
 use crate::lack_of_fit::lack_of_fit;
-use crate::marginal::marginals;
-use crate::noise::NoiseSource;
+use crate::marginal::{Marginals, marginals};
+use crate::noise::{Noise, NoiseSource};
 use crate::pair::{Pair, best_pair};
 use crate::rounding::rounded;
 use crate::score::Ranking;
@@ -52,24 +52,62 @@ pub fn diagnose(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
     let candidates: Vec<usize> = (0..bench.forward.candidates().len())
         .filter(|&index| bench.forward.candidates()[index].not_testable.is_none())
         .collect();
-    let mut weighed = baseline.clone();
-    let marginals = marginals(bench, &baseline, &candidates)?;
+    let marginals = marginals(bench, &baseline, &candidates, seed)?;
+    let mut weighed = match marginals {
+        Some(Marginals { between, .. }) => {
+            bench.fit_once(&baseline.fit.point, &Noise { between, ..baseline.noise })?
+        }
+        None => baseline.clone(),
+    };
     let rank = |weighed: &Fitted| match &marginals {
         Some(marginals) => Ranking::by_likelihood(bench, weighed, marginals, seed),
         None => Ranking::of(bench, weighed, &candidates, seed),
     };
     let mut ranking = rank(&weighed);
     for _ in 1..ROUNDS {
-        let Some(leader) = lead(bench, &mut ranking, &weighed)? else { break };
+        let leader = lead(bench, &mut ranking, &weighed, marginals.as_ref())?;
+        let Some(leader) = leader else { break };
         let fit = bench.data(&leader.weights).fit(&baseline.fit.point)?;
         weighed = Fitted { fit, ..leader };
         ranking = rank(&weighed);
     }
-    let Some(leader) = lead(bench, &mut ranking, &weighed)? else {
+    let Some(leader) = lead(bench, &mut ranking, &weighed, marginals.as_ref())? else {
         return Ok(cannot_tell(bench, "no effect can be tested with these data".to_owned()));
     };
     let alike = ranking.not_separable(bench);
     Judge { bench, seed, baseline, weighed, ranking, alike, leader }.verdict()
+}
+
+/// What there is to say of the model as it is, before any effect is looked for.
+///
+/// # Errors
+/// If the model fails.
+pub(crate) fn as_it_is(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
+    let baseline = match bench.fit(&Point::start(bench.forward)) {
+        Ok(fitted) => fitted,
+        Err(why @ (BenchError::NoErrors | BenchError::TooFew { .. })) => {
+            return Ok(cannot_tell(bench, why.to_string()));
+        }
+        Err(other) => return Err(other),
+    };
+    let ranking = Ranking::of(bench, &baseline, &[], seed);
+    let (weighed, leader) = (baseline.clone(), baseline.clone());
+    let judge = Judge { bench, seed, baseline, weighed, ranking, alike: Vec::new(), leader };
+    let p_lof = lack_of_fit(bench, &judge.baseline, seed)?;
+    let verdict = match adequate(p_lof) {
+        true => nothing(bench, &judge.baseline),
+        false => Verdict::NoneOfTheCandidates,
+    };
+    judge.diagnosis(verdict, &judge.baseline, (p_lof, None), (String::new(), None))
+}
+
+/// `fitted` where conditions differ by no more than their runs explain: a misfit is judged by those.
+fn without_width(bench: &Bench<'_>, fitted: &Fitted) -> Result<Fitted, BenchError> {
+    let noise = Noise { between: 0.0, ..fitted.noise };
+    match fitted.noise.between > 0.0 {
+        true => bench.fit_once(&fitted.fit.point, &noise),
+        false => Ok(fitted.clone()),
+    }
 }
 
 /// The model with the best effect under its own noise; effects around whose fit the model cannot be
@@ -78,9 +116,12 @@ fn lead(
     bench: &Bench<'_>,
     ranking: &mut Ranking,
     weighed: &Fitted,
+    marginals: Option<&Marginals>,
 ) -> Result<Option<Fitted>, BenchError> {
     while let Some(best) = ranking.scores.first() {
-        match bench.fit_once(&best.point, &weighed.noise) {
+        let noise =
+            marginals.map_or(weighed.noise, |all| all.noise_with(&weighed.noise, best.candidate()));
+        match bench.fit_once(&best.point, &noise) {
             Err(BenchError::Predict(why)) => ranking.give_up_first(why),
             other => return other.map(Some),
         }
@@ -116,7 +157,8 @@ impl Judge<'_> {
                 self.refuse((p_lof, None), hint)
             };
         }
-        let p_leader = lack_of_fit(self.bench, &self.leader, self.seed)?;
+        let leader = without_width(self.bench, &self.leader)?;
+        let p_leader = lack_of_fit(self.bench, &leader, self.seed)?;
         if p_leader.is_none() {
             let leader = self.name(self.ranking.scores[0].candidate());
             let why = format!("with {leader} as much is free as was measured: nothing judges it");
@@ -146,7 +188,7 @@ impl Judge<'_> {
         }
         let pair = best_pair(self.bench, &self.weighed, &self.ranking, self.seed)?;
         if let Some(Pair { fitted, p }) = pair.filter(|pair| pair.p <= ALPHA) {
-            let p_pair = lack_of_fit(self.bench, &fitted, self.seed)?;
+            let p_pair = lack_of_fit(self.bench, &without_width(self.bench, &fitted)?, self.seed)?;
             let held_out = HeldOut::of(self.bench, &self.weighed, &fitted)?;
             if adequate(p_pair) && !held_out.refutes() && self.too_small(&held_out).is_none() {
                 let hint = format!(
@@ -160,6 +202,19 @@ impl Judge<'_> {
             "no one or two listed effects explain the data; {} explains a part",
             self.name(self.ranking.scores[0].candidate())
         );
+        if !self.bench.forward.is_judged_by_held_out() {
+            // Impacts on fresh beds decide whether what is left matters.
+            let verdict = match self.alike.len() {
+                1 => Verdict::Supported,
+                _ => Verdict::NotSeparable,
+            };
+            return self.diagnosis(
+                verdict,
+                &self.leader,
+                (p_lof, p_leader),
+                (hint, Some(held_out)),
+            );
+        }
         self.refuse((p_lof, p_leader), hint)
     }
 
@@ -192,21 +247,7 @@ impl Judge<'_> {
         let best = &self.ranking.scores[0];
         let candidate = &self.bench.forward.candidates()[best.candidate()];
         let most = best.amplitude().abs() + UPPER * best.standard_error.unwrap_or(0.0);
-        let hides = format!("{} of up to {most:.3} could hide here", candidate.id);
-        let times = |error: Option<f64>| Some(error? / held_out.noise_floor?);
-        let (before, after) = (times(held_out.before)?, times(held_out.after)?);
-        if held_out.is_above_noise() == Some(false) {
-            return Some(format!(
-                "held-out conditions are missed by {before:.2} times their noise, and a name needs {CLEAR}: {hides}"
-            ));
-        }
-        (held_out.is_nearer() == Some(false)).then(|| {
-            format!(
-                "with {}, held-out conditions are missed by {after:.2} times their noise after {before:.2} without it, \
-                 and a name needs {NEARER} of the error at most, whichever conditions are held out: {hides}",
-                candidate.id
-            )
-        })
+        held_out.too_small(&candidate.id, most)
     }
 
     fn diagnosis(
@@ -248,8 +289,12 @@ impl Judge<'_> {
             None => HeldOut::of(bench, before, proposed)?,
         };
         let mut strength_reasons = doubts(bench, proposed, &amplitudes, &held_out);
-        let is_nothing =
-            matches!(verdict, Verdict::NothingDetected | Verdict::ExplainedByApparatus);
+        let is_nothing = matches!(
+            verdict,
+            Verdict::NothingDetected
+                | Verdict::ExplainedByApparatus
+                | Verdict::ExplainedByPreparation
+        );
         if is_nothing && held_out.is_above_noise() == Some(true) {
             strength_reasons.push(StrengthReason::HeldOutAboveNoise);
         }
@@ -264,13 +309,14 @@ impl Judge<'_> {
             not_separable,
             leaders,
             ranking: ranked(bench, Some(ranking)),
-            p1: Some(ranking.p),
+            p1: (!ranking.scores.is_empty()).then_some(ranking.p),
             p_lof,
             p_lof_with,
             noise: proposed.noise.to_json(&bench.set.instrument),
             holdout: Some(held_out),
             unexplained,
             apparatus: ApparatusError::all(bench.forward, &proposed.fit),
+            preparation: ApparatusError::of_preparation(bench.forward, &proposed.fit),
             next: Vec::new(),
             parameters: parameters(bench.forward, &proposed.fit),
             amplitudes,
@@ -285,12 +331,15 @@ impl Judge<'_> {
     }
 }
 
-/// The verdict without an effect: it depends on whether `fitted` has a named error of the apparatus.
+/// The verdict without an effect: it depends on what of the preparation and of the apparatus `fitted` names.
 fn nothing(bench: &Bench<'_>, fitted: &Fitted) -> Verdict {
-    let errors = ApparatusError::all(bench.forward, &fitted.fit);
-    match errors.iter().any(|error| error.named) {
-        true => Verdict::ExplainedByApparatus,
-        false => Verdict::NothingDetected,
+    let is_named = |errors: Vec<ApparatusError>| errors.iter().any(|error| error.named);
+    if is_named(ApparatusError::of_preparation(bench.forward, &fitted.fit)) {
+        Verdict::ExplainedByPreparation
+    } else if is_named(ApparatusError::all(bench.forward, &fitted.fit)) {
+        Verdict::ExplainedByApparatus
+    } else {
+        Verdict::NothingDetected
     }
 }
 
@@ -357,8 +406,10 @@ pub(crate) fn withdraw(
     seed: u64,
 ) -> Result<Diagnosis, BenchError> {
     let Some(baseline) = &diagnosis.baseline else { return Ok(diagnosis) };
+    let is_small = diagnosis.holdout.as_ref().and_then(HeldOut::is_above_noise) == Some(false);
     let verdict = match adequate(diagnosis.p_lof) {
         true => nothing(bench, baseline),
+        false if is_small => Verdict::BelowNoise,
         false => Verdict::NoneOfTheCandidates,
     };
     let mut strength_reasons = diagnosis.strength_reasons;
@@ -374,6 +425,7 @@ pub(crate) fn withdraw(
         amplitude_correlation: None,
         parameters: parameters(bench.forward, &baseline.fit),
         apparatus: ApparatusError::all(bench.forward, &baseline.fit),
+        preparation: ApparatusError::of_preparation(bench.forward, &baseline.fit),
         noise: baseline.noise.to_json(&bench.set.instrument),
         proposed: Some(baseline.clone()),
         ..diagnosis

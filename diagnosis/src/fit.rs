@@ -65,6 +65,12 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// The parameters as they are, the effects left out.
+    pub(crate) fn without_effects(&self) -> Self {
+        let point = Point { effects: Vec::new(), parameters: self.point.parameters.clone() };
+        Self { point, ..self.clone() }
+    }
+
     /// Number of unknowns that are not held at a bound.
     #[must_use]
     pub fn n_free(&self) -> usize {
@@ -98,16 +104,6 @@ impl Data<'_> {
         let scales = self.scales(start);
         let free = vec![false; scales.len()];
         self.fit_but(start, &scales, free)
-    }
-
-    /// Fits the parameters of `start`, from there; the amplitudes of its effects are as they are.
-    ///
-    /// # Errors
-    /// If the model cannot be integrated at the start or at the end.
-    pub(crate) fn fit_parameters(&self, start: &Point) -> Result<Fit, PredictError> {
-        let scales = self.scales(start);
-        let held = (0..scales.len()).map(|at| at >= start.parameters.len()).collect();
-        self.fit_but(start, &scales, held)
     }
 
     /// Fits the parameters and the amplitudes of the effects of `start` as their formulas have them: a fall of χ² by one

@@ -39,6 +39,12 @@ pub trait Forward: Sync {
         None
     }
 
+    /// Covariance of the numbers of one run, of a model that has runs of its own. `None` for one that is exact.
+    fn spread_of_runs(&self, condition: usize) -> Option<&DMatrix<f64>> {
+        let _ = condition;
+        None
+    }
+
     /// Whether an error on held-out conditions decides here whether an effect is named; of a bed, impacts on fresh beds
     /// do so afterwards.
     fn is_judged_by_held_out(&self) -> bool {
@@ -108,6 +114,8 @@ pub enum ParameterKind {
     Model,
     /// The apparatus: an error that runs share.
     Apparatus,
+    /// How the bed was prepared.
+    Preparation,
     /// The form of effects that are added: by how much it differs from their formula ([`Bend`]).
     Form,
 }

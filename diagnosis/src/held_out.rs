@@ -215,6 +215,33 @@ impl HeldOut {
         Some(ratio.max(self.ratio_at_most.unwrap_or(0.0)) <= NEARER)
     }
 
+    /// That held-out conditions are missed by too little for any name; `None` where they are missed by more.
+    #[must_use]
+    pub(crate) fn below(&self) -> Option<String> {
+        let before = self.before? / self.noise_floor?;
+        (self.is_above_noise() == Some(false)).then(|| {
+            format!("held-out conditions are missed by {before:.2} times their noise, and a name needs {CLEAR}")
+        })
+    }
+
+    /// The reason why the effect `name`, of at most the amplitude `most`, is too small to be named by these errors;
+    /// `None` for one that is large enough, and where no error is known.
+    #[must_use]
+    pub(crate) fn too_small(&self, name: &str, most: f64) -> Option<String> {
+        let hides = format!("{name} of up to {most:.3} could hide here");
+        let times = |error: Option<f64>| Some(error? / self.noise_floor?);
+        let (before, after) = (times(self.before)?, times(self.after)?);
+        if let Some(below) = self.below() {
+            return Some(format!("{below}: {hides}"));
+        }
+        (self.is_nearer() == Some(false)).then(|| {
+            format!(
+                "with {name}, held-out conditions are missed by {after:.2} times their noise after {before:.2} without it, \
+                 and a name needs {NEARER} of the error at most, whichever conditions are held out: {hides}"
+            )
+        })
+    }
+
     /// Whether what is proposed leaves nothing of the error but noise, and takes half of it away at least.
     #[must_use]
     pub fn is_within_noise(&self) -> bool {

@@ -9,16 +9,37 @@
 
 use argmin::core::{CostFunction, Executor, State};
 use argmin::solver::brent::BrentOpt;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use rand_pcg::Pcg64;
 
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::forward::{Candidate, PredictError};
+use crate::noise::{Noise, log_determinant};
+use crate::random::{Purpose, normal, scale_of_noise, stream};
 use crate::sensitivity::Point;
 
 /// Amplitudes of either sign between which the best is searched.
 const GRID: u32 = 12;
 
+/// Amplitudes of either sign, and widths, at which drawn measurements are judged.
+const COARSE: u32 = 5;
+const COARSE_WIDTHS: [f64; 6] = [0.0, 0.1, 0.4, 1.6, 6.4, 25.6];
+
+/// Variances by which conditions may differ beyond their runs, in that of a run of the model: zero, then powers of two
+/// from the smallest.
+const LEAST_WIDTH: f64 = 0.03;
+const WIDTHS: i32 = 13;
+
 /// Where the search for the best amplitude ends: share of it, and of its range.
 const TOLERANCE: (f64, f64) = (1e-3, 1e-5);
+
+/// Drawn measurements at most; once so many of them have reached the fall of the measured ones, more would change
+/// nothing (Besag & Clifford 1991, Biometrika 78, 301).
+const DRAWS: usize = 499;
+const REACHED: usize = 20;
+
+/// Share of the largest diagonal number that keeps a parameter on which nothing depends from having no inverse.
+const RIDGE: f64 = 1e-12;
 
 /// The best of one candidate.
 pub(crate) struct Marginal {
@@ -30,6 +51,8 @@ pub(crate) struct Marginal {
     pub(crate) standard_error: Option<f64>,
     /// Fall of twice the negative logarithm of the likelihood.
     pub(crate) fall: f64,
+    /// What conditions differ by with it, as in [`Noise::between`].
+    pub(crate) between: f64,
 }
 
 /// Those of all candidates.
@@ -37,6 +60,18 @@ pub(crate) struct Marginals {
     pub(crate) best: Vec<Marginal>,
     /// Candidates with which the model cannot be integrated, and why.
     pub(crate) failed: Vec<(usize, PredictError)>,
+    /// What conditions differ by without any, as in [`Noise::between`].
+    pub(crate) between: f64,
+    /// Probability of the largest fall, or a larger one, where nothing is missing.
+    pub(crate) p: f64,
+}
+
+impl Marginals {
+    /// The noise `noise`, with what conditions differ by beside `candidate`.
+    pub(crate) fn noise_with(&self, noise: &Noise, candidate: usize) -> Noise {
+        let own = self.best.iter().find(|one| one.candidate == candidate);
+        Noise { between: own.map_or(self.between, |one| one.between), ..*noise }
+    }
 }
 
 /// The best of every one of `candidates` beside `fitted`; `None` for a model that says exactly what effects
@@ -48,66 +83,288 @@ pub(crate) fn marginals(
     bench: &Bench<'_>,
     fitted: &Fitted,
     candidates: &[usize],
+    seed: u64,
 ) -> Result<Option<Marginals>, BenchError> {
-    let Some(&first) = bench.observed.fit.first() else { return Ok(None) };
-    if bench.forward.own_covariance(first, &[]).is_none() {
-        return Ok(None);
-    }
-    let bare = cost(bench, fitted, &fitted.fit.point)?;
-    let mut all = Marginals { best: Vec::new(), failed: Vec::new() };
+    let Some(problem) = Problem::of(bench, fitted)? else { return Ok(None) };
+    let (bare, between) = problem.profiled(&problem.changed(&[])?, &[])?;
+    let mut all = Marginals { best: Vec::new(), failed: Vec::new(), between, p: 1.0 };
     for &candidate in candidates {
-        let profile = Profile { bench, fitted, candidate };
+        let profile = Profile { problem: &problem, candidate };
         match profile.best(bare) {
             Ok(best) => all.best.push(best),
             Err(BenchError::Predict(why)) => all.failed.push((candidate, why)),
             Err(other) => return Err(other),
         }
     }
+    let ranked: Vec<usize> = all.best.iter().map(|one| one.candidate).collect();
+    all.p = problem.by_chance(&ranked, between, seed)?;
     Ok(Some(all))
 }
 
-/// Twice the negative logarithm of the likelihood with the effects of `point`, the parameters fitted.
-fn cost(bench: &Bench<'_>, fitted: &Fitted, point: &Point) -> Result<f64, BenchError> {
-    let weights = bench.weights(point, &fitted.noise, &bench.observed.fit)?;
-    let chi2 = bench.data(&weights).fit_parameters(point)?.chi2;
-    Ok(chi2 + weights.iter().map(|weight| weight.log_determinant()).sum::<f64>())
+/// The variance between conditions that explains best what `fitted` leaves over, as in [`Noise::between`]; 0 for a model
+/// without runs of its own.
+///
+/// # Errors
+/// If the model cannot be weighed.
+pub(crate) fn between(bench: &Bench<'_>, fitted: &Fitted) -> Result<f64, BenchError> {
+    let Some(problem) = Problem::of(bench, fitted)? else { return Ok(0.0) };
+    Ok(problem.profiled(&problem.changed(&[])?, &[])?.1)
+}
+
+/// Measured means beside a model whose parameters act linearly: an error of the apparatus, a change of the preparation.
+struct Problem<'a> {
+    bench: &'a Bench<'a>,
+    fitted: &'a Fitted,
+    /// Covariance of the measured mean of each condition.
+    measured: Vec<DMatrix<f64>>,
+    /// Derivative of each prediction by the parameters.
+    columns: Vec<DMatrix<f64>>,
+    /// One over the variance of what is known of each parameter beforehand; 0 for nothing.
+    precision: DVector<f64>,
+    /// What is known of it beforehand, less where it is.
+    pull: DVector<f64>,
+}
+
+/// Residuals under one covariance, ready to be weighed.
+struct Cell {
+    factors: Vec<Cholesky<f64, Dyn>>,
+    /// Whitened derivatives by the parameters.
+    columns: Vec<DMatrix<f64>>,
+    inner: Cholesky<f64, Dyn>,
+    log_determinant: f64,
+}
+
+impl<'a> Problem<'a> {
+    /// `None` for a model without a covariance of its own.
+    fn of(bench: &'a Bench<'a>, fitted: &'a Fitted) -> Result<Option<Self>, BenchError> {
+        let fit = &bench.observed.fit;
+        let has_own = fit.first().is_some_and(|&c| bench.forward.own_covariance(c, &[]).is_some());
+        if !has_own {
+            return Ok(None);
+        }
+        let point = &fitted.fit.point;
+        let parameters = bench.forward.parameters();
+        let (mut measured, mut columns) = (Vec::new(), Vec::new());
+        for &condition in fit {
+            let observed = &bench.observed.conditions[condition];
+            let sensitivity = bench.sensitivity(point, condition)?;
+            let runs = observed.runs.len().max(1) as f64;
+            measured.push(fitted.noise.covariance(observed, &sensitivity) / runs);
+            let base = point.predict(bench.forward, condition)?;
+            let mut slopes = DMatrix::zeros(base.len(), parameters.len());
+            for (at, parameter) in parameters.iter().enumerate() {
+                let range = (parameter.max - parameter.min).min(1.0);
+                let step = parameter.prior.map_or(1e-2 * range, |prior| prior.sigma);
+                let mut moved = point.clone();
+                moved.parameters[at] += step;
+                let slope = (moved.predict(bench.forward, condition)? - &base) / step;
+                slopes.set_column(at, &slope);
+            }
+            columns.push(slopes);
+        }
+        let priors = || parameters.iter().zip(&point.parameters);
+        let precision = priors().map(|(one, _)| one.prior.map_or(0.0, |p| p.sigma.powi(-2)));
+        let pull = priors().map(|(one, value)| one.prior.map_or(0.0, |prior| prior.mean - value));
+        let (precision, pull) = (precision.collect::<Vec<_>>(), pull.collect::<Vec<_>>());
+        Ok(Some(Self {
+            bench,
+            fitted,
+            measured,
+            columns,
+            precision: precision.into(),
+            pull: pull.into(),
+        }))
+    }
+
+    /// Measured less predicted with `effects`, the parameters as they are.
+    fn changed(&self, effects: &[(usize, f64)]) -> Result<Vec<DVector<f64>>, PredictError> {
+        let point = Point {
+            effects: effects.to_vec(),
+            parameters: self.fitted.fit.point.parameters.clone(),
+        };
+        let one = |&condition: &usize| {
+            let mean = &self.bench.observed.conditions[condition].mean;
+            Ok(mean - point.predict(self.bench.forward, condition)?)
+        };
+        self.bench.observed.fit.iter().map(one).collect()
+    }
+
+    /// Weights with `effects`, where conditions differ by `between`.
+    fn cell(&self, effects: &[(usize, f64)], between: f64) -> Result<Cell, BenchError> {
+        let noise = Noise { between, ..self.fitted.noise };
+        let (mut factors, mut columns) = (Vec::new(), Vec::new());
+        let n = self.precision.len();
+        let (mut inner, mut log) = (DMatrix::from_diagonal(&self.precision), 0.0);
+        let each = self.bench.observed.fit.iter().zip(&self.measured).zip(&self.columns);
+        for ((&condition, measured), slopes) in each {
+            let own = self.bench.own_covariance(condition, effects, &noise);
+            let whole = own.map_or_else(|| measured.clone(), |own| own + measured);
+            let factor = Cholesky::new(whole).ok_or_else(|| BenchError::Singular {
+                id: self.bench.observed.conditions[condition].id.clone(),
+            })?;
+            let mut white = slopes.clone();
+            // The diagonal of a Cholesky factor is positive, so there is a solution.
+            factor.l_dirty().solve_lower_triangular_mut(&mut white);
+            inner += white.tr_mul(&white);
+            log += log_determinant(&factor);
+            factors.push(factor);
+            columns.push(white);
+        }
+        let ridge = RIDGE * inner.diagonal().amax().max(1.0);
+        inner += DMatrix::identity(n, n) * ridge;
+        let inner = Cholesky::new(inner)
+            .ok_or_else(|| BenchError::Singular { id: "of the parameters".to_owned() })?;
+        log += if n > 0 { log_determinant(&inner) } else { 0.0 };
+        Ok(Cell { factors, columns, inner, log_determinant: log })
+    }
+
+    /// The least cost of `residuals` over the variance between conditions, and that variance.
+    fn profiled(
+        &self,
+        residuals: &[DVector<f64>],
+        effects: &[(usize, f64)],
+    ) -> Result<(f64, f64), BenchError> {
+        let has_width = self
+            .bench
+            .observed
+            .fit
+            .iter()
+            .any(|&condition| self.bench.forward.spread_of_runs(condition).is_some());
+        let widths = if has_width { WIDTHS } else { 1 };
+        let mut best = (f64::INFINITY, 0.0);
+        for at in 0..widths {
+            let between = if at == 0 { 0.0 } else { LEAST_WIDTH * f64::from(1 << (at - 1)) };
+            let cost = self.cell(effects, between)?.cost(residuals, &self.precision, &self.pull);
+            if cost < best.0 {
+                best = (cost, between);
+            }
+        }
+        Ok(best)
+    }
+
+    /// Probability that the largest fall of `candidates` is reached by measurements of the model as it is, whose
+    /// conditions differ by `between`: the same falls of drawn measurements.
+    fn by_chance(&self, candidates: &[usize], between: f64, seed: u64) -> Result<f64, BenchError> {
+        let mut bare = Vec::new();
+        for width in COARSE_WIDTHS {
+            bare.push((self.changed(&[])?, self.cell(&[], width)?));
+        }
+        let mut with = Vec::new();
+        for &candidate in candidates {
+            for q in amplitudes(&self.bench.forward.candidates()[candidate], COARSE) {
+                let effects = [(candidate, q)];
+                // Too much of an effect may be no impact.
+                let Ok(residuals) = self.changed(&effects) else { continue };
+                for width in COARSE_WIDTHS {
+                    with.push((residuals.clone(), self.cell(&effects, width)?));
+                }
+            }
+        }
+        let here = self.changed(&[])?;
+        let fall = |drawn: &[DVector<f64>]| {
+            let least = |cells: &[(Vec<DVector<f64>>, Cell)]| {
+                let cost = |(residuals, cell): &(Vec<DVector<f64>>, Cell)| {
+                    let moved = residuals.iter().zip(&here).zip(drawn);
+                    let moved: Vec<_> = moved.map(|((own, bare), new)| own - bare + new).collect();
+                    cell.cost(&moved, &self.precision, &self.pull)
+                };
+                cells.iter().map(cost).fold(f64::INFINITY, f64::min)
+            };
+            least(&bare) - least(&with)
+        };
+        let measured = fall(&here);
+        if measured <= 0.0 {
+            return Ok(1.0);
+        }
+        let null = self.cell(&[], between)?;
+        let freedom = self.bench.observed.freedom();
+        let mut random = stream(seed, Purpose::Family, 1);
+        let (mut reached, mut drawn) = (0, 0);
+        while drawn < DRAWS && reached < REACHED {
+            drawn += 1;
+            let scale = scale_of_noise(freedom.min(1e6), &mut random);
+            let errors = self.errors(&null, scale, &mut random);
+            reached += usize::from(fall(&errors) >= measured);
+        }
+        Ok((1 + reached) as f64 / (1 + drawn) as f64)
+    }
+
+    /// Residuals of measurements of the model as it is.
+    fn errors(&self, null: &Cell, scale: f64, random: &mut Pcg64) -> Vec<DVector<f64>> {
+        let parameters = self.precision.iter().zip(&self.pull).map(|(precision, pull)| {
+            let by = if *precision > 0.0 { normal(random) / precision.sqrt() } else { 0.0 };
+            by + pull
+        });
+        let parameters = DVector::from_vec(parameters.collect::<Vec<_>>());
+        let each = null.factors.iter().zip(&self.columns);
+        each.map(|(factor, columns)| {
+            let white = DVector::from_fn(columns.nrows(), |_, _| normal(random));
+            scale * (factor.l() * white) + columns * &parameters
+        })
+        .collect()
+    }
+}
+
+impl Cell {
+    /// Twice the negative logarithm of the likelihood of `residuals`, the parameters integrated out.
+    fn cost(
+        &self,
+        residuals: &[DVector<f64>],
+        precision: &DVector<f64>,
+        pull: &DVector<f64>,
+    ) -> f64 {
+        let mut onto = precision.component_mul(pull);
+        let mut chi2 = onto.dot(pull);
+        for ((factor, columns), residual) in self.factors.iter().zip(&self.columns).zip(residuals) {
+            let mut white = residual.clone();
+            factor.l_dirty().solve_lower_triangular_mut(&mut white);
+            chi2 += white.norm_squared();
+            onto += columns.tr_mul(&white);
+        }
+        chi2 - onto.dot(&self.inner.solve(&onto)) + self.log_determinant
+    }
+}
+
+/// So many amplitudes of either sign of `candidate`, without zero, closer to each other where they are small: of a strong
+/// effect a tenth more is soon found.
+fn amplitudes(&Candidate { min, max, .. }: &Candidate, count: u32) -> Vec<f64> {
+    let share = |k: u32| (f64::from(k) / f64::from(count)).powi(2);
+    let below = (1..=count).rev().map(|k| min * share(k)).filter(|q| *q < 0.0);
+    let above = (1..=count).map(|k| max * share(k)).filter(|q| *q > 0.0);
+    below.chain(above).collect()
 }
 
 /// The likelihood along the amplitude of one candidate.
 struct Profile<'a> {
-    bench: &'a Bench<'a>,
-    fitted: &'a Fitted,
+    problem: &'a Problem<'a>,
     candidate: usize,
 }
 
 impl Profile<'_> {
-    fn point(&self, q: f64) -> Point {
-        let mut point = self.fitted.fit.point.clone();
-        point.effects.push((self.candidate, q));
-        point
-    }
-
-    fn cost_at(&self, q: f64) -> Result<f64, BenchError> {
-        cost(self.bench, self.fitted, &self.point(q))
+    /// The least cost with the amplitude `q`, and the variance between conditions that goes with it.
+    fn cost_at(&self, q: f64) -> Result<(f64, f64), BenchError> {
+        let effects = [(self.candidate, q)];
+        self.problem.profiled(&self.problem.changed(&effects)?, &effects)
     }
 
     /// The best amplitude, where `bare` is the cost without.
     fn best(&self, bare: f64) -> Result<Marginal, BenchError> {
-        let &Candidate { min, max, .. } = &self.bench.forward.candidates()[self.candidate];
-        // Closer to each other where they are small: of a strong effect a tenth more is soon found.
-        let share = |k: u32| (f64::from(k) / f64::from(GRID)).powi(2);
-        let below = (1..=GRID).rev().map(|k| min * share(k)).filter(|q| *q < 0.0);
-        let above = (1..=GRID).map(|k| max * share(k)).filter(|q| *q > 0.0);
-        let grid: Vec<f64> = below.chain([0.0]).chain(above).collect();
+        let Problem { bench, fitted, .. } = self.problem;
+        let candidate = &bench.forward.candidates()[self.candidate];
+        let mut grid = amplitudes(candidate, GRID);
+        let zero = grid.partition_point(|q| *q < 0.0);
+        grid.insert(zero, 0.0);
         let mut costs = Vec::with_capacity(grid.len());
         for &q in &grid {
             // Too much of an effect may be no impact; too little of it always is one.
-            costs.push(if q == 0.0 { bare } else { self.cost_at(q).unwrap_or(f64::INFINITY) });
+            let cost = || self.cost_at(q).map_or(f64::INFINITY, |(cost, _)| cost);
+            costs.push(if q == 0.0 { bare } else { cost() });
         }
         let least = (0..grid.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).unwrap_or(0);
         let (low, high) = (grid[least.saturating_sub(1)], grid[(least + 1).min(grid.len() - 1)]);
         let (eps, share) = TOLERANCE;
-        let solver = BrentOpt::new(low, high).set_tolerance(eps, share * (max - min));
+        let solver =
+            BrentOpt::new(low, high).set_tolerance(eps, share * (candidate.max - candidate.min));
         let found = Executor::new(Along(self), solver).configure(|state| state.max_iters(40)).run();
         let polished = found.ok().and_then(|found| {
             let state = found.state();
@@ -116,14 +373,18 @@ impl Profile<'_> {
         let (q, least) = polished
             .filter(|(_, cost)| *cost < costs[least])
             .unwrap_or((grid[least], costs[least]));
-        let point = self.point(q);
-        let weights = self.bench.weights(&point, &self.fitted.noise, &self.bench.observed.fit)?;
-        let fit = self.bench.data(&weights).fit(&point)?;
+        let (_, between) = self.cost_at(q)?;
+        let mut point = fitted.fit.point.clone();
+        point.effects.push((self.candidate, q));
+        let noise = Noise { between, ..fitted.noise };
+        let weights = bench.weights(&point, &noise, &bench.observed.fit)?;
+        let fit = bench.data(&weights).fit(&point)?;
         Ok(Marginal {
             candidate: self.candidate,
             standard_error: fit.standard_error(fit.point.parameters.len()),
             point: fit.point,
             fall: (bare - least).max(0.0),
+            between,
         })
     }
 }
@@ -135,7 +396,7 @@ impl CostFunction for Along<'_> {
     type Output = f64;
 
     fn cost(&self, q: &f64) -> Result<f64, argmin::core::Error> {
-        Ok(self.0.cost_at(*q).unwrap_or(f64::INFINITY))
+        Ok(self.0.cost_at(*q).map_or(f64::INFINITY, |(cost, _)| cost))
     }
 }
 
@@ -155,6 +416,9 @@ mod tests {
         known: f64,
         ways: DMatrix<f64>,
         candidates: Vec<Candidate>,
+        /// What the candidate does per amplitude (m), and whether conditions may differ beyond their runs.
+        signature: [f64; 2],
+        spread: Option<DMatrix<f64>>,
     }
 
     const SIGNATURE: [f64; 2] = [0.010, 0.008];
@@ -173,7 +437,8 @@ mod tests {
                 unresolved: Vec::new(),
             };
             let ways = DMatrix::from_row_slice(2, 2, &[1e-3, 2e-5, 1e-3, -2e-5]);
-            Self { known, ways, candidates: vec![candidate] }
+            let candidates = vec![candidate];
+            Self { known, ways, candidates, signature: SIGNATURE, spread: None }
         }
     }
 
@@ -192,12 +457,16 @@ mod tests {
 
         fn predict(&self, _: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError> {
             let q: f64 = at.effects.iter().map(|(_, q)| q).sum();
-            Ok(SIGNATURE.map(|slope| 0.03 + slope * q).to_vec())
+            Ok(self.signature.map(|slope| 0.03 + slope * q).to_vec())
         }
 
         fn own_covariance(&self, _: usize, effects: &[(usize, f64)]) -> Option<DMatrix<f64>> {
             let q: f64 = effects.iter().map(|(_, q)| q).sum();
             Some(DMatrix::identity(2, 2) * (q * self.known).powi(2))
+        }
+
+        fn spread_of_runs(&self, _: usize) -> Option<&DMatrix<f64>> {
+            self.spread.as_ref()
         }
 
         fn ways_of_scatter(&self, _: usize) -> Option<&DMatrix<f64>> {
@@ -223,7 +492,7 @@ mod tests {
         let bench = Bench { set: &set, observed: &observed, forward: &forward };
         let start = Point { parameters: Vec::new(), effects: Vec::new() };
         let baseline = bench.fit(&start).unwrap();
-        let best = marginals(&bench, &baseline, &[0]).unwrap().unwrap().best.remove(0);
+        let best = marginals(&bench, &baseline, &[0], 1).unwrap().unwrap().best.remove(0);
         let with = Point { effects: vec![(0, 0.5)], ..start };
         let fit = bench.data(&baseline.weights).fit(&with).unwrap();
         (best, baseline.fit.chi2 - fit.chi2, fit.point.effects[0].1)
@@ -246,5 +515,34 @@ mod tests {
     fn without_uncertainty_the_likelihood_is_that_of_least_squares() {
         let (Marginal { fall, .. }, of_squares, _) = found(0.0);
         assert!((fall - of_squares).abs() < 1e-3 * (1.0 + of_squares), "{fall} {of_squares}");
+    }
+
+    /// The fall by a candidate that does nothing, where the means of six conditions are off by three standard errors.
+    fn fall_by_nothing(spread: Option<DMatrix<f64>>) -> (f64, f64) {
+        let forward = Known { signature: [0.0; 2], spread, ..Known::to(1.5e-3) };
+        let conditions: Vec<_> = (0..6).map(|_| condition(1.0, 45.0)).collect();
+        let runs = (0..60).map(|run| {
+            let (at, sign) = (run / 10, if run % 2 == 0 { 1e-3 } else { -1e-3 });
+            let off = if at % 2 == 0 { 1e-3 } else { -1e-3 };
+            let depth = 0.03 + off + sign;
+            // Numbers across the common scatter are off as little as they scatter.
+            scalar_run(at, [None, Some(depth), Some(depth + 0.01 * sign)])
+        });
+        let set = set(Kind::Scalar, conditions, runs.collect());
+        let observed = Observed::of(&set);
+        let bench = Bench { set: &set, observed: &observed, forward: &forward };
+        let start = Point { parameters: Vec::new(), effects: Vec::new() };
+        let baseline = bench.fit(&start).unwrap();
+        let all = marginals(&bench, &baseline, &[0], 1).unwrap().unwrap();
+        (all.best[0].fall, all.p)
+    }
+
+    #[test]
+    fn no_candidate_is_credited_for_being_badly_known() {
+        let (fall, p) = fall_by_nothing(None);
+        assert!(fall > 10.0 && p < 0.01, "{fall} {p}");
+        let ways = Known::to(0.0).ways;
+        let (fall, p) = fall_by_nothing(Some(&ways * ways.transpose()));
+        assert!(fall < 2.0 && p > 0.05, "{fall} {p}");
     }
 }

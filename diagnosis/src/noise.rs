@@ -38,6 +38,9 @@ pub struct Noise {
     pub reading: f64,
     /// Scatter of what differs from run to run.
     pub spread: Spread,
+    /// Variance by which the means of conditions differ from those of the model beyond what its runs explain, over the
+    /// variance of a run of the model; 0 for a model without runs.
+    pub between: f64,
 }
 
 /// Where a noise is from.
@@ -64,7 +67,7 @@ impl Noise {
     #[must_use]
     pub fn stated() -> Self {
         let spread = Spread { coefficient: 0.0, path: 0.0, speed: 0.0, level: 0.0, clock: 0.0 };
-        Self { source: NoiseSource::Stated, reading: 1.0, spread }
+        Self { source: NoiseSource::Stated, reading: 1.0, spread, between: 0.0 }
     }
 
     /// For comparing where nothing is known.
@@ -84,7 +87,7 @@ impl Noise {
     #[must_use]
     pub fn guess(instrument: &Instrument) -> Self {
         let spread = Spread::new(0.05, 0.12, instrument);
-        Self { source: NoiseSource::Repeats, reading: 1.0, spread }
+        Self { source: NoiseSource::Repeats, reading: 1.0, spread, between: 0.0 }
     }
 
     /// The most likely noise of the runs of the conditions `fit`, whose observables follow the
@@ -123,7 +126,8 @@ impl Noise {
             })
             .ok()
             .and_then(|result| result.state().get_best_param().cloned());
-        best.map_or(*self, |at| from_logarithms(&at, instrument, unstated))
+        let found = best.map_or(*self, |at| from_logarithms(&at, instrument, unstated));
+        Self { between: self.between, ..found }
     }
 
     /// The logarithms of what is learned from repeats: reading, coefficients and path; then what is `unstated`.
@@ -240,7 +244,7 @@ fn from_logarithms(at: &[f64], instrument: &Instrument, unstated: Unstated) -> N
     if let Some(rate) = unstated.rate {
         spread.clock = next(FRAMES_BOUNDS) / rate;
     }
-    Noise { source: NoiseSource::Repeats, reading, spread }
+    Noise { source: NoiseSource::Repeats, reading, spread, between: 0.0 }
 }
 
 /// What the likelihood needs of one condition, in units of the stated error of its readings.

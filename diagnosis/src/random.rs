@@ -12,6 +12,8 @@ pub(crate) enum Purpose {
     Resampling = 2,
     /// How far off a noise model is that was learned from few numbers.
     NoiseScale = 3,
+    /// Signatures of what does nothing.
+    Signature = 7,
     /// Runs in another order.
     Order = 4,
     /// Choices of held-out conditions.

@@ -51,7 +51,7 @@ impl Redraw {
                     let deviations = (0..runs).map(|run| weight.whiten(&observed.deviation(run)));
                     let mut columns: Vec<_> = deviations.collect();
                     let effects = &fitted.fit.point.effects;
-                    let own = bench.forward.own_covariance(condition, effects);
+                    let own = bench.own_covariance(condition, effects, &fitted.noise);
                     if let Some(factor) = own.and_then(Cholesky::new) {
                         let own = weight.whiten_columns(&factor.l());
                         columns.extend(own.column_iter().map(|column| column.into_owned()));

@@ -98,6 +98,8 @@ impl Ranking {
             }
         }
         let mut ranking = Self::ranked(bench, fitted, scores, failed, seed);
+        // Falls under covariances of their own are no squares of normal scores.
+        ranking.p = marginals.p;
         // How alike effects are under one covariance says too little of those that have each their own.
         let falls: Vec<f64> = ranking.scores.iter().map(|score| score.delta).collect();
         for (place, score) in ranking.scores.iter_mut().enumerate() {

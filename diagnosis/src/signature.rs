@@ -100,7 +100,8 @@ pub(crate) fn variance_along(bench: &Bench<'_>, fitted: &Fitted, unit: &DVector<
         let runs = observed.runs.len() as f64;
         variance += if observed.runs.len() > 1 {
             let along = |run| part.dot(&weight.whiten(&observed.deviation(run))).powi(2);
-            let own = bench.forward.own_covariance(condition, &fitted.fit.point.effects);
+            let effects = &fitted.fit.point.effects;
+            let own = bench.own_covariance(condition, effects, &fitted.noise);
             let own = own.map_or(0.0, |own| {
                 let half = weight.whiten_columns(&own).transpose();
                 part.dot(&weight.whiten_columns(&half).tr_mul(&part))

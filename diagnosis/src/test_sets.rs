@@ -2,7 +2,7 @@
 
 use measurements::{
     Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedError, StopDefinition,
+    Role, Run, StatedBed, StatedError, StopDefinition,
 };
 
 /// A sphere of an inch at `speed` (m/s) and `angle_deg` (deg), to be fitted to.
@@ -71,6 +71,7 @@ pub(crate) fn set(kind: Kind, conditions: Vec<Condition>, runs: Vec<Run>) -> Mea
             bulk_density: Some(1480.0),
             gravity: 9.81,
             grain_diameter: Some(8e-4),
+            stated: StatedBed::default(),
         },
         baseline: None,
         stated: StatedError::default(),

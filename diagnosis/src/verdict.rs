@@ -27,6 +27,8 @@ pub enum Verdict {
     NoneOfTheCandidates,
     /// Errors of the apparatus, and no effect.
     ExplainedByApparatus,
+    /// Another preparation of the bed, and no effect.
+    ExplainedByPreparation,
     /// Something is missing, and held-out conditions are missed by no more than a name needs.
     BelowNoise,
     /// The data cannot answer.
@@ -117,6 +119,8 @@ pub struct Diagnosis {
     pub unexplained: Unexplained,
     /// Errors that runs share, as the fit finds them.
     pub apparatus: Vec<ApparatusError>,
+    /// By what the measured bed differs from that of the model, as the fit finds it.
+    pub preparation: Vec<ApparatusError>,
     /// Experiments that would tell more, best first.
     pub next: Vec<Value>,
     /// Parameters with what is named added (without, where nothing is), with standard error and unit.
@@ -226,11 +230,19 @@ const CLEAR_OF_ZERO: f64 = 4.0;
 const UNEXPECTED: f64 = 1.5;
 
 impl ApparatusError {
-    /// All of `fit`.
+    /// All of the apparatus in `fit`.
     pub(crate) fn all(forward: &dyn Forward, fit: &Fit) -> Vec<Self> {
+        Self::of(forward, fit, ParameterKind::Apparatus)
+    }
+
+    /// All of the preparation in `fit`.
+    pub(crate) fn of_preparation(forward: &dyn Forward, fit: &Fit) -> Vec<Self> {
+        Self::of(forward, fit, ParameterKind::Preparation)
+    }
+
+    fn of(forward: &dyn Forward, fit: &Fit, kind: ParameterKind) -> Vec<Self> {
         let values = forward.parameters().iter().zip(&fit.point.parameters).enumerate();
-        let errors =
-            values.filter(|(_, (parameter, _))| parameter.kind == ParameterKind::Apparatus);
+        let errors = values.filter(|(_, (parameter, _))| parameter.kind == kind);
         errors
             .map(|(at, (parameter, &value))| {
                 let se = fit.standard_error(at);
@@ -282,6 +294,7 @@ impl Diagnosis {
             noise: Value::Null,
             holdout: None,
             apparatus: Vec::new(),
+            preparation: Vec::new(),
             unexplained: Unexplained { hint: why, ..Unexplained::default() },
             next: Vec::new(),
             parameters: Map::new(),

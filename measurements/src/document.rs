@@ -14,8 +14,8 @@ use super::optional::optional;
 use super::table::Format;
 use super::unstated::Unstated;
 use super::{
-    Bed, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, StatedError,
-    StopDefinition,
+    Bed, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, StatedBed,
+    StatedError, StopDefinition,
 };
 
 /// What `measurement.toml` says.
@@ -257,8 +257,22 @@ fn bed(table: TableReader<'_>, planar: bool, unstated: &mut Unstated) -> Bed {
     let grain_diameter = optional(&table, &keys::GRAIN_DIAMETER);
     unstated.absent_if(density.is_none(), "bed.bulk_density");
     unstated.absent_if(grain_diameter.is_none(), "bed.grain_diameter");
+    let density_sigma = match geometry {
+        Geometry::Planar => optional(&table, &keys::AREA_DENSITY_SIGMA),
+        Geometry::Spatial => optional(&table, &keys::BULK_DENSITY_SIGMA),
+    };
+    let stated = StatedBed {
+        packing_fraction: optional(&table, &keys::PACKING_FRACTION),
+        packing_fraction_sigma: optional(&table, &keys::PACKING_FRACTION_SIGMA),
+        surface_height: optional(&table, &keys::SURFACE_HEIGHT),
+        surface_height_sigma: optional(&table, &keys::SURFACE_HEIGHT_SIGMA),
+        bulk_density_sigma: density_sigma,
+        grain_diameter_sigma: optional(&table, &keys::GRAIN_DIAMETER_SIGMA),
+        coordination: optional(&table, &keys::COORDINATION),
+        coordination_sigma: optional(&table, &keys::COORDINATION_SIGMA),
+    };
     table.finish();
-    Bed { geometry, bulk_density: density, gravity, grain_diameter }
+    Bed { geometry, bulk_density: density, gravity, grain_diameter, stated }
 }
 
 fn files(table: TableReader<'_>, kind: Option<Kind>) -> Option<Files> {

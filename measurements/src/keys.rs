@@ -107,6 +107,62 @@ pub(super) const GRAVITY: ParamSpec =
 pub(super) const GRAIN_DIAMETER: ParamSpec =
     key("grain_diameter", LENGTH, POSITIVE, (1e-6, 0.1), "the mean diameter of the grains");
 
+pub(super) const PACKING_FRACTION: ParamSpec = PACKING.named(
+    "packing_fraction",
+    "the area (volume) of the grains over the base times the mean height of the surface",
+);
+pub(super) const PACKING_FRACTION_SIGMA: ParamSpec = key(
+    "packing_fraction_sigma",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 0.1),
+    "the standard error of the packing fraction",
+);
+pub(super) const SURFACE_HEIGHT: ParamSpec = key(
+    "surface_height",
+    LENGTH,
+    POSITIVE,
+    (1e-3, 100.0),
+    "the mean height of the surface above the floor",
+);
+pub(super) const SURFACE_HEIGHT_SIGMA: ParamSpec = key(
+    "surface_height_sigma",
+    LENGTH,
+    NOT_NEGATIVE,
+    (0.0, 1.0),
+    "the standard error of the height of the surface",
+);
+pub(super) const BULK_DENSITY_SIGMA: ParamSpec = key(
+    "bulk_density_sigma",
+    Dimension::DENSITY,
+    NOT_NEGATIVE,
+    (0.0, 1e3),
+    "the standard error of the bulk density",
+);
+pub(super) const AREA_DENSITY_SIGMA: ParamSpec =
+    ParamSpec { dimension: Dimension::AREA_DENSITY, ..BULK_DENSITY_SIGMA };
+pub(super) const GRAIN_DIAMETER_SIGMA: ParamSpec = key(
+    "grain_diameter_sigma",
+    LENGTH,
+    NOT_NEGATIVE,
+    (0.0, 0.01),
+    "the standard error of the mean diameter of the grains",
+);
+pub(super) const COORDINATION: ParamSpec = key(
+    "coordination",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 20.0),
+    "the mean number of contacts of a grain, which simulated beds show",
+);
+pub(super) const COORDINATION_SIGMA: ParamSpec = key(
+    "coordination_sigma",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 1.0),
+    "the standard error of the coordination number",
+);
+
 pub(super) const STOP_TIME_ERROR: ParamSpec =
     key("stop_time_rel", NUMBER, NOT_NEGATIVE, (0.0, 1.0), "the relative error of a stopping time");
 pub(super) const FINAL_Z_ERROR: ParamSpec =

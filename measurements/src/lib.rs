@@ -173,6 +173,29 @@ pub struct Bed {
     pub gravity: f64,
     /// Mean diameter of the grains (m).
     pub grain_diameter: Option<f64>,
+    /// What else is known of how it lies.
+    pub stated: StatedBed,
+}
+
+/// What a set states of its bed, and how well: a model of grains is held against it, and prepared to it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StatedBed {
+    /// Area (volume) of the grains over base times mean height of the surface (–).
+    pub packing_fraction: Option<f64>,
+    /// Standard error of that.
+    pub packing_fraction_sigma: Option<f64>,
+    /// Mean height of the surface above the floor (m).
+    pub surface_height: Option<f64>,
+    /// Standard error of that (m).
+    pub surface_height_sigma: Option<f64>,
+    /// Standard error of the bulk density (kg/m³, planar kg/m²).
+    pub bulk_density_sigma: Option<f64>,
+    /// Standard error of the mean diameter of the grains (m).
+    pub grain_diameter_sigma: Option<f64>,
+    /// Mean number of contacts of a grain, which only simulated beds show (–).
+    pub coordination: Option<f64>,
+    /// Standard error of that.
+    pub coordination_sigma: Option<f64>,
 }
 
 /// Stated relative errors (1 = 100 %).

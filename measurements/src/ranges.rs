@@ -101,6 +101,7 @@ fn of_set(set: &MeasurementSet) -> impl Iterator<Item = Number> {
         (&GRAVITY, Some(bed.gravity)),
         (&DENSITY, bed.bulk_density),
         (&GRAIN, bed.grain_diameter),
+        (&SIZE, bed.stated.surface_height),
         (&RATE, instrument.rate),
         (&READING_ERROR, instrument.position_sigma),
         (&READING_ERROR, instrument.level_sigma),

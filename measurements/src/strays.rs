@@ -239,8 +239,8 @@ fn between(track: &[[f64; 2]], t: f64) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::{
-        Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, Role, StatedError,
-        StopDefinition,
+        Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, Role, StatedBed,
+        StatedError, StopDefinition,
     };
 
     const ERROR: f64 = 1e-4;
@@ -278,6 +278,7 @@ mod tests {
                 bulk_density: None,
                 gravity: 9.81,
                 grain_diameter: None,
+                stated: StatedBed::default(),
             },
             baseline: None,
             stated: StatedError::default(),

@@ -95,6 +95,19 @@ impl MeasurementSet {
         file.number("bulk_density", self.bed.bulk_density);
         file.number("gravity", Some(self.bed.gravity));
         file.number("grain_diameter", self.bed.grain_diameter);
+        let stated = &self.bed.stated;
+        for (key, value) in [
+            ("packing_fraction", stated.packing_fraction),
+            ("packing_fraction_sigma", stated.packing_fraction_sigma),
+            ("surface_height", stated.surface_height),
+            ("surface_height_sigma", stated.surface_height_sigma),
+            ("bulk_density_sigma", stated.bulk_density_sigma),
+            ("grain_diameter_sigma", stated.grain_diameter_sigma),
+            ("coordination", stated.coordination),
+            ("coordination_sigma", stated.coordination_sigma),
+        ] {
+            file.number(key, value);
+        }
         file.table("[model]");
         file.text("baseline", self.baseline.as_deref());
         file.table("[noise]");

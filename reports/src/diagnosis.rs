@@ -33,16 +33,21 @@ pub fn verdict_in_words(diagnosis: &Value) -> String {
         }
         "none-of-the-candidates" => "none of the candidates".to_owned(),
         "explained-by-apparatus" => {
-            format!("explained by the apparatus, no effect needed: {}", named_errors(diagnosis))
+            let named = named_errors(&diagnosis["apparatus"]);
+            format!("explained by the apparatus, no effect needed: {named}")
+        }
+        "explained-by-preparation" => {
+            let named = named_errors(&diagnosis["preparation"]);
+            format!("explained by the preparation of the bed, no effect needed: {named}")
         }
         "below-noise" => "below what these data can show: no effect is named".to_owned(),
         _ => "cannot tell".to_owned(),
     }
 }
 
-/// The errors of the apparatus that a diagnosis names, with their size.
-fn named_errors(diagnosis: &Value) -> String {
-    let errors = diagnosis["apparatus"].as_array().map_or(&[][..], Vec::as_slice);
+/// Those of `errors`, of the apparatus or the preparation, that a diagnosis names, with their size.
+fn named_errors(errors: &Value) -> String {
+    let errors = errors.as_array().map_or(&[][..], Vec::as_slice);
     let named = errors.iter().filter(|error| error["named"] == true);
     named.map(apparatus_error).collect::<Vec<_>>().join(", ")
 }
@@ -54,6 +59,8 @@ pub fn apparatus_error(error: &Value) -> String {
         "s" => (1e3, " ms"),
         "m" => (1e3, " mm"),
         "rad" => (180.0 / std::f64::consts::PI, "°"),
+        "kg/m^2" => (1.0, " kg/m²"),
+        "kg/m^3" => (1.0, " kg/m³"),
         _ => (1e2, " %"),
     };
     let number = |key: &str| error[key].as_f64().map(|value| factor * value);

@@ -24,6 +24,10 @@ pub enum Change {
     PreparationFriction(f64),
     /// Packing fraction up to which grains grow in place before they fall (–).
     InflatedTo(f64),
+    /// Packing fraction up to which a bed at rest is tapped (–).
+    TargetPackingFraction(f64),
+    /// One more effect while the bed settles, with those of its parameters that are no default.
+    BedEffect(&'static str, Vec<(&'static str, f64)>),
     /// The grains of the bed.
     Grains(Vec<GrainKind>),
     /// One more effect, with those of its parameters that are no default.
@@ -97,11 +101,16 @@ impl Change {
                 let kinds = kinds.iter().map(|kind| of_kind(kind, span)).collect();
                 put("bed", "grains", Node { span, value: Value::Array(kinds) });
             }
+            Self::TargetPackingFraction(value) => {
+                put("bed", "target_packing_fraction", number(*value));
+            }
             Self::Effect(name, values) => {
-                let mut table = Table::empty(span);
-                table.put("name", text(name));
-                values.iter().for_each(|(key, value)| table.put(key, number(*value)));
-                root.push("effect", Node { span, value: Value::Table(table) });
+                root.push("effect", of_effect(name, values, span));
+            }
+            Self::BedEffect(name, values) => {
+                if let Some(bed) = root.below("bed") {
+                    bed.push("effect", of_effect(name, values, span));
+                }
             }
             Self::Intruder { shape, sizes, mass } => {
                 put("intruder", "shape", text(shape));
@@ -116,6 +125,16 @@ impl Change {
             Self::X(value) => put(start, "x", number(*value)),
         }
     }
+}
+
+/// The effect `name` with these parameters as a table.
+fn of_effect(name: &str, values: &[(&str, f64)], span: Span) -> Node {
+    let mut table = Table::empty(span);
+    table.put("name", Node { span, value: Value::Text(name.to_owned()) });
+    for (key, value) in values {
+        table.put(key, Node { span, value: Value::Si(*value) });
+    }
+    Node { span, value: Value::Table(table) }
 }
 
 /// `kind` as a table of `[[bed.grains]]`.

@@ -160,6 +160,11 @@ impl StandIn {
         Ok(response)
     }
 
+    /// Keys of the coefficients that scatter.
+    pub(super) fn scattering(&self) -> &[&'static str] {
+        self.forward.scattering()
+    }
+
     pub(super) fn n_scattering(&self) -> usize {
         self.forward.n_scattering_coefficients()
     }
@@ -171,6 +176,10 @@ fn opposite(scatter: &Scatter) -> Scatter {
         coefficients: less(&scatter.coefficients),
         speed: -scatter.speed,
         level: -scatter.level,
+        clock: -scatter.clock,
+        scale: -scatter.scale,
+        mass: -scatter.mass,
+        tilt: -scatter.tilt,
         along: less(&scatter.along),
         sideways: less(&scatter.sideways),
         ..scatter.clone()

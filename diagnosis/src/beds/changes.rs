@@ -94,7 +94,7 @@ const PACKING: Switch = Switch {
     screen: 0.7,
     range: (-2.0, 1.0),
     separable_from: "from grain-friction: a bed that is weighed",
-    of_measurements: true,
+    of_measurements: false,
     act: Act::Change {
         lacks: |model| match preparation_friction(model) {
             Some(friction) if friction > 0.0 => None,
@@ -139,7 +139,7 @@ const POLYDISPERSITY: Switch = Switch {
     screen: 0.15,
     range: (0.0, 0.3),
     separable_from: "from packing: a bed that is weighed",
-    of_measurements: true,
+    of_measurements: false,
     act: Act::Change {
         lacks: |model| match &model.medium.bed.source {
             BedSource::Csv(_) => Some("the bed is given"),

@@ -12,6 +12,7 @@ use super::observables::observables;
 use super::stand::Stand;
 use crate::bench::BenchError;
 use crate::errors::{Errors, Sums};
+use crate::fit::Fit;
 use crate::held_out::{Fails, HeldOut, LeftOut, NotPredicted, Unit, standard_errors};
 use crate::observed::Observed;
 use crate::rounding::rounded;
@@ -21,7 +22,7 @@ use crate::sensitivity::Point;
 #[derive(Clone, Debug)]
 pub struct Confirmation {
     /// Errors of the model as it is and with what is proposed; the floor is of the means of both, of
-    /// measurements and of impacts.
+    /// measurements and of impacts, and of what all runs share.
     pub held_out: HeldOut,
     /// Every channel that dissipates.
     pub channels: Vec<Channel>,
@@ -40,12 +41,13 @@ pub struct Channel {
 }
 
 impl Confirmation {
-    /// Of `runs` under `conditions`: those of the model as it is, and those with the switches of `point`
-    /// on, condition after condition; what the apparatus does is added to these.
+    /// Of `runs` under `conditions`: those of the model as it is, and those with the switches of a model on, condition
+    /// after condition; what all runs share in the two models, and what an effect of a force law does, is added by
+    /// `fits`.
     pub(super) fn of(
         stand: &Stand<'_>,
         measured: &Observed,
-        (forward, point): (&BedForward, &Point),
+        (forward, fits): (&BedForward, [&Fit; 2]),
         (conditions, runs): (&[usize], [&[Option<Record>]; 2]),
     ) -> Result<Self, BedError> {
         let mut sums = [Sums::default(), Sums::default(), Sums::default()];
@@ -71,11 +73,18 @@ impl Confirmation {
                 }
             };
             judged += 1;
-            let apparatus =
-                forward.apparatus(condition, &point.effects).map_err(BenchError::from)?;
-            let errors = [&observed.mean - &plain.mean, &observed.mean - &with.mean - apparatus];
+            let beside = |point: &Point| -> Result<_, BedError> {
+                Ok(forward.beside_the_bed(condition, point).map_err(BenchError::from)?)
+            };
+            let [before, after] = fits.map(|fit| &fit.point);
+            let errors = [
+                &observed.mean - &plain.mean - beside(before)?,
+                &observed.mean - &with.mean - beside(after)?,
+            ];
             let own = standard_errors(observed);
-            let floor = own.zip_map(&with.error, libm::hypot);
+            let beside = fits.map(|fit| forward.unknown_beside(condition, fit));
+            let beside = beside[0].zip_map(&beside[1], f64::max).map(f64::sqrt);
+            let floor = own.zip_map(&with.error, libm::hypot).zip_map(&beside, libm::hypot);
             gain += 0.5 * (mean_square(&errors[0], &floor) - mean_square(&errors[1], &floor));
             let kinds = observed.layout.kinds();
             for (sums, error) in sums.iter_mut().zip(errors.iter().chain([&floor])) {

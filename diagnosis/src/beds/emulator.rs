@@ -6,14 +6,18 @@ use measurements::MeasurementSet;
 use serde_json::{Value, json};
 
 use super::baseline::Baseline;
+use super::clarity::lost;
 use super::response::Response;
+use super::shared::Shared;
 use super::switch::Switch;
 use super::switches::are_alike_below;
+use crate::fit::Fit;
 use crate::forward::{
     Candidate, Forward, Parameter, ParameterKind, PredictError, Request, Scatter,
 };
 use crate::held_out::noise_floor;
 use crate::rounding::rounded;
+use crate::sensitivity::Point;
 
 /// So many times the amplitude that was screened, what was found there is extrapolated: far enough for a
 /// search to begin with.
@@ -53,15 +57,35 @@ pub struct BedForward {
     sources: Vec<Source>,
     parameters: Vec<Parameter>,
     candidates: Vec<Candidate>,
+    /// What all runs share; its parameters stand behind those of `free`.
+    shared: Shared,
     /// Whether readings from before contact are among what is fitted to.
     flight: bool,
 }
 
 impl BedForward {
-    /// Of `baseline`; switches of `screened` whose id is in `free` are parameters of the model, the
-    /// others candidates beside those of `apparatus`.
-    pub(super) fn new(
-        baseline: Baseline,
+    /// Of `baseline` and what all runs `shared`, without candidates.
+    pub(super) fn new(baseline: Baseline, shared: Shared) -> Self {
+        let layouts = baseline.observed.conditions.iter().map(|one| &one.layout);
+        let flight = layouts.flat_map(|layout| &layout.times).any(|time| *time < 0.0);
+        let mut forward = Self {
+            baseline,
+            shared,
+            screened: Vec::new(),
+            free: Vec::new(),
+            sources: Vec::new(),
+            parameters: Vec::new(),
+            candidates: Vec::new(),
+            flight,
+        };
+        forward.describe();
+        forward
+    }
+
+    /// With what was `screened`: switches whose id is in `free` are parameters of the model, the others candidates beside
+    /// those of the force law that are named in `apparatus`.
+    pub(super) fn with(
+        mut self,
         screened: Vec<Screened>,
         free: &[String],
         apparatus: &[&str],
@@ -69,23 +93,13 @@ impl BedForward {
         let is_free = |one: &Screened| free.iter().any(|id| id == one.switch.id);
         let (parameters, others): (Vec<usize>, Vec<usize>) =
             (0..screened.len()).partition(|&at| is_free(&screened[at]));
-        let mut sources: Vec<Source> = others.into_iter().map(Source::Switch).collect();
-        let of_law = baseline.stand_in.forward.candidates().iter().enumerate();
+        self.sources = others.into_iter().map(Source::Switch).collect();
+        let of_law = self.baseline.stand_in.forward.candidates().iter().enumerate();
         let named = of_law.filter(|(_, one)| apparatus.contains(&one.id.as_str()));
-        sources.extend(named.map(|(at, _)| Source::Apparatus(at)));
-        let layouts = baseline.observed.conditions.iter().map(|one| &one.layout);
-        let flight = layouts.flat_map(|layout| &layout.times).any(|time| *time < 0.0);
-        let mut forward = Self {
-            baseline,
-            screened,
-            free: parameters,
-            sources,
-            parameters: Vec::new(),
-            candidates: Vec::new(),
-            flight,
-        };
-        forward.describe();
-        forward
+        self.sources.extend(named.map(|(at, _)| Source::Apparatus(at)));
+        (self.screened, self.free) = (screened, parameters);
+        self.describe();
+        self
     }
 
     /// Says anew what the statistics are told of parameters and candidates.
@@ -111,7 +125,8 @@ impl BedForward {
                 Candidate { unresolved: Vec::new(), ..of_law }
             }
         };
-        let parameters = self.free.iter().map(parameter).collect();
+        let parameters = self.free.iter().map(parameter);
+        let parameters = parameters.chain(self.shared.parameters().iter().cloned()).collect();
         let mut candidates: Vec<Candidate> = self.sources.iter().map(candidate).collect();
         if !self.flight {
             let testable = candidates.iter().filter(|one| one.not_testable.is_none());
@@ -154,6 +169,9 @@ impl BedForward {
         tried: (f64, f64),
     ) {
         let (min, max) = self.screened[at].switch.range;
+        let largest = if tried.1 > -tried.0 { tried.1 } else { tried.0 };
+        let runs = responses.iter().flatten().map(|one| one.deviations.len()).sum();
+        self.screened[at].not_testable = lost((&responses, largest), &self.baseline, runs);
         self.screened[at].responses = responses;
         self.screened[at].range = (min.max(SEARCHED * tried.0), max.min(SEARCHED * tried.1));
         self.describe();
@@ -199,13 +217,41 @@ impl BedForward {
         switches.map(|at| self.screened[at].switch.id).collect()
     }
 
-    /// What the effects of the apparatus among `effects` change of the observables.
-    pub(super) fn apparatus(
+    /// What all runs share at `point`, and its effects of the force law, change of the observables; any condition of the
+    /// set, run or not.
+    pub(super) fn beside_the_bed(
         &self,
         condition: usize,
-        effects: &[(usize, f64)],
+        point: &Point,
     ) -> Result<DVector<f64>, PredictError> {
-        self.respond(condition, effects, &Scatter::default())
+        let of_law = self.respond(condition, &point.effects, &Scatter::default())?;
+        let shared = &point.parameters[self.free.len().min(point.parameters.len())..];
+        Ok(of_law + self.shared.change(condition, shared))
+    }
+
+    /// Variance of each number of what all runs share in `fit`.
+    pub(super) fn unknown_beside(&self, condition: usize, fit: &Fit) -> DVector<f64> {
+        let (free, n) = (self.free.len(), self.shared.parameters().len());
+        let covariance = fit.covariance.view((free, free), (n, n)).into_owned();
+        self.shared.variance(condition, &fit.point.parameters[free..free + n], &covariance)
+    }
+
+    /// What all runs share.
+    pub(super) fn shared(&self) -> &Shared {
+        &self.shared
+    }
+
+    /// How the observables of `condition` follow the logarithms of the coefficients of the force law that stands in.
+    pub(super) fn by_coefficients(&self, condition: usize) -> Result<DMatrix<f64>, PredictError> {
+        const STEP: f64 = 0.05;
+        let n = self.baseline.stand_in.n_scattering();
+        let column = |at: usize| {
+            let coefficients = (0..n).map(|k| if k == at { STEP } else { 0.0 }).collect();
+            let scatter = Scatter { coefficients, ..Scatter::default() };
+            Ok(self.baseline.stand_in.response(condition, &[], &scatter)? / STEP)
+        };
+        let columns = (0..n).map(column).collect::<Result<Vec<_>, PredictError>>()?;
+        Ok(DMatrix::from_columns(&columns))
     }
 
     fn respond(
@@ -292,6 +338,10 @@ impl Forward for BedForward {
             return Err(missing());
         }
         let mut predicted = observed.mean.clone();
+        let shared = &at.parameters[self.free.len().min(at.parameters.len())..];
+        if shared.iter().any(|value| *value != 0.0) {
+            predicted += self.shared.change(condition, shared);
+        }
         let of_law = |&(index, q): &(usize, f64)| q != 0.0 && self.switch(index).is_none();
         if !at.scatter.is_still() || at.effects.iter().any(of_law) {
             predicted += self.respond(condition, at.effects, at.scatter)?;
@@ -313,7 +363,13 @@ impl Forward for BedForward {
             let response = self.screened[switch].responses[condition].as_ref()?;
             Some(response.covariance_at(q, spread))
         });
-        Some(of_effects.fold(spread / runs as f64, |sum, one| sum + one))
+        let of_means = spread / runs as f64 + self.shared.unknown(condition);
+        Some(of_effects.fold(of_means, |sum, one| sum + one))
+    }
+
+    fn spread_of_runs(&self, condition: usize) -> Option<&DMatrix<f64>> {
+        let spread = &self.baseline.spread[condition];
+        (!spread.is_empty()).then_some(spread)
     }
 
     fn ways_of_scatter(&self, condition: usize) -> Option<&DMatrix<f64>> {

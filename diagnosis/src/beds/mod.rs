@@ -5,16 +5,20 @@
 
 mod baseline;
 mod changes;
+mod clarity;
 mod confirmation;
 mod design;
 mod emulator;
 mod error;
 mod line_search;
+mod located;
 mod modes;
 pub mod observables;
 mod plan;
+pub mod preparation;
 mod response;
 mod screening;
+mod shared;
 mod stand;
 mod switch;
 mod switches;

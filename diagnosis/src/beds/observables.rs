@@ -13,7 +13,9 @@ pub fn at(record: &Record, time: f64, condition: &Condition, gravity: f64) -> (f
     if time < 0.0 {
         let (sine, cosine) = libm::sincos(condition.angle_deg.to_radians());
         let down = condition.speed * sine * time + 0.5 * gravity * time * time;
-        return (down, condition.speed * cosine * time);
+        // Contact is with the highest grains, above the mean surface.
+        let at_contact = record.depth.first().copied().unwrap_or(0.0);
+        return (at_contact + down, condition.speed * cosine * time);
     }
     record.since_contact(time)
 }

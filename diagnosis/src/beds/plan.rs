@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::error::BedError;
 use super::line_search;
+use super::preparation::at_level;
 use super::screening::Screening;
 use super::stand::{Draw, Stand};
 use super::switch::Switch;
@@ -18,6 +19,12 @@ pub(super) const LEADERS: usize = 2;
 
 /// How often leaders are searched at most: those that lead once the first are better known, too.
 pub(super) const SEARCHES: usize = 2;
+
+/// Draws of a looser and of a denser bed, per condition.
+pub(super) const SIDE_DRAWS: usize = 3;
+
+/// Most pairs of runs on one draw: a correlation from eight is known well enough to choose a way of screening.
+const PAIRS: usize = 8;
 
 /// How much is run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +81,7 @@ pub const SIZES: [Size; 4] = [
         repeats: 4,
         line_draws: 8,
         confirm_conditions: 4,
-        confirm_draws: 16,
+        confirm_draws: 12,
     },
 ];
 
@@ -249,15 +256,28 @@ impl Plan {
             PlannedStage { name, impacts, to_run: impacts, beds, seconds: work / pace }
         };
         let Size { line_draws, confirm_draws, .. } = self.size;
+        let beds_of = |draws: usize, conditions: usize| match conditions {
+            0 => 0,
+            _ => stand.n_beds(draws, conditions),
+        };
+        let (fitted, confirming) = (self.fit.len(), self.confirm.len());
+        let sides = match at_level(stand.grains(), 1.0) {
+            Some(_) => 2,
+            None => 0,
+        };
+        let of_sides =
+            SIDE_DRAWS.min(self.size.draws) * fitted + SIDE_DRAWS.min(confirm_draws) * confirming;
+        let beds_of_sides = sides * (beds_of(SIDE_DRAWS, fitted) + beds_of(SIDE_DRAWS, confirming));
         let lines = SEARCHES * LEADERS * line_search::AMPLITUDES * line_draws * self.fit.len();
-        let confirm = 2 * self.confirm.len() * confirm_draws;
-        let beds = if confirm > 0 { stand.n_beds(confirm_draws, self.confirm.len()) } else { 0 };
+        let confirm = confirming * confirm_draws;
         Ok(vec![
             stage("scatter of beds", &baseline)?,
             stage("correlation of pairs", &again)?,
-            stage("screening", &screened)?,
+            later("response to packing", sides * of_sides, beds_of_sides),
+            later("held out, as it is", confirm, beds_of(confirm_draws, confirming)),
+            stage("screening, if anything is missing", &screened)?,
             later("line search, at most", lines, 0),
-            later("confirmation", confirm, beds),
+            later("confirmation of a name", confirm, 0),
         ])
     }
 
@@ -342,7 +362,11 @@ impl Plan {
         let middle = self.middle()..(self.middle() + 1).min(self.fit.len());
         let Some(switch) = switch else { return Ok(Vec::new()) };
         let change = switch.change(stand.grains(), LITTLE);
-        Ok(stand.jobs(&self.fit[middle.clone()], &draws[middle], &change)?)
+        let few: Vec<Vec<Draw>> = draws[middle.clone()]
+            .iter()
+            .map(|draws| draws[..PAIRS.min(draws.len())].to_vec())
+            .collect();
+        Ok(stand.jobs(&self.fit[middle], &few, &change)?)
     }
 
     pub(super) fn screening(&self, stand: &Stand<'_>) -> Screening {

@@ -5,6 +5,7 @@ use runner::beds::Job;
 use runner::beds::Record;
 
 use super::baseline::Baseline;
+use super::clarity::lost;
 use super::design::folded;
 use super::emulator::Screened;
 use super::observables::observables;
@@ -13,14 +14,10 @@ use super::stand::{Draw, Stand, StandError};
 use super::switch::Switch;
 use super::variation::Variation;
 use crate::observable::Layout;
-use crate::projection::Basis;
 
 /// Runs and their mirrors on one draw of a bed: so many pairs that the draw cancels from every main effect
 /// without a bed of its own for each.
 const PAIRS_PER_DRAW: usize = 3;
-
-/// A signature below this many times the scatter of its runs is not seen.
-const SEEN: f64 = 2.0;
 
 /// Which runs a screening is made of.
 pub(super) struct Screening {
@@ -144,25 +141,8 @@ pub(super) fn screened(
     responses: Vec<Option<Response>>,
     (baseline, runs): (&Baseline, usize),
 ) -> Screened {
-    let (mut signal, mut freedom) = (0.0, 0.0_f64);
-    let known = baseline.spread.iter().zip(&baseline.modes.columns);
-    for (response, (spread, modes)) in responses.iter().zip(known) {
-        let Some(response) = response else { continue };
-        if let Some(factor) = Cholesky::new(response.covariance_at(switch.screen, spread)) {
-            let white = |mut of: DMatrix<f64>| {
-                // The diagonal of a Cholesky factor is positive, so there is a solution.
-                factor.l_dirty().solve_lower_triangular_mut(&mut of);
-                of
-            };
-            let modes = Basis::of(&white(modes.clone()));
-            let change = white(DMatrix::from_columns(&[response.at(switch.screen)]));
-            let change = change.column(0).into_owned();
-            signal += change.norm_squared() - modes.rest(&change).norm_squared();
-            freedom += modes.len() as f64;
-        }
-    }
-    let clear = (signal - freedom) / (2.0 * freedom).sqrt().max(1.0);
-    Screened::new(switch, responses, (clear < SEEN).then(|| not_seen(clear, runs)))
+    let lost = lost((&responses, switch.screen), baseline, runs);
+    Screened::new(switch, responses, lost)
 }
 
 /// One row per switch, then one per draw.
@@ -170,14 +150,4 @@ struct MainEffects {
     sizes: DMatrix<f64>,
     /// In units of the covariance of a run around the level of its draw.
     covariance: DMatrix<f64>,
-}
-
-/// Why a switch whose signature is `clear` times its scatter cannot be tested.
-fn not_seen(clear: f64, runs: usize) -> String {
-    let factor = (SEEN / clear.max(0.25)).powi(2);
-    format!(
-        "what it changes is lost in the scatter of beds; about {:.0} impacts of screening would show it \
-         (these were {runs})",
-        factor * runs as f64
-    )
 }

@@ -183,6 +183,14 @@ impl<'a> Stand<'a> {
         all.map(|(at, draw)| self.job(at, draw, variation)).collect()
     }
 
+    /// The model with `changes`.
+    pub(super) fn prepared(&self, changes: &[Change]) -> Result<Model, StandError> {
+        let condition =
+            || self.set.conditions.first().map_or_else(String::new, |one| one.id.clone());
+        let with = self.grains().with(changes);
+        with.map_err(|source| StandError::Config { condition: condition(), source })
+    }
+
     /// The model with `variation`, complete and in SI.
     ///
     /// # Errors

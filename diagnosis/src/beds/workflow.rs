@@ -1,6 +1,7 @@
 //! From a model of grains and a set to a comparison, or to a diagnosis: what is run, in which order, and
 //! what is made of it.
 
+use configs::Change;
 use runner::beds::Impacts;
 use runner::beds::Job;
 use runner::beds::Record;
@@ -11,17 +12,22 @@ use super::confirmation::Confirmation;
 use super::emulator::{BedForward, Screened};
 use super::error::BedError;
 use super::line_search::{Against, LineSearch};
-use super::plan::{LEADERS, Plan, SEARCHES};
+use super::located::Located;
+use super::observables::observables;
+use super::plan::{LEADERS, Plan, SEARCHES, SIDE_DRAWS};
+use super::preparation::{Known, Preparation, at_level, listed};
 use super::response::Response;
 use super::screening::screened;
+use super::shared::{Column, Shared};
 use super::stand::{Draw, Stand};
 use super::switch::Switch;
 use super::variation::Variation;
-use crate::bench::Bench;
+use crate::apparatus::is_looked_for;
+use crate::bench::{Bench, BenchError};
 use crate::compare::parameters;
-use crate::diagnose::{diagnose, withdraw};
-use crate::forward::Forward;
-use crate::held_out::{HeldOut, WITHIN};
+use crate::diagnose::{ALPHA, as_it_is, diagnose, withdraw};
+use crate::fit::Fit;
+use crate::forward::{Forward, Parameter, ParameterKind};
 use crate::observable::Layout;
 use crate::observed::Observed;
 use crate::rounding::rounded;
@@ -35,6 +41,16 @@ const ALONE: f64 = 0.5;
 /// Most frames of a condition that a diagnosis looks at: of neighbours in time a few dozen runs cannot tell
 /// what one says beside the other, and a covariance that seems to would veto what is true.
 const FRAMES: usize = 12;
+
+/// Preparations whose impacts say how observables follow the packing fraction, and the least difference of their beds.
+const LEVELS: [f64; 2] = [1.0, -1.0];
+const LEAST_DIFFERENCE: f64 = 0.002;
+
+/// Farthest that a packing fraction is searched from what is known of it.
+const MOST_PACKING: f64 = 0.2;
+
+/// Standard deviations of what is known of a shared parameter beyond which it explains nothing by itself.
+const STRAINED: f64 = 3.0;
 
 /// Draws of a comparison.
 pub const COMPARED: usize = 6;
@@ -55,6 +71,8 @@ pub struct BedDiagnosis {
     pub plan: Plan,
     /// Impacts of this diagnosis, those that were kept counted.
     pub impacts: usize,
+    /// How the model was prepared to what the set states of its bed.
+    changes: Vec<Change>,
 }
 
 /// The model of `stand` as it is, under all conditions of the set that have something to compare.
@@ -73,7 +91,8 @@ pub fn bed_forward(
         by_condition[condition] = runs.iter().flatten().cloned().collect();
     }
     let baseline = Baseline::of(stand, &observed.layouts(), &by_condition)?;
-    Ok(BedForward::new(baseline, Vec::new(), &[], &[]))
+    let shared = Shared::of_apparatus(stand.set, &observed.layouts(), &baseline.stand_in);
+    Ok(BedForward::new(baseline, shared.map_err(BenchError::from)?))
 }
 
 /// What [`bed_forward`] would run.
@@ -107,10 +126,11 @@ struct Work<'a> {
     observed: Observed,
     seed: u64,
     impacts: usize,
+    preparation: Preparation,
 }
 
 /// Diagnoses the model of `stand` by the runs of `plan`; of a plan that does not fit its budget
-/// [`unaffordable`] says what there is to say.
+/// [`unaffordable`] says what there is to say. First the model is prepared to what the set states of its bed.
 ///
 /// # Errors
 /// If the impacts cannot be run, or say nothing.
@@ -127,7 +147,11 @@ pub fn diagnose_bed(
     // What is held out is judged by impacts, and not by what is made of others.
     observed.holdout = Vec::new();
     let layouts = measured.layouts();
-    let work = Work { stand, place, plan, layouts, observed, seed, impacts: 0 };
+    let preparation = Preparation::of(stand, place)?;
+    let prepared = stand.prepared(&preparation.changes)?;
+    let stand = Stand::new(&prepared, stand.set)?;
+    let work =
+        Work { stand: &stand, place, plan, layouts, observed, seed, impacts: 0, preparation };
     work.diagnose(&measured)
 }
 
@@ -144,18 +168,33 @@ impl Work<'_> {
             by_condition[condition] = runs.iter().flatten().cloned().collect();
         }
         let baseline = Baseline::of(self.stand, &self.layouts, &by_condition)?;
+        let shared = Shared::of_apparatus(self.stand.set, &self.layouts, &baseline.stand_in);
+        let mut shared = shared.map_err(BenchError::from)?;
+        self.add_packing(&mut shared, &baseline, (&draws.fit, &draws.confirm))?;
+        let forward = BedForward::new(baseline, shared);
+
+        let confirm = self.plan.confirm.clone();
+        let jobs = self.stand.jobs(&confirm, &draws.confirm, &Variation::default())?;
+        let plain = self.run(&jobs)?;
+        if let Some(diagnosis) = self.at_once(&forward, measured, &plain)? {
+            return Ok(self.done(diagnosis, forward, None, correlation));
+        }
 
         let screening = self.plan.screening(self.stand);
         let paired = correlation.unwrap_or(0.0).clamp(0.0, 0.9);
         let standing = Standing { draws: &draws.fit, runs: &runs, correlation: paired };
+        let baseline = forward.baseline();
         let screened = if paired > ALONE {
-            self.one_at_a_time(&screening.switches, &baseline, standing)?
+            self.one_at_a_time(&screening.switches, baseline, standing)?
         } else {
             let records = self.run(&screening.jobs(self.stand)?)?;
-            screening.signatures(self.stand, &self.layouts, &records, (paired, &baseline))
+            screening.signatures(self.stand, &self.layouts, &records, (paired, baseline))
         };
         let wish = &self.plan.wish;
-        let mut forward = BedForward::new(baseline, screened, &wish.free, &wish.apparatus());
+        let set = self.stand.set;
+        let mut of_laws = wish.apparatus();
+        of_laws.retain(|id| !is_looked_for(set, id));
+        let mut forward = forward.with(screened, &wish.free, &of_laws);
 
         let mut diagnosis = self.judge(&forward)?;
         let mut searched: Vec<usize> = Vec::new();
@@ -168,17 +207,107 @@ impl Work<'_> {
                 searched.push(at);
                 self.refine(&mut forward, (at, guess), standing)?;
             }
-            diagnosis = self.judge(&forward)?;
+            let before = std::mem::replace(&mut diagnosis, self.judge(&forward)?);
+            // Ahead of all others by the odds twice in a row: more impacts would not change that.
+            if is_settled(&before) && is_settled(&diagnosis) && before.leaders == diagnosis.leaders
+            {
+                break;
+            }
         }
-        let confirmation = self.confirm(&forward, &diagnosis, &draws.confirm, measured)?;
-        let mut diagnosis = match &confirmation {
-            Some(confirmation) => self.held_against(diagnosis, &forward, confirmation)?,
-            None => diagnosis,
-        };
+        let confirmation =
+            self.confirm(&forward, &diagnosis, (&draws.confirm, &plain), measured)?;
+        let mut diagnosis = self.held_against(diagnosis, &forward, confirmation.as_ref())?;
         self.weigh(&mut diagnosis, confirmation.as_ref());
         let confirmation = confirmation.filter(|_| !diagnosis.amplitudes.is_empty());
-        let Self { observed, plan, impacts, .. } = self;
-        Ok(BedDiagnosis { diagnosis, forward, observed, confirmation, correlation, plan, impacts })
+        Ok(self.done(diagnosis, forward, confirmation, correlation))
+    }
+
+    /// The end, with what is said of the preparation.
+    fn done(
+        self,
+        mut diagnosis: Diagnosis,
+        forward: BedForward,
+        confirmation: Option<Confirmation>,
+        correlation: Option<f64>,
+    ) -> BedDiagnosis {
+        let Self { observed, plan, impacts, preparation, .. } = self;
+        diagnosis.preparation = listed(&preparation, diagnosis.preparation);
+        let is_nothing = matches!(
+            diagnosis.verdict,
+            Verdict::NothingDetected
+                | Verdict::ExplainedByApparatus
+                | Verdict::ExplainedByPreparation
+        );
+        if is_nothing && diagnosis.preparation.iter().any(|one| one.named) {
+            diagnosis.verdict = Verdict::ExplainedByPreparation;
+        }
+        diagnosis.warnings.splice(0..0, preparation.sentences.iter().cloned());
+        let changes = preparation.changes;
+        BedDiagnosis {
+            diagnosis,
+            forward,
+            observed,
+            confirmation,
+            correlation,
+            plan,
+            impacts,
+            changes,
+        }
+    }
+
+    /// Adds the packing fraction to what all runs share: impacts on looser and on denser beds say how the observables
+    /// follow it, also under the conditions that confirm. Where a model has no preparation to change, it has none.
+    fn add_packing(
+        &mut self,
+        shared: &mut Shared,
+        baseline: &Baseline,
+        (fit, confirm): (&[Vec<Draw>], &[Vec<Draw>]),
+    ) -> Result<(), BedError> {
+        let Some(prior) = self.preparation.packing else { return Ok(()) };
+        let conditions = [&self.plan.fit[..], &self.plan.confirm].concat();
+        let few = |draws: &[Vec<Draw>]| -> Vec<Vec<Draw>> {
+            draws.iter().map(|draws| draws[..SIDE_DRAWS.min(draws.len())].to_vec()).collect()
+        };
+        let draws = [few(fit), few(confirm)].concat();
+        let mut sides = Vec::new();
+        for level in LEVELS {
+            let Some(changes) = at_level(self.stand.grains(), level) else { return Ok(()) };
+            let variation = Variation { before: changes, during: Vec::new() };
+            let Ok(jobs) = self.stand.jobs(&conditions, &draws, &variation) else { continue };
+            let lies = self.place.lies(&jobs)?;
+            let packing = Known::of(&lies, |one| one.packing_fraction).value;
+            sides.push((packing, self.run(&jobs)?));
+        }
+        let [(loose, on_loose), (dense, on_dense)] = &sides[..] else { return Ok(()) };
+        let between = dense - loose;
+        if between.abs() < LEAST_DIFFERENCE {
+            return Ok(());
+        }
+        let mut columns = vec![None; self.layouts.len()];
+        let mut start = 0;
+        for (&condition, draws) in conditions.iter().zip(&draws) {
+            let of_condition = start..start + draws.len();
+            start = of_condition.end;
+            let seen = |records: &[Option<Record>]| {
+                let runs = records[of_condition.clone()].iter().flatten();
+                let (layout, of_set) =
+                    (&self.layouts[condition], &self.stand.set.conditions[condition]);
+                runs.map(|run| observables(run, layout, of_set, self.stand.set)).collect::<Vec<_>>()
+            };
+            let sides = [seen(on_loose), seen(on_dense)];
+            columns[condition] = Column::across(&sides, between, &baseline.spread[condition]);
+        }
+        let parameter = Parameter {
+            name: "packing".to_owned(),
+            unit: "1".to_owned(),
+            start: prior.mean,
+            min: prior.mean - MOST_PACKING,
+            max: prior.mean + MOST_PACKING,
+            prior: Some(prior),
+            kind: ParameterKind::Preparation,
+        };
+        shared.add(parameter, columns);
+        Ok(())
     }
 
     fn run(&mut self, jobs: &[Job]) -> Result<Vec<Option<Record>>, BedError> {
@@ -289,81 +418,112 @@ impl Work<'_> {
         &mut self,
         forward: &BedForward,
         diagnosis: &Diagnosis,
-        draws: &[Vec<Draw>],
+        (draws, plain): (&[Vec<Draw>], &[Option<Record>]),
         measured: &Observed,
     ) -> Result<Option<Confirmation>, BedError> {
-        let named =
-            matches!(diagnosis.verdict, Verdict::Supported | Verdict::NotSeparable | Verdict::Pair);
-        let (Some(proposed), true) = (&diagnosis.proposed, named && !self.plan.confirm.is_empty())
-        else {
+        let (Some(proposed), Some(baseline)) = (&diagnosis.proposed, &diagnosis.baseline) else {
             return Ok(None);
         };
-        let point = &proposed.fit.point;
-        let change = change_at(self.stand, forward, point);
-        let conditions = self.plan.confirm.clone();
-        let mut records = Vec::with_capacity(2);
-        for variation in [Variation::default(), change] {
-            let Ok(jobs) = self.stand.jobs(&conditions, draws, &variation) else {
-                return Ok(None);
-            };
-            records.push(self.run(&jobs)?);
+        if !is_named(diagnosis.verdict) || self.plan.confirm.is_empty() {
+            return Ok(None);
         }
-        let runs = (conditions.as_slice(), [&records[0][..], &records[1][..]]);
-        Ok(Some(Confirmation::of(self.stand, measured, (forward, point), runs)?))
+        let alone = proposed.fit.without_effects();
+        // What no preparation and no apparatus can be expected to do is no explanation of the model as it is.
+        let before = if is_strained(forward, &baseline.fit) { &alone } else { &baseline.fit };
+        let fits = [before, &proposed.fit];
+        let conditions = self.plan.confirm.clone();
+        let change = change_at(self.stand, forward, &fits[1].point);
+        let Ok(jobs) = self.stand.jobs(&conditions, draws, &change) else { return Ok(None) };
+        let with = self.run(&jobs)?;
+        let runs = (conditions.as_slice(), [plain, &with[..]]);
+        Ok(Some(Confirmation::of(self.stand, measured, (forward, fits), runs)?))
     }
 
-    /// Has the verdict rest on what was confirmed: what has its impacts miss fresh beds by more than without it, and
-    /// by more than noise, is not named.
+    /// The diagnosis where fresh impacts of the model as it is, `plain`, already say that no effect could be named, or
+    /// where nothing is held out and nothing is left to be explained; `None` where effects are worth a look.
+    fn at_once(
+        &self,
+        forward: &BedForward,
+        measured: &Observed,
+        plain: &[Option<Record>],
+    ) -> Result<Option<Diagnosis>, BedError> {
+        let bench = Bench { set: self.stand.set, observed: &self.observed, forward };
+        let mut diagnosis = as_it_is(&bench, self.seed)?;
+        let Some(baseline) = &diagnosis.baseline else { return Ok(Some(diagnosis)) };
+        let fit = &baseline.fit;
+        let runs = (self.plan.confirm.as_slice(), [plain; 2]);
+        let fresh = Confirmation::of(self.stand, measured, (forward, [fit; 2]), runs)?.held_out;
+        let is_above = match is_strained(forward, fit) {
+            true => Some(true),
+            false => fresh.is_above_noise(),
+        };
+        let is_rejected = diagnosis.p_lof.is_none_or(|p| p <= ALPHA);
+        if is_above == Some(true) || (is_above.is_none() && is_rejected) {
+            return Ok(None);
+        }
+        if is_above.is_some() {
+            diagnosis.holdout = Some(fresh.clone());
+        }
+        if is_rejected {
+            diagnosis.verdict = Verdict::BelowNoise;
+            diagnosis.unexplained.hint = fresh.below().unwrap_or_default();
+        }
+        self.weigh(&mut diagnosis, None);
+        Ok(Some(diagnosis))
+    }
+
+    /// Has the verdict rest on what was confirmed: a name needs held-out conditions that the model as it is misses by
+    /// more than noise, and impacts with it, on fresh beds, that are clearly nearer; and nothing but noise left over where
+    /// what was fitted to is not explained.
     fn held_against(
         &self,
         mut diagnosis: Diagnosis,
         forward: &BedForward,
-        Confirmation { held_out, .. }: &Confirmation,
+        confirmation: Option<&Confirmation>,
     ) -> Result<Diagnosis, BedError> {
-        if self.plan.held_out || diagnosis.holdout.is_none() {
+        if !is_named(diagnosis.verdict) {
+            return Ok(diagnosis);
+        }
+        let bench = Bench { set: self.stand.set, observed: &self.observed, forward };
+        let explains = diagnosis.p_lof_with.is_some_and(|p| p > ALPHA);
+        let name = diagnosis.leaders.join(" or ");
+        let held_out = confirmation.map(|one| &one.held_out);
+        if let Some(held_out) = held_out {
             diagnosis.holdout = Some(held_out.clone());
         }
-        let HeldOut {
-            before: Some(before),
-            after: Some(after),
-            noise_floor: Some(noise_floor),
-            ..
-        } = *held_out
-        else {
+        let why = match held_out {
+            Some(held_out) => {
+                let amplitude = diagnosis.amplitudes.first();
+                let most = amplitude.map_or(0.0, |one| one.q.abs() + 2.0 * one.se.unwrap_or(0.0));
+                held_out.too_small(&name, most).or_else(|| {
+                    (!explains && !held_out.is_within_noise()).then(|| {
+                        format!(
+                            "{name} explains a part, on fresh beds too, and leaves more than noise"
+                        )
+                    })
+                })
+            }
+            None => (!explains).then(|| format!("{name} explains a part")),
+        };
+        let Some(why) = why else {
+            diagnosis.unexplained.hint.clear();
             return Ok(diagnosis);
         };
-        if !self.plan.supports || after < before {
-            return Ok(diagnosis);
+        if let Some(held_out) = &mut diagnosis.holdout {
+            held_out.after = held_out.before;
+            held_out.log_density_gain = 0.0;
+            held_out.explained = None;
         }
-        if after <= WITHIN * noise_floor {
-            diagnosis.unexplained.hint =
-                "impacts with it, on fresh beds, are no nearer to what was held out".to_owned();
-            return Ok(diagnosis);
-        }
-        let why = format!(
-            "{} would explain what was fitted to, but impacts with it, on fresh beds, miss what was held out by \
-             {:.2} times the noise, and without it by {:.2}",
-            diagnosis.leaders.join(" or "),
-            after / noise_floor,
-            before / noise_floor,
-        );
-        diagnosis.holdout =
-            Some(HeldOut { after: Some(before), log_density_gain: 0.0, ..held_out.clone() });
-        let bench = Bench { set: self.stand.set, observed: &self.observed, forward };
         Ok(withdraw(&bench, diagnosis, why, self.seed)?)
     }
 
     /// How much the verdict weighs.
     fn weigh(&self, diagnosis: &mut Diagnosis, confirmation: Option<&Confirmation>) {
-        let nearer = |one: &Confirmation| {
-            let errors = one.held_out.before.zip(one.held_out.after);
-            errors.is_some_and(|(before, after)| after < before)
-        };
         let reasons = &mut diagnosis.strength_reasons;
         if !self.plan.supports {
             reasons.push(StrengthReason::SmallPlan);
         }
-        if !confirmation.is_none_or(nearer) {
+        if confirmation.is_some_and(|one| one.held_out.is_nearer() != Some(true)) {
             reasons.push(StrengthReason::FreshBedsNoNearer);
         }
         if !reasons.is_empty() {
@@ -390,6 +550,23 @@ pub fn unaffordable(plan: &Plan) -> Diagnosis {
         minutes(1.1 * plan.seconds()),
     );
     Diagnosis::cannot_tell(Vec::new(), why)
+}
+
+/// Whether a parameter that all runs share is farther from what is known of it than one may expect.
+fn is_strained(forward: &BedForward, fit: &Fit) -> bool {
+    let each = Forward::parameters(forward).iter().zip(&fit.point.parameters);
+    let mut known = each.filter_map(|(one, value)| one.prior.map(|prior| (prior, value)));
+    known.any(|(prior, value)| (value - prior.mean).abs() > STRAINED * prior.sigma)
+}
+
+/// Whether a verdict names effects.
+fn is_named(verdict: Verdict) -> bool {
+    matches!(verdict, Verdict::Supported | Verdict::NotSeparable | Verdict::Pair)
+}
+
+/// Whether one effect is ahead of all others.
+fn is_settled(diagnosis: &Diagnosis) -> bool {
+    is_named(diagnosis.verdict) && diagnosis.leaders.len() == 1
 }
 
 /// The switches to be searched that were not yet, with the guess of each: the first two of the first few, whatever
@@ -464,6 +641,12 @@ impl BedDiagnosis {
             _ => Vec::new(),
         };
         let mut proposals = Vec::new();
+        let prepared = stand.grains().with(&self.changes)?;
+        let Ok(stand) = &Stand::new(&prepared, stand.set) else { return Ok(proposals) };
+        if !self.changes.is_empty() {
+            let text = stand.proposal(&Variation::default())?;
+            proposals.push(("model+preparation.toml".to_owned(), text));
+        }
         for point in points {
             let ids = self.forward.of_the_bed(&point.effects);
             if !ids.is_empty() {
@@ -474,17 +657,20 @@ impl BedDiagnosis {
         Ok(proposals)
     }
 
-    /// The two terms of the force law that comes nearest to the runs of the model, and to what was
-    /// measured: which term is off, whatever it is by.
+    /// The terms of the force law that comes nearest to the runs of the model, and those by which measurements differ
+    /// from them, whatever it is by.
     fn located(&self, stand: &Stand<'_>) -> Value {
         let baseline = self.forward.baseline();
         let law = &baseline.stand_in.forward;
-        let bench = Bench { set: stand.set, observed: &self.observed, forward: law };
-        let measured = bench.fit(&Point::start(law)).ok();
-        json!({
-            "of_the_model": parameters(law, &baseline.fitted.fit),
-            "of_what_was_measured": measured.map(|fitted| parameters(law, &fitted.fit)),
-        })
+        let of_the_model = parameters(law, &baseline.fitted.fit);
+        let bench = Bench { set: stand.set, observed: &self.observed, forward: &self.forward };
+        let as_it_is = self.diagnosis.baseline.as_ref();
+        let located = as_it_is
+            .and_then(|fitted| Located::of(&bench, &self.forward, fitted).ok().flatten())
+            .map(|located| located.to_json(&of_the_model));
+        let mut object = located.unwrap_or_else(|| json!({}));
+        object["of_the_model"] = Value::Object(of_the_model);
+        object
     }
 
     fn seeds(&self, stand: &Stand<'_>) -> Value {

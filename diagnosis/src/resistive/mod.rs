@@ -132,6 +132,11 @@ impl ResistiveForward {
         &self.idle
     }
 
+    /// Keys of the coefficients that scatter from run to run, in the order of [`Scatter::coefficients`].
+    pub(crate) fn scattering(&self) -> &[&'static str] {
+        &self.scattering
+    }
+
     /// The effects that are candidates, in their order: those of the table, then those of the model.
     #[must_use]
     pub fn effects(&self) -> &[Effect] {

@@ -98,7 +98,7 @@ fn is_vertical(condition: &Condition) -> bool {
 mod tests {
     use super::*;
     use measurements::{
-        Bed, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, StatedError,
+        Bed, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, StatedBed, StatedError,
         StopDefinition,
     };
 
@@ -149,6 +149,7 @@ mod tests {
                 bulk_density: None,
                 gravity: 9.81,
                 grain_diameter: None,
+                stated: StatedBed::default(),
             },
             baseline: None,
             stated: StatedError::default(),

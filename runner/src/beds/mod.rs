@@ -2,12 +2,14 @@
 //! a [`Place`] runs jobs side by side or has other machines do it.
 
 mod job;
+mod lie;
 mod place;
 mod rate;
 mod record;
 mod task;
 
 pub use job::Job;
+pub use lie::Lie;
 pub use place::{Impacts, Outstanding, Place};
 pub use rate::SETTLING;
 pub use record::{Record, STOPPED};

@@ -9,6 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use configs::GrainModel;
 
 use super::job::Job;
+use super::lie::Lie;
 use super::rate::{self, Rate};
 use super::record::Record;
 use super::task::BedTask;
@@ -59,6 +60,12 @@ pub trait Impacts {
     /// The first of any job in their order; [`CampaignError::Interrupted`] if it was stopped.
     fn run(&self, jobs: &[Job]) -> Result<Vec<Option<Record>>, CampaignError>;
 
+    /// How the beds of `jobs` lie, in their order; they are prepared where they are not kept.
+    ///
+    /// # Errors
+    /// As of [`Impacts::run`].
+    fn lies(&self, jobs: &[Job]) -> Result<Vec<Lie>, CampaignError>;
+
     /// What of `jobs` is still to be run.
     ///
     /// # Errors
@@ -77,14 +84,7 @@ impl Impacts for Place<'_> {
     }
 
     fn run(&self, jobs: &[Job]) -> Result<Vec<Option<Record>>, CampaignError> {
-        for folder in ["beds", "impacts"] {
-            let path = self.cache.join(folder);
-            fs::create_dir_all(&path).map_err(|source| CampaignError::Io {
-                action: "make",
-                path,
-                source,
-            })?;
-        }
+        self.make_folders()?;
         if let Some(elsewhere) = self.elsewhere {
             self.have_done(elsewhere, jobs)?;
         }
@@ -127,6 +127,23 @@ impl Impacts for Place<'_> {
         Ok((0..jobs.len()).zip(kept).map(|(at, kept)| kept.or_else(|| found(at))).collect())
     }
 
+    fn lies(&self, jobs: &[Job]) -> Result<Vec<Lie>, CampaignError> {
+        self.make_folders()?;
+        if let Some(elsewhere) = self.elsewhere {
+            self.have_prepared(elsewhere, jobs, &(0..jobs.len()).collect::<Vec<_>>())?;
+        }
+        let keys = jobs.iter().map(Job::bed_key).collect::<Result<Vec<_>, _>>()?;
+        let firsts = first_of_each(&keys, |_| true);
+        let work = |&at: &usize| rate::SETTLING * jobs[at].work();
+        let found = self.side_by_side(Stage::Beds, &firsts, (&work, 0), |at, heed| {
+            let bed = &jobs[at].bed;
+            let grains = bed.grains().ok_or_else(|| CampaignError::no_grains(bed))?;
+            Lie::of(grains, self.cache, heed)?.ok_or(CampaignError::Interrupted)
+        })?;
+        let of = |key: &[u8; 32]| firsts.iter().position(|&first| keys[first] == *key);
+        Ok(keys.iter().filter_map(|key| of(key).map(|place| found[place])).collect())
+    }
+
     fn outstanding(&self, jobs: &[Job]) -> Result<Outstanding, CampaignError> {
         let keys = jobs.iter().map(Job::key).collect::<Result<Vec<_>, _>>()?;
         let missing = first_of_each(&keys, |at| Job::kept(self.cache, &keys[at]).is_none());
@@ -148,17 +165,39 @@ impl Place<'_> {
         jobs.iter().map(|job| Ok(Job::kept(self.cache, &job.key()?))).collect()
     }
 
+    fn make_folders(&self) -> Result<(), CampaignError> {
+        for folder in ["beds", "impacts"] {
+            let path = self.cache.join(folder);
+            fs::create_dir_all(&path).map_err(|source| CampaignError::Io {
+                action: "make",
+                path,
+                source,
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Has those beds of the jobs at `places` that are not there prepared by `elsewhere`.
+    fn have_prepared(
+        &self,
+        elsewhere: &Elsewhere,
+        jobs: &[Job],
+        places: &[usize],
+    ) -> Result<(), CampaignError> {
+        let beds = self.missing_beds(jobs, places)?;
+        let tasks: Vec<BedTask> = beds.iter().map(|&at| BedTask::bed(&jobs[at])).collect();
+        let files = beds.iter().map(|&at| jobs[at].bed_key().map(|key| bed_file(self.cache, &key)));
+        let files = files.collect::<Result<Vec<_>, _>>()?;
+        let is_there = |at: usize| files[at].is_file();
+        elsewhere.run(Stage::Beds, &tasks, self.cache, self.watch, &is_there)
+    }
+
     /// Has what is missing of `jobs` done by `elsewhere`. An impact whose steps cannot be trusted has no
     /// record then either, and is found out about here.
     fn have_done(&self, elsewhere: &Elsewhere, jobs: &[Job]) -> Result<(), CampaignError> {
         let keys = jobs.iter().map(Job::key).collect::<Result<Vec<_>, _>>()?;
         let missing = first_of_each(&keys, |at| Job::kept(self.cache, &keys[at]).is_none());
-        let beds = self.missing_beds(jobs, &missing)?;
-        let tasks: Vec<BedTask> = beds.iter().map(|&at| BedTask::bed(&jobs[at])).collect();
-        let files = beds.iter().map(|&at| jobs[at].bed_key().map(|key| bed_file(self.cache, &key)));
-        let files = files.collect::<Result<Vec<_>, _>>()?;
-        let is_there = |at: usize| files[at].is_file();
-        elsewhere.run(Stage::Beds, &tasks, self.cache, self.watch, &is_there)?;
+        self.have_prepared(elsewhere, jobs, &missing)?;
         let tasks: Vec<BedTask> =
             missing.iter().map(|&at| BedTask::impact(&jobs[at], &keys[at])).collect();
         let is_there = |at: usize| Job::path(self.cache, &keys[missing[at]]).is_file();

@@ -2,7 +2,7 @@
 
 use measurements::{
     Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedError, StopDefinition,
+    Role, Run, StatedBed, StatedError, StopDefinition,
 };
 
 use super::chance::Chance;
@@ -141,6 +141,7 @@ pub fn measure(
             bulk_density: Some(DENSITY),
             gravity: GRAVITY,
             grain_diameter: Some(8e-4),
+            stated: StatedBed::default(),
         },
         baseline: Some("two-term-vector".into()),
         stated: StatedError::default(),

@@ -13,16 +13,17 @@ use lexopt::Parser;
 use lexopt::prelude::{Long, Short, ValueExt};
 use runner::beds::Place;
 use runner::{Elsewhere, Unattended};
-use validation::benchmark::beds::{Case, Outcome, all, quick, table};
+use validation::benchmark::beds::{Case, Outcome, all, prepared, quick, table};
 use validation::command::{conclude, on};
 
 const HELP: &str = "\
 How often the diagnosis of a bed of grains names what is hidden in it.
 
-Usage: cargo xtask bench beds [--quick] [--draws N] [--minutes N] [--threads N] [--on WHERE]
+Usage: cargo xtask bench beds [--quick | --prepared] [--draws N] [--minutes N] [--threads N] [--on WHERE]
                              [--cache DIR] [--out FILE]
 
-  --quick      one listed effect, nothing, and one that is not listed
+  --quick      small beds: every preparation with nothing hidden, two listed effects, one that is not listed
+  --prepared   small beds, prepared in seven ways, weighed or not, with nothing hidden and with two effects
   --draws N    draws of every case (2)
   --minutes N  impacts of one diagnosis at most, as estimated (as long as the largest plan takes)
   --threads N  impacts at a time (one per core)
@@ -49,7 +50,8 @@ fn main() -> ExitCode {
 
 /// `None` for help.
 fn parse(mut parser: Parser) -> Result<Option<Wanted>, lexopt::Error> {
-    let (mut draws, mut minutes, mut few) = (2, f64::INFINITY, false);
+    let (mut draws, mut minutes) = (2, f64::INFINITY);
+    let mut list: fn(u64) -> Vec<Case> = all;
     let mut wanted = Wanted {
         cases: Vec::new(),
         wish: Wish::default(),
@@ -60,7 +62,8 @@ fn parse(mut parser: Parser) -> Result<Option<Wanted>, lexopt::Error> {
     };
     while let Some(argument) = parser.next()? {
         match argument {
-            Long("quick") => few = true,
+            Long("quick") => list = |_| quick(),
+            Long("prepared") => list = prepared,
             Long("draws") => draws = parser.value()?.parse()?,
             Long("minutes") => minutes = parser.value()?.parse()?,
             Long("threads") => wanted.threads = Some(parser.value()?.parse()?),
@@ -71,7 +74,7 @@ fn parse(mut parser: Parser) -> Result<Option<Wanted>, lexopt::Error> {
             other => return Err(other.unexpected()),
         }
     }
-    wanted.cases = if few { quick() } else { all(draws) };
+    wanted.cases = list(draws);
     wanted.wish.budget = Some(60.0 * minutes);
     Ok(Some(wanted))
 }
@@ -88,7 +91,7 @@ fn bench(wanted: &Wanted, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error
         text.lines().map(serde_json::from_str).collect::<Result<_, _>>()?;
     let mut outcomes = Vec::with_capacity(wanted.cases.len());
     for case in &wanted.cases {
-        let same = |one: &&Outcome| one.hidden == case.hidden.name() && one.seed == case.seed;
+        let same = |one: &&Outcome| one.hidden == case.name() && one.seed == case.seed;
         let outcome = match known.iter().find(same) {
             Some(outcome) => outcome.clone(),
             None => {

@@ -3,7 +3,7 @@
 use configs::{LoadOptions, Model, ModelSource};
 use measurements::{
     Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role,
-    StatedError, StopDefinition,
+    StatedBed, StatedError, StopDefinition,
 };
 
 /// 360 discs of two sizes, twelve wide and fourteen deep, and a disc of four of them.
@@ -96,6 +96,7 @@ pub(crate) fn empty_set(conditions: Vec<Condition>) -> MeasurementSet {
             bulk_density: Some(2.4),
             gravity: 9.81,
             grain_diameter: Some(0.0048),
+            stated: StatedBed::default(),
         },
         baseline: None,
         stated: StatedError::default(),

@@ -9,7 +9,7 @@ use diagnosis::observable::Layout;
 use diagnosis::resistive::ResistiveForward;
 use measurements::{
     Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedError, StopDefinition,
+    Role, Run, StatedBed, StatedError, StopDefinition,
 };
 
 use super::rig::{BED, DIAMETER, MASS};
@@ -86,6 +86,7 @@ fn set(conditions: Vec<Condition>) -> MeasurementSet {
             bulk_density: Some(BED.bulk_density),
             gravity: BED.gravity,
             grain_diameter: None,
+            stated: StatedBed::default(),
         },
         baseline: None,
         stated: StatedError::default(),

@@ -9,7 +9,7 @@ use diagnosis::resistive::ResistiveForward;
 use diagnosis::verdict::Verdict;
 use measurements::{
     Bed, Condition, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role, Run,
-    StatedError, StopDefinition,
+    StatedBed, StatedError, StopDefinition,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -84,6 +84,7 @@ fn empty_set() -> MeasurementSet {
             bulk_density: Some(1520.0),
             gravity: 9.81,
             grain_diameter: None,
+            stated: StatedBed::default(),
         },
         baseline: None,
         stated: StatedError::default(),

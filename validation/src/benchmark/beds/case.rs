@@ -9,7 +9,8 @@ use diagnosis::verdict::{Diagnosis, Verdict};
 use runner::beds::Impacts;
 use serde::{Deserialize, Serialize};
 
-use super::world::{campaign, measure, model};
+use super::prepared::Prepared;
+use super::world::{campaign, measure, model, small, weighed};
 
 /// Runs of every condition.
 const REPEATS: usize = 10;
@@ -33,6 +34,12 @@ pub enum Hidden {
 pub struct Case {
     /// What is hidden in it.
     pub hidden: Hidden,
+    /// How it was prepared.
+    pub prepared: Prepared,
+    /// Whether its set states its packing fraction and its bulk density.
+    pub is_weighed: bool,
+    /// Whether it is one of the small beds.
+    pub is_small: bool,
     /// Which draw of beds, camera and resampling.
     pub seed: u64,
 }
@@ -48,8 +55,16 @@ pub struct Outcome {
     pub verdict: String,
     /// What is named, or not told from what would be.
     pub named: Vec<String>,
-    /// Whether the answer is right: the effect alone or in a set of at most three; *nothing detected* where nothing is
-    /// hidden; nothing named where what is hidden is not listed.
+    /// The packing fraction of the bed less that of the model, as the diagnosis finds it, its standard error, and whether
+    /// it is named; none where the model has no such parameter.
+    #[serde(default)]
+    pub packing: Option<(f64, f64, bool)>,
+    /// What else the diagnosis says.
+    #[serde(default)]
+    pub hint: String,
+    /// Whether the answer is right: the effect alone or in a set of at most three; *nothing detected*, *below noise*, or
+    /// what the preparation or the apparatus explains, where nothing is hidden; nothing named where what is hidden is not
+    /// listed.
     pub right: bool,
     /// Whether what is named is wrong: another effect, a set without the one that is hidden, or a pair, which claims two.
     pub wrong: bool,
@@ -65,14 +80,51 @@ pub struct Outcome {
     pub seconds: f64,
 }
 
-/// The shortest list that has one of everything.
+/// The shortest list that has one of everything: every preparation with nothing hidden, then two effects and one that is
+/// not listed; small beds.
 #[must_use]
 pub fn quick() -> Vec<Case> {
-    let hidden = [Hidden::Switch("rolling-resistance", 0.2), Hidden::Nothing, Hidden::Unlisted];
-    hidden.map(|hidden| Case { hidden, seed: 0 }).to_vec()
+    let nothing = Prepared::ALL.iter().enumerate().map(|(at, &prepared)| Case {
+        prepared,
+        is_weighed: at % 2 == 1,
+        ..Case::small(Hidden::Nothing, 0)
+    });
+    let effects = [
+        Case { is_weighed: true, ..Case::small(Hidden::Switch("rolling-resistance", 0.17), 0) },
+        Case {
+            prepared: Prepared::Rough,
+            is_weighed: true,
+            ..Case::small(Hidden::Switch("grain-friction", 0.8), 0)
+        },
+        Case { is_weighed: true, ..Case::small(Hidden::Unlisted, 0) },
+    ];
+    nothing.chain(effects).collect()
 }
 
-/// Six switches at two strengths, nothing, and what is not listed; `draws` of each.
+/// Small beds, prepared in every way, of which the set says how they lie or does not, with nothing hidden and with two
+/// effects at amplitudes that no screening uses; `draws` of each.
+#[must_use]
+pub fn prepared(draws: u64) -> Vec<Case> {
+    let hidden = [
+        Hidden::Nothing,
+        Hidden::Switch("rolling-resistance", 0.17),
+        Hidden::Switch("grain-friction", 0.8),
+    ];
+    let mut cases = Vec::new();
+    for (row, hidden) in hidden.into_iter().enumerate() {
+        for draw in 0..draws {
+            for (at, prepared) in Prepared::ALL.into_iter().enumerate() {
+                for is_weighed in [false, true] {
+                    let seed = 10_000 + 1000 * row as u64 + 100 * at as u64 + draw;
+                    cases.push(Case { prepared, is_weighed, ..Case::small(hidden, seed) });
+                }
+            }
+        }
+    }
+    cases
+}
+
+/// Five switches at two strengths, nothing, and what is not listed; `draws` of each.
 #[must_use]
 pub fn all(draws: u64) -> Vec<Case> {
     use Hidden::{Nothing, Switch, Unlisted};
@@ -83,8 +135,6 @@ pub fn all(draws: u64) -> Vec<Case> {
         Switch("cohesion-dmt", 15.0),
         Switch("grain-friction", 1.0),
         Switch("grain-friction", 2.5),
-        Switch("packing", 0.7),
-        Switch("packing", 1.0),
         Nothing,
         Nothing,
         Nothing,
@@ -98,7 +148,7 @@ pub fn all(draws: u64) -> Vec<Case> {
     let each = hidden.iter().enumerate();
     // Repeated entries of the list are other draws too.
     let seeds = |at: usize| (0..draws).map(move |draw| 100 * at as u64 + draw);
-    each.flat_map(|(at, &hidden)| seeds(at).map(move |seed| Case { hidden, seed })).collect()
+    each.flat_map(|(at, &hidden)| seeds(at).map(move |seed| Case::alike(hidden, seed))).collect()
 }
 
 impl Hidden {
@@ -121,7 +171,13 @@ impl Hidden {
         };
         let right = match self {
             Self::Switch(..) => is_in && named.len() <= 3,
-            Self::Nothing => verdict == Verdict::NothingDetected,
+            Self::Nothing => matches!(
+                verdict,
+                Verdict::NothingDetected
+                    | Verdict::ExplainedByApparatus
+                    | Verdict::ExplainedByPreparation
+                    | Verdict::BelowNoise
+            ),
             Self::Unlisted => named.is_empty() && verdict != Verdict::CannotTell,
         };
         [right, !named.is_empty() && !is_in]
@@ -149,16 +205,46 @@ impl Hidden {
 }
 
 impl Case {
+    /// A bed of nine hundred discs, prepared as that of the model.
+    #[must_use]
+    pub fn alike(hidden: Hidden, seed: u64) -> Self {
+        let prepared = Prepared::Alike;
+        Self { hidden, prepared, is_weighed: false, is_small: false, seed }
+    }
+
+    /// A small bed, prepared as that of the model.
+    #[must_use]
+    pub fn small(hidden: Hidden, seed: u64) -> Self {
+        Self { is_small: true, ..Self::alike(hidden, seed) }
+    }
+
+    /// What it is called.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let mut name = self.hidden.name();
+        if self.is_small {
+            let said = if self.is_weighed { "weighed" } else { "not weighed" };
+            name.push_str(&format!("; {}, {said}", self.prepared.name()));
+        }
+        name
+    }
+
     /// Measures and diagnoses it, with impacts as `wish` says.
     ///
     /// # Errors
     /// If the impacts cannot be run.
     pub fn run(&self, place: &dyn Impacts, wish: &Wish) -> Result<Outcome, BedError> {
         let start = std::time::Instant::now();
-        let model = model(1 + 1000 * self.seed).map_err(diagnosis::beds::BaselineError::from)?;
+        let first = 1 + 1000 * self.seed;
+        let model = if self.is_small { small(first) } else { model(first) };
+        let model = model.map_err(diagnosis::beds::BaselineError::from)?;
         let empty = campaign(&model);
         let world = Stand::new(&model, &empty)?;
-        let set = measure(&world, &self.hidden.variation(&world), (REPEATS, self.seed), place)?;
+        let variation = self.prepared.variation(world.grains()).and(self.hidden.variation(&world));
+        let mut set = measure(&world, &variation, (REPEATS, self.seed), place)?;
+        if self.is_weighed {
+            set.bed = weighed(&world, &variation, self.seed, place)?;
+        }
         let observed = Observed::of(&set);
         let stand = Stand::new(&model, &set)?;
         let plan = Plan::new(&stand, &observed, place, wish)?;
@@ -184,10 +270,18 @@ impl Case {
         let [right, wrong] = self.hidden.scored(diagnosis.verdict, &named);
         let leader = diagnosis.ranking.first();
         let own = diagnosis.ranking.iter().find(|effect| Some(effect.id.as_str()) == truth);
-        let held_out = diagnosis.holdout.as_ref().filter(|_| !diagnosis.amplitudes.is_empty());
+        let held_out = diagnosis.holdout.as_ref();
         Outcome {
-            hidden: self.hidden.name(),
+            hidden: self.name(),
             seed: self.seed,
+            packing: diagnosis
+                .preparation
+                .iter()
+                .find(|one| one.id == "packing")
+                .and_then(|one| Some((one.value, one.se?, one.named))),
+            hint: [&diagnosis.unexplained.hint, &diagnosis.warnings.join("; ")]
+                .map(|s| s.as_str())
+                .join("; "),
             verdict: serde_json::to_value(diagnosis.verdict)
                 .ok()
                 .and_then(|value| Some(value.as_str()?.to_owned()))

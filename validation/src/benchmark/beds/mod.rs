@@ -2,9 +2,11 @@
 //! on seeds of their own and diagnosed like anything else.
 
 mod case;
+mod prepared;
 mod table;
 mod world;
 
-pub use case::{Case, Hidden, Outcome, all, quick};
+pub use case::{Case, Hidden, Outcome, all, prepared, quick};
+pub use prepared::Prepared;
 pub use table::table;
-pub use world::{campaign, measure, model};
+pub use world::{campaign, measure, model, small};

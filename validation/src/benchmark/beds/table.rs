@@ -8,16 +8,19 @@ use super::case::Outcome;
 #[must_use]
 pub fn table(outcomes: &[Outcome]) -> String {
     let mut text = String::from(
-        "| hidden | draw | verdict | named | right | held out before → after (floor), mm | impacts | min |\n\
-         | --- | ---: | --- | --- | --- | --- | ---: | ---: |\n",
+        "| hidden | draw | verdict | named | packing found | right | held out before → after (floor), mm | impacts | min |\n\
+         | --- | ---: | --- | --- | --- | --- | --- | ---: | ---: |\n",
     );
     for one in outcomes {
         let held_out = one.held_out.map_or_else(String::new, |[before, after, floor]| {
             format!("{:.2} → {:.2} ({:.2})", 1e3 * before, 1e3 * after, 1e3 * floor)
         });
+        let packing = one.packing.map_or_else(String::new, |(by, se, is_named)| {
+            format!("{by:+.4} ± {se:.4}{}", if is_named { ", named" } else { "" })
+        });
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} | {} | {held_out} | {} | {:.1} |",
+            "| {} | {} | {} | {} | {packing} | {} | {held_out} | {} | {:.1} |",
             one.hidden,
             one.seed,
             one.verdict,
@@ -36,7 +39,7 @@ fn rates(outcomes: &[Outcome]) -> String {
     let of = |wanted: &dyn Fn(&&Outcome) -> bool| -> Vec<&Outcome> {
         outcomes.iter().filter(wanted).collect()
     };
-    let nothing = |one: &&Outcome| one.hidden == "nothing";
+    let nothing = |one: &&Outcome| one.hidden.starts_with("nothing");
     let unlisted = |one: &&Outcome| one.hidden.starts_with("grains of");
     let share = |of: &[&Outcome], holds: &dyn Fn(&Outcome) -> bool| {
         format!("{} of {}", of.iter().filter(|one| holds(one)).count(), of.len())
@@ -52,7 +55,19 @@ fn rates(outcomes: &[Outcome]) -> String {
         format!("right, alone or among at most three: {}", share(&listed, &|one| one.right)),
         format!("ranked first: {} (predicted {mean:.2})", share(&listed, &|one| one.first)),
         format!("a wrong effect, pair or set named: {}", share(&of(&|_| true), &|one| one.wrong)),
-        format!("nothing named where nothing is: {}", share(&of(&nothing), &|one| one.right)),
+        format!(
+            "no physics named where nothing is hidden: {}",
+            share(&of(&nothing), &|one| one.named.is_empty())
+        ),
+        format!(
+            "the right verdict where nothing is hidden: {}",
+            share(&of(&nothing), &|one| one.right)
+        ),
+        format!(
+            "impacts, median: {:.0} where nothing is hidden, {:.0} where a listed effect is",
+            median(&of(&nothing)),
+            median(&listed)
+        ),
         format!(
             "nothing named where what is hidden is not listed: {}",
             share(&of(&unlisted), &|one| one.right)
@@ -63,6 +78,15 @@ fn rates(outcomes: &[Outcome]) -> String {
         ),
     ];
     lines.map(|line| format!("- {line}")).join("\n")
+}
+
+fn median(outcomes: &[&Outcome]) -> f64 {
+    let mut all: Vec<usize> = outcomes.iter().map(|one| one.impacts).collect();
+    all.sort_unstable();
+    match all.len() {
+        0 => f64::NAN,
+        n => 0.5 * (all[(n - 1) / 2] + all[n / 2]) as f64,
+    }
 }
 
 #[cfg(test)]
@@ -76,6 +100,8 @@ mod tests {
             seed: 0,
             verdict: "supported".to_owned(),
             named: vec!["packing".to_owned()],
+            packing: Some((-0.0123, 0.003, true)),
+            hint: String::new(),
             right,
             wrong,
             predicted: Some(0.5),
@@ -91,11 +117,11 @@ mod tests {
         ];
         let text = table(&outcomes);
         assert!(text.contains(
-            "| packing 1 | 0 | supported | packing | yes | 2.00 → 1.00 (0.50) | 10 | 1.0 |"
+            "| packing 1 | 0 | supported | packing | -0.0123 ± 0.0030, named | yes | 2.00 → 1.00 (0.50) | 10 | 1.0 |"
         ));
         assert!(text.contains("at most three: 1 of 1"));
         assert!(text.contains("wrong effect, pair or set named: 1 of 3"));
-        assert!(text.contains("where nothing is: 0 of 1"));
+        assert!(text.contains("where nothing is hidden: 0 of 1"));
         assert!(text.contains("1.3 times the floor: 3 of 3"));
     }
 }

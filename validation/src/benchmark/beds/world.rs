@@ -4,17 +4,23 @@ use configs::{ConfigError, LoadOptions, Model, ModelSource};
 use engine::bed::random;
 use measurements::{
     Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedError, StopDefinition,
+    Role, Run, StatedBed, StatedError, StopDefinition,
 };
 use rand::Rng;
-use runner::beds::Impacts;
-use runner::beds::Record;
+use runner::beds::{Impacts, Lie, Record};
 
 use diagnosis::beds::observables::at;
 use diagnosis::beds::{BedError, Stand, Variation};
 
 /// The analyst's model of the bed.
 const MODEL: &str = include_str!("model.toml");
+
+/// The analyst's model of a small bed.
+const SMALL: &str = include_str!("small.toml");
+
+/// How well a bed is weighed and its packing is known: the packing fraction, and the bulk density, relative.
+const PACKING_SIGMA: f64 = 0.003;
+const DENSITY_SIGMA: f64 = 0.01;
 
 /// Seeds of the beds that are measured: none of a diagnosis.
 const SEEDS: usize = 1_000_000;
@@ -39,9 +45,21 @@ const STILL: usize = 5;
 /// # Errors
 /// Never: the model is ours.
 pub fn model(seed: u64) -> Result<Model, ConfigError> {
+    load(MODEL, seed)
+}
+
+/// The analyst's model of a small bed, likewise.
+///
+/// # Errors
+/// Never: the model is ours.
+pub fn small(seed: u64) -> Result<Model, ConfigError> {
+    load(SMALL, seed)
+}
+
+fn load(text: &str, seed: u64) -> Result<Model, ConfigError> {
     let source = ModelSource::Text {
         name: "the bed of the benchmark".to_owned(),
-        text: MODEL.to_owned(),
+        text: text.to_owned(),
         folder: ".".into(),
     };
     let options = LoadOptions { seed: Some(seed), ..LoadOptions::default() };
@@ -67,9 +85,10 @@ pub fn campaign(model: &Model) -> MeasurementSet {
         },
         bed: Bed {
             geometry: Geometry::Planar,
-            bulk_density: Some(2.4),
+            bulk_density: None,
             gravity: 9.81,
             grain_diameter: Some(4.8e-3),
+            stated: StatedBed::default(),
         },
         baseline: None,
         stated: StatedError::default(),
@@ -126,6 +145,32 @@ pub fn measure(
         }
     }
     Ok(set)
+}
+
+/// What one would say of the bed of the set of `stand` who looks at three beds with `hidden`, with errors of his own.
+///
+/// # Errors
+/// If the beds cannot be prepared.
+pub(super) fn weighed(
+    stand: &Stand<'_>,
+    hidden: &Variation,
+    seed: u64,
+    place: &dyn Impacts,
+) -> Result<Bed, BedError> {
+    let draws = stand.draws(SEEDS * (1 + seed as usize), 3, 1);
+    let lies = place.lies(&stand.jobs(&[0], &draws, hidden)?)?;
+    let mean =
+        |number: fn(&Lie) -> f64| lies.iter().map(number).sum::<f64>() / lies.len().max(1) as f64;
+    let mut random = random(seed, "weighing");
+    let packing = mean(|one| one.packing_fraction) + PACKING_SIGMA * normal(&mut random);
+    let density = mean(|one| one.bulk_density) * (1.0 + DENSITY_SIGMA * normal(&mut random));
+    let stated = StatedBed {
+        packing_fraction: Some(packing),
+        packing_fraction_sigma: Some(PACKING_SIGMA),
+        bulk_density_sigma: Some(DENSITY_SIGMA * density),
+        ..StatedBed::default()
+    };
+    Ok(Bed { bulk_density: Some(density), stated, ..stand.set.bed })
 }
 
 /// A run as a camera sees it.

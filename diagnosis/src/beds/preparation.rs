@@ -1,0 +1,401 @@
+//! The bed before the physics: the measured bed is held against that of the model, and the model is prepared to it.
+//!
+//! What a set states of its bed decides how heavy the grains are and how densely they lie. A packing fraction that is not
+//! stated is a parameter with a prior, as every fit has it.
+
+use configs::{BedSource, Change, GrainModel, Material};
+use measurements::{Geometry, MeasurementSet};
+use runner::CampaignError;
+use runner::beds::{Impacts, Lie};
+
+use super::error::BedError;
+use super::stand::Stand;
+use super::variation::Variation;
+use crate::forward::Prior;
+use crate::verdict::ApparatusError;
+
+/// Standard deviations where a set states none.
+pub mod defaults {
+    /// Packing fraction that is not stated, around that of the model.
+    pub const PACKING: f64 = 0.01;
+    /// Packing fraction that is stated without an error.
+    pub const STATED_PACKING: f64 = 0.005;
+    /// Bulk density, relative.
+    pub const DENSITY: f64 = 0.02;
+    /// Height of the surface, and mean diameter of the grains, relative.
+    pub const LENGTH: f64 = 0.01;
+    /// Coordination number.
+    pub const COORDINATION: f64 = 0.1;
+}
+
+/// A difference of so many standard errors is named; the model is prepared to a packing fraction from fewer on.
+const NAMED: f64 = 4.0;
+const WORTH_IT: f64 = 2.0;
+
+/// Beds of one preparation that are looked at.
+const BEDS: usize = 3;
+
+/// Beds are prepared until their packing fraction is this near to what is stated, or so often.
+const NEAR: f64 = 0.001;
+const TRIALS: usize = 5;
+
+/// Rolling friction while a bed settles that makes the loosest beds.
+const ROLLING: f64 = 0.3;
+
+/// Preparation friction of the looser beds of a model that settles without.
+const ROUGH: f64 = 0.3;
+
+/// How a model is prepared to a set.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Preparation {
+    /// What changes in the model.
+    pub(super) changes: Vec<Change>,
+    /// By what the measured bed differs from that of the model as it was.
+    pub(super) differences: Vec<ApparatusError>,
+    /// The same in sentences, and what was done about it.
+    pub(super) sentences: Vec<String>,
+    /// What is known of the packing fraction of the measured bed less that of the prepared model.
+    pub(super) packing: Option<Prior>,
+    /// Packing fraction of the prepared model less that of the model as it was.
+    pub(super) moved: f64,
+}
+
+/// Mean and standard error of several beds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Known {
+    pub(super) value: f64,
+    pub(super) se: f64,
+}
+
+impl Known {
+    pub(super) fn of(beds: &[Lie], number: fn(&Lie) -> f64) -> Self {
+        let n = beds.len().max(1) as f64;
+        let value = beds.iter().map(number).sum::<f64>() / n;
+        let squares = beds.iter().map(|one| (number(one) - value).powi(2)).sum::<f64>();
+        Self { value, se: (squares / (n * (n - 1.0).max(1.0))).sqrt() }
+    }
+
+    fn stated(value: Option<f64>, sigma: Option<f64>, otherwise: f64) -> Option<Self> {
+        value.map(|value| Self { value, se: sigma.unwrap_or(otherwise) })
+    }
+
+    /// Itself less `other`.
+    fn less(self, other: Self) -> Self {
+        Self { value: self.value - other.value, se: libm::hypot(self.se, other.se) }
+    }
+
+    fn is_beyond(self, errors: f64) -> bool {
+        self.value.abs() >= errors * self.se && self.value != 0.0
+    }
+
+    fn named(self, id: &str, unit: &str) -> ApparatusError {
+        ApparatusError {
+            id: id.to_owned(),
+            of: None,
+            value: self.value,
+            se: Some(self.se),
+            unit: unit.to_owned(),
+            prior_sigma: None,
+            named: self.is_beyond(NAMED),
+        }
+    }
+}
+
+impl Preparation {
+    /// Of the model of `stand` to its set; beds are prepared where the set says how its bed lies.
+    pub(super) fn of(stand: &Stand<'_>, place: &dyn Impacts) -> Result<Self, BedError> {
+        let mut all = Self::default();
+        let plain = lies(stand, place, &Variation::default())?;
+        let Some(plain) = plain.filter(|beds| !beds.is_empty()) else { return Ok(all) };
+        let packing = all.compare(stand, &plain);
+        let is_given = matches!(stand.grains().medium.bed.source, BedSource::Csv(_));
+        let Some(stated) = packing else {
+            if is_given {
+                all.sentences.push(
+                    "the bed of the model is a table of grains, and the set states no packing fraction: that of the \
+                     table is taken for it"
+                        .to_owned(),
+                );
+            } else {
+                all.packing = Some(Prior { mean: 0.0, sigma: defaults::PACKING });
+                all.sentences.push(format!(
+                    "the packing fraction of the bed is not stated: it is taken to be that of the model to {}",
+                    defaults::PACKING
+                ));
+            }
+            return Ok(all);
+        };
+        let own = Known::of(&plain, |one| one.packing_fraction);
+        if is_given {
+            return Ok(all);
+        }
+        let mut prepared = own;
+        if stated.less(own).is_beyond(WORTH_IT) {
+            let found = prepared_to(stand, place, (own, stated), &all.changes)?;
+            if let Some((changes, lie)) = found {
+                all.sentences.push(format!(
+                    "the model is prepared to a packing fraction of {:.4} instead of {:.4}: {}",
+                    lie.value,
+                    own.value,
+                    words(&changes)
+                ));
+                all.changes.extend(changes);
+                prepared = lie;
+            }
+        }
+        let left = stated.less(prepared);
+        all.packing = Some(Prior { mean: left.value, sigma: left.se.max(1e-4) });
+        all.moved = prepared.value - own.value;
+        Ok(all)
+    }
+
+    /// Holds what the set states against the beds of the model, and makes grains as heavy as they are; the packing
+    /// fraction of the measured bed, if it follows from what is stated.
+    fn compare(&mut self, stand: &Stand<'_>, beds: &[Lie]) -> Option<Known> {
+        let set = stand.set;
+        let stated = &set.bed.stated;
+        let own = Known::of(beds, |one| one.packing_fraction);
+        let height = Known::of(beds, |one| one.height);
+        let measured_height = stated.surface_height.and_then(|value| {
+            let sigma = stated.surface_height_sigma;
+            Known::stated(Some(value), sigma, defaults::LENGTH * value)
+        });
+        let packing = packing_of(set).or_else(|| {
+            // As many grains as in the model, over the same base.
+            measured_height.map(|measured| Known {
+                value: own.value * height.value / measured.value,
+                se: own.value * measured.se / measured.value,
+            })
+        });
+        if let Some(packing) = packing {
+            let difference = packing.less(own);
+            let word = if difference.value < 0.0 { "looser" } else { "denser" };
+            self.say(difference, ("packing", "1"), |d| {
+                format!("{word} than that of the model by {:.4} ± {:.4}", d.value.abs(), d.se)
+            });
+        }
+        if let Some(measured) = measured_height {
+            let difference = measured.less(height);
+            let word = if difference.value < 0.0 { "lower" } else { "higher" };
+            self.say(difference, ("height", "m"), |d| {
+                let [by, se] = [d.value.abs(), d.se].map(|length| 1e3 * length);
+                format!("{word} than that of the model by {by:.2} ± {se:.2} mm")
+            });
+        }
+        let coordination =
+            Known::stated(stated.coordination, stated.coordination_sigma, defaults::COORDINATION);
+        if let Some(measured) = coordination {
+            let difference = measured.less(Known::of(beds, |one| one.coordination));
+            self.say(difference, ("coordination", "1"), |d| {
+                format!(
+                    "of another coordination number than that of the model: {:+.2} ± {:.2}",
+                    d.value, d.se
+                )
+            });
+        }
+        let diameter = set.bed.grain_diameter.and_then(|value| {
+            Known::stated(Some(value), stated.grain_diameter_sigma, defaults::LENGTH * value)
+        });
+        if let Some(measured) = diameter {
+            let difference = measured.less(Known::of(beds, |one| one.mean_diameter));
+            self.say(difference, ("grain-diameter", "m"), |d| {
+                let [by, se] = [d.value, d.se].map(|length| 1e3 * length);
+                format!("of grains of another mean diameter than those of the model: {by:+.3} ± {se:.3} mm")
+            });
+        }
+        self.weigh(stand, (packing, own), Known::of(beds, |one| one.bulk_density));
+        packing
+    }
+
+    /// Holds the bulk density of the set against that of the model, `own`.
+    fn weigh(&mut self, stand: &Stand<'_>, (packing, lie): (Option<Known>, Known), own: Known) {
+        let set = stand.set;
+        let Some(value) = set.bed.bulk_density else { return };
+        let sigma = set.bed.stated.bulk_density_sigma.unwrap_or(defaults::DENSITY * value);
+        let unit = match set.bed.geometry {
+            Geometry::Planar => "kg/m^2",
+            Geometry::Spatial => "kg/m^3",
+        };
+        let difference = Known { value, se: sigma }.less(own);
+        self.say(difference, ("bulk-density", unit), |d| {
+            let word = if d.value < 0.0 { "lighter" } else { "heavier" };
+            let [by, se] = [d.value.abs(), d.se].map(|density| 1e2 * density / own.value);
+            format!("{word} than that of the model by {by:.1} ± {se:.1} %")
+        });
+        // What does not follow from the packing is the density of the grains.
+        let denser =
+            packing.map_or(Known { value: 1.0, se: defaults::PACKING / lie.value }, |one| Known {
+                value: one.value / lie.value,
+                se: one.se / lie.value,
+            });
+        let ratio = value / own.value / denser.value;
+        let error = ratio * libm::hypot(difference.se / value, denser.se / denser.value);
+        if (Known { value: ratio - 1.0, se: error }).is_beyond(NAMED) {
+            self.sentences
+                .push(format!("the grains of the model are made {ratio:.3} times as heavy"));
+            self.changes.extend(heavier(stand.grains(), ratio));
+        }
+    }
+
+    fn say(
+        &mut self,
+        difference: Known,
+        (id, unit): (&str, &str),
+        sentence: impl Fn(Known) -> String,
+    ) {
+        if difference.is_beyond(NAMED) {
+            let errors = difference.value.abs() / difference.se;
+            self.sentences
+                .push(format!("the measured bed is {} ({errors:.0} σ)", sentence(difference)));
+        }
+        self.differences.push(difference.named(id, unit));
+    }
+}
+
+/// The packing fraction that `set` states of its bed, or of every condition alike.
+fn packing_of(set: &MeasurementSet) -> Option<Known> {
+    let stated = &set.bed.stated;
+    let of_conditions = || {
+        let mut each = set.conditions.iter().map(|one| one.packing);
+        let first = each.next()??;
+        each.all(|one| one.is_some_and(|one| one.total_cmp(&first).is_eq())).then_some(first)
+    };
+    let value = stated.packing_fraction.or_else(of_conditions);
+    Known::stated(value, stated.packing_fraction_sigma, defaults::STATED_PACKING)
+}
+
+/// The grains of `model`, `ratio` times as heavy; nothing for a bed that is given.
+fn heavier(model: GrainModel<'_>, ratio: f64) -> Option<Change> {
+    let BedSource::Settle(settle) = &model.medium.bed.source else { return None };
+    let mut grains = settle.grains.clone();
+    for kind in &mut grains {
+        kind.material = match kind.material {
+            Material::Mass(mass) => Material::Mass(ratio * mass),
+            Material::Density(density) => Material::Density(ratio * density),
+        };
+    }
+    Some(Change::Grains(grains))
+}
+
+/// How a few beds of the model with `variation` lie; `None` where that is no model.
+fn lies(
+    stand: &Stand<'_>,
+    place: &dyn Impacts,
+    variation: &Variation,
+) -> Result<Option<Vec<Lie>>, BedError> {
+    let draws = stand.draws(0, BEDS, 1).concat();
+    let jobs: Result<Vec<_>, _> = draws.iter().map(|&draw| stand.job(0, draw, variation)).collect();
+    match jobs {
+        Ok(jobs) => match place.lies(&jobs) {
+            Ok(found) => Ok(Some(found)),
+            // Grains that never come to rest are no bed.
+            Err(CampaignError::Run(_)) => Ok(None),
+            Err(other) => Err(other.into()),
+        },
+        Err(_) => Ok(None),
+    }
+}
+
+/// How `model` is prepared at a level from -1, the densest bed that settles, over 0, as it is, to 1, with three times the
+/// friction, and 2, the loosest, where grains do not roll either; `None` without a friction to change.
+pub(super) fn at_level(model: GrainModel<'_>, level: f64) -> Option<Vec<Change>> {
+    let BedSource::Settle(settle) = &model.medium.bed.source else { return None };
+    let own = settle.preparation_friction?;
+    let rough = if own > 0.0 { 3.0 * own } else { ROUGH };
+    let friction = match level {
+        level if level <= 0.0 => own * (1.0 + level),
+        level => own + (rough - own) * level.min(1.0),
+    };
+    let mut changes = vec![Change::PreparationFriction(friction)];
+    if level > 1.0 {
+        let rolling = vec![("rolling_friction", ROLLING * (level - 1.0))];
+        changes.push(Change::BedEffect("rolling-resistance", rolling));
+    }
+    Some(changes)
+}
+
+/// The preparation with which the beds of the model come nearest to the packing fraction `stated`, and their packing
+/// fraction, where that is nearer than `own`; `others` change too.
+fn prepared_to(
+    stand: &Stand<'_>,
+    place: &dyn Impacts,
+    (own, stated): (Known, Known),
+    others: &[Change],
+) -> Result<Option<(Vec<Change>, Known)>, BedError> {
+    let mut best: Option<(Vec<Change>, Known)> = None;
+    let mut look = |changes: Vec<Change>| -> Result<Option<Known>, BedError> {
+        let before = [others, &changes[..]].concat();
+        let variation = Variation { before, during: Vec::new() };
+        let Some(beds) = lies(stand, place, &variation)? else { return Ok(None) };
+        let lie = Known::of(&beds, |one| one.packing_fraction);
+        let off = |lie: Known| (lie.value - stated.value).abs();
+        if best.as_ref().map_or(off(own), |(_, best)| off(*best)) > off(lie) {
+            best = Some((changes, lie));
+        }
+        Ok(Some(lie))
+    };
+    let model = stand.grains();
+    let is_looser = stated.value < own.value;
+    let ends: &[f64] = if is_looser { &[1.0, 2.0] } else { &[-1.0] };
+    let (mut near, mut far) = ((0.0, own.value), None);
+    for &level in ends {
+        let Some(changes) = at_level(model, level) else { return Ok(None) };
+        let Some(lie) = look(changes)? else { break };
+        if (lie.value - stated.value) * (own.value - stated.value) <= 0.0 {
+            far = Some((level, lie.value));
+            break;
+        }
+        near = (level, lie.value);
+    }
+    let Some(mut far) = far else {
+        if !is_looser && at_level(model, -1.0).is_some() {
+            let tapped = Change::TargetPackingFraction(stated.value);
+            look(at_level(model, -1.0).into_iter().flatten().chain([tapped]).collect())?;
+        }
+        return Ok(best);
+    };
+    for _ in 0..TRIALS {
+        let level = near.0 + (far.0 - near.0) * (stated.value - near.1) / (far.1 - near.1);
+        let Some(changes) = at_level(model, level) else { break };
+        let Some(lie) = look(changes)? else { break };
+        if (lie.value - stated.value).abs() <= NEAR {
+            break;
+        }
+        match (lie.value - stated.value) * (near.1 - stated.value) > 0.0 {
+            true => near = (level, lie.value),
+            false => far = (level, lie.value),
+        }
+    }
+    Ok(best)
+}
+
+/// What `changes` of the preparation are, for a report.
+fn words(changes: &[Change]) -> String {
+    let word = |change: &Change| match change {
+        Change::PreparationFriction(friction) => format!("preparation friction {friction:.3}"),
+        Change::TargetPackingFraction(_) => "taps".to_owned(),
+        Change::BedEffect(name, values) => {
+            let values = values.iter().map(|(key, value)| format!("{key} {value:.3}"));
+            format!("{name} while it settles ({})", values.collect::<Vec<_>>().join(", "))
+        }
+        other => format!("{other:?}"),
+    };
+    changes.iter().map(word).collect::<Vec<_>>().join(", ")
+}
+
+/// The differences and what the fit finds of the packing as one list, named where they are beyond their errors.
+pub(super) fn listed(
+    preparation: &Preparation,
+    mut fitted: Vec<ApparatusError>,
+) -> Vec<ApparatusError> {
+    for one in &mut fitted {
+        one.value += preparation.moved;
+        // Unlike an error of the apparatus, another bed is named however small the difference.
+        one.named = one.se.is_some_and(|se| Known { value: one.value, se }.is_beyond(NAMED));
+    }
+    let others = preparation.differences.iter();
+    let others = others.filter(|one| fitted.iter().all(|other| other.id != one.id)).cloned();
+    let others: Vec<ApparatusError> = others.collect();
+    fitted.extend(others);
+    fitted
+}
