@@ -414,6 +414,8 @@ mod tests {
     /// in both together, and hardly against each other.
     struct Known {
         known: f64,
+        /// Covariance of that, in its square.
+        shape: DMatrix<f64>,
         ways: DMatrix<f64>,
         candidates: Vec<Candidate>,
         /// What the candidate does per amplitude (m), and whether conditions may differ beyond their runs.
@@ -438,7 +440,8 @@ mod tests {
             };
             let ways = DMatrix::from_row_slice(2, 2, &[1e-3, 2e-5, 1e-3, -2e-5]);
             let candidates = vec![candidate];
-            Self { known, ways, candidates, signature: SIGNATURE, spread: None }
+            let shape = DMatrix::identity(2, 2);
+            Self { known, shape, ways, candidates, signature: SIGNATURE, spread: None }
         }
     }
 
@@ -462,7 +465,7 @@ mod tests {
 
         fn own_covariance(&self, _: usize, effects: &[(usize, f64)]) -> Option<DMatrix<f64>> {
             let q: f64 = effects.iter().map(|(_, q)| q).sum();
-            Some(DMatrix::identity(2, 2) * (q * self.known).powi(2))
+            Some(&self.shape * (q * self.known).powi(2))
         }
 
         fn spread_of_runs(&self, _: usize) -> Option<&DMatrix<f64>> {
@@ -519,7 +522,10 @@ mod tests {
 
     /// The fall by a candidate that does nothing, where the means of six conditions are off by three standard errors.
     fn fall_by_nothing(spread: Option<DMatrix<f64>>) -> (f64, f64) {
-        let forward = Known { signature: [0.0; 2], spread, ..Known::to(1.5e-3) };
+        let known = Known::to(1.5);
+        // It is known as runs scatter, to one and a half of them.
+        let shape = &known.ways * known.ways.transpose();
+        let forward = Known { signature: [0.0; 2], spread, shape, ..known };
         let conditions: Vec<_> = (0..6).map(|_| condition(1.0, 45.0)).collect();
         let runs = (0..60).map(|run| {
             let (at, sign) = (run / 10, if run % 2 == 0 { 1e-3 } else { -1e-3 });

@@ -11,6 +11,9 @@ use crate::noise::Noise;
 use crate::rounding::rounded;
 use crate::sensitivity::Point;
 
+/// A coefficient whose relative change is known to no better than this is not said.
+const KNOWN: f64 = 0.5;
+
 /// Relative changes of the coefficients of the force law nearest to the model that bring it to what was measured, with
 /// their standard errors.
 ///
@@ -70,9 +73,10 @@ impl Located {
             let (by, se) = (self.change[at], self.covariance[(at, at)].sqrt());
             let entry = json!({ "value": rounded(by), "se": rounded(se), "unit": "1" });
             changes.insert((*key).to_owned(), entry);
-            if let Some(entry) = measured.get_mut(&format!("resistance.{key}"))
-                && let Some(value) = entry["value"].as_f64()
-            {
+            let Some(entry) = measured.get_mut(&format!("resistance.{key}")) else { continue };
+            if se > KNOWN {
+                (entry["value"], entry["se"]) = (Value::Null, Value::Null);
+            } else if let Some(value) = entry["value"].as_f64() {
                 let value = value * libm::exp(by);
                 entry["value"] = json!(rounded(value));
                 entry["se"] = json!(rounded(value * se));
