@@ -2,7 +2,7 @@
 
 use measurements::{
     Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedError, StopDefinition,
+    Role, Run, StatedBed, StatedError, StopDefinition,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -107,6 +107,7 @@ impl Laboratory {
                 bulk_density: Some(DENSITY),
                 gravity: GRAVITY,
                 grain_diameter: Some(8e-4),
+                stated: StatedBed::default(),
             },
             baseline: None,
             stated: StatedError::default(),
