@@ -1,0 +1,131 @@
+//! A diagnosis of a bed of grains as it is written down, with the models that it proposes.
+
+use configs::Change;
+use serde_json::{Value, json};
+
+use super::confirmation::Confirmation;
+use super::emulator::BedForward;
+use super::located::Located;
+use super::plan::Plan;
+use super::stand::{Draw, Stand};
+use super::variation::Variation;
+use crate::bench::Bench;
+use crate::compare::parameters;
+use crate::observed::Observed;
+use crate::rounding::rounded;
+use crate::sensitivity::Point;
+use crate::verdict::{Diagnosis, Verdict};
+
+/// A diagnosis of a bed of grains.
+pub struct BedDiagnosis {
+    /// What it says.
+    pub diagnosis: Diagnosis,
+    /// The model that it was made with.
+    pub forward: BedForward,
+    /// The conditions that were fitted to, and none else.
+    pub observed: Observed,
+    /// What was confirmed with fresh beds; none where nothing was named, or nothing is held out.
+    pub confirmation: Option<Confirmation>,
+    /// Correlation of depths of two runs on one draw; none where no pair was run.
+    pub correlation: Option<f64>,
+    /// What is run in all.
+    pub plan: Plan,
+    /// Impacts of this diagnosis, those that were kept counted.
+    pub impacts: usize,
+    /// How the model was prepared to what the set states of its bed.
+    pub(super) changes: Vec<Change>,
+}
+
+/// The model with the switches of `point` at their amplitudes.
+pub(super) fn change_at(stand: &Stand<'_>, forward: &BedForward, point: &Point) -> Variation {
+    let parameters = forward.free().iter().copied().zip(point.parameters.iter().copied());
+    let effects = point.effects.iter().filter_map(|&(at, q)| Some((forward.switch(at)?, q)));
+    parameters.chain(effects).fold(Variation::default(), |all, (at, q)| {
+        all.and(forward.screened()[at].switch.change(stand.grains(), q))
+    })
+}
+
+impl BedDiagnosis {
+    /// The diagnosis as one JSON object, with what was learned of the beds.
+    ///
+    /// # Errors
+    /// Never for a diagnosis that this crate made.
+    pub fn to_json(&self, stand: &Stand<'_>) -> serde_json::Result<Value> {
+        let mut object = self.diagnosis.to_json()?;
+        object["bed"] = json!({
+            "scatter": self.forward.scatter(stand.set),
+            "correlation_on_one_draw": self.correlation.map(rounded),
+            "force_law": self.located(stand),
+            "seeds": self.seeds(stand),
+        });
+        object["ledger"] = self.confirmation.as_ref().map_or(Value::Null, Confirmation::ledger);
+        object["cost"] = json!({ "impacts": self.impacts, "plan": self.plan.to_json(stand) });
+        Ok(object)
+    }
+
+    /// The model with the switches of each effect that is worth adding, as a name and a model file; what the
+    /// apparatus does is no part of a bed.
+    ///
+    /// # Errors
+    /// If a changed model is none.
+    pub fn proposals(
+        &self,
+        stand: &Stand<'_>,
+    ) -> Result<Vec<(String, String)>, configs::ConfigError> {
+        let named = &self.diagnosis;
+        let points: Vec<Point> = match named.verdict {
+            Verdict::Supported | Verdict::Pair => {
+                named.proposed.iter().map(|fitted| fitted.fit.point.clone()).collect()
+            }
+            Verdict::NotSeparable => named
+                .ranking
+                .iter()
+                .filter(|effect| named.not_separable.contains(&effect.id))
+                .filter_map(|effect| effect.point.clone())
+                .collect(),
+            _ => Vec::new(),
+        };
+        let mut proposals = Vec::new();
+        let prepared = stand.grains().with(&self.changes)?;
+        let Ok(stand) = &Stand::new(&prepared, stand.set) else { return Ok(proposals) };
+        if !self.changes.is_empty() {
+            let text = stand.proposal(&Variation::default())?;
+            proposals.push(("model+preparation.toml".to_owned(), text));
+        }
+        for point in points {
+            let ids = self.forward.of_the_bed(&point.effects);
+            if !ids.is_empty() {
+                let text = stand.proposal(&change_at(stand, &self.forward, &point))?;
+                proposals.push((format!("model+{}.toml", ids.join("+")), text));
+            }
+        }
+        Ok(proposals)
+    }
+
+    /// The terms of the force law that comes nearest to the runs of the model, and those by which measurements differ
+    /// from them, whatever it is by.
+    fn located(&self, stand: &Stand<'_>) -> Value {
+        let baseline = self.forward.baseline();
+        let law = &baseline.stand_in.forward;
+        let of_the_model = parameters(law, &baseline.fitted.fit);
+        let bench = Bench { set: stand.set, observed: &self.observed, forward: &self.forward };
+        let as_it_is = self.diagnosis.baseline.as_ref();
+        let located = as_it_is
+            .and_then(|fitted| Located::of(&bench, &self.forward, fitted).ok().flatten())
+            .map(|located| located.to_json(&of_the_model));
+        let mut object = located.unwrap_or_else(|| json!({}));
+        object["of_the_model"] = Value::Object(of_the_model);
+        object
+    }
+
+    fn seeds(&self, stand: &Stand<'_>) -> Value {
+        let draws = self.plan.draws(stand);
+        let of = |draws: &[Vec<Draw>]| {
+            let mut seeds: Vec<u64> = draws.iter().flatten().map(|draw| draw.seed).collect();
+            seeds.sort_unstable();
+            seeds.dedup();
+            seeds
+        };
+        json!({ "baseline": of(&draws.fit), "confirmation": of(&draws.confirm) })
+    }
+}
