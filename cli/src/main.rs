@@ -42,50 +42,88 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 /// Impacts on granular beds: simulate them, compare them with measurements, find what is missing.
 #[derive(Debug, Parser)]
-#[command(name = "plunge", version, about, propagate_version = true)]
+#[command(name = "plunge", version, about, propagate_version = true, after_help = START)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
 }
 
+/// What the commands are for, and where to begin.
+const START: &str = "\
+Start here:
+  plunge run two-term-vector                   an impact in a tenth of a second; its page is runs/two-term-vector/report.html
+  plunge new --list                            models to start from
+  plunge import drop1.csv drop2.csv -o drops   a measurement set of your own tables
+
+Simulate:                  new, check, bed, run, sweep, effects
+See and convert:           report, movie, view, export, recover
+Compare with measurements: import, check, compare, diagnose, add
+
+plunge COMMAND --help has an example of each.";
+
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Run the impacts of a model.
+    #[command(after_help = "Example: plunge run vertical-2d --set 'impact.speed=\"3 m/s\"'")]
     Run(run::Args),
     /// Prepare the bed of a model into the cache.
+    #[command(after_help = "Example: plunge bed vertical-2d")]
     Bed(bed::Args),
     /// Validate a model, or a measurement set, and show what it means in SI, without running it.
+    #[command(after_help = "Example: plunge check my-model.toml")]
     Check(check::Args),
     /// Compare revisions of a model with measurements: how wrong, and where. Or a run with a run.
+    #[command(
+        after_help = "Example: plunge compare drops --model two-term-vector --model poncelet"
+    )]
     Compare(compare::Args),
     /// Find out which physical effect a model lacks.
+    #[command(after_help = "Example: plunge diagnose drops")]
     Diagnose(diagnose::Args),
     /// Add an effect to a model, with fitted values and all comments kept.
+    #[command(
+        after_help = "Example: plunge add two-term-vector --from runs/drops-diagnose/diagnosis.json -o better.toml"
+    )]
     Add(add::Args),
     /// Describe the laws and effects that a model can use.
+    #[command(after_help = "Example: plunge effects yield-stress")]
     Effects(effects::Args),
     /// Write a commented starter model, or, called `measurements`, a measurement set.
+    #[command(after_help = "Example: plunge new measurements")]
     New(new::Args),
     /// Run a campaign: many models, seeds and settings side by side, each once.
+    #[command(after_help = "Example: plunge sweep campaign.toml")]
     Sweep(sweep::Args),
     /// Make the HTML report of a run, a list of runs, a campaign, a comparison or a diagnosis again.
+    #[command(after_help = "Example: plunge report runs/vertical-2d")]
     Report(report::Args),
     /// Make a film of an impact, or pictures at single times.
+    #[command(
+        after_help = "Example: plunge movie runs/vertical-2d -o impact.gif\n         plunge movie runs/vertical-2d -o impact.svg --at contact,greatest,20ms"
+    )]
     Movie(movie::Args),
     /// Write a run or an impact as files of other programs: tables, grains for viewers, a LAMMPS input.
+    #[command(after_help = "Example: plunge export runs/vertical-2d --to parquet")]
     Export(export::Args),
     /// Make a measurement set of tables of tracking programs; or a log of a run of LAMMPS.
+    #[command(
+        after_help = "Example: plunge import drop1.csv drop2.csv -o drops --diameter 25.4mm --mass 67g"
+    )]
     Import(Box<import_args::Args>),
     /// Save everything readable of a damaged or unfinished log.
+    #[command(after_help = "Example: plunge recover run.mcap.partial saved.mcap")]
     Recover(recover::Args),
     /// Serve a log to viewers in a browser, and say how to open it in the others.
+    #[command(after_help = "Example: plunge view runs/vertical-2d")]
     View(view::Args),
     /// Do one task of a list: what a scheduler calls this program for.
     #[command(hide = true)]
     Task(task::Args),
-    /// Print what makes a shell complete the arguments.
+    /// Print a completion script for a shell.
+    #[command(after_help = "Example: plunge completions bash > plunge.bash")]
     Completions(completions::CompletionArgs),
     /// Write manual pages.
+    #[command(after_help = "Example: plunge man man-pages")]
     Man(completions::ManArgs),
 }
 

@@ -82,7 +82,7 @@ fn one_as_text(summary: &Summary, course: Option<&Course>, out: &Path) -> String
         summary.name, impact.speed_m_per_s, impact.angle_deg
     );
     let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "  {name:<22}{value}");
+        let _ = writeln!(text, "  {name:<29}{value}");
     };
     let time = |time: Option<f64>| {
         time.map_or_else(|| "not reached".to_owned(), |time| format!("{time:.4} s"))
@@ -116,37 +116,24 @@ fn one_as_text(summary: &Summary, course: Option<&Course>, out: &Path) -> String
     for (index, link) in summary.links.iter().enumerate() {
         line(&format!("link {}", index + 1), link_as_text(link));
     }
-    match is_pushed {
-        true => line("energy", "in the end".to_owned()),
-        false => line("energy at impact", format!("{:.4e} J, of which in the end", energy.initial)),
+    let shares = energy.shares();
+    let percent = |energy: f64| shares.percent(energy).unwrap_or(0.0);
+    let sources: Vec<String> = shares
+        .sources
+        .iter()
+        .map(|(name, energy)| format!("{:.1} % {name}", percent(*energy)))
+        .collect();
+    line("energy supplied", format!("{}: {}", joules(shares.supplied), sources.join(", ")));
+    let missing = shares.unaccounted.map(|energy| ("unaccounted for".to_owned(), energy));
+    for (name, energy) in shares.uses.iter().chain(&missing) {
+        line(&format!("  {name}"), format!("{:8.2} %", percent(*energy)));
     }
-    let mut share = |name: &str, value: f64, note: &str| {
-        // An intruder let go from rest has no energy of impact to take shares of, one on a drive little.
-        let amount = match energy.initial {
-            initial if initial > 0.0 && !is_pushed => format!("{:8.2} %", 100.0 * value / initial),
-            _ => format!("{value:12.4e} J"),
-        };
-        line(&format!("  {name}"), format!("{amount}  {note}").trim_end().to_owned());
-    };
-    for (name, value) in &energy.dissipated {
-        share(&name.replace('_', "-"), *value, "lost");
-    }
-    if summary.bed.is_some() {
-        if let Some(elastic) = energy.at_end.elastic {
-            share("springs", elastic, "more than before");
-        }
-        share("grains", energy.at_end.grains, "more than before, in motion and height");
-    } else if let Some(held) = energy.at_end.elastic.filter(|held| *held != 0.0) {
-        share("medium", held, "held by it");
-    }
-    share("intruder", energy.at_end.intruder, "in motion, less the height it has lost");
-    for (name, value) in &energy.input {
-        share(&name.replace('_', "-"), -value, "put in");
-    }
-    if let (Some(unaccounted), Some(closure)) = (energy.unaccounted, energy.closure) {
-        share("unaccounted for", -unaccounted, "");
+    if let Some(closure) = energy.closure {
         let whole = if is_pushed { "given to the bed" } else { "at impact" };
-        line("closure", format!("{closure:.1e} of the energy {whole}, at worst"));
+        line(
+            "closure",
+            format!("{closure:.1e}: the most unaccounted for, over the energy {whole}"),
+        );
     }
     line("cost", cost_as_text(cost));
     format!("{text}\n-> {}\n", out.display())
@@ -158,6 +145,16 @@ fn push_as_text(push: &IntrusionSummary) -> String {
         format!("; last {up:.4} N upward, {along:.4} N along x, {:.2} mm deep", 1e3 * depth)
     });
     format!("{:.2} mm, with {:.4e} J of the drive{force}", 1e3 * push.to_depth_m, push.work)
+}
+
+/// An energy in three digits, in the unit that fits it.
+fn joules(energy: f64) -> String {
+    let (factor, unit) = match energy.abs() {
+        size if size >= 1.0 || size <= 0.0 => (1.0, "J"),
+        size if size >= 1e-3 => (1e3, "mJ"),
+        _ => (1e6, "\u{b5}J"),
+    };
+    format!("{:.1} {unit}", factor * energy)
 }
 
 fn bed_as_text(bed: &BedSummary) -> String {
@@ -190,7 +187,7 @@ fn cost_as_text(cost: &CostSummary) -> String {
     let wall = cost.wall_s.unwrap_or(0.0);
     match (cost.dt_s, cost.grain_steps_per_s) {
         (Some(dt), Some(rate)) => format!(
-            "{} steps of {dt:e} s in {wall:.1} s on {} threads, {:.1} million grain-steps/s",
+            "{} steps of {dt:.3e} s in {wall:.1} s on {} threads, {:.1} million grain-steps/s",
             cost.steps,
             cost.threads.unwrap_or(1),
             1e-6 * rate

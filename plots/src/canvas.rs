@@ -8,6 +8,7 @@ use plotters::element::{Drawable, PointCollection};
 use plotters::prelude::SVGBackend;
 use plotters_backend::{
     BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind,
+    FontFamily, FontStyle, FontTransform, text_anchor::Pos,
 };
 
 /// What a picture is drawn on: SVG, and over it the places that have something to say.
@@ -162,7 +163,7 @@ impl DrawingBackend for Canvas<'_> {
         style: &S,
         place: BackendCoord,
     ) -> Done {
-        self.svg.draw_text(text, style, place)
+        self.svg.draw_text(text, &Readable(style), place)
     }
 
     fn estimate_text_size<S: BackendTextStyle>(
@@ -170,7 +171,54 @@ impl DrawingBackend for Canvas<'_> {
         text: &str,
         style: &S,
     ) -> Result<(u32, u32), DrawingErrorKind<io::Error>> {
-        self.svg.estimate_text_size(text, style)
+        self.svg.estimate_text_size(text, &Readable(style))
+    }
+}
+
+/// The least size of letters: SVG has them 11 pixels high, by the factor of `plotters`.
+const LEAST: f64 = 14.0;
+
+/// A style whose letters are large enough to be read.
+struct Readable<'s, S>(&'s S);
+
+impl<S: BackendTextStyle> BackendTextStyle for Readable<'_, S> {
+    type FontError = S::FontError;
+
+    fn color(&self) -> BackendColor {
+        self.0.color()
+    }
+
+    fn size(&self) -> f64 {
+        self.0.size().max(LEAST)
+    }
+
+    fn transform(&self) -> FontTransform {
+        self.0.transform()
+    }
+
+    fn style(&self) -> FontStyle {
+        self.0.style()
+    }
+
+    fn anchor(&self) -> Pos {
+        self.0.anchor()
+    }
+
+    fn family(&self) -> FontFamily<'_> {
+        self.0.family()
+    }
+
+    fn layout_box(&self, text: &str) -> Result<(BackendCoord, BackendCoord), Self::FontError> {
+        self.0.layout_box(text)
+    }
+
+    fn draw<E, D: FnMut(i32, i32, BackendColor) -> Result<(), E>>(
+        &self,
+        text: &str,
+        place: BackendCoord,
+        draw: D,
+    ) -> Result<Result<(), E>, Self::FontError> {
+        self.0.draw(text, place, draw)
     }
 }
 
@@ -241,6 +289,21 @@ mod tests {
         assert!(picture.contains("r=\"7\"><title>a &lt; b &amp; c</title></circle>"), "{picture}");
         assert!(picture.contains("<title>left half</title></rect>"), "{picture}");
         assert!(picture.ends_with("</g>\n</svg>\n"), "over all else");
+    }
+
+    #[test]
+    fn letters_are_never_too_small_to_be_read() {
+        let picture = svg((200, 100), |area| {
+            area.draw(&Text::new("small", (10, 10), ("sans-serif", 5.0)))?;
+            area.draw(&Text::new("large", (10, 50), ("sans-serif", 30.0)))
+        })
+        .expect("a picture");
+        let sizes: Vec<f64> = picture
+            .split("font-size=\"")
+            .skip(1)
+            .filter_map(|from| from.split('"').next()?.parse().ok())
+            .collect();
+        assert!(sizes.len() == 2 && sizes[0] >= 11.0 && sizes[1] > 20.0, "{sizes:?}");
     }
 
     #[test]

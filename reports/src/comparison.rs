@@ -75,7 +75,7 @@ pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
         sections.push(Section::new("Measured and predicted", vec![figure(svg, caption)]));
     }
     sections.push(Section::new("Parameters, refitted", parameters(models)));
-    sections.extend(views(texts).into_iter().map(Some));
+    sections.extend(views(texts, &[]).into_iter().map(Some));
     sections.push(Section::new("Errors by kind of number", by_kind(texts)));
     sections.push(Section::new("Where the force is wrong, in numbers", failures(models)));
     let names: Vec<String> = models.iter().map(|model| text(&model["model"])).collect();
@@ -90,12 +90,12 @@ pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
     page.html()
 }
 
-/// A section for each of [`VIEWS`] that there is.
-pub(crate) fn views(texts: &Texts) -> Vec<Section> {
+/// A section for each of [`VIEWS`] that there is, `but` some.
+pub(crate) fn views(texts: &Texts, but: &[&str]) -> Vec<Section> {
     let view = |&(name, heading, caption): &(&str, &str, &str)| {
         Section::new(heading, vec![figure(texts.get(name)?, caption)])
     };
-    VIEWS.iter().filter_map(view).collect()
+    VIEWS.iter().filter(|(name, ..)| !but.contains(name)).filter_map(view).collect()
 }
 
 /// The figure of errors by kind of number.

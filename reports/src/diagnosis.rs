@@ -3,9 +3,10 @@
 use configs::resistive::find_resistance;
 use serde_json::Value;
 
+use crate::claim;
 use crate::comparison::{by_kind, views};
 use crate::numbers::{fixed, four_digits, list, probability, text, texts};
-use crate::page::{Card, Number, Page, Part, Section, Table};
+use crate::page::{Card, Page, Part, Section, Table};
 use crate::{ReportError, Texts, object};
 
 /// The file whose presence means a diagnosis.
@@ -131,16 +132,18 @@ pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
     let model = text(&found["models"][0]["model"]);
     let set = text(&found["set"]);
     let mut sections = vec![
-        Section::new("Verdict", verdict(&diagnosis)),
+        Section::new("Verdict", verdict(&diagnosis, texts)?),
         Section::new("Effects", effects(&diagnosis)),
     ];
-    sections.extend(views(texts).into_iter().map(Some));
+    // What is left over stands with the verdict.
+    sections.extend(views(texts, &["signatures.svg"]).into_iter().map(Some));
     sections.extend([
         Section::new("Errors by kind of number", by_kind(texts)),
         Section::new("How often verdicts are right in this design", calibrated(texts)?),
         Section::new("What to measure next", next(&diagnosis)),
         Section::new("Corrected parameters", corrected(&diagnosis)),
         Section::new("All effects", ranking(&diagnosis)),
+        Section::new("Tests behind the verdict", tests_behind(&diagnosis)),
     ]);
     let page = Page {
         title: if set.is_empty() { "diagnosis".to_owned() } else { set },
@@ -149,45 +152,38 @@ pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
             "" => "What the model lacks.".to_owned(),
             model => format!("What {model} lacks."),
         },
-        headline: headline(&diagnosis),
+        headline: Vec::new(),
         sections: sections.into_iter().flatten().collect(),
         origin: vec![("plunge", env!("CARGO_PKG_VERSION").to_owned())],
     };
     page.html()
 }
 
-fn headline(diagnosis: &Value) -> Vec<Number> {
-    let number = |key: &str| diagnosis[key].as_f64();
-    let mut numbers = vec![
-        Number::new("model as it is", format!("p {}", probability(number("p_lof"))), "lack of fit"),
-        Number::new(
-            "best effect by chance",
-            format!("p {}", probability(number("p1"))),
-            "over all that were tried",
+/// The probabilities that a verdict rests on.
+fn tests_behind(diagnosis: &Value) -> Vec<Part> {
+    let mut table = Table::new(&["", "p", "how often chance alone does as much"]);
+    for (key, name, meaning) in [
+        ("p_lof", "lack of fit of the model", "misses the data as far, if it is right"),
+        ("p1", "best effect", "one of all that were tried helps as much, if none is there"),
+        (
+            "p_lof_with",
+            "lack of fit with the best effect",
+            "misses the data as far, if it is right",
         ),
-    ];
-    if let Some(p) = number("p_lof_with") {
-        numbers.push(Number::new("with it", format!("p {}", probability(Some(p))), "lack of fit"));
+    ] {
+        if let Some(p) = diagnosis[key].as_f64() {
+            table.rows.push(vec![name.to_owned(), probability(Some(p)), meaning.to_owned()]);
+        }
     }
-    let held_out = &diagnosis["holdout"];
-    let shown = |key: &str| {
-        let error = held_out[key].as_f64()?;
-        Some(match held_out["unit"].as_str() {
-            Some("m") => format!("{:.3} mm", 1e3 * error),
-            _ => format!("{:.1} %", 100.0 * error),
-        })
-    };
-    if let (Some(before), Some(after), Some(floor)) =
-        (shown("before"), shown("after"), shown("noise_floor"))
-    {
-        let value = format!("{before} \u{2192} {after}");
-        numbers.push(Number::new("error held out", value, format!("noise of the means {floor}")));
-    }
-    numbers
+    if table.rows.is_empty() { Vec::new() } else { vec![Part::Table(table)] }
 }
 
-fn verdict(diagnosis: &Value) -> Vec<Part> {
-    let mut parts = vec![Part::Answer(verdict_in_words(diagnosis))];
+fn verdict(diagnosis: &Value, texts_of: &Texts) -> Result<Vec<Part>, ReportError> {
+    let mut parts = vec![Part::Answer(claim::sentence(diagnosis))];
+    parts.extend(claim::pictures(diagnosis, texts_of)?);
+    parts.extend(claim::probability(diagnosis).map(Part::Text));
+    parts.extend(claim::decides(diagnosis).map(Part::Text));
+    parts.push(Part::Text(format!("In short: {}.", verdict_in_words(diagnosis))));
     parts.extend(strength_in_words(diagnosis).map(Part::Text));
     parts.extend(not_predicted(diagnosis).map(Part::Text));
     let unexplained = &diagnosis["unexplained"];
@@ -207,7 +203,7 @@ fn verdict(diagnosis: &Value) -> Vec<Part> {
         ));
         parts.push(Part::Listing(suggestion.to_owned()));
     }
-    parts
+    Ok(parts)
 }
 
 /// Which conditions that were held out are in no error, in a sentence; none if all are judged.
@@ -470,8 +466,16 @@ mod tests {
         );
         assert_eq!(html.matches("<article class=\"named\">").count(), 2, "a card for both");
         assert!(html.contains("no run spins"), "{html}");
-        assert!(html.contains("10.0 % \u{2192} 2.0 %"), "{html}");
-        assert_eq!(html.matches("<svg").count(), 1, "the view that there is");
+        assert!(html.contains("falls from 10.0 % to 2.0 %, where the noise is 6.0 %"), "{html}");
+        assert_eq!(
+            html.matches("<svg").count(),
+            2,
+            "the view that there is, and the error held out"
+        );
+        let claim = "The model lacks one of janssen, depth-exponent";
+        assert!(html.contains(claim), "{html}");
+        let before_numbers = html.find(claim) < html.rfind("Tests behind the verdict");
+        assert!(before_numbers, "the claim comes first");
     }
 
     #[test]

@@ -7,6 +7,7 @@
 //! What a page consists of is in `page.rs`, what it looks like in `templates/`.
 
 mod campaign;
+mod claim;
 mod comparison;
 mod diagnosis;
 mod figure;

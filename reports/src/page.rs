@@ -156,8 +156,8 @@ mod tests {
         };
         let html = page.html().expect("a page");
         assert!(!html.contains("<script src"), "{html}");
-        // The title stands twice: in the head too.
-        assert_eq!(html.matches("&#60;script src=").count(), 11, "{html}");
+        // The title stands twice: in the head too. A heading also names the table below it.
+        assert_eq!(html.matches("&#60;script src=").count(), 12, "{html}");
         assert!(html.contains("default-src 'none'"), "nothing is fetched");
     }
 }

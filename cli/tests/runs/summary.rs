@@ -17,7 +17,7 @@ enum Kind {
 
 use Kind::{Count, Number, Reached, Text, Truth};
 
-const KEYS: [(&str, Kind); 41] = [
+const KEYS: [(&str, Kind); 42] = [
     ("/name", Text),
     ("/version", Text),
     ("/model_hash", Text),
@@ -41,6 +41,7 @@ const KEYS: [(&str, Kind); 41] = [
     ("/energy/dissipated_J/tangential_damping", Number),
     ("/energy/dissipated_J/sliding", Number),
     ("/energy/dissipated_J/walls", Number),
+    ("/energy/released_J", Number),
     ("/energy/unaccounted_J", Number),
     ("/energy/closure", Number),
     ("/bed/grains", Count),
@@ -153,7 +154,12 @@ fn the_text_names_everything_and_aligns_it() {
     for name in ["stopping time", "depth", "range", "bed", "energy", "normal-damping", "closure"] {
         assert!(text.lines().any(|line| line.trim_start().starts_with(name)), "{name}: {text}");
     }
-    let shares = || text.lines().filter_map(|line| line.split_once(" %"));
+    // Where energy is in the end stands below what was supplied.
+    let shares = || {
+        text.lines()
+            .filter(|line| line.starts_with("    "))
+            .filter_map(|line| line.split_once(" %"))
+    };
     let ends: Vec<usize> = shares().map(|(before, _)| before.len()).collect();
     assert!(ends.len() >= 6 && ends.iter().all(|end| *end == ends[0]), "{text}");
     let percent =

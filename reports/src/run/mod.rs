@@ -119,28 +119,21 @@ fn energy_section(summary: &Summary, course: &Course) -> Result<Vec<Part>, Repor
     if let Some(budget) = energy::Budget::of(course) {
         parts.push(figure(&energy::picture(&budget)?, budget.caption()));
     }
-    let energy = &summary.energy;
-    let mut table = Table::new(&["in the end", "energy", "of that at impact"]);
-    let mut row = |name: &str, value: f64| {
-        let share = (energy.initial > 0.0).then(|| 100.0 * value / energy.initial);
+    let shares = summary.energy.shares();
+    let mut table = Table::new(&["", "energy", "of what was supplied"]);
+    let mut row = |name: String, value: f64| {
+        let share = shares.percent(value);
         let share = share.map_or(String::new(), |share| format!("{share:.2} %"));
-        table.rows.push(vec![name.to_owned(), with_prefix(value, "J"), share]);
+        table.rows.push(vec![name, with_prefix(value, "J"), share]);
     };
-    for (name, value) in &energy.dissipated {
-        row(&format!("lost to {}", name.replace('_', " ")), *value);
+    for (name, energy) in &shares.sources {
+        row(format!("supplied: {name}"), *energy);
     }
-    for (name, value) in &energy.input {
-        row(&format!("put in by {}", name.replace('_', " ")), *value);
+    for (name, energy) in &shares.uses {
+        row(name.clone(), *energy);
     }
-    row("of the intruder, in motion and height", energy.at_end.intruder);
-    if summary.bed.is_some() {
-        row("of the grains, more than before", energy.at_end.grains);
-    }
-    if let Some(elastic) = energy.at_end.elastic {
-        row("in springs, more than before", elastic);
-    }
-    if let Some(unaccounted) = energy.unaccounted {
-        row("unaccounted for", -unaccounted);
+    if let Some(unaccounted) = shares.unaccounted {
+        row("unaccounted for".to_owned(), unaccounted);
     }
     parts.push(Part::Table(table));
     Ok(parts)

@@ -25,8 +25,9 @@ pub use drawing::shape_of;
 pub use error::RunError;
 pub use folder::Existing;
 pub use summary::{
-    ActivitySummary, BedSummary, CostSummary, EnergySummary, FinalEnergy, ForceSummary, Group,
-    ImpactSummary, IntrusionSummary, LinkSummary, ListSummary, Scatter, StopSummary, Summary,
+    ActivitySummary, BedSummary, CostSummary, EnergyShares, EnergySummary, FinalEnergy,
+    ForceSummary, Group, ImpactSummary, IntrusionSummary, LinkSummary, ListSummary, Scatter,
+    StopSummary, Summary,
 };
 
 use folder::{Found, OutputFolder};

@@ -71,6 +71,7 @@ fn energy(facts: &Facts, [start, end]: [[f64; 6]; 2]) -> EnergySummary {
         },
         dissipated: BTreeMap::new(),
         input: BTreeMap::new(),
+        released: Some(start[4] - end[4]),
         unaccounted: None,
         closure: None,
     }

@@ -196,6 +196,10 @@ impl Summary {
         if let Some(intrusion) = &intrusion {
             stop.stopped = intrusion.is_complete(stop.depth_m);
         }
+        let kinetic = ["kinetic_intruder_translation_J", "kinetic_intruder_rotation_J"]
+            .map(|term| ledger.value(term).unwrap_or(0.0));
+        // Its kinetic energy at the start is the energy of the impact.
+        let intruder = end.intruder - (start.intruder - initial);
         let activity = simulation.activity();
         let activity = ActivitySummary {
             largest_moving_share: activity.largest_share(),
@@ -218,13 +222,13 @@ impl Summary {
             energy: EnergySummary {
                 initial,
                 at_end: FinalEnergy {
-                    // Its kinetic energy at the start is the energy of the impact.
-                    intruder: end.intruder - (start.intruder - initial),
+                    intruder,
                     grains: end.grains - start.grains,
                     elastic: end.elastic.zip(start.elastic).map(|(end, start)| end - start),
                 },
                 dissipated: by_channel(ledger, ChannelKind::Dissipated),
                 input,
+                released: Some(kinetic[0] + kinetic[1] - intruder),
                 unaccounted: Some(ledger.balance().unaccounted),
                 closure: Some(simulation.closure()),
             },

@@ -3,6 +3,7 @@
 mod grains;
 mod list;
 mod resistive;
+mod shares;
 
 use std::collections::BTreeMap;
 
@@ -13,6 +14,7 @@ pub(super) use grains::near_the_floor;
 pub use list::{Group, ListSummary, Scatter};
 pub(super) use resistive::Watched;
 pub use resistive::{ForceSummary, LinkSummary};
+pub use shares::EnergyShares;
 
 /// `summary.json` of one impact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -96,6 +98,9 @@ pub struct EnergySummary {
     /// By channel, `snake_case`; left out if no law puts energy in.
     #[serde(rename = "input_J", skip_serializing_if = "BTreeMap::is_empty", default)]
     pub input: BTreeMap<String, f64>,
+    /// What the intruder has given of its height; negative if it ends higher.
+    #[serde(rename = "released_J", skip_serializing_if = "Option::is_none", default)]
+    pub released: Option<f64>,
     #[serde(rename = "unaccounted_J", skip_serializing_if = "Option::is_none", default)]
     pub unaccounted: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none", default)]

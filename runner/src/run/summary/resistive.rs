@@ -272,6 +272,7 @@ impl Ended {
             },
             dissipated: by_channel(ledger, ChannelKind::Dissipated),
             input: by_channel(ledger, ChannelKind::Input),
+            released: Some(self.lost(TermKind::Potential, None)),
             unaccounted: Some(ledger.balance().unaccounted),
             closure: Some(ledger.closure(scale)),
         }
