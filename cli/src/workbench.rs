@@ -312,6 +312,13 @@ impl Candidate {
                 "{name}: nothing in the set depends on {which}; left as they are"
             )]);
         }
+        let unused = forward.unused_priors();
+        if !unused.is_empty() {
+            let (name, unused) = (&self.name, unused.join(", "));
+            flags.notes(&[format!(
+                "{name}: the set has priors for {unused}, which the model does not leave free; [fit] free names what it does"
+            )]);
+        }
         Ok(forward)
     }
 }

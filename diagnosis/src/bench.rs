@@ -4,9 +4,11 @@ use measurements::{Kind, MeasurementSet};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
+use crate::apparatus::defaults;
+use crate::between::Between;
 use crate::fit::{Data, Fit};
 use crate::forward::{Forward, PredictError};
-use crate::noise::Noise;
+use crate::noise::{Noise, NoiseSource};
 use crate::observed::Observed;
 use crate::sensitivity::{Point, Sensitivity};
 use crate::weights::Weight;
@@ -14,6 +16,12 @@ use crate::weights::Weight;
 /// How often noise and fit are taken in turn: the scatter of trajectories is propagated along the
 /// model, and the first guess of a model is wrong by construction.
 const ROUNDS: usize = 3;
+
+/// How often the scatter between conditions and the fit are taken in turn in each of these rounds,
+const BETWEEN_ROUNDS: usize = 2;
+
+/// and the share of it, and of what is known of it beforehand, that is no change.
+const SETTLED: f64 = 0.1;
 
 /// Seed of resampled and drawn noise, where none is asked for.
 pub const DEFAULT_SEED: u64 = 1;
@@ -38,6 +46,17 @@ pub struct Fitted {
     pub weights: Vec<Weight>,
     /// What the weights are from.
     pub noise: Noise,
+}
+
+impl Fitted {
+    /// Twice the negative logarithm of the likelihood, with what priors and the scatter between conditions cost.
+    #[must_use]
+    pub fn deviance(&self) -> f64 {
+        let Between { sd, sigma, .. } = self.noise.sessions;
+        let between = if sigma > 0.0 { (sd / sigma).powi(2) } else { 0.0 };
+        let widths = self.weights.iter().map(Weight::log_determinant).sum::<f64>();
+        self.fit.chi2 + widths + between
+    }
 }
 
 /// Why measurements cannot be compared with a model.
@@ -117,9 +136,35 @@ impl Bench<'_> {
     /// # Errors
     /// If the model fails.
     pub fn fit_once(&self, start: &Point, noise: &Noise) -> Result<Fitted, BenchError> {
-        let (weights, noise) = self.weigh(start, noise)?;
-        let fit = self.data(&weights).fit(start)?;
+        let (sensitivities, mut noise) = self.scatter(start, noise)?;
+        let weigh = |noise: &Noise| -> Result<Vec<Weight>, BenchError> {
+            let each = self.observed.fit.iter().zip(&sensitivities);
+            each.map(|(&c, sensitivity)| self.weight(start, c, sensitivity, noise)).collect()
+        };
+        let mut weights = weigh(&noise)?;
+        let mut fit = self.data(&weights).fit(start)?;
+        let Some(sigma) = self.between_sigma(&noise) else {
+            return Ok(Fitted { fit, weights, noise });
+        };
+        let slopes: Vec<_> = sensitivities.iter().map(Sensitivity::by_coefficients).collect();
+        for _ in 0..BETWEEN_ROUNDS {
+            let held = noise.sessions.sd;
+            noise.sessions = Between::estimate(&fit, &weights, &slopes, (held, sigma));
+            if (noise.sessions.sd - held).abs() <= SETTLED * held.max(SETTLED * sigma) {
+                break;
+            }
+            weights = weigh(&noise)?;
+            fit = self.data(&weights).fit(&fit.point)?;
+        }
         Ok(Fitted { fit, weights, noise })
+    }
+
+    /// How much coefficients scatter between conditions beforehand, relative; `None` where nothing is to be learned of
+    /// it: without repeats, where the set says which run is of which session, and where it says that all are one.
+    fn between_sigma(&self, noise: &Noise) -> Option<f64> {
+        let is_said = self.set.runs.iter().any(|run| run.session.is_some());
+        let sigma = self.set.instrument.session_sigma_rel.unwrap_or(defaults::SESSION);
+        (noise.source == NoiseSource::Repeats && !is_said && sigma > 0.0).then_some(sigma)
     }
 
     /// The measurements under `weights`.
@@ -188,14 +233,17 @@ impl Bench<'_> {
         })
     }
 
-    fn weigh(&self, point: &Point, noise: &Noise) -> Result<(Vec<Weight>, Noise), BenchError> {
+    /// The sensitivities of the conditions to fit along the paths at `point`, and the noise that repeats show with them.
+    fn scatter(
+        &self,
+        point: &Point,
+        noise: &Noise,
+    ) -> Result<(Vec<Sensitivity>, Noise), BenchError> {
         let fit = &self.observed.fit;
         let sensitivities =
             fit.iter().map(|&c| self.sensitivity(point, c)).collect::<Result<Vec<_>, _>>()?;
         let noise = noise.estimate(self.observed, &sensitivities, &self.set.instrument);
-        let weights = fit.iter().zip(&sensitivities);
-        let weights = weights.map(|(&c, sensitivity)| self.weight(point, c, sensitivity, &noise));
-        Ok((weights.collect::<Result<_, _>>()?, noise))
+        Ok((sensitivities, noise))
     }
 
     fn first_noise(&self) -> Result<Noise, BenchError> {

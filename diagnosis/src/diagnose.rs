@@ -33,6 +33,13 @@ const UPPER: f64 = 1.645;
 /// How often weights and ranking are taken in turn: the weights are those along the best model.
 const ROUNDS: usize = 2;
 
+/// Fall of the likelihood from which a scatter between conditions is seen: two standard errors.
+const SEEN: f64 = 4.0;
+
+/// By how much more likely two effects have to be than one with conditions that differ: odds of 100 to 1, times the
+/// number of effects that the second is chosen from.
+const LIKELIER: f64 = 15.0;
+
 /// Fewest deviations of repeats from their means that make more than a suggestion: a standard deviation
 /// from eight is known to a quarter.
 const CONTRASTS: usize = 8;
@@ -144,6 +151,14 @@ struct Judge<'a> {
     leader: Fitted,
 }
 
+/// Two effects that explain the data.
+struct Two {
+    pair: Pair,
+    /// Probability of a lack of fit as large as theirs.
+    p_lof: Option<f64>,
+    held_out: HeldOut,
+}
+
 impl Judge<'_> {
     fn verdict(self) -> Result<Diagnosis, BenchError> {
         let p_lof = lack_of_fit(self.bench, &self.baseline, self.seed)?;
@@ -169,39 +184,23 @@ impl Judge<'_> {
         // Real effects do not follow formulas exactly: a lack of fit counts only if held-out conditions show it.
         let is_of_its_form =
             self.bench.forward.is_judged_by_held_out() && held_out.is_within_noise();
-        if adequate(p_leader) || is_of_its_form {
-            if held_out.refutes() {
-                let hint = format!(
-                    "{leader} explains what was fitted, but predicts what was left out worse than without it"
-                );
-                return self.refuse((p_lof, p_leader), hint);
-            }
-            if let Some(hint) = self.too_small(&held_out) {
-                return self.below_noise((p_lof, p_leader), hint, held_out);
-            }
-            let verdict = match self.alike.len() {
-                1 => Verdict::Supported,
-                _ => Verdict::NotSeparable,
-            };
-            let found = (String::new(), Some(held_out));
-            return self.diagnosis(verdict, &self.leader, (p_lof, p_leader), found);
+        let is_explained = adequate(p_leader) || is_of_its_form;
+        if is_explained && !self.leaves_conditions_apart() {
+            return self.one((p_lof, p_leader), held_out);
         }
-        let pair = best_pair(self.bench, &self.weighed, &self.ranking, self.seed)?;
-        if let Some(Pair { fitted, p }) = pair.filter(|pair| pair.p <= ALPHA) {
-            let p_pair = lack_of_fit(self.bench, &without_width(self.bench, &fitted)?, self.seed)?;
-            let held_out = HeldOut::of(self.bench, &self.weighed, &fitted)?;
-            if adequate(p_pair) && !held_out.refutes() && self.too_small(&held_out).is_none() {
-                let hint = format!(
-                    "both are needed (each by chance: {p:.1e} at most), or one effect outside the list"
-                );
-                let found = (hint, Some(held_out));
-                return self.diagnosis(Verdict::Pair, &fitted, (p_lof, p_pair), found);
-            }
+        if let Some(Two { pair, p_lof: p_pair, held_out }) = self.two(is_explained)? {
+            let by_chance = pair.p;
+            let hint = format!(
+                "both are needed (each by chance: {by_chance:.1e} at most), or one effect outside the list"
+            );
+            let found = (hint, Some(held_out));
+            return self.diagnosis(Verdict::Pair, &pair.fitted, (p_lof, p_pair), found);
         }
-        let hint = format!(
-            "no one or two listed effects explain the data; {} explains a part",
-            self.name(self.ranking.scores[0].candidate())
-        );
+        if is_explained {
+            return self.one((p_lof, p_leader), held_out);
+        }
+        let hint =
+            format!("no one or two listed effects explain the data; {leader} explains a part");
         if !self.bench.forward.is_judged_by_held_out() {
             // Impacts on fresh beds decide whether what is left matters.
             let verdict = match self.alike.len() {
@@ -216,6 +215,49 @@ impl Judge<'_> {
             );
         }
         self.refuse((p_lof, p_leader), hint)
+    }
+
+    /// Whether conditions differ with the best effect by more than their repeats show.
+    fn leaves_conditions_apart(&self) -> bool {
+        self.leader.noise.sessions.gain >= SEEN
+    }
+
+    /// The verdict on the best effect alone, with which the model explains what was fitted.
+    fn one(
+        &self,
+        p: (Option<f64>, Option<f64>),
+        held_out: HeldOut,
+    ) -> Result<Diagnosis, BenchError> {
+        if held_out.refutes() {
+            let leader = self.name(self.ranking.scores[0].candidate());
+            let hint = format!(
+                "{leader} explains what was fitted, but predicts what was left out worse than without it"
+            );
+            return self.refuse(p, hint);
+        }
+        if let Some(hint) = self.too_small(&held_out) {
+            return self.below_noise(p, hint, held_out);
+        }
+        let verdict = match self.alike.len() {
+            1 => Verdict::Supported,
+            _ => Verdict::NotSeparable,
+        };
+        self.diagnosis(verdict, &self.leader, p, (String::new(), Some(held_out)))
+    }
+
+    /// The two effects that explain the data, if there are two; where one does (`is_explained`) with conditions that
+    /// differ, two have to be far more likely.
+    fn two(&self, is_explained: bool) -> Result<Option<Two>, BenchError> {
+        let pair = best_pair(self.bench, &self.weighed, &self.ranking, self.seed)?;
+        let Some(pair) = pair.filter(|pair| pair.p <= ALPHA) else { return Ok(None) };
+        if is_explained && self.leader.deviance() - pair.fitted.deviance() < LIKELIER {
+            return Ok(None);
+        }
+        let narrow = without_width(self.bench, &pair.fitted)?;
+        let p_lof = lack_of_fit(self.bench, &narrow, self.seed)?;
+        let held_out = HeldOut::of(self.bench, &self.weighed, &pair.fitted)?;
+        let stands = adequate(p_lof) && !held_out.refutes() && self.too_small(&held_out).is_none();
+        Ok(stands.then_some(Two { pair, p_lof, held_out }))
     }
 
     /// The verdict none-of-the-candidates, or below-noise if the model misses held-out conditions by little more than
@@ -303,7 +345,7 @@ impl Judge<'_> {
             strength: strength(&strength_reasons),
             probability: None,
             evidence: evidence(bench, proposed),
-            warnings: warnings(bench, &amplitudes),
+            warnings: warnings(bench, proposed, &amplitudes),
             strength_reasons,
             effects: amplitudes.iter().map(|amplitude| amplitude.id.clone()).collect(),
             not_separable,
@@ -315,7 +357,7 @@ impl Judge<'_> {
             noise: proposed.noise.to_json(&bench.set.instrument),
             holdout: Some(held_out),
             unexplained,
-            apparatus: ApparatusError::all(bench.forward, &proposed.fit),
+            apparatus: ApparatusError::all(bench.forward, proposed),
             preparation: ApparatusError::of_preparation(bench.forward, &proposed.fit),
             next: Vec::new(),
             parameters: parameters(bench.forward, &proposed.fit),
@@ -336,7 +378,7 @@ fn nothing(bench: &Bench<'_>, fitted: &Fitted) -> Verdict {
     let is_named = |errors: Vec<ApparatusError>| errors.iter().any(|error| error.named);
     if is_named(ApparatusError::of_preparation(bench.forward, &fitted.fit)) {
         Verdict::ExplainedByPreparation
-    } else if is_named(ApparatusError::all(bench.forward, &fitted.fit)) {
+    } else if is_named(ApparatusError::all(bench.forward, fitted)) {
         Verdict::ExplainedByApparatus
     } else {
         Verdict::NothingDetected
@@ -383,12 +425,20 @@ fn evidence(bench: &Bench<'_>, fitted: &Fitted) -> Evidence {
 }
 
 /// What was left aside of the measurements, and what is unusual of what is named.
-fn warnings(bench: &Bench<'_>, amplitudes: &[Amplitude]) -> Vec<String> {
+fn warnings(bench: &Bench<'_>, proposed: &Fitted, amplitudes: &[Amplitude]) -> Vec<String> {
+    let between = proposed.noise.sessions;
+    let differ = (between.gain >= SEEN).then(|| {
+        format!(
+            "conditions differ by {:.1} % of their resistance beyond what their repeats show: if they are of several \
+             days or beds, say which in a column `session` of the runs",
+            100.0 * between.sd
+        )
+    });
     let unusual = amplitudes.iter().filter(|amplitude| amplitude.unusual);
     let unusual = unusual.map(|amplitude| {
         format!("{} of {:.4} is outside of its usual range", amplitude.id, amplitude.q)
     });
-    bench.observed.notes.iter().cloned().chain(unusual).collect()
+    bench.observed.notes.iter().cloned().chain(differ).chain(unusual).collect()
 }
 
 fn strength(doubts: &[StrengthReason]) -> Strength {
@@ -424,7 +474,7 @@ pub(crate) fn withdraw(
         amplitudes: Vec::new(),
         amplitude_correlation: None,
         parameters: parameters(bench.forward, &baseline.fit),
-        apparatus: ApparatusError::all(bench.forward, &baseline.fit),
+        apparatus: ApparatusError::all(bench.forward, baseline),
         preparation: ApparatusError::of_preparation(bench.forward, &baseline.fit),
         noise: baseline.noise.to_json(&bench.set.instrument),
         proposed: Some(baseline.clone()),

@@ -19,6 +19,7 @@
 pub mod apparatus;
 pub mod beds;
 pub mod bench;
+pub mod between;
 pub mod calibrate;
 mod chord;
 pub mod compare;

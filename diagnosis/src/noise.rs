@@ -11,6 +11,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use crate::between::Between;
 use crate::observed::{Observed, ObservedCondition, least_position_error, position_error};
 use crate::rounding::rounded;
 use crate::sensitivity::{Sensitivity, Spread};
@@ -41,6 +42,8 @@ pub struct Noise {
     /// Variance by which the means of conditions differ from those of the model beyond what its runs explain, over the
     /// variance of a run of the model; 0 for a model without runs.
     pub between: f64,
+    /// Scatter of coefficients from condition to condition beyond that of runs: sessions that are not stated.
+    pub sessions: Between,
 }
 
 /// Where a noise is from.
@@ -67,7 +70,13 @@ impl Noise {
     #[must_use]
     pub fn stated() -> Self {
         let spread = Spread { coefficient: 0.0, path: 0.0, speed: 0.0, level: 0.0, clock: 0.0 };
-        Self { source: NoiseSource::Stated, reading: 1.0, spread, between: 0.0 }
+        Self {
+            source: NoiseSource::Stated,
+            reading: 1.0,
+            spread,
+            between: 0.0,
+            sessions: Between::default(),
+        }
     }
 
     /// For comparing where nothing is known.
@@ -87,7 +96,13 @@ impl Noise {
     #[must_use]
     pub fn guess(instrument: &Instrument) -> Self {
         let spread = Spread::new(0.05, 0.12, instrument);
-        Self { source: NoiseSource::Repeats, reading: 1.0, spread, between: 0.0 }
+        Self {
+            source: NoiseSource::Repeats,
+            reading: 1.0,
+            spread,
+            between: 0.0,
+            sessions: Between::default(),
+        }
     }
 
     /// The most likely noise of the runs of the conditions `fit`, whose observables follow the
@@ -127,7 +142,7 @@ impl Noise {
             .ok()
             .and_then(|result| result.state().get_best_param().cloned());
         let found = best.map_or(*self, |at| from_logarithms(&at, instrument, unstated));
-        Self { between: self.between, ..found }
+        Self { between: self.between, sessions: self.sessions, ..found }
     }
 
     /// The logarithms of what is learned from repeats: reading, coefficients and path; then what is `unstated`.
@@ -162,6 +177,7 @@ impl Noise {
             "speed_sd": rounded(self.spread.speed),
             "level_sd_m": rounded(self.spread.level),
             "clock_sd_s": rounded(self.spread.clock),
+            "between_conditions_sd": rounded(self.sessions.sd),
         })
     }
 
@@ -181,6 +197,14 @@ impl Noise {
             NoiseSource::Stated => stated_covariance(condition, 0.0),
             NoiseSource::Assumed => stated_covariance(condition, ASSUMED),
         }
+    }
+
+    /// What the mean of a condition scatters by together with all its runs, a column for each coefficient: its
+    /// covariance is the product with the transposed. `None` where nothing scatters between conditions.
+    #[must_use]
+    pub fn between_conditions(&self, sensitivity: &Sensitivity) -> Option<DMatrix<f64>> {
+        let slope = sensitivity.by_coefficients();
+        (self.sessions.sd > 0.0 && slope.ncols() > 0).then(|| self.sessions.sd * slope)
     }
 }
 
@@ -244,7 +268,13 @@ fn from_logarithms(at: &[f64], instrument: &Instrument, unstated: Unstated) -> N
     if let Some(rate) = unstated.rate {
         spread.clock = next(FRAMES_BOUNDS) / rate;
     }
-    Noise { source: NoiseSource::Repeats, reading, spread, between: 0.0 }
+    Noise {
+        source: NoiseSource::Repeats,
+        reading,
+        spread,
+        between: 0.0,
+        sessions: Between::default(),
+    }
 }
 
 /// What the likelihood needs of one condition, in units of the stated error of its readings.

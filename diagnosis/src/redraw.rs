@@ -52,9 +52,10 @@ impl Redraw {
                     let mut columns: Vec<_> = deviations.collect();
                     let effects = &fitted.fit.point.effects;
                     let own = bench.own_covariance(condition, effects, &fitted.noise);
-                    if let Some(factor) = own.and_then(Cholesky::new) {
-                        let own = weight.whiten_columns(&factor.l());
-                        columns.extend(own.column_iter().map(|column| column.into_owned()));
+                    let own = own.and_then(Cholesky::new).map(|factor| factor.l());
+                    for shared in own.iter().chain(weight.between()) {
+                        let shared = weight.whiten_columns(shared);
+                        columns.extend(shared.column_iter().map(|column| column.into_owned()));
                     }
                     DMatrix::from_columns(&columns)
                 },

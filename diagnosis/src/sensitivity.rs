@@ -171,6 +171,14 @@ impl Sensitivity {
         self.depends_on(Input::Clock)
     }
 
+    /// Derivative of the observables by the logarithm of each coefficient.
+    pub(crate) fn by_coefficients(&self) -> DMatrix<f64> {
+        let inputs = self.inputs.iter().enumerate();
+        let of_coefficients = inputs.filter(|(_, input)| matches!(input, Input::Coefficient(_)));
+        let columns: Vec<usize> = of_coefficients.map(|(column, _)| column).collect();
+        self.slope.select_columns(&columns)
+    }
+
     fn depends_on(&self, input: Input) -> bool {
         let mut columns = self.inputs.iter().zip(self.slope.column_iter());
         columns.any(|(one, column)| *one == input && column.iter().any(|slope| *slope != 0.0))

@@ -106,7 +106,10 @@ pub(crate) fn variance_along(bench: &Bench<'_>, fitted: &Fitted, unit: &DVector<
                 let half = weight.whiten_columns(&own).transpose();
                 part.dot(&weight.whiten_columns(&half).tr_mul(&part))
             });
-            own + (0..observed.runs.len()).map(along).sum::<f64>() / (runs * (runs - 1.0))
+            let between = weight
+                .between()
+                .map_or(0.0, |columns| weight.whiten_columns(columns).tr_mul(&part).norm_squared());
+            own + between + (0..observed.runs.len()).map(along).sum::<f64>() / (runs * (runs - 1.0))
         } else {
             part.norm_squared()
         };

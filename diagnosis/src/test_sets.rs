@@ -78,6 +78,7 @@ pub(crate) fn set(kind: Kind, conditions: Vec<Condition>, runs: Vec<Run>) -> Mea
         stop: StopDefinition::SpeedFivePercent,
         last: FinalDefinition::Resting,
         feasible: Feasible::default(),
+        priors: Vec::new(),
         conditions,
         runs,
         keep: Vec::new(),

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::bench::Fitted;
+use crate::between::Between;
 use crate::fit::Fit;
 use crate::forward::{Bound, Forward, ParameterKind};
 use crate::held_out::HeldOut;
@@ -227,12 +228,17 @@ pub struct ApparatusError {
 const CLEAR_OF_ZERO: f64 = 4.0;
 
 /// and at least so many standard deviations of what is known beforehand.
-const UNEXPECTED: f64 = 1.5;
+const UNEXPECTED: f64 = 2.0;
+
+/// The same of a preparation: what is known of a bed beforehand is that beds differ.
+const UNEXPECTED_BED: f64 = 1.5;
 
 impl ApparatusError {
-    /// All of the apparatus in `fit`.
-    pub(crate) fn all(forward: &dyn Forward, fit: &Fit) -> Vec<Self> {
-        Self::of(forward, fit, ParameterKind::Apparatus)
+    /// All of the apparatus in `fitted`; the last is how much conditions differ beyond their runs, where that is learned.
+    pub(crate) fn all(forward: &dyn Forward, fitted: &Fitted) -> Vec<Self> {
+        let mut all = Self::of(forward, &fitted.fit, ParameterKind::Apparatus);
+        all.extend(Self::between(&fitted.noise.sessions));
+        all
     }
 
     /// All of the preparation in `fit`.
@@ -241,6 +247,10 @@ impl ApparatusError {
     }
 
     fn of(forward: &dyn Forward, fit: &Fit, kind: ParameterKind) -> Vec<Self> {
+        let unexpected = match kind {
+            ParameterKind::Preparation => UNEXPECTED_BED,
+            _ => UNEXPECTED,
+        };
         let values = forward.parameters().iter().zip(&fit.point.parameters).enumerate();
         let errors = values.filter(|(_, (parameter, _))| parameter.kind == kind);
         errors
@@ -255,10 +265,24 @@ impl ApparatusError {
                     None => (parameter.name.clone(), None),
                 };
                 let unit = parameter.unit.clone();
-                let named = beyond(CLEAR_OF_ZERO, se) && beyond(UNEXPECTED, prior_sigma);
+                let named = beyond(CLEAR_OF_ZERO, se) && beyond(unexpected, prior_sigma);
                 Self { id, of, value, se, unit, prior_sigma, named }
             })
             .collect()
+    }
+
+    fn between(between: &Between) -> Option<Self> {
+        let &Between { sd, gain, sigma } = between;
+        (sigma > 0.0).then(|| Self {
+            id: "session".to_owned(),
+            of: Some("each condition its own".to_owned()),
+            value: sd,
+            se: None,
+            unit: "1".to_owned(),
+            prior_sigma: Some(sigma),
+            // A fall of the likelihood is the square of a distance in standard errors.
+            named: gain >= CLEAR_OF_ZERO.powi(2) && sd >= UNEXPECTED * sigma,
+        })
     }
 }
 

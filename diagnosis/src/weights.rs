@@ -14,6 +14,8 @@ pub struct Weight {
     factor: Cholesky<f64, Dyn>,
     /// What is added to the run of the mean bed (in the units of the observables).
     pub shift: DVector<f64>,
+    /// What conditions scatter by beyond their runs, a column for each coefficient; the factor holds it.
+    between: Option<DMatrix<f64>>,
 }
 
 impl Weight {
@@ -28,10 +30,22 @@ impl Weight {
     ) -> Option<Self> {
         let runs = condition.runs.len().max(1) as f64;
         let mut covariance = noise.covariance(condition, sensitivity) / runs;
-        covariance += own.unwrap_or_else(|| DMatrix::zeros(covariance.nrows(), covariance.ncols()));
+        if let Some(own) = own {
+            covariance += own;
+        }
+        let between = noise.between_conditions(sensitivity);
+        if let Some(columns) = &between {
+            covariance += columns * columns.transpose();
+        }
         let factor = Cholesky::new(covariance)?;
         let shift = sensitivity.shift_of_mean(&noise.spread);
-        Some(Self { shift, factor })
+        Some(Self { factor, shift, between })
+    }
+
+    /// What the mean scatters by together with all its runs, as [`Noise::between_conditions`] has it.
+    #[must_use]
+    pub fn between(&self) -> Option<&DMatrix<f64>> {
+        self.between.as_ref()
     }
 
     /// `vector` in units of its standard deviation, freed of correlation.

@@ -11,6 +11,7 @@ use super::conditions::{self, ConditionPlaces};
 use super::dialect::{Decimal, Delimiter};
 use super::keys;
 use super::optional::optional;
+use super::priors;
 use super::table::Format;
 use super::unstated::Unstated;
 use super::{
@@ -71,6 +72,7 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
     let columns = ColumnNames::read(root.table("columns", None));
     let stated = stated(root.table("noise", None), &mut unstated);
     let feasible = Feasible::read(root.table("feasible", None));
+    let priors = priors::read(&root);
     let bed_table = root.table("bed", None);
     let model = root.table("model", None);
     let baseline = optional_text(&model, "baseline", "two-term-vector", "the model to start from");
@@ -108,6 +110,7 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
         stop: head.stop,
         last: head.last,
         feasible,
+        priors,
         conditions,
         runs: Vec::new(),
         keep: head.keep,

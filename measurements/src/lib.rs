@@ -33,6 +33,7 @@ mod load;
 mod magnitudes;
 mod optional;
 mod order;
+mod priors;
 mod ranges;
 mod reading;
 mod row;
@@ -60,6 +61,7 @@ pub use fall::{Fall, reading_noise};
 pub use feasible::Feasible;
 pub use level::common_level;
 pub use load::{Loaded, SetError};
+pub use priors::ParameterPrior;
 pub use reading::Reading;
 pub use strays::{Cleaned, without_strays};
 pub use template::TEMPLATE;
@@ -89,6 +91,8 @@ pub struct MeasurementSet {
     pub last: FinalDefinition,
     /// What could be measured next.
     pub feasible: Feasible,
+    /// What is known of coefficients of the model beforehand.
+    pub priors: Vec<ParameterPrior>,
     /// In the order of the file.
     pub conditions: Vec<Condition>,
     /// By condition, and within it in an order that names and rows of the file do not decide.

@@ -285,6 +285,7 @@ mod tests {
             stop: StopDefinition::SpeedFivePercent,
             last: FinalDefinition::Resting,
             feasible: Feasible::default(),
+            priors: Vec::new(),
             conditions: vec![Condition {
                 id: "2 m/s".into(),
                 role: Role::Fit,

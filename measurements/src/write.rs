@@ -10,7 +10,8 @@ use engine::checkpoint::write_whole;
 use thiserror::Error;
 
 use super::{
-    Condition, Feasible, FinalDefinition, Geometry, Kind, MeasurementSet, Role, Run, StopDefinition,
+    Condition, Feasible, FinalDefinition, Geometry, Kind, MeasurementSet, ParameterPrior, Role,
+    Run, StopDefinition,
 };
 
 /// Why a set cannot be written.
@@ -115,6 +116,12 @@ impl MeasurementSet {
         file.number("final_z_rel", self.stated.final_z);
         file.number("final_x_rel", self.stated.final_x);
         file.feasible(&self.feasible);
+        if !self.priors.is_empty() {
+            file.table("[parameters]");
+            for (name, prior) in self.priors.iter().map(ParameterPrior::line) {
+                file.line(&name, &prior);
+            }
+        }
         file.table("[files]");
         file.word("runs", "runs.csv");
         file.text("trajectories", (!scalar).then_some("trajectories.csv"));

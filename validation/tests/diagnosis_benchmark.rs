@@ -5,8 +5,9 @@ use diagnosis::calibrate::{self, calibrate};
 use diagnosis::diagnose::diagnose;
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
+use diagnosis::sensitivity::Point;
 use diagnosis::verdict::{Diagnosis, Status, Verdict};
-use measurements::MeasurementSet;
+use measurements::{MeasurementSet, ParameterPrior};
 use validation::benchmark::design::Design;
 use validation::benchmark::hidden::Hidden;
 use validation::benchmark::imperfection::Imperfection;
@@ -120,6 +121,53 @@ fn an_effect_is_found_before_an_apparatus_that_is_off() {
         let found = before(imperfection, vec![Hidden::Magnus], 502);
         assert_eq!(found.effects, ["magnus"], "{imperfection:?}: {:?}", found.unexplained);
     }
+}
+
+#[test]
+fn beds_poured_anew_for_every_condition_are_a_scatter_between_conditions_and_no_effect() {
+    let found = before(Imperfection::Pourings, Vec::new(), 504);
+    assert!(found.effects.is_empty() && found.not_separable.is_empty(), "{found:?}");
+    let between = found.apparatus.last().expect("it is looked for");
+    assert_eq!(between.id, "session");
+    // Pourings differ by 5 %; a standard deviation from twice so many conditions is known to a sixth.
+    assert!((0.03..0.08).contains(&between.value), "{between:?}");
+    assert!(found.warnings.iter().any(|one| one.contains("column `session`")), "{found:?}");
+    let exact = before(Imperfection::None, Vec::new(), 504);
+    let between = exact.apparatus.last().expect("it is looked for");
+    assert!(between.value < 0.015, "{between:?}");
+}
+
+#[test]
+fn what_is_known_of_a_coefficient_beforehand_holds_it_and_narrows_it() {
+    let plan = Plan {
+        row: Row::Nulls,
+        seed: 505,
+        design: Design::full(),
+        hidden: Vec::new(),
+        strength: 0.0,
+    };
+    let (_, set) = draw(&plan).expect("it can be drawn");
+    let model = baseline().expect("the shipped model loads");
+    let drag = |prior: Option<[f64; 2]>| {
+        let mut set = set.clone();
+        set.priors.extend(prior.map(|[mean, sigma]| ParameterPrior {
+            name: "drag".to_owned(),
+            mean,
+            sigma,
+            unit: String::new(),
+        }));
+        let observed = Observed::of(&set);
+        let forward = ResistiveForward::new(&model, &set, &observed.layouts()).expect("it fits");
+        let bench = Bench { set: &set, observed: &observed, forward: &forward };
+        let fit = bench.fit(&Point::start(&forward)).expect("spheres stop").fit;
+        (fit.point.parameters[0], fit.standard_error(0).expect("it is free"))
+    };
+    let (free, se) = drag(None);
+    // As well known as measured, five standard errors away: between the two, and known better than by either.
+    let (held, narrower) = drag(Some([free + 5.0 * se, se]));
+    let share = (held - free) / (5.0 * se);
+    assert!((0.35..0.65).contains(&share), "{share}");
+    assert!(narrower < 0.85 * se, "{narrower} {se}");
 }
 
 #[test]

@@ -64,6 +64,7 @@ fn alone(set: &MeasurementSet, condition: Condition) -> MeasurementSet {
         keep: Vec::new(),
         notes: Vec::new(),
         feasible: set.feasible.clone(),
+        priors: set.priors.clone(),
         ..*set
     }
 }

@@ -41,6 +41,19 @@ pub enum ForwardError {
         /// `2d` or `3d`.
         space: &'static str,
     },
+    /// A prior in the unit of another quantity.
+    #[error(
+        "the prior of `{name}` is in {found}; expected {}",
+        if expected.is_empty() { "a number without a unit" } else { expected }
+    )]
+    PriorUnit {
+        /// Name of the coefficient.
+        name: String,
+        /// SI unit of what the set says.
+        found: String,
+        /// SI unit of the coefficient; empty for a pure number.
+        expected: String,
+    },
     /// A size outside of what the shape can have.
     #[error("condition {condition}: `{key}` of a {shape} cannot be {value}")]
     BadSize {

@@ -10,7 +10,7 @@ mod scatter;
 use configs::{FreeParameter, Medium, Model};
 use std::sync::Arc;
 
-use measurements::MeasurementSet;
+use measurements::{MeasurementSet, ParameterPrior};
 use resistive::{Effect, RESISTANCE_LAWS};
 
 use crate::apparatus::{Apparatus, is_looked_for};
@@ -40,6 +40,7 @@ pub struct ResistiveForward {
     start: Vec<f64>,
     active: Vec<usize>,
     idle: Vec<String>,
+    unused_priors: Vec<String>,
     candidates: Vec<Candidate>,
     effects: Vec<Effect>,
     scattering: Vec<&'static str>,
@@ -89,10 +90,11 @@ impl ResistiveForward {
         let start: Vec<f64> = free.iter().map(|one| one.value).collect();
         let mut forward = Self {
             conditions,
-            parameters: free.iter().map(parameter).collect(),
+            parameters: free.iter().map(|one| parameter(one, set)).collect::<Result<_, _>>()?,
             active: (0..free.len()).collect(),
             start,
             idle: Vec::new(),
+            unused_priors: unused_priors(&free, set),
             candidates: candidates::of(&effects, set),
             effects,
             scattering,
@@ -135,6 +137,12 @@ impl ResistiveForward {
     /// Keys of the coefficients that scatter from run to run, in the order of [`Scatter::coefficients`].
     pub(crate) fn scattering(&self) -> &[&'static str] {
         &self.scattering
+    }
+
+    /// Names in `[parameters]` of the set that are no free parameter of the model.
+    #[must_use]
+    pub fn unused_priors(&self) -> &[String] {
+        &self.unused_priors
     }
 
     /// The effects that are candidates, in their order: those of the table, then those of the model.
@@ -201,14 +209,29 @@ fn forms() -> impl Iterator<Item = Parameter> {
     })
 }
 
-fn parameter(free: &FreeParameter) -> Parameter {
-    Parameter {
+fn unused_priors(free: &[FreeParameter], set: &MeasurementSet) -> Vec<String> {
+    let is_used = |prior: &ParameterPrior| free.iter().any(|one| prior.is_of(&one.path));
+    set.priors.iter().filter(|prior| !is_used(prior)).map(|prior| prior.name.clone()).collect()
+}
+
+/// `free` with what `set` knows of it.
+fn parameter(free: &FreeParameter, set: &MeasurementSet) -> Result<Parameter, ForwardError> {
+    let prior = set.priors.iter().find(|prior| prior.is_of(&free.path));
+    if let Some(prior) = prior.filter(|prior| !prior.unit.is_empty() && prior.unit != free.unit) {
+        return Err(ForwardError::PriorUnit {
+            name: prior.name.clone(),
+            found: prior.unit.clone(),
+            expected: free.unit.clone(),
+        });
+    }
+    let prior = prior.map(|prior| Prior { mean: prior.mean, sigma: prior.sigma });
+    Ok(Parameter {
         name: free.path.clone(),
         unit: free.unit.clone(),
         start: free.value,
         min: free.allowed.min,
         max: free.allowed.max,
-        prior: None,
+        prior,
         kind: ParameterKind::Model,
-    }
+    })
 }

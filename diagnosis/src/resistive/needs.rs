@@ -156,6 +156,7 @@ mod tests {
             stop: StopDefinition::ComponentZero,
             last: FinalDefinition::Deepest,
             feasible: Feasible::default(),
+            priors: Vec::new(),
             conditions,
             runs,
             keep: Vec::new(),

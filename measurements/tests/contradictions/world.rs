@@ -114,6 +114,7 @@ impl Laboratory {
             stop: self.stop,
             last: FinalDefinition::Resting,
             feasible: Feasible::default(),
+            priors: Vec::new(),
             conditions: conditions.map(|(at, setting)| self.condition(at, *setting)).collect(),
             runs,
             keep: Vec::new(),

@@ -148,6 +148,7 @@ pub fn measure(
         stop: StopDefinition::SpeedFivePercent,
         last: FinalDefinition::Resting,
         feasible: Feasible::default(),
+        priors: Vec::new(),
         conditions: conditions(design),
         runs,
         keep: Vec::new(),

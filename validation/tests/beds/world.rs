@@ -103,6 +103,7 @@ pub(crate) fn empty_set(conditions: Vec<Condition>) -> MeasurementSet {
         stop: StopDefinition::SpeedFivePercent,
         last: FinalDefinition::Deepest,
         feasible: Feasible::default(),
+        priors: Vec::new(),
         conditions,
         runs: Vec::new(),
         keep: Vec::new(),

@@ -93,6 +93,7 @@ fn set(conditions: Vec<Condition>) -> MeasurementSet {
         stop: StopDefinition::ComponentZero,
         last: FinalDefinition::Resting,
         feasible: Feasible::default(),
+        priors: Vec::new(),
         runs: runs.collect(),
         conditions,
         keep: Vec::new(),

@@ -93,6 +93,7 @@ fn empty_set() -> MeasurementSet {
         runs: (0..conditions.len() * REPEATS).map(run).collect(),
         conditions,
         feasible: Default::default(),
+        priors: Vec::new(),
         keep: Vec::new(),
         notes: Vec::new(),
     }

@@ -103,6 +103,7 @@ impl Laboratory {
             stop: StopDefinition::SpeedFivePercent,
             last: FinalDefinition::Resting,
             feasible: Feasible::default(),
+            priors: Vec::new(),
             conditions: conditions
                 .map(|(at, setting)| {
                     condition(at, setting, if at < fit { Role::Fit } else { Role::Holdout })

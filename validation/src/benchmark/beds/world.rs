@@ -95,6 +95,7 @@ pub fn campaign(model: &Model) -> MeasurementSet {
         stop: StopDefinition::SpeedFivePercent,
         last: FinalDefinition::Deepest,
         feasible: Feasible::default(),
+        priors: Vec::new(),
         conditions: fit.into_iter().chain(held_out).collect(),
         runs: Vec::new(),
         keep: Vec::new(),
