@@ -7,7 +7,7 @@ use crate::model::GrainModel;
 use crate::stability;
 
 /// Memory per grain (byte), where a run has most: as it takes over a bed that has settled. A sphere has more
-/// neighbours than a disc (`docs/lammps.md`).
+/// neighbours than a disc (`docs/campaigns.md`).
 fn bytes_per_grain(space: Space) -> u64 {
     match space {
         Space::Planar => 1150,

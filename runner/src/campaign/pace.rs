@@ -42,7 +42,7 @@ const OF_FURTHER_THREADS: f64 = 0.75;
 const SHARED: u64 = 4000;
 
 /// What a whole bed takes over a column of it, per grain: it is at rest some steps later, and does not fit
-/// into the nearest cache (1.1 to 1.6 in five beds, `docs/lammps.md`).
+/// into the nearest cache (1.1 to 1.6 in five beds, `docs/campaigns.md`).
 const WHOLE_OVER_COLUMN: f64 = 1.35;
 
 /// Time for writing the five messages of a step (s): 0.6 million a second.
