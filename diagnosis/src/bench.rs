@@ -10,6 +10,7 @@ use crate::fit::{Data, Fit};
 use crate::forward::{Forward, PredictError};
 use crate::noise::{Noise, NoiseSource};
 use crate::observed::Observed;
+use crate::restricted_likelihood::between;
 use crate::sensitivity::{Point, Sensitivity};
 use crate::weights::Weight;
 
@@ -149,7 +150,7 @@ impl Bench<'_> {
         let slopes: Vec<_> = sensitivities.iter().map(Sensitivity::by_coefficients).collect();
         for _ in 0..BETWEEN_ROUNDS {
             let held = noise.sessions.sd;
-            noise.sessions = Between::estimate(&fit, &weights, &slopes, (held, sigma));
+            noise.sessions = between(&fit, &weights, &slopes, (held, sigma));
             if (noise.sessions.sd - held).abs() <= SETTLED * held.max(SETTLED * sigma) {
                 break;
             }

@@ -4,24 +4,20 @@
 //! to the best of so many (`p1`). What the data cannot tell apart is named together. Whatever is named
 //! must leave no lack of fit and must predict conditions that were not fitted to.
 
-use serde_json::{Map, Value, json};
-
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::compare::parameters;
 use crate::force_error::ForceErrors;
-use crate::forward::{Candidate, Forward, ParameterKind};
 use crate::held_out::HeldOut;
 use crate::lack_of_fit::lack_of_fit;
 use crate::marginal::{Marginals, marginals};
 use crate::noise::{Noise, NoiseSource};
 use crate::pair::{Pair, best_pair};
-use crate::rounding::rounded;
+use crate::ranked::ranked;
 use crate::score::Ranking;
 use crate::sensitivity::Point;
 use crate::suggestion::suggestion;
 use crate::verdict::{
-    Amplitude, ApparatusError, Diagnosis, Evidence, RankedEffect, Status, Strength, StrengthReason,
-    Unexplained, Verdict,
+    Amplitude, ApparatusError, Diagnosis, Evidence, Strength, StrengthReason, Unexplained, Verdict,
 };
 
 /// Probability of error at which something counts as found, or a model as rejected.
@@ -518,86 +514,4 @@ fn correlation(fitted: &Fitted) -> Option<f64> {
 
 fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {
     Diagnosis::cannot_tell(ranked(bench, None), why)
-}
-
-/// Value and unit of every parameter of the model at `point`.
-fn values(forward: &dyn Forward, point: &Point) -> Map<String, Value> {
-    let each = forward.parameters().iter().zip(&point.parameters);
-    let of_the_model = each.filter(|(parameter, _)| parameter.kind == ParameterKind::Model);
-    of_the_model
-        .map(|(parameter, value)| {
-            let entry = json!({ "value": rounded(*value), "unit": parameter.unit });
-            (parameter.name.clone(), entry)
-        })
-        .collect()
-}
-
-/// The ranked effects, best first, then those that were not ranked.
-fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<RankedEffect> {
-    let candidates = bench.forward.candidates();
-    let scores = ranking.map_or(&[][..], |ranking| &ranking.scores);
-    let mut list: Vec<RankedEffect> = scores
-        .iter()
-        .map(|score| {
-            let candidate = &candidates[score.candidate()];
-            let (q, se) = (score.amplitude(), score.standard_error);
-            let at_bound = candidate.bound_at(q);
-            RankedEffect {
-                id: candidate.id.clone(),
-                q: Some(q),
-                se: se.filter(|_| at_bound.is_none()),
-                at_bound,
-                usual_range: candidate.usual,
-                unusual: candidate.is_unusual(q, se),
-                unit: candidate.unit.clone(),
-                delta: Some(score.delta),
-                predicted_top1: Some(score.ranked_first),
-                status: Status::Ranked,
-                testable: true,
-                detection_limit: Some(score.signature.detection_limit()),
-                parameters: values(bench.forward, &score.point),
-                note: candidate.separable_from.clone(),
-                point: Some(score.point.clone()),
-            }
-        })
-        .collect();
-    let not_ranked = (0..candidates.len())
-        .filter(|index| scores.iter().all(|score| score.candidate() != *index))
-        .map(|index| {
-            let (status, note) = why_not(&candidates[index], ranking, index);
-            RankedEffect {
-                id: candidates[index].id.clone(),
-                q: None,
-                se: None,
-                at_bound: None,
-                usual_range: candidates[index].usual,
-                unusual: false,
-                unit: candidates[index].unit.clone(),
-                delta: None,
-                predicted_top1: None,
-                status,
-                testable: status == Status::NotIntegrated,
-                detection_limit: None,
-                parameters: Map::new(),
-                note,
-                point: None,
-            }
-        });
-    list.extend(not_ranked);
-    list
-}
-
-/// Why `candidate`, which is number `index`, was not ranked.
-fn why_not(candidate: &Candidate, ranking: Option<&Ranking>, index: usize) -> (Status, String) {
-    if let Some(why) = &candidate.not_testable {
-        return (Status::NotTestable, why.clone());
-    }
-    let Some(ranking) = ranking else { return (Status::NotTested, "not tested".to_owned()) };
-    match ranking.failed.iter().find(|(candidate, _)| *candidate == index) {
-        Some((_, error)) => (Status::NotIntegrated, error.to_string()),
-        None => {
-            let why = "in these data the parameters of the model do the same".to_owned();
-            (Status::Imitated, why)
-        }
-    }
 }

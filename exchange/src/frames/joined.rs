@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::Grain;
+use super::grain::Grain;
 
 /// Grains touch where their distance is less than this part of the sum of their radii: places in a log are single
 /// numbers, and a grain that bounces on the bed is of it.

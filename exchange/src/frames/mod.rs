@@ -3,6 +3,7 @@
 mod beads;
 mod bodies;
 pub(crate) mod cloud;
+mod grain;
 mod joined;
 mod surfaces;
 
@@ -24,6 +25,7 @@ use joined::joined_to_the_lowest;
 pub use engine::crater::CraterPoint;
 
 pub use bodies::{Body, MovingBead};
+pub use grain::Grain;
 pub use surfaces::Surface;
 
 /// All grains and bodies at one time.
@@ -37,23 +39,6 @@ pub struct Frame {
     pub grains: Vec<Grain>,
     /// In the order of their names.
     pub bodies: Vec<Body>,
-}
-
-/// A grain as the log has it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Grain {
-    /// Its number, the same in all frames.
-    pub id: u32,
-    /// Centre; z points up from the undisturbed surface (m).
-    pub position: [f32; 3],
-    /// Radius (m).
-    pub radius: f32,
-    /// Velocity (m/s).
-    pub velocity: [f32; 3],
-    /// Magnitude of the velocity (m/s).
-    pub speed: f32,
-    /// Magnitude of the sum of contact forces (N).
-    pub force: f32,
 }
 
 impl Frame {

@@ -8,7 +8,7 @@ use exchange::read::ReadError;
 use exchange::run_files::RunFiles;
 use thiserror::Error;
 
-use super::{Extent, Force, Forces, Quantity, Scene, View};
+use super::{Forces, Quantity};
 
 /// Why an impact cannot be seen.
 #[derive(Debug, Error)]
@@ -43,7 +43,7 @@ pub enum SceneError {
 /// What the logs of a run tell of its impact.
 #[derive(Clone, Debug)]
 pub struct Impact {
-    log: PathBuf,
+    pub(super) log: PathBuf,
     /// Times of the frames (s).
     pub times: Vec<f64>,
     /// Number of grains.
@@ -67,7 +67,7 @@ pub struct Impact {
     /// The surface in the first and in the last frame.
     pub surfaces: [Vec<CraterPoint>; 2],
     /// Names of bodies, and their centres of mass in each frame (m).
-    paths: Vec<(String, Vec<[f64; 3]>)>,
+    pub(super) paths: Vec<(String, Vec<[f64; 3]>)>,
     /// Where grains were in the first frame (m), by number.
     first: Vec<(u32, [f32; 3])>,
 }
@@ -140,54 +140,6 @@ impl Impact {
         match n {
             0 | 1 => vec![last],
             _ => (0..n).map(|at| (2 * at * last + n - 1) / (2 * (n - 1))).collect(),
-        }
-    }
-
-    /// Hands the scene of each of these `frames`, which rise, to `visit`, until it breaks off.
-    ///
-    /// # Errors
-    /// If the log cannot be read.
-    pub fn scenes(
-        &self,
-        view: &View,
-        window: &Extent,
-        frames: &[usize],
-        mut visit: impl FnMut(Scene) -> ControlFlow<()>,
-    ) -> Result<(), SceneError> {
-        let mut wanted = frames.iter().copied().peekable();
-        each_frame(&self.log, |frame| {
-            if wanted.next_if_eq(&frame.number).is_some() {
-                visit(self.scene(view, window, frame))?;
-            }
-            match wanted.peek() {
-                Some(_) => ControlFlow::Continue(()),
-                None => ControlFlow::Break(()),
-            }
-        })?;
-        Ok(())
-    }
-
-    /// What is seen of `frame`.
-    fn scene(&self, view: &View, window: &Extent, frame: &Frame) -> Scene {
-        let flat = |place: [f64; 3]| {
-            let [u, v, _] = view.place(place);
-            [u, v]
-        };
-        let until = |path: &[[f64; 3]]| {
-            path.iter().take(frame.number + 1).map(|place| flat(*place)).collect()
-        };
-        let forces = frame.bodies.iter().filter_map(|body| {
-            let newton = self.forces.on(&body.name, frame.time)?;
-            Some(Force { at: flat(body.centre), newton: flat(newton) })
-        });
-        Scene {
-            frame: frame.number,
-            time: frame.time,
-            window: *window,
-            discs: view.discs(frame, window, self),
-            bodies: frame.bodies.iter().map(|body| view.outline(body)).collect(),
-            paths: self.paths.iter().map(|(_, path)| until(path)).collect(),
-            forces: forces.collect(),
         }
     }
 }

@@ -7,6 +7,7 @@ mod colour;
 mod forces;
 mod impact;
 mod layout;
+mod scenes;
 mod shapes;
 mod view;
 
