@@ -309,7 +309,7 @@ proptest! {
 fn an_intruder_that_would_jump_over_grains_within_a_step_is_refused_with_a_step_that_would_do() {
     let message = refusal(&["impact.speed=1e4 m/s", "run.time_step=10 us"]);
     assert!(message.contains("the intruder moves 0.1 m in a step"), "{message}");
-    assert!(message.contains("write a time step of \"0.0228 us\" or less"), "{message}");
+    assert!(message.contains("write a time step of \"22.8 ns\" or less"), "{message}");
     let listed = refusal(&[r#"conditions.speed=["1 m/s", "1e4 m/s"]"#, "run.time_step=10 us"]);
     assert!(listed.contains("10000 m/s"), "{listed}");
     // A thousandth of that is a tenth of a millimetre in a step.

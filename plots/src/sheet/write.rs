@@ -52,10 +52,13 @@ impl Layer {
     }
 }
 
+/// Radius in steps, and colour.
+type Group = (u32, Rgb);
+
 /// Discs as ends of lines without length, one path for those of the same colour and radius. Where discs overlap,
 /// only neighbours in the list share a path, so that their order stays.
 fn write_discs(discs: &[Mark], into: &mut String) {
-    let mut groups: Vec<((u32, Rgb), Vec<[i64; 2]>)> = Vec::new();
+    let mut groups: Vec<(Group, Vec<[i64; 2]>)> = Vec::new();
     let overlap = overlapping(discs);
     let mut sorted: Vec<_> = discs.iter().filter_map(group_of).collect();
     if !overlap {
@@ -106,7 +109,7 @@ fn overlapping(discs: &[Mark]) -> bool {
 }
 
 /// Colour, radius and place of a disc, in the steps of a file.
-fn group_of(mark: &Mark) -> Option<((u32, Rgb), [i64; 2])> {
+fn group_of(mark: &Mark) -> Option<(Group, [i64; 2])> {
     let Mark::Disc { centre, radius, colour } = mark else { return None };
     let steps = (radius / RADIUS_STEP).round().max(1.0) as u32;
     Some(((steps, *colour), centre.map(|value| (PARTS * value).round() as i64)))
