@@ -18,6 +18,9 @@ use crate::weights::Weight;
 /// model, and the first guess of a model is wrong by construction.
 const ROUNDS: usize = 3;
 
+/// Fewest conditions from which their scatter is learned: that of fewer is hardly known, and hides any effect.
+const CONDITIONS: usize = 6;
+
 /// How often the scatter between conditions and the fit are taken in turn in each of these rounds,
 const BETWEEN_ROUNDS: usize = 2;
 
@@ -161,11 +164,13 @@ impl Bench<'_> {
     }
 
     /// How much coefficients scatter between conditions beforehand, relative; `None` where nothing is to be learned of
-    /// it: without repeats, where the set says which run is of which session, and where it says that all are one.
+    /// it: without repeats, from few conditions, where the set says which run is of which session, and where all are one.
     fn between_sigma(&self, noise: &Noise) -> Option<f64> {
         let is_said = self.set.runs.iter().any(|run| run.session.is_some());
         let sigma = self.set.instrument.session_sigma_rel.unwrap_or(defaults::SESSION);
-        (noise.source == NoiseSource::Repeats && !is_said && sigma > 0.0).then_some(sigma)
+        let is_known =
+            noise.source == NoiseSource::Repeats && self.observed.fit.len() >= CONDITIONS;
+        (is_known && !is_said && sigma > 0.0).then_some(sigma)
     }
 
     /// The measurements under `weights`.
