@@ -89,6 +89,8 @@ impl Laboratory {
                 position_sigma: Some(1e-4),
                 speed_sigma_rel: Some(0.01),
                 level_sigma: Some(2e-4),
+                // One bed for all conditions.
+                session_sigma_rel: Some(0.0),
                 ..Instrument::default()
             },
             bed: Bed {

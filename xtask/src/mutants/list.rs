@@ -242,8 +242,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
         what: "closure is said to be 0.3 of what it is",
         file: "engine/src/simulation.rs",
         edits: &[(
-            "self.world.books.ledger.closure(self.energy_scale)",
-            "0.3 * self.world.books.ledger.closure(self.energy_scale)",
+            "self.world.books.ledger.closure(self.energy_scale())",
+            "0.3 * self.world.books.ledger.closure(self.energy_scale())",
         )],
         suites: &[test("intruders", "at_walls", "closure")],
     },
