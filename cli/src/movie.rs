@@ -186,7 +186,7 @@ fn quantity(text: &str, of: &str, dimension: Dimension) -> Result<f64, CommandEr
 
 fn size(text: &str) -> Result<(u32, u32), CommandError> {
     let sides = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    let fits = |side: u32| (64..=8192).contains(&side) && side % 2 == 0;
+    let fits = |side: u32| (64..=8192).contains(&side) && side.is_multiple_of(2);
     sides.filter(|(w, h)| fits(*w) && fits(*h)).ok_or_else(|| {
         CommandError::bad_input(format!(
             "--size {text}: expected two even numbers from 64 to 8192, such as 1280x720"
