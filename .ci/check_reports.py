@@ -12,15 +12,22 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
-# A figure without curves still has a frame, ticks and labels: fewer shapes than these are none.
+# A figure without curves still has a frame, ticks and labels: fewer shapes than these are none. A path that moves
+# without drawing is several, such as the grains of a bed.
 FEWEST_SHAPES = 12
+
+# A figure of nothing but rectangles has bars on its background: a single one compares nothing.
+FEWEST_BARS = 2
 
 FIGURES = """() => [...document.querySelectorAll("figure svg")].map((svg) => {
   const box = svg.getBoundingClientRect();
   const shapes = [...svg.querySelectorAll("path, polyline, polygon, line, rect, circle")]
     .filter((shape) => !shape.closest(".hover"));
   const broken = shapes.filter((shape) => [...shape.attributes].some((a) => /NaN|inf/i.test(a.value)));
-  return { width: box.width, height: box.height, shapes: shapes.length, broken: broken.length };
+  const moves = (shape) => (shape.getAttribute("d") || "m").match(/m/gi).length;
+  const drawn = shapes.reduce((sum, shape) => sum + moves(shape), 0);
+  const bars = shapes.every((shape) => shape.tagName === "rect") ? shapes.length - 1 : 0;
+  return { width: box.width, height: box.height, shapes: drawn, bars, broken: broken.length };
 })"""
 
 
@@ -42,7 +49,8 @@ def check(browser, report, screenshots):
     require(figures, "no figure")
     for number, figure in enumerate(figures, 1):
         require(figure["width"] > 200 and figure["height"] > 100, f"figure {number} has no size: {figure}")
-        require(figure["shapes"] >= FEWEST_SHAPES, f"figure {number} is empty: {figure}")
+        is_drawn = figure["shapes"] >= FEWEST_SHAPES or figure["bars"] >= FEWEST_BARS
+        require(is_drawn, f"figure {number} is empty: {figure}")
         require(figure["broken"] == 0, f"figure {number} has numbers that are none: {figure}")
     width = page.evaluate("document.documentElement.scrollWidth")
     require(width <= 1100, f"the page is {width} pixels wide and the window 1100")
