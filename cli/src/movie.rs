@@ -175,7 +175,7 @@ fn kind(args: &Args) -> Result<Kind, CommandError> {
 
 fn no_ffmpeg() -> CommandError {
     CommandError::bad_input(
-        "an .mp4 is made by the program ffmpeg, and there is none on the PATH; install it, or write a .gif or a \
+        "an .mp4 needs the program ffmpeg, which is not on the PATH; install it, or write a .gif or a \
          .png (animated), which need nothing",
     )
 }

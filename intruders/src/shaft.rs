@@ -7,7 +7,7 @@ use resistive::Silhouette;
 
 use crate::specs::section;
 
-/// The diameter (m) of the shaft; 0 where there is none.
+/// The diameter (m) of the shaft; 0 for a body without a shaft.
 pub(crate) const SHAFT: ParamSpec = ParamSpec::required(
     "shaft_diameter",
     Dimension::LENGTH,

@@ -67,7 +67,7 @@ impl BedDiagnosis {
     /// apparatus does is no part of a bed.
     ///
     /// # Errors
-    /// If a changed model is none.
+    /// If a change does not give a valid model.
     pub fn proposals(
         &self,
         stand: &Stand<'_>,

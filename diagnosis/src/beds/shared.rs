@@ -98,7 +98,7 @@ impl Shared {
         Ok(Self { parameters, columns, variances, unknown })
     }
 
-    /// With one more parameter, which moves the observables of each condition by a column; by nothing where there is none.
+    /// Adds a parameter that moves the observables of each condition by a column; a condition without a column stays.
     pub(super) fn add(&mut self, parameter: Parameter, columns: Vec<Option<Column>>) {
         let expected =
             parameter.prior.map_or(0.0, |prior| prior.mean.powi(2) + prior.sigma.powi(2));

@@ -79,7 +79,7 @@ impl Player {
             "colours": colours.collect::<Vec<_>>(),
             "views": views,
         });
-        // In a page, an end of a script could stand in a text alone, and there is none.
+        // Only a text could hold the end of a script, and these data hold no text.
         Ok(Self { data: data.to_string().replace("</", "<\\/"), grains, frames: frames.len() })
     }
 }

@@ -45,7 +45,7 @@ pub struct Scene {
 pub struct Disc {
     /// The number of the grain.
     pub id: u32,
-    /// Centre, and how near it is to whoever looks (m).
+    /// Centre, and how near it is to the viewer (m).
     pub place: [f64; 3],
     /// Radius (m).
     pub radius: f64,
