@@ -322,11 +322,12 @@ fn turn(from: Quat, inertia: Vec3, angular_momentum: Vec3, dt: f64) -> (Quat, Qu
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::surface::SurfacePoint;
 
-    struct Nothing;
+    /// A surface that touches nothing.
+    pub(crate) struct Nothing;
     impl Surface for Nothing {
         fn closest(&self, _: Vec3) -> SurfacePoint {
             SurfacePoint { normal: Vec3::z(), gap: 1.0, curvature: 0.0, felt: true }

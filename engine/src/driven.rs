@@ -76,24 +76,11 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
+    use crate::body::tests::Nothing;
     use crate::math::Quat;
-    use crate::surface::{Surface, SurfacePoint};
-
-    struct Point;
-    impl Surface for Point {
-        fn closest(&self, _: Vec3) -> SurfacePoint {
-            SurfacePoint { normal: Vec3::z(), gap: 1.0, curvature: 0.0, felt: true }
-        }
-        fn support(&self, _: Vec3) -> f64 {
-            0.0
-        }
-        fn bounding_radius(&self) -> f64 {
-            0.0
-        }
-    }
 
     fn driven() -> Driven {
-        let mut body = RigidBody::new("plate", Arc::new(Point), 2.0, Vec3::new(1.0, 1.0, 1.0));
+        let mut body = RigidBody::new("plate", Arc::new(Nothing), 2.0, Vec3::new(1.0, 1.0, 1.0));
         body.launch(Vec3::zeros(), Quat::identity(), Vec3::new(0.0, 0.0, -0.5), Vec3::y());
         Driven::new(body)
     }
