@@ -169,22 +169,23 @@ impl Setting<'_> {
                 None
             }
         };
+        let run = |simulation, log, push| Run {
+            simulation,
+            observables,
+            push,
+            log,
+            folder,
+            key,
+            steps_per_frame,
+            checkpoint_every,
+        };
         if let Some(Saved { simulation: snapshot, log, push }) = saved {
             match RunLog::resume(folder.path(), &setup, &log) {
                 Ok(log) => {
                     if !simulation.restore(snapshot) {
                         return Err(RunError::Misfit { path });
                     }
-                    return Ok(Run {
-                        simulation,
-                        observables,
-                        push,
-                        log,
-                        folder,
-                        key,
-                        steps_per_frame,
-                        checkpoint_every,
-                    });
+                    return Ok(run(simulation, log, push));
                 }
                 // What the log lacks can only be made again; a full disk is no reason to drop it.
                 Err(
@@ -202,16 +203,7 @@ impl Setting<'_> {
         }
         let log = RunLog::create(folder.path(), &setup)?;
         let push = Push::of(self.grains.model, condition);
-        let mut run = Run {
-            simulation,
-            observables,
-            push,
-            log,
-            folder,
-            key,
-            steps_per_frame,
-            checkpoint_every,
-        };
+        let mut run = run(simulation, log, push);
         run.log.event(run.stamp(), EventLevel::Info, &opening(self.grains.model, condition))?;
         run.record()?;
         Ok(run)
