@@ -6,8 +6,8 @@ use std::path::Path;
 use anyhow::Context as _;
 use configs::{Color, Sources, document, limits, paths};
 use measurements::{
-    ContradictionKind, Held, Loaded, MeasurementSet, Outcome, Reading, Role, Run, RunContact,
-    Severity, Zero,
+    ContradictionKind, Curve, Held, Loaded, MeasurementSet, Outcome, Reading, Role, Run,
+    RunContact, Severity, Zero,
 };
 use serde_json::{Value, json};
 
@@ -103,10 +103,16 @@ const SPARKLINE: usize = 32;
 
 fn as_text(loaded: &Loaded, out: Option<&Path>) -> String {
     let mut text = loaded.describe();
-    let moving = loaded.set.runs.iter().filter(|run| !run.frames.is_empty());
-    let lines: Vec<String> = moving.map(path).collect();
+    let moving = loaded.set.runs.iter().filter(|run| run.has_readings());
+    let curve = loaded.set.kind.curve();
+    let line = |run: &Run| curve.map_or_else(|| path(run), |curve| course(run, curve));
+    let lines: Vec<String> = moving.map(line).collect();
     if !lines.is_empty() {
-        text.push_str(&format!("\ndepth over time, from first contact\n{}", lines.concat()));
+        let what = match curve {
+            Some(curve) => format!("{} over {}", curve.value.name, curve.along.name),
+            None => "depth over time, from first contact".to_owned(),
+        };
+        text.push_str(&format!("\n{what}\n{}", lines.concat()));
     }
     let agreement = loaded.agreement.describe(&loaded.set);
     if !agreement.is_empty() {
@@ -127,6 +133,23 @@ fn path(run: &Run) -> String {
     let curve = reports::sparkline(&points, SPARKLINE);
     let (name, deepest, last) = (&run.name, 1e3 * deepest, 1e3 * last);
     format!("  {name:<12} {curve}  {deepest:.2} mm in {last:.1} ms\n")
+}
+
+/// A run of a curve as one line likewise: its greatest reading, and how far it goes.
+fn course(run: &Run, curve: &Curve) -> String {
+    let points: Vec<(f64, f64)> =
+        run.samples.iter().map(|one| (one.at, one.value.max(0.0))).collect();
+    let most = points.iter().fold(0.0_f64, |most, point| most.max(point.1));
+    let last = points.iter().fold(0.0_f64, |last, point| last.max(point.0));
+    let line = reports::sparkline(&points, SPARKLINE);
+    let (name, along, value) = (&run.name, curve.along, curve.value);
+    format!(
+        "  {name:<12} {line}  {:.2} {} in {:.1} {}\n",
+        value.scale * most,
+        value.unit,
+        along.scale * last,
+        along.unit
+    )
 }
 
 fn as_json(loaded: &Loaded) -> Value {

@@ -9,10 +9,14 @@ pub(crate) fn noise_words(noise: &Value) -> String {
     let percent = |key: &str| 100.0 * noise[key].as_f64().unwrap_or(0.0);
     match noise["source"].as_str() {
         Some("repeats") => format!(
-            "from repeats: coefficients {:.1} %, force along the path {:.1} %, readings {:.2} mm",
+            "from repeats: coefficients {:.1} %, force along the path {:.1} %, readings {}",
             percent("coefficient_sd"),
             percent("path_force_sd"),
-            1e3 * noise["position_sigma_m"].as_f64().unwrap_or(0.0)
+            match noise["force_sigma_N"].as_f64() {
+                Some(force) => format!("{force:.3} N"),
+                None =>
+                    format!("{:.2} mm", 1e3 * noise["position_sigma_m"].as_f64().unwrap_or(0.0)),
+            }
         ),
         Some("stated") => "as stated by the set".to_owned(),
         _ => "not known".to_owned(),

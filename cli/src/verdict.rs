@@ -144,6 +144,7 @@ fn held_out(diagnosis: &Diagnosis) -> String {
     let shown = |error: f64| match held_out.unit {
         Unit::Position => format!("{:.3} mm", 1e3 * error),
         Unit::Relative => format!("{:.1} %", 1e2 * error),
+        Unit::Force => format!("{error:.3} N"),
     };
     let which = match held_out.conditions {
         LeftOut::Holdout => "held-out conditions",

@@ -85,7 +85,10 @@ impl Apparatus {
             let tilt = or(instrument.tilt_sigma_deg, defaults::TILT_DEG).to_radians();
             all.add(Fault::Tilt, "tilt", "rad", tilt);
         }
-        all.add_bodies(set, or(instrument.mass_sigma_rel, defaults::MASS));
+        // A drive moves any mass alike.
+        if set.kind != Kind::ForceDepth {
+            all.add_bodies(set, or(instrument.mass_sigma_rel, defaults::MASS));
+        }
         all.add_sessions(set, coefficients, or(instrument.session_sigma_rel, defaults::SESSION));
         all
     }
@@ -237,7 +240,7 @@ fn clock_sigma(set: &MeasurementSet) -> Option<f64> {
     };
     let frame = match set.kind {
         Kind::Trajectory => frame.or_else(interval),
-        Kind::Scalar => frame,
+        Kind::Scalar | Kind::ForceDepth => frame,
     };
     frame.map(|frame| defaults::FRAMES * frame)
 }
@@ -263,13 +266,7 @@ mod tests {
         let runs = [0, 0, 1, 1].map(|at| scalar_run(at, [Some(0.1), Some(0.05), Some(0.01)]));
         let mut set = set(Kind::Scalar, conditions, runs.into());
         change(&mut set);
-        let layout = Layout {
-            times: Vec::new(),
-            along_x: false,
-            stop_time: true,
-            final_z: true,
-            final_x: true,
-        };
+        let layout = Layout { stop_time: true, final_z: true, final_x: true, ..Layout::default() };
         let apparatus = Apparatus::of(&set, &["drag", "friction"], &[layout.clone(), layout]);
         (set, apparatus)
     }

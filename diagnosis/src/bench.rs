@@ -1,6 +1,6 @@
 //! A model on the bench: fitted to measurements, under the noise that its own trajectories give.
 
-use measurements::{Kind, MeasurementSet};
+use measurements::MeasurementSet;
 use nalgebra::DMatrix;
 use thiserror::Error;
 
@@ -257,7 +257,7 @@ impl Bench<'_> {
             Ok(Noise::guess(&self.set.instrument))
         } else if self.observed.has_stated_errors() {
             Ok(Noise::stated())
-        } else if self.set.kind == Kind::Trajectory && self.set.states_errors() {
+        } else if self.set.kind.has_readings() && self.set.states_errors() {
             Ok(Noise::assumed_scatter(&self.set.instrument))
         } else {
             Err(BenchError::NoErrors)

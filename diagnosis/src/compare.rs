@@ -143,7 +143,7 @@ pub fn compare(
         models.push(model.map_err(of(revision))?);
     }
     let best = models.iter().min_by(|a, b| a.chi2_per_n.total_cmp(&b.chi2_per_n));
-    let noise = best.map_or(Value::Null, |best| best.fitted.noise.to_json(&set.instrument));
+    let noise = best.map_or(Value::Null, |best| best.fitted.noise.to_json(set));
     let unpredicted = not_predicted.iter().map(|one| {
         let Unpredicted { model, condition, why } = one;
         let name = revisions[*model].name;

@@ -350,7 +350,7 @@ impl Judge<'_> {
             p1: (!ranking.scores.is_empty()).then_some(ranking.p),
             p_lof,
             p_lof_with,
-            noise: proposed.noise.to_json(&bench.set.instrument),
+            noise: proposed.noise.to_json(bench.set),
             holdout: Some(held_out),
             unexplained,
             apparatus: ApparatusError::all(bench.forward, proposed),
@@ -472,7 +472,7 @@ pub(crate) fn withdraw(
         parameters: parameters(bench.forward, &baseline.fit),
         apparatus: ApparatusError::all(bench.forward, baseline),
         preparation: ApparatusError::of_preparation(bench.forward, &baseline.fit),
-        noise: baseline.noise.to_json(&bench.set.instrument),
+        noise: baseline.noise.to_json(bench.set),
         proposed: Some(baseline.clone()),
         ..diagnosis
     })

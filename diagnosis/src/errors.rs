@@ -42,6 +42,12 @@ impl Errors {
         Ok((!conditions.is_empty()).then(|| sums.errors()))
     }
 
+    /// Of one kind, in its own unit.
+    #[must_use]
+    pub fn of(&self, kind: Observable) -> Option<f64> {
+        self.by_kind.iter().find(|(other, _)| *other == kind).map(|(_, error)| *error)
+    }
+
     /// As JSON, under the keys of the kinds.
     #[must_use]
     pub fn to_json(&self) -> Value {
@@ -86,7 +92,7 @@ impl Sums {
         let kinds = Observable::ALL.iter().zip(self.by_kind);
         let position = kinds
             .clone()
-            .filter(|(kind, _)| **kind != Observable::StopTime)
+            .filter(|(kind, _)| kind.is_position())
             .fold((0.0, 0), |sum, (_, part)| (sum.0 + part.0, sum.1 + part.1));
         Errors {
             by_kind: kinds.filter_map(|(kind, sum)| Some((*kind, rms(sum)?))).collect(),

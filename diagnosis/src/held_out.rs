@@ -10,6 +10,7 @@ use crate::bench::{Bench, BenchError, DEFAULT_SEED, Fitted};
 use crate::errors::{Errors, Sums};
 use crate::fit::Data;
 use crate::noise::log_determinant;
+use crate::observable::Observable;
 use crate::observed::{Observed, ObservedCondition};
 use crate::random::{Purpose, stream};
 use crate::rounding::{six_digits, six_digits_or_null};
@@ -80,6 +81,31 @@ pub enum Unit {
     /// Scalars, relative (1 = 100 %).
     #[serde(rename = "1")]
     Relative,
+    /// Forces (N).
+    #[serde(rename = "N")]
+    Force,
+}
+
+impl Unit {
+    /// Of errors on a set of this kind.
+    #[must_use]
+    pub fn of(kind: Kind) -> Self {
+        match kind {
+            Kind::Trajectory => Self::Position,
+            Kind::Scalar => Self::Relative,
+            Kind::ForceDepth => Self::Force,
+        }
+    }
+
+    /// The one of `errors` that is in this unit, where there is one.
+    #[must_use]
+    pub fn pick(self, errors: &Errors) -> Option<f64> {
+        match self {
+            Self::Position => errors.position,
+            Self::Relative => errors.relative,
+            Self::Force => errors.of(Observable::Force),
+        }
+    }
 }
 
 /// Which conditions were left out of a fit.
@@ -115,14 +141,8 @@ impl HeldOut {
     /// # Errors
     /// If the model fails.
     pub fn of(bench: &Bench<'_>, before: &Fitted, after: &Fitted) -> Result<Self, BenchError> {
-        let unit = match bench.set.kind {
-            Kind::Trajectory => Unit::Position,
-            Kind::Scalar => Unit::Relative,
-        };
-        let pick = |errors: &Errors| match unit {
-            Unit::Position => errors.position,
-            Unit::Relative => errors.relative,
-        };
+        let unit = Unit::of(bench.set.kind);
+        let pick = |errors: &Errors| unit.pick(errors);
         let (conditions, judged) = match bench.observed.holdout.is_empty() {
             true => (LeftOut::OneAtATime, &bench.observed.fit),
             false => (LeftOut::Holdout, &bench.observed.holdout),
@@ -266,12 +286,7 @@ fn ratio_at_most(observed: &Observed, all: &[&Pair], unit: Unit) -> Option<f64> 
         let mut sums = Sums::default();
         let condition = &observed.conditions[condition];
         sums.add(&condition.layout.kinds(), &condition.mean, &one.error);
-        let errors = sums.errors();
-        let error = match unit {
-            Unit::Position => errors.position,
-            Unit::Relative => errors.relative,
-        };
-        Some(error?.powi(2))
+        Some(unit.pick(&sums.errors())?.powi(2))
     };
     let pairs: Vec<[f64; 2]> = all
         .iter()

@@ -24,6 +24,7 @@ pub mod calibrate;
 mod chord;
 pub mod compare;
 pub mod covariate;
+mod curves;
 pub mod diagnose;
 mod directions;
 mod discovery;

@@ -6,12 +6,13 @@
 
 use argmin::core::{CostFunction, Executor, State};
 use argmin::solver::neldermead::NelderMead;
-use measurements::Instrument;
+use measurements::{Instrument, MeasurementSet};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::between::Between;
+use crate::curves::reading_error;
 use crate::observed::{Observed, ObservedCondition, least_position_error, position_error};
 use crate::rounding::rounded;
 use crate::sensitivity::{Sensitivity, Spread};
@@ -165,13 +166,16 @@ impl Noise {
         all
     }
 
-    /// As JSON for a report.
+    /// As JSON for a report on `set`.
     #[must_use]
-    pub fn to_json(&self, instrument: &Instrument) -> Value {
-        let position = position_error(instrument);
+    pub fn to_json(&self, set: &MeasurementSet) -> Value {
+        let (key, reading) = match set.kind.curve() {
+            Some(curve) => (curve.sigma_key, reading_error(set, curve)),
+            None => ("position_sigma_m", position_error(&set.instrument)),
+        };
         json!({
             "source": self.source,
-            "position_sigma_m": rounded(self.reading * position),
+            (key): rounded(self.reading * reading),
             "coefficient_sd": rounded(self.spread.coefficient),
             "path_force_sd": rounded(self.spread.path),
             "speed_sd": rounded(self.spread.speed),

@@ -1,19 +1,32 @@
 //! Which numbers of an impact are compared: a vector per condition, the same for runs and models.
 
+use measurements::{Axis, Kind};
+
 /// What the numbers of one condition are, in the order of its vectors: depth at each time, then
-/// range at each time, then the scalars.
+/// range at each time, then the readings of a curve, then the scalars.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
     /// Times of the frames since first contact (s); negative before it.
     pub times: Vec<f64>,
     /// Whether the range at those times follows their depth.
     pub along_x: bool,
+    /// Readings that are no positions; none of a set of trajectories or scalars.
+    pub curve: Option<Curve>,
     /// Whether the stopping time is among the scalars.
     pub stop_time: bool,
     /// Whether the final depth is.
     pub final_z: bool,
     /// Whether the final range is.
     pub final_x: bool,
+}
+
+/// Readings of one kind, and where they are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// What is read.
+    pub observable: Observable,
+    /// Where: of a force, the depth below the undisturbed surface as it is read (m).
+    pub at: Vec<f64>,
 }
 
 /// A kind of number in a vector of observables.
@@ -23,6 +36,8 @@ pub enum Observable {
     Depth,
     /// Horizontal distance from first contact at a time (m).
     Range,
+    /// Force of the bed against the motion at a depth (N).
+    Force,
     /// Stopping time (s).
     StopTime,
     /// Final depth (m).
@@ -40,6 +55,9 @@ impl Layout {
         if self.along_x {
             kinds.resize(2 * frames, Observable::Range);
         }
+        if let Some(curve) = &self.curve {
+            kinds.resize(kinds.len() + curve.at.len(), curve.observable);
+        }
         let scalars = [
             (self.stop_time, Observable::StopTime),
             (self.final_z, Observable::FinalDepth),
@@ -49,12 +67,22 @@ impl Layout {
         kinds
     }
 
+    /// The kind of every entry, with the time (s) or depth (m) of its reading.
+    pub(crate) fn places(&self) -> Vec<(Observable, Option<f64>)> {
+        let tracks = if self.along_x { 2 } else { 1 };
+        let times = (0..tracks).flat_map(|_| &self.times);
+        let curve = self.curve.iter().flat_map(|curve| &curve.at);
+        let places = times.chain(curve).copied().map(Some).chain(std::iter::repeat(None));
+        self.kinds().into_iter().zip(places).collect()
+    }
+
     /// How many numbers a vector has.
     #[must_use]
     pub fn len(&self) -> usize {
         let frames = self.times.len() * (1 + usize::from(self.along_x));
         let scalars = [self.stop_time, self.final_z, self.final_x];
-        frames + scalars.iter().filter(|&&there| there).count()
+        let curve = self.curve.as_ref().map_or(0, |curve| curve.at.len());
+        frames + curve + scalars.iter().filter(|&&there| there).count()
     }
 
     /// Whether nothing is compared.
@@ -66,8 +94,8 @@ impl Layout {
 
 impl Observable {
     /// Every kind, in the order of a vector.
-    pub const ALL: [Self; 5] =
-        [Self::Depth, Self::Range, Self::StopTime, Self::FinalDepth, Self::FinalRange];
+    pub const ALL: [Self; 6] =
+        [Self::Depth, Self::Range, Self::Force, Self::StopTime, Self::FinalDepth, Self::FinalRange];
 
     /// Its key in JSON, with the unit.
     #[must_use]
@@ -75,6 +103,7 @@ impl Observable {
         match self {
             Self::Depth => "z_m",
             Self::Range => "x_m",
+            Self::Force => "force_N",
             Self::StopTime => "stop_time_s",
             Self::FinalDepth => "final_z_m",
             Self::FinalRange => "final_x_m",
@@ -84,7 +113,39 @@ impl Observable {
     /// Whether it is a number of the whole impact rather than of a time.
     #[must_use]
     pub fn is_scalar(self) -> bool {
-        !matches!(self, Self::Depth | Self::Range)
+        !matches!(self, Self::Depth | Self::Range | Self::Force)
+    }
+
+    /// Whether it is a place, whose errors are lengths.
+    #[must_use]
+    pub fn is_position(self) -> bool {
+        matches!(self, Self::Depth | Self::Range | Self::FinalDepth | Self::FinalRange)
+    }
+
+    /// What its readings lie along, itself, and its change along the way, as they are drawn.
+    #[must_use]
+    pub fn axes(self) -> [Axis; 3] {
+        let axis = |name, unit, scale| Axis { name, unit, scale };
+        match self {
+            Self::Force => {
+                [axis("depth", "mm", 1e3), axis("force", "N", 1.0), axis("stiffness", "N/mm", 1e-3)]
+            }
+            Self::StopTime => {
+                [axis("time", "ms", 1e3), axis("time", "ms", 1e3), axis("change", "1", 1.0)]
+            }
+            Self::Depth | Self::Range | Self::FinalDepth | Self::FinalRange => {
+                [axis("time", "ms", 1e3), axis("position", "mm", 1e3), axis("velocity", "m/s", 1.0)]
+            }
+        }
+    }
+
+    /// What of a curve of this kind of set is read; `None` for trajectories and scalars.
+    #[must_use]
+    pub fn of_curve(kind: Kind) -> Option<Self> {
+        match kind {
+            Kind::Trajectory | Kind::Scalar => None,
+            Kind::ForceDepth => Some(Self::Force),
+        }
     }
 }
 
@@ -97,13 +158,14 @@ mod tests {
         let layout = Layout {
             times: vec![0.0, 0.1],
             along_x: true,
+            curve: Some(Curve { observable: Observable::Force, at: vec![0.01] }),
             stop_time: true,
             final_z: false,
             final_x: true,
         };
-        use Observable::{Depth, FinalRange, Range, StopTime};
-        assert_eq!(layout.kinds(), [Depth, Depth, Range, Range, StopTime, FinalRange]);
-        assert_eq!(layout.len(), 6);
+        use Observable::{Depth, FinalRange, Force, Range, StopTime};
+        assert_eq!(layout.kinds(), [Depth, Depth, Range, Range, Force, StopTime, FinalRange]);
+        assert_eq!(layout.len(), 7);
         assert!(Layout::default().is_empty());
     }
 }

@@ -8,7 +8,8 @@ use nalgebra::DVector;
 use runner::beds::STOPPED;
 
 use crate::apparatus::too_many;
-use crate::observable::{Layout, Observable};
+use crate::curves::{self, CommonCurve};
+use crate::observable::{Curve, Layout, Observable};
 use crate::resampling::{common_grid, depth_and_range, stopped_at};
 
 /// Error that a reading of a position is credited with where the set states none (m).
@@ -110,7 +111,7 @@ impl Observed {
         notes.extend(note_readings(set));
         notes.extend(too_many(set));
         let mut observed = Self { conditions, fit, holdout, notes };
-        let assumed = set.kind == Kind::Trajectory
+        let assumed = set.kind.has_readings()
             && set.states_errors()
             && !observed.has_repeats()
             && !observed.has_stated_errors();
@@ -176,6 +177,7 @@ impl ObservedCondition {
         let condition = &set.conditions[index];
         let mut runs: Vec<&Run> = set.runs.iter().filter(|run| run.condition == index).collect();
         let has_frames = |run: &&Run| run.frames.len() > 2;
+        let observable = Observable::of_curve(set.kind);
         let tracked = set.kind == Kind::Trajectory && runs.iter().any(has_frames);
         if tracked {
             let all = runs.len();
@@ -203,6 +205,7 @@ impl ObservedCondition {
             true => frames_of(&runs, condition, share),
             false => CommonFrames::default(),
         };
+        let common_curve = observable.map(|_| CommonCurve::of(&runs)).unwrap_or_default();
         // Beside numbers with a stated error, one that has neither that nor repeats has no weight.
         let unrepeated = set.runs.len() <= set.conditions.len();
         let only_stated = set.kind == Kind::Scalar && unrepeated && set.states_errors();
@@ -217,13 +220,15 @@ impl ObservedCondition {
         let layout = Layout {
             along_x: frames.range.iter().flatten().any(|x| *x != 0.0),
             times: frames.times,
+            curve: observable.map(|observable| Curve { observable, at: common_curve.at }),
             stop_time: weighed(common(|run| run.stop_time), Observable::StopTime),
             final_z: weighed(common(|run| run.final_z), Observable::FinalDepth),
             final_x: weighed(common(|run| run.final_x), Observable::FinalRange),
         };
         let mut numbered: Vec<(DVector<f64>, Option<i64>)> = (0..runs.len())
             .map(|at| {
-                let numbers = vector(&layout, runs[at], frames.depth.get(at), frames.range.get(at));
+                let readings = [&frames.depth, &frames.range, &common_curve.values];
+                let numbers = vector(&layout, runs[at], readings.map(|all| all.get(at)));
                 (numbers, runs[at].order)
             })
             .collect();
@@ -245,9 +250,9 @@ impl ObservedCondition {
         let kinds = layout.kinds();
         Self {
             id: condition.id.clone(),
-            reading: reading(set, &layout, condition, &frames.sigma),
+            reading: reading(set, &layout, condition, [&frames.sigma, &common_curve.sigma]),
             stated: kinds.iter().map(|kind| stated(&set.stated, *kind)).collect(),
-            reach: reach(&kinds, &mean, condition),
+            reach: reach(&layout, &mean, condition),
             layout,
             runs: vectors,
             order,
@@ -262,12 +267,21 @@ impl ObservedCondition {
         let of_frames = (0..tracks)
             .step_by(all.max(1))
             .flat_map(|track| times.iter().map(move |time| track + time));
-        let kept: Vec<usize> = of_frames.chain(tracks..self.layout.len()).collect();
+        let of_curve = self.layout.curve.as_ref().map_or(0, |curve| curve.at.len());
+        let places = thinned(0..of_curve, frames);
+        let kept: Vec<usize> = of_frames
+            .chain(places.iter().map(|place| tracks + place))
+            .chain(tracks + of_curve..self.layout.len())
+            .collect();
         let pick = |numbers: &DVector<f64>| numbers.select_rows(&kept);
         Self {
             id: self.id.clone(),
             layout: Layout {
                 times: times.iter().map(|&time| self.layout.times[time]).collect(),
+                curve: self.layout.curve.as_ref().map(|curve| Curve {
+                    at: places.iter().map(|&place| curve.at[place]).collect(),
+                    ..*curve
+                }),
                 ..self.layout.clone()
             },
             runs: self.runs.iter().map(pick).collect(),
@@ -288,6 +302,9 @@ impl ObservedCondition {
 
 /// What the errors of readings count as, where that is not what the set states.
 fn note_readings(set: &MeasurementSet) -> Option<String> {
+    if let Some(curve) = set.kind.curve() {
+        return curves::note_readings(set, curve);
+    }
     if set.kind != Kind::Trajectory {
         return None;
     }
@@ -365,16 +382,17 @@ fn stated_sigma(tracks: &[&[Frame]], time: f64) -> Option<f64> {
     Some((sum / tracks.len() as f64).sqrt())
 }
 
+/// The numbers of a run: depth and range over time, and what its curve reads.
 fn vector(
     layout: &Layout,
     run: &Run,
-    depth: Option<&Vec<f64>>,
-    range: Option<&Vec<f64>>,
+    [depth, range, curve]: [Option<&Vec<f64>>; 3],
 ) -> DVector<f64> {
     let mut numbers: Vec<f64> = depth.cloned().unwrap_or_default();
     if layout.along_x {
         numbers.extend(range.into_iter().flatten());
     }
+    numbers.extend(curve.into_iter().flatten());
     let scalars = [
         (layout.stop_time, run.stop_time),
         (layout.final_z, run.final_z),
@@ -389,22 +407,28 @@ fn mean(vectors: &[DVector<f64>], len: usize) -> DVector<f64> {
     sum / vectors.len().max(1) as f64
 }
 
-/// Greatest depth (m) among the numbers `mean`; a diameter where none is measured.
-pub(crate) fn reach(kinds: &[Observable], mean: &DVector<f64>, condition: &Condition) -> f64 {
+/// Greatest depth (m) among the numbers `mean`, or of forces; a diameter where none is measured.
+pub(crate) fn reach(layout: &Layout, mean: &DVector<f64>, condition: &Condition) -> f64 {
+    let kinds = layout.kinds();
     let depths = kinds.iter().zip(mean.iter());
-    let deepest = depths
+    let depths = depths
         .filter(|(kind, _)| matches!(kind, Observable::Depth | Observable::FinalDepth))
-        .fold(0.0_f64, |deepest, (_, z)| deepest.max(*z));
+        .map(|(_, z)| *z);
+    let forces = layout.curve.iter().filter(|curve| curve.observable == Observable::Force);
+    let deepest =
+        depths.chain(forces.flat_map(|curve| curve.at.iter().copied())).fold(0.0_f64, f64::max);
     if deepest > 0.0 { deepest } else { condition.diameter }
 }
 
-/// Standard deviation of one reading of each number of `layout`, where frames may state their own.
+/// Standard deviation of one reading of each number of `layout`, where frames and readings of a curve may state their
+/// own; empty where none does.
 pub(crate) fn reading(
     set: &MeasurementSet,
     layout: &Layout,
     condition: &Condition,
-    frames: &[Option<f64>],
+    [frames, places]: [&[Option<f64>]; 2],
 ) -> DVector<f64> {
+    let of_curve = set.kind.curve().map_or(0.0, |curve| curves::reading_error(set, curve));
     let position = position_error(&set.instrument);
     // A stop is seen to a frame; without a rate, to the time in which the intruder, at the speed that
     // counts as stopped, moves by the error of a reading.
@@ -413,13 +437,16 @@ pub(crate) fn reading(
         set.instrument.rate.map_or(position / (STOPPED * condition.speed.max(own_speed)), |rate| {
             1.0 / (rate * 12.0_f64.sqrt())
         });
-    let frame = |at: usize| frames[at].map_or(position, counted);
+    let own = |all: &[Option<f64>], at: usize| all.get(at).copied().flatten();
+    let frame = |at: usize| own(frames, at).map_or(position, counted);
     let n = layout.times.len();
     let kinds = layout.kinds();
+    let tracks = n * (1 + usize::from(layout.along_x));
     DVector::from_iterator(
         kinds.len(),
         kinds.iter().enumerate().map(|(at, kind)| match kind {
             Observable::Depth | Observable::Range => frame(at % n),
+            Observable::Force => own(places, at - tracks).unwrap_or(of_curve),
             Observable::StopTime => time,
             Observable::FinalDepth | Observable::FinalRange => position,
         }),
@@ -432,6 +459,7 @@ pub(crate) fn stated(stated: &StatedError, kind: Observable) -> Option<f64> {
         Observable::StopTime => stated.stop_time,
         Observable::Depth | Observable::FinalDepth => stated.final_z,
         Observable::Range | Observable::FinalRange => stated.final_x,
+        Observable::Force => None,
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod comparison;
 mod covariates;
+mod curves;
 mod depth;
 mod errors;
 mod measured;

@@ -16,12 +16,22 @@ pub struct Residual {
     pub observable: Observable,
     /// When (s), for positions along the path.
     pub time: Option<f64>,
+    /// How deep (m), for forces along the path.
+    pub depth: Option<f64>,
     /// Mean over the runs (in the unit of the observable).
     pub measured: f64,
     /// Of the mean run.
     pub predicted: f64,
     /// Standard error of the mean over the runs: two of them are the band of noise.
     pub standard_error: f64,
+}
+
+impl Residual {
+    /// Where along the path it was read: when (s), or how deep (m); `None` for numbers of the whole impact.
+    #[must_use]
+    pub fn place(&self) -> Option<f64> {
+        self.time.or(self.depth)
+    }
 }
 
 /// A held-out condition that a model cannot predict.
@@ -77,12 +87,12 @@ pub fn residuals(
         let observed = &bench.observed.conditions[condition];
         let predicted = weight.predict(point, bench.forward, condition)?;
         let errors = weight.standard_errors();
-        let times = &observed.layout.times;
-        for (at, observable) in observed.layout.kinds().into_iter().enumerate() {
+        for (at, (observable, place)) in observed.layout.places().into_iter().enumerate() {
             all.push(Residual {
                 condition,
                 observable,
-                time: (!observable.is_scalar()).then(|| times[at % times.len()]),
+                time: place.filter(|_| observable.is_position()),
+                depth: place.filter(|_| observable == Observable::Force),
                 measured: observed.mean[at],
                 predicted: predicted[at],
                 standard_error: errors[at],

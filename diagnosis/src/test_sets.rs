@@ -40,6 +40,7 @@ pub(crate) fn scalar_run(condition: usize, [stop_time, final_z, final_x]: [Optio
         final_z,
         final_x,
         frames,
+        samples: Vec::new(),
     }
 }
 

@@ -35,6 +35,10 @@ pub(super) fn check(reader: &Reader<'_>, conditions: &[Condition], places: &[Con
 }
 
 fn one(reader: &Reader<'_>, condition: &Condition, places: &ConditionPlaces) {
+    // Of a body that is pushed no mass is stated.
+    if condition.mass <= 0.0 {
+        return;
+    }
     let density = |size: f64, mass: f64| {
         // Height and diameter are likely in the same unit.
         volume(condition).map(|volume| mass * condition.mass / (volume * size.powi(3)))

@@ -3,7 +3,7 @@
 use super::contradictions::Contradiction;
 use super::document::Document;
 use super::findings::Findings;
-use super::{Kind, MeasurementSet, magnitudes, ranges, signs};
+use super::{Kind, MeasurementSet, confounded, magnitudes, pushes, ranges, signs};
 
 impl MeasurementSet {
     /// Whether the set states the error of any number that it compares: of readings, if it has
@@ -20,6 +20,9 @@ impl MeasurementSet {
                 let one = frames.any(|frame| frame.sigma.is_some());
                 self.instrument.position_sigma.is_some() || one
             }
+            Kind::ForceDepth => {
+                self.kind.curve().is_some_and(|curve| curve.has_stated_errors(self))
+            }
         }
     }
 }
@@ -34,9 +37,15 @@ pub(super) fn check(
     if findings.errors() > 0 {
         return Vec::new();
     }
-    signs::check(set, &document.places, findings);
-    let contradictions = magnitudes::check(set, &document.places, findings);
+    let contradictions = match set.kind {
+        Kind::ForceDepth => pushes::check(set, &document.places, findings),
+        Kind::Trajectory | Kind::Scalar => {
+            signs::check(set, &document.places, findings);
+            magnitudes::check(set, &document.places, findings)
+        }
+    };
     if !document.is_exported {
+        confounded::note(set, findings);
         note_errors(set, findings);
         note_late_starts(set, findings);
     }

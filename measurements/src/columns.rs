@@ -25,7 +25,7 @@ pub(super) struct ColumnSpec {
     pub(super) required: bool,
 }
 
-const fn column(key: &'static str, content: Content, required: bool) -> ColumnSpec {
+pub(super) const fn column(key: &'static str, content: Content, required: bool) -> ColumnSpec {
     ColumnSpec { key, content, required }
 }
 
@@ -91,10 +91,10 @@ impl ColumnNames {
         self.0.iter().find(|renamed| renamed.key == key)
     }
 
-    /// Reads `[columns]`; faults are reported.
-    pub(super) fn read(table: TableReader<'_>) -> Self {
+    /// Reads `[columns]` of the table of runs and of one with these `readings`; faults are reported.
+    pub(super) fn read(table: TableReader<'_>, readings: &[ColumnSpec]) -> Self {
         let mut columns: Vec<Renamed> = Vec::new();
-        for spec in RUNS.iter().chain(&TRAJECTORIES[1..]) {
+        for spec in RUNS.iter().chain(&readings[1..]) {
             if !table.has(spec.key) {
                 continue;
             }
@@ -116,7 +116,7 @@ impl ColumnNames {
 }
 
 /// Columns of differences, which have no zero of their own.
-const WITHOUT_ZERO: [&str; 3] = ["sigma_z", "t_zero", "z_zero"];
+const WITHOUT_ZERO: [&str; 4] = ["sigma_z", "sigma_force", "t_zero", "z_zero"];
 
 fn renamed(table: TableReader<'_>, spec: &ColumnSpec, span: Option<Span>) -> Option<Renamed> {
     table.header()?;

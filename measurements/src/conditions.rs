@@ -5,7 +5,7 @@ use configs::{Diagnostic, Span, shorten};
 
 use super::optional::optional;
 use super::unstated::Unstated;
-use super::{Condition, Role, keys};
+use super::{Condition, Kind, Role, keys};
 
 /// Where a condition says what its runs are held against.
 #[derive(Clone, Copy, Default)]
@@ -33,13 +33,14 @@ const SHAPES: [(&str, &[&str]); 7] = [
 /// Reads all conditions that can be read; the others are reported.
 pub(super) fn read(
     tables: Vec<TableReader<'_>>,
+    kind: Option<Kind>,
     unstated: &mut Unstated,
 ) -> (Vec<Condition>, Vec<ConditionPlaces>) {
     let (mut conditions, mut places) = (Vec::<Condition>::new(), Vec::<ConditionPlaces>::new());
     let mut absent = Absent::default();
     for table in tables {
         let reader = table.reader;
-        let Some((condition, place)) = condition(table, &mut absent) else {
+        let Some((condition, place)) = condition(table, kind, &mut absent) else {
             continue;
         };
         if let Some(first) = conditions.iter().position(|other| other.id == condition.id) {
@@ -57,7 +58,11 @@ pub(super) fn read(
     (conditions, places)
 }
 
-fn condition(table: TableReader<'_>, absent: &mut Absent) -> Option<(Condition, ConditionPlaces)> {
+fn condition(
+    table: TableReader<'_>,
+    kind: Option<Kind>,
+    absent: &mut Absent,
+) -> Option<(Condition, ConditionPlaces)> {
     let id = table.text("id", None, "c01", "the name of the condition");
     let role = match table.has("role") {
         true => table.choice("role", &["fit", "holdout"], &[], "whether it may be fitted to"),
@@ -72,7 +77,11 @@ fn condition(table: TableReader<'_>, absent: &mut Absent) -> Option<(Condition, 
     let shape =
         table.choice("shape", &SHAPES.map(|(name, _)| name), &[], "the shape of the intruder");
     let diameter = table.number(&keys::DIAMETER);
-    let mass = table.number(&keys::MASS);
+    // A drive moves any mass alike.
+    let mass = match kind == Some(Kind::ForceDepth) && !table.has("mass") {
+        true => Some(0.0),
+        false => table.number(&keys::MASS).map(|found| found.value),
+    };
     let spin = table.number(&keys::SPIN);
     let [packing, bed_depth, length, height, shaft, apex, link_angle] = [
         &keys::PACKING,
@@ -113,7 +122,7 @@ fn condition(table: TableReader<'_>, absent: &mut Absent) -> Option<(Condition, 
         angle_deg: angle?.value,
         shape: shape?.to_owned(),
         diameter: diameter?.value,
-        mass: mass?.value,
+        mass: mass?,
         spin: spin?.value,
         packing,
         bed_depth,

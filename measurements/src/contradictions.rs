@@ -121,7 +121,7 @@ fn of_offset(
     };
     let columns = &document.files.format.columns;
     let place = ["z", "t"].iter().find_map(|key| columns.of(key)?.span);
-    let table = document.files.trajectories.first().and_then(|table| table.span);
+    let table = document.files.readings.first().and_then(|table| table.span);
     let help = match is_common {
         true => zeros_to_write(document, offset),
         false => zeros_by_run(set, contacts, document),

@@ -19,9 +19,10 @@ impl MeasurementSet {
 
     /// The same with a line for each table.
     fn describe_with(&self, tables: &[String]) -> String {
-        let kind = match self.kind {
-            Kind::Trajectory => "trajectories",
-            Kind::Scalar => "scalars",
+        let kind = match (self.kind.curve(), self.kind) {
+            (Some(curve), _) => curve.plural,
+            (None, Kind::Scalar) => "scalars",
+            (None, _) => "trajectories",
         };
         let (conditions, runs) = (self.conditions.len(), self.runs.len());
         let holdout = self.conditions.iter().filter(|one| one.role == Role::Holdout).count();
@@ -76,19 +77,20 @@ impl MeasurementSet {
         let mut rows = vec![heads.map(str::to_owned).to_vec()];
         for (index, condition) in self.conditions.iter().enumerate() {
             let runs: Vec<&Run> = self.runs.iter().filter(|run| run.condition == index).collect();
-            rows.push(row(condition, &runs));
+            let function = self.kind.curve().map_or("z(t), x(t)", |curve| curve.function);
+            rows.push(row(condition, &runs, function));
         }
         rows
     }
 }
 
-fn row(condition: &Condition, runs: &[&Run]) -> Vec<String> {
+fn row(condition: &Condition, runs: &[&Run], function: &str) -> Vec<String> {
     let any = |has: fn(&Run) -> bool| runs.iter().any(|run| has(run));
     let measured = [
         ("stop_time", any(|run| run.stop_time.is_some())),
         ("final_z", any(|run| run.final_z.is_some())),
         ("final_x", any(|run| run.final_x.is_some())),
-        ("z(t), x(t)", any(|run| !run.frames.is_empty())),
+        (function, any(|run| run.has_readings())),
     ];
     let measured: Vec<&str> =
         measured.iter().filter(|(_, is_there)| *is_there).map(|(name, _)| *name).collect();
@@ -102,9 +104,9 @@ fn row(condition: &Condition, runs: &[&Run]) -> Vec<String> {
         condition.angle_deg.to_string(),
         condition.shape.clone(),
         condition.diameter.to_string(),
-        condition.mass.to_string(),
+        if condition.mass > 0.0 { condition.mass.to_string() } else { String::from("-") },
         runs.len().to_string(),
-        runs.iter().map(|run| run.frames.len()).sum::<usize>().to_string(),
+        runs.iter().map(|run| run.frames.len() + run.samples.len()).sum::<usize>().to_string(),
         measured.join(", "),
     ]
 }

@@ -6,8 +6,9 @@ use configs::{Diagnostic, Span, limits};
 use engine::params::ParamSpec;
 
 use super::bodies;
-use super::columns::ColumnNames;
+use super::columns::{ColumnNames, TRAJECTORIES};
 use super::conditions::{self, ConditionPlaces};
+use super::curve::Curve;
 use super::dialect::{Decimal, Delimiter};
 use super::keys;
 use super::optional::optional;
@@ -40,8 +41,8 @@ pub(super) struct Document {
 /// `[files]` and `[columns]`.
 pub(super) struct Files {
     pub(super) runs: FileName,
-    /// Tables of trajectories, or patterns that give them; none for scalars.
-    pub(super) trajectories: Vec<FileName>,
+    /// Tables of readings, or patterns that give them; none for scalars.
+    pub(super) readings: Vec<FileName>,
     pub(super) missing: Missing,
     pub(super) format: Format,
 }
@@ -66,11 +67,13 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
     let mut unstated = Unstated::default();
     root.number(&keys::SCHEMA);
     let head = head(root.table("measurement", Some(MEASUREMENT_EXAMPLE)), &mut unstated);
-    let instrument = instrument(root.table("instrument", None), &mut unstated);
-    let files =
-        files(root.table("files", Some(FILES_EXAMPLE)), head.as_ref().map(|head| head.kind));
-    let columns = ColumnNames::read(root.table("columns", None));
-    let stated = stated(root.table("noise", None), &mut unstated);
+    let kind = head.as_ref().map(|head| head.kind);
+    let curve = kind.and_then(Kind::curve);
+    let instrument = instrument(root.table("instrument", None), curve, &mut unstated);
+    let files = files(root.table("files", Some(FILES_EXAMPLE)), kind);
+    let readings = curve.map_or(&TRAJECTORIES[..], |curve| &curve.columns[0][..]);
+    let columns = ColumnNames::read(root.table("columns", None), readings);
+    let stated = stated(root.table("noise", None), curve, &mut unstated);
     let feasible = Feasible::read(root.table("feasible", None));
     let priors = priors::read(&root);
     let bed_table = root.table("bed", None);
@@ -84,7 +87,7 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
                 .help("one table per setting of the experiment, in double brackets"),
         );
     }
-    let (conditions, places) = conditions::read(tables, &mut unstated);
+    let (conditions, places) = conditions::read(tables, kind, &mut unstated);
     let is_disc = |shape: &str| shape == "disc";
     let planar = conditions.iter().any(|condition| is_disc(&condition.shape));
     let bed = bed(bed_table, planar, &mut unstated);
@@ -148,10 +151,10 @@ struct Head {
 
 fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
     let id = table.slug("id", None, "the name of the set");
-    let kind = table.choice("kind", &["trajectory", "scalar"], &[], "what was measured");
+    let kind = table.choice("kind", &Kind::words(), &[], "what was measured");
     let kind = kind.map(|kind| match kind {
         "scalar" => Kind::Scalar,
-        _ => Kind::Trajectory,
+        word => Kind::of_curve(word).unwrap_or(Kind::Trajectory),
     });
     let source = optional_text(&table, "source", "…", "where the numbers are from");
     let frame = optional_text(&table, "frame", "…", "the frame of reference in words");
@@ -175,12 +178,16 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
         let (stop, word) = match kind? {
             Kind::Scalar => (StopDefinition::ComponentZero, words[0]),
             Kind::Trajectory => (StopDefinition::SpeedFivePercent, words[1]),
+            // What is pushed does not stop.
+            Kind::ForceDepth => return Some(StopDefinition::ComponentZero),
         };
         unstated.assume(format!("measurement.stop_definition = \"{word}\""));
         Some(stop)
     });
     let last = last.unwrap_or_else(|| {
-        unstated.assume("measurement.final = \"resting\"".to_owned());
+        if kind != Some(Kind::ForceDepth) {
+            unstated.assume("measurement.final = \"resting\"".to_owned());
+        }
         FinalDefinition::Resting
     });
     Some(Head {
@@ -198,17 +205,24 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
     })
 }
 
-fn instrument(table: TableReader<'_>, unstated: &mut Unstated) -> Instrument {
-    let mut number = |spec: &ParamSpec, path: &'static str| {
+fn instrument(
+    table: TableReader<'_>,
+    curve: Option<&Curve>,
+    unstated: &mut Unstated,
+) -> Instrument {
+    let mut number = |spec: &ParamSpec, path: &'static str, is_of_kind: bool| {
         let value = optional(&table, spec);
-        unstated.absent_if(value.is_none(), path);
+        unstated.absent_if(value.is_none() && is_of_kind, path);
         unstated.positive(value, path)
     };
+    let is_forces = curve.is_some_and(|curve| curve.kind == Kind::ForceDepth);
+    let position = "instrument.position_sigma_m";
     let instrument = Instrument {
-        rate: number(&keys::RATE, "instrument.rate_hz"),
-        position_sigma: number(&keys::POSITION_SIGMA, "instrument.position_sigma_m"),
-        speed_sigma_rel: number(&keys::SPEED_SIGMA, "instrument.speed_sigma_rel"),
-        level_sigma: number(&keys::LEVEL_SIGMA, "instrument.level_sigma_m"),
+        rate: number(&keys::RATE, "instrument.rate_hz", !is_forces),
+        position_sigma: number(&keys::POSITION_SIGMA, position, curve.is_none()),
+        force_sigma: number(&keys::FORCE_SIGMA, "instrument.force_sigma_N", is_forces),
+        speed_sigma_rel: number(&keys::SPEED_SIGMA, "instrument.speed_sigma_rel", !is_forces),
+        level_sigma: number(&keys::LEVEL_SIGMA, "instrument.level_sigma_m", true),
         // Unlike an error of readings, none of these may be missed: zero says that it is exact.
         time_sigma: optional(&table, &keys::TIME_SIGMA),
         zero_sigma: optional(&table, &keys::ZERO_SIGMA),
@@ -222,10 +236,10 @@ fn instrument(table: TableReader<'_>, unstated: &mut Unstated) -> Instrument {
     instrument
 }
 
-fn stated(table: TableReader<'_>, unstated: &mut Unstated) -> StatedError {
+fn stated(table: TableReader<'_>, curve: Option<&Curve>, unstated: &mut Unstated) -> StatedError {
     let mut number = |spec: &ParamSpec, path: &'static str| {
         let value = optional(&table, spec);
-        unstated.absent_if(value.is_none(), path);
+        unstated.absent_if(value.is_none() && curve.is_none(), path);
         unstated.positive(value, path)
     };
     let stated = StatedError {
@@ -285,7 +299,9 @@ fn files(table: TableReader<'_>, kind: Option<Kind>) -> Option<Files> {
         Some(FileName { name: found.value, span: found.span })
     };
     let runs = name("runs", "the table of runs");
-    let trajectories = match (kind, table.has("trajectories")) {
+    let curve = kind.and_then(Kind::curve);
+    let readings = match (kind, table.has("trajectories")) {
+        _ if curve.is_some() => readings(&table, curve?.files)?,
         (Some(Kind::Scalar), true) => {
             table.reader.report(
                 Diagnostic::error("a set of scalars has no trajectories")
@@ -294,7 +310,7 @@ fn files(table: TableReader<'_>, kind: Option<Kind>) -> Option<Files> {
             );
             Vec::new()
         }
-        (Some(Kind::Trajectory), _) => trajectories(&table)?,
+        (Some(Kind::Trajectory), _) => readings(&table, "trajectories")?,
         _ => Vec::new(),
     };
     let missing = match optional_choice(&table, "missing", &["error", "drop"]) {
@@ -309,23 +325,22 @@ fn files(table: TableReader<'_>, kind: Option<Kind>) -> Option<Files> {
     });
     table.finish();
     let format = Format { delimiter, decimal, columns: ColumnNames::default() };
-    Some(Files { runs: runs?, trajectories, missing, format })
+    Some(Files { runs: runs?, readings, missing, format })
 }
 
-/// One table of trajectories, or a list of them.
-fn trajectories(table: &TableReader<'_>) -> Option<Vec<FileName>> {
-    const KEY: &str = "trajectories";
-    let is_list = table.node(KEY).is_some_and(|node| matches!(node.value, Value::Array(_)));
+/// One table of readings below `key`, or a list of them.
+fn readings(table: &TableReader<'_>, key: &'static str) -> Option<Vec<FileName>> {
+    let is_list = table.node(key).is_some_and(|node| matches!(node.value, Value::Array(_)));
     if !is_list {
-        let found = table.text(KEY, None, "trajectories.csv", "the table of trajectories")?;
+        let found = table.text(key, None, &format!("{key}.csv"), &format!("the table of {key}"))?;
         return Some(vec![FileName { name: found.value, span: found.span }]);
     }
-    let names = table.raw_texts(KEY, "drop-1.csv")??;
+    let names = table.raw_texts(key, "drop-1.csv")??;
     if names.is_empty() {
         table.reader.report(
-            Diagnostic::error("`trajectories` is an empty list")
-                .at(table.span_of(KEY), "a table at least")
-                .help("write trajectories = [\"drop-1.csv\", \"drop-2.csv\"] or \"drop-*.csv\""),
+            Diagnostic::error(format!("`{key}` is an empty list"))
+                .at(table.span_of(key), "a table at least")
+                .help(format!("write {key} = [\"drop-1.csv\", \"drop-2.csv\"] or \"drop-*.csv\"")),
         );
         return None;
     }

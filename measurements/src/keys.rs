@@ -32,6 +32,13 @@ pub(super) const POSITION_SIGMA: ParamSpec = key(
     (0.0, 0.01),
     "the root mean square error of one reading of a position",
 );
+pub(super) const FORCE_SIGMA: ParamSpec = key(
+    "force_sigma_N",
+    Dimension::FORCE,
+    NOT_NEGATIVE,
+    (0.0, 1e4),
+    "the root mean square error of one reading of a force",
+);
 pub(super) const SPEED_SIGMA: ParamSpec = key(
     "speed_sigma_rel",
     NUMBER,

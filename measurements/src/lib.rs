@@ -3,10 +3,10 @@
 //!
 //! [`MeasurementSet::load`] reads a set, [`MeasurementSet::write`] writes one. `document` knows
 //! `measurement.toml` and `conditions` its conditions; `lines`, `dialect`, `columns`, `header`, `row`,
-//! `cells` and `table` read a table, `runs` and `trajectories` know the two tables there are, `several` finds
-//! more than one of the latter; `fall` and `departure` see fall and contact on any scale, `level` finds one surface for several runs, `speeds` reads speeds that are
-//! not stated; `checks`, `ranges`, `signs`
-//! and `magnitudes` look at the whole; `smooth`, `contact`, `zeros`, `stops` and `definitions` hold what
+//! `cells` and `table` read a table, `runs`, `trajectories` and `curve_table` know the tables there are, `several` finds
+//! more than one of the latter two; `curves` lists what is read along one axis and is no position, each kind a `curve` in a file of its own; `fall` and `departure` see fall and contact on any scale, `level` finds one surface for several runs, `speeds` reads speeds that are
+//! not stated; `checks`, `ranges`, `signs`,
+//! `magnitudes`, `pushes` and `confounded` look at the whole; `smooth`, `contact`, `zeros`, `stops` and `definitions` hold what
 //! it states against its frames, and `contradictions` says where they do not agree.
 
 mod agreement;
@@ -15,8 +15,12 @@ mod cells;
 mod checks;
 mod columns;
 mod conditions;
+mod confounded;
 mod contact;
 mod contradictions;
+mod curve;
+mod curve_table;
+mod curves;
 mod definitions;
 mod departure;
 mod describe;
@@ -25,6 +29,7 @@ mod document;
 mod fall;
 mod feasible;
 mod findings;
+mod force_depth;
 mod header;
 mod keys;
 mod level;
@@ -34,6 +39,7 @@ mod magnitudes;
 mod optional;
 mod order;
 mod priors;
+mod pushes;
 mod ranges;
 mod reading;
 mod row;
@@ -55,6 +61,7 @@ mod zeros;
 pub use agreement::Agreement;
 pub use contact::Contact;
 pub use contradictions::{Contradiction, ContradictionKind};
+pub use curve::{Axis, Curve};
 pub use definitions::{Held, Miss, Outcome, Scalar, hold};
 pub use departure::Departure;
 pub use fall::{Fall, reading_noise};
@@ -110,6 +117,8 @@ pub enum Kind {
     Trajectory,
     /// Stopping time, final depth and final range alone.
     Scalar,
+    /// Force over depth of a body that is pushed at a stated speed.
+    ForceDepth,
 }
 
 /// What is known of the instrument.
@@ -119,6 +128,8 @@ pub struct Instrument {
     pub rate: Option<f64>,
     /// Root mean square of one reading of a position (m).
     pub position_sigma: Option<f64>,
+    /// Root mean square of one reading of a force (N).
+    pub force_sigma: Option<f64>,
     /// How well the set impact speed is known, relative, per run.
     pub speed_sigma_rel: Option<f64>,
     /// How well the level of the surface is known in one run (m).
@@ -247,7 +258,7 @@ pub struct Condition {
     pub id: String,
     /// Whether it may be fitted to.
     pub role: Role,
-    /// Speed at first contact (m/s).
+    /// Speed at first contact, or of the push (m/s).
     pub speed: f64,
     /// Angle of the velocity below the horizontal (deg): 90 is straight down.
     pub angle_deg: f64,
@@ -255,7 +266,7 @@ pub struct Condition {
     pub shape: String,
     /// Diameter (m).
     pub diameter: f64,
-    /// Mass (kg).
+    /// Mass (kg); 0 where it is not stated, of a body that is pushed.
     pub mass: f64,
     /// Angular velocity (rad/s), positive when it rolls forward.
     pub spin: f64,
@@ -294,8 +305,29 @@ pub struct Run {
     pub final_z: Option<f64>,
     /// Final horizontal distance from first contact (m).
     pub final_x: Option<f64>,
-    /// Frames in the order of time; empty for scalars.
+    /// Frames in the order of time; empty for other kinds than trajectories.
     pub frames: Vec<Frame>,
+    /// Readings of a [`Curve`], in the order of the file; empty for other kinds.
+    pub samples: Vec<Sample>,
+}
+
+impl Run {
+    /// Whether anything was read along its way.
+    #[must_use]
+    pub fn has_readings(&self) -> bool {
+        !self.frames.is_empty() || !self.samples.is_empty()
+    }
+}
+
+/// One reading of a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Where along it (SI): a depth below the undisturbed surface.
+    pub at: f64,
+    /// What was read (SI): the force of the bed against the motion.
+    pub value: f64,
+    /// Root mean square error of this reading (SI), where the table says it.
+    pub sigma: Option<f64>,
 }
 
 /// One reading of a trajectory.

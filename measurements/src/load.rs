@@ -17,7 +17,7 @@ use super::findings::Findings;
 use super::row::file_name;
 use super::table::Format;
 use super::trajectories::Source;
-use super::{MeasurementSet, checks, order, runs, several, speeds, trajectories};
+use super::{MeasurementSet, Run, checks, curve_table, order, runs, several, speeds, trajectories};
 
 /// A set and what came with it.
 #[derive(Clone, Debug)]
@@ -196,15 +196,18 @@ fn read_tables(
     let Some(read) = read else { return tables };
     set.runs = read.runs;
     tables.push(format!("{}: {}", file_name(&name), read.columns));
-    if findings.errors() == 0 && !files.trajectories.is_empty() {
-        let names = several::expand(&files.trajectories, folder, findings);
+    if findings.errors() == 0 && !files.readings.is_empty() {
+        let names = several::expand(&files.readings, folder, findings);
         let is_vertical = set.conditions.iter().all(|one| one.angle_deg >= 90.0);
         let mut rows = 0;
         for named in &names {
             let Some((name, file)) = open(named, folder, findings) else { break };
             let source = Source { name: &name, reader: file, is_one_of: names.len(), is_vertical };
-            let columns =
-                trajectories::read(source, &mut set.runs, (format, missing), (&mut rows, findings));
+            let (how, so_far) = ((format, missing), (&mut rows, &mut *findings));
+            let columns = match set.kind.curve() {
+                Some(curve) => curve_table::read(curve, source, &mut set.runs, how, so_far),
+                None => trajectories::read(source, &mut set.runs, how, so_far),
+            };
             tables.extend(columns.map(|columns| format!("{}: {columns}", file_name(&name))));
             findings.point_at(named.span, "this table");
             if findings.errors() > 0 {
@@ -215,7 +218,7 @@ fn read_tables(
         if findings.errors() == 0 {
             settle_empty_runs(set, missing, findings);
         }
-        findings.point_at(files.trajectories[0].span, "this table");
+        findings.point_at(files.readings[0].span, "this table");
     }
     if findings.errors() == 0 {
         find_empty_conditions(set, document, findings);
@@ -231,6 +234,9 @@ fn shift(set: &mut MeasurementSet, zeros: &[[f64; 2]], format: &Format) {
         for frame in &mut run.frames {
             frame.t -= clock * t;
             frame.z -= depth * z;
+        }
+        for sample in &mut run.samples {
+            sample.at -= depth * z;
         }
     }
 }
@@ -260,7 +266,7 @@ fn open(
 
 /// Refuses or drops runs that the trajectories do not have.
 fn settle_empty_runs(set: &mut MeasurementSet, missing: Missing, findings: &mut Findings) {
-    let empty = || set.runs.iter().filter(|run| run.frames.is_empty());
+    let empty = || set.runs.iter().filter(|run| !run.has_readings());
     let n = empty().count();
     if n == 0 {
         return;
@@ -269,14 +275,15 @@ fn settle_empty_runs(set: &mut MeasurementSet, missing: Missing, findings: &mut 
         empty().take(10).map(|run| format!("`{}`", shorten(&run.name))).collect();
     let more = if n > names.len() { ", …" } else { "" };
     let names = format!("{}{more}", names.join(", "));
+    let what = set.kind.curve().map_or("trajectory", |_| "reading");
     match missing {
         Missing::Error => findings.report(
-            Diagnostic::error(format!("there is no trajectory of the runs {names}"))
+            Diagnostic::error(format!("there is no {what} of the runs {names}"))
                 .help("remove them from the table of runs, or write missing = \"drop\""),
         ),
         Missing::Drop => {
-            findings.note(format!("Runs without a trajectory were dropped: {names}."));
-            set.runs.retain(|run| !run.frames.is_empty());
+            findings.note(format!("Runs without a {what} were dropped: {names}."));
+            set.runs.retain(Run::has_readings);
         }
     }
 }

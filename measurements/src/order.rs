@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::{Frame, Run};
+use super::{Frame, Run, Sample};
 
 /// Sorts by condition, then by repeat, place in time and the numbers measured.
 pub(super) fn sort(runs: &mut [Run]) {
@@ -15,12 +15,17 @@ fn compare(a: &Run, b: &Run) -> Ordering {
         let pairs = a.frames.iter().zip(&b.frames).map(|(a, b)| compare_frames(a, b));
         pairs.fold(Ordering::Equal, Ordering::then).then(a.frames.len().cmp(&b.frames.len()))
     };
+    let samples = || {
+        let pairs = a.samples.iter().zip(&b.samples).map(|(a, b)| compare_samples(a, b));
+        pairs.fold(Ordering::Equal, Ordering::then).then(a.samples.len().cmp(&b.samples.len()))
+    };
     labels(a)
         .cmp(&labels(b))
         .then_with(|| numbers(a.stop_time, b.stop_time))
         .then_with(|| numbers(a.final_z, b.final_z))
         .then_with(|| numbers(a.final_x, b.final_x))
         .then_with(frames)
+        .then_with(samples)
         // Runs that are equal but for their name: nothing but the name is at stake.
         .then_with(|| a.name.cmp(&b.name))
 }
@@ -30,6 +35,10 @@ fn compare_frames(a: &Frame, b: &Frame) -> Ordering {
         .then(a.z.total_cmp(&b.z))
         .then(a.x.total_cmp(&b.x))
         .then(numbers(a.sigma, b.sigma))
+}
+
+fn compare_samples(a: &Sample, b: &Sample) -> Ordering {
+    a.at.total_cmp(&b.at).then(a.value.total_cmp(&b.value)).then(numbers(a.sigma, b.sigma))
 }
 
 fn numbers(a: Option<f64>, b: Option<f64>) -> Ordering {

@@ -5,7 +5,7 @@ use configs::{Diagnostic, shorten};
 
 use super::conditions::ConditionPlaces;
 use super::findings::Findings;
-use super::{Condition, Frame, MeasurementSet, Run};
+use super::{Condition, Frame, MeasurementSet, Run, Sample};
 
 /// A kind of number with the sizes that it may have.
 struct Kind {
@@ -26,6 +26,7 @@ const RANGE: Kind = kind("final range", "m", LENGTHS);
 const STOPPING_TIME: Kind = kind("stopping time", "s", [1e-6, 1e3]);
 // A reading is a position less the zero of a camera: it may be as small as rounding leaves it.
 const READING: Kind = kind("position", "m", [0.0, 1e3]);
+const FORCE: Kind = kind("force", "N", [0.0, 1e12]);
 const TIME: Kind = kind("time", "s", [0.0, 1e3]);
 /// Faster than any gun shoots.
 const SPEED: Kind = kind("speed", "m/s", [1e-6, 1e4]);
@@ -104,6 +105,7 @@ fn of_set(set: &MeasurementSet) -> impl Iterator<Item = Number> {
         (&SIZE, bed.stated.surface_height),
         (&RATE, instrument.rate),
         (&READING_ERROR, instrument.position_sigma),
+        (&FORCE, instrument.force_sigma),
         (&READING_ERROR, instrument.level_sigma),
         (&READING_ERROR, instrument.zero_sigma),
         (&SHARE, instrument.speed_bias_sigma_rel),
@@ -136,7 +138,8 @@ fn of_run(run: &Run) -> impl Iterator<Item = Number> {
     let scalars = [(&DEPTH, run.final_z), (&RANGE, run.final_x), (&STOPPING_TIME, run.stop_time)];
     let scalars = scalars.into_iter().filter_map(|(kind, value)| Some((kind, value?)));
     let reading = |frame: &Frame| [(&TIME, frame.t), (&READING, frame.z), (&READING, frame.x)];
-    scalars.chain(run.frames.iter().flat_map(reading))
+    let sample = |sample: &Sample| [(&READING, sample.at), (&FORCE, sample.value)];
+    scalars.chain(run.frames.iter().flat_map(reading)).chain(run.samples.iter().flat_map(sample))
 }
 
 #[cfg(test)]

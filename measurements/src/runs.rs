@@ -109,6 +109,7 @@ pub(super) fn read(
             final_z,
             final_x,
             frames,
+            samples: Vec::new(),
         });
     }
     if lines.is_empty() && findings.errors() == 0 {

@@ -17,9 +17,12 @@ pub(super) fn fill(set: &mut MeasurementSet, places: &[ConditionPlaces], finding
         let id = shorten(&set.conditions[index].id);
         let read = read(set, index);
         let speed = zeros::mean(read.iter().copied());
-        if read.is_empty() || set.kind == Kind::Scalar {
+        if read.is_empty() || set.kind != Kind::Trajectory {
             let why = match set.kind {
                 Kind::Scalar => "a set of scalars has to state it",
+                Kind::ForceDepth => {
+                    "a set of forces over depth has to state it: the speed of the push"
+                }
                 Kind::Trajectory => "no run has the frames before contact that would show it",
             };
             findings.report(

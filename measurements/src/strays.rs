@@ -264,6 +264,7 @@ mod tests {
             final_z: None,
             final_x: None,
             frames: (-15..60).map(frame).collect(),
+            samples: Vec::new(),
         }
     }
 

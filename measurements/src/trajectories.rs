@@ -37,7 +37,7 @@ pub(super) struct Source<'a, R> {
 
 impl<R> Source<'_, R> {
     /// The run that the whole table is of where it has no column of runs: that of its name.
-    fn run(&self, index: &BTreeMap<String, usize>) -> Option<usize> {
+    pub(super) fn run(&self, index: &BTreeMap<String, usize>) -> Option<usize> {
         let name = file_name(self.name);
         let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
         index.get(stem).or_else(|| index.get(name)).copied()
@@ -139,7 +139,7 @@ pub(super) fn read(
 }
 
 /// The index of the run of a row; an unknown one is reported.
-fn run(
+pub(super) fn run(
     table: &Table<impl BufRead>,
     row: &Row,
     index: &BTreeMap<String, usize>,
@@ -160,8 +160,8 @@ fn run(
     found
 }
 
-/// Refuses or notes rows without a time or a position.
-fn tell_holes(holes: &[u64], name: &str, missing: Missing, findings: &mut Findings) {
+/// Refuses or notes rows without a place or a reading.
+pub(super) fn tell_holes(holes: &[u64], name: &str, missing: Missing, findings: &mut Findings) {
     if holes.is_empty() {
         return;
     }
@@ -216,6 +216,7 @@ mod tests {
             final_z: None,
             final_x: None,
             frames: Vec::new(),
+            samples: Vec::new(),
         };
         let (mut runs, mut findings) = ([run("r1")], Findings::default());
         let source = Source {

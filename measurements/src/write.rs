@@ -9,6 +9,7 @@ use configs::toml_string as quoted;
 use engine::checkpoint::write_whole;
 use thiserror::Error;
 
+use super::curve::Curve;
 use super::{
     Condition, Feasible, FinalDefinition, Geometry, Kind, MeasurementSet, ParameterPrior, Role,
     Run, StopDefinition,
@@ -48,6 +49,9 @@ impl MeasurementSet {
         if self.kind == Kind::Trajectory {
             put(&folder.join("trajectories.csv"), self.trajectory_table())?;
         }
+        if let Some(curve) = self.kind.curve() {
+            put(&folder.join(table_name(curve)), self.curve_table(curve))?;
+        }
         put(&folder.join("measurement.toml"), Ok(self.toml().into_bytes()))
     }
 
@@ -55,8 +59,15 @@ impl MeasurementSet {
         let mut file = Toml(String::from("schema = 1\n"));
         file.table("[measurement]");
         file.word("id", &self.id);
-        let scalar = self.kind == Kind::Scalar;
-        file.word("kind", if scalar { "scalar" } else { "trajectory" });
+        let curve = self.kind.curve();
+        file.word(
+            "kind",
+            match (curve, self.kind) {
+                (Some(curve), _) => curve.word,
+                (None, Kind::Scalar) => "scalar",
+                (None, _) => "trajectory",
+            },
+        );
         file.text("source", self.source.as_deref());
         file.word(
             "stop_definition",
@@ -81,6 +92,7 @@ impl MeasurementSet {
         file.table("[instrument]");
         file.number("rate_hz", self.instrument.rate);
         file.number("position_sigma_m", self.instrument.position_sigma);
+        file.number("force_sigma_N", self.instrument.force_sigma);
         file.number("speed_sigma_rel", self.instrument.speed_sigma_rel);
         file.number("level_sigma_m", self.instrument.level_sigma);
         file.number("time_sigma_s", self.instrument.time_sigma);
@@ -124,12 +136,16 @@ impl MeasurementSet {
         }
         file.table("[files]");
         file.word("runs", "runs.csv");
-        file.text("trajectories", (!scalar).then_some("trajectories.csv"));
+        match curve {
+            Some(curve) => file.word(curve.files, &table_name(curve)),
+            None if self.kind == Kind::Trajectory => file.word("trajectories", "trajectories.csv"),
+            None => {}
+        }
         // The names of conditions and runs may hold what would look like a separator.
         file.word("delimiter", ",");
         file.word("decimal", ".");
         for condition in &self.conditions {
-            file.condition(condition);
+            file.condition(condition, self.kind);
         }
         file.0
     }
@@ -171,6 +187,26 @@ impl MeasurementSet {
         }
         table.into_inner().map_err(|error| error.into_error())
     }
+
+    fn curve_table(&self, curve: &Curve) -> io::Result<Vec<u8>> {
+        let has_sigma = |run: &Run| run.samples.iter().any(|sample| sample.sigma.is_some());
+        let columns = if self.runs.iter().any(has_sigma) { 4 } else { 3 };
+        let mut table = csv_writer();
+        table.write_record(&curve.columns[0].map(|column| column.key)[..columns])?;
+        for run in &self.runs {
+            for sample in &run.samples {
+                let [at, value] = [sample.at, sample.value].map(|value| cell(Some(value)));
+                let cells = [run.name.as_str(), &at, &value, &cell(sample.sigma)];
+                table.write_record(&cells[..columns])?;
+            }
+        }
+        table.into_inner().map_err(|error| error.into_error())
+    }
+}
+
+/// The name of a table of curves.
+fn table_name(curve: &Curve) -> String {
+    format!("{}.csv", curve.files)
 }
 
 fn csv_writer() -> csv::Writer<Vec<u8>> {
@@ -235,7 +271,7 @@ impl Toml {
         }
     }
 
-    fn condition(&mut self, condition: &Condition) {
+    fn condition(&mut self, condition: &Condition, kind: Kind) {
         self.table("[[condition]]");
         self.word("id", &condition.id);
         self.word(
@@ -249,7 +285,8 @@ impl Toml {
         self.number("angle_deg", Some(condition.angle_deg));
         self.word("shape", &condition.shape);
         self.number("diameter", Some(condition.diameter));
-        self.number("mass", Some(condition.mass));
+        let is_stated = kind != Kind::ForceDepth || condition.mass > 0.0;
+        self.number("mass", Some(condition.mass).filter(|_| is_stated));
         self.number("spin", Some(condition.spin));
         self.number("packing", condition.packing);
         self.number("bed_depth", condition.bed_depth);

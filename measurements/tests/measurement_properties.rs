@@ -85,6 +85,7 @@ fn run(condition: usize) -> impl Strategy<Value = Run> {
             final_z,
             final_x,
             frames: onward(&frames),
+            samples: Vec::new(),
         },
     )
 }

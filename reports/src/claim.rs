@@ -76,6 +76,7 @@ fn errors(diagnosis: &Value) -> Option<[String; 3]> {
         let error = held_out[key].as_f64()?;
         Some(match held_out["unit"].as_str() {
             Some("m") => format!("{:.3} mm", 1e3 * error),
+            Some("N") => format!("{error:.3} N"),
             _ => format!("{:.1} %", 100.0 * error),
         })
     };

@@ -11,9 +11,10 @@ use crate::{ReportError, Texts, object};
 pub(crate) const RESULT: &str = "comparison.json";
 
 /// Errors of a table: their key, heading, and what they are multiplied with.
-const ERRORS: [(&str, &str, f64); 6] = [
+const ERRORS: [(&str, &str, f64); 7] = [
     ("z_m", "z (mm)", 1e3),
     ("x_m", "x (mm)", 1e3),
+    ("force_N", "force (N)", 1.0),
     ("stop_time_s", "stop time (ms)", 1e3),
     ("final_z_m", "depth (mm)", 1e3),
     ("final_x_m", "range (mm)", 1e3),
@@ -30,9 +31,9 @@ const VIEWS: [(&str, &str, &str); 7] = [
     ),
     (
         "trajectories.svg",
-        "Measured paths and velocities",
-        "Measured positions and velocities under the predictions. Velocities are differences between \
-         readings.",
+        "Measured along the path",
+        "Measured positions or forces under the predictions, and their changes: velocities and slopes are differences \
+         between readings.",
     ),
     (
         "signatures.svg",
@@ -58,7 +59,7 @@ const VIEWS: [(&str, &str, &str); 7] = [
     ),
     (
         "residuals.svg",
-        "What is left over time",
+        "What is left along the path",
         "Measured less predicted; the band holds 95 % of the means, if the model were right.",
     ),
 ];

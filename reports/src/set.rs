@@ -18,10 +18,11 @@ pub fn of_set(loaded: &Loaded) -> Result<String, ReportError> {
             "Every reading of every run, in SI and counted downward. A run that does not start along \
              the dashed line has another sign, unit or zero than the set says."
         }
+        Kind::ForceDepth => "Every reading of every run, in SI and counted downward.",
         Kind::Scalar => "Every number of every run over the stated impact speed.",
     };
     let held_out = set.conditions.iter().filter(|one| one.role == Role::Holdout).count();
-    let readings: usize = set.runs.iter().map(|run| run.frames.len()).sum();
+    let readings: usize = set.runs.iter().map(|run| run.frames.len() + run.samples.len()).sum();
     let notes: Vec<Part> = set.notes.iter().cloned().map(Part::Text).collect();
     let contradictions = loaded
         .contradictions

@@ -1,6 +1,9 @@
 //! A body on a drive that keeps its velocity, whatever the medium does.
 
 use super::assembly::{Assembly, COORDINATES, PARTS, Part, PartLoad, State};
+use super::error::ImpactError;
+use super::impact::Impact;
+use super::modes::{AXES, Modes, Sense};
 use engine::math::Vec3;
 
 /// An assembly of one part that moves along a straight line at constant speed: a plate, penetrometer or cone on an
@@ -54,5 +57,40 @@ impl Assembly for Driven {
 
     fn is_driven(&self) -> bool {
         true
+    }
+}
+
+impl Impact {
+    /// Force of the medium against the motion (N) on a body that has kept the velocity of its start until its lowest
+    /// point is `depth` (m) below the surface.
+    ///
+    /// # Errors
+    /// If a law gives no finite force there.
+    pub fn resistance_at(&self, depth: f64) -> Result<f64, ImpactError> {
+        let system = self.system();
+        let start = self.assembly().part(0, self.start());
+        let sinking = -start.tip_velocity.z;
+        // A body that does not sink stays as deep as it starts.
+        let time = if sinking > 0.0 { (depth - start.immersion.depth) / sinking } else { 0.0 };
+        let mut state = *self.start();
+        state.time += time;
+        for (position, rate) in state.position.iter_mut().zip(state.rate) {
+            *position += time * rate;
+        }
+        let velocity = self.assembly().part(0, &state).velocity;
+        let mut modes = Modes {
+            in_bed: [depth > 0.0; PARTS],
+            straight: None,
+            sense: [AXES.map(|axis| Sense::of(velocity[axis])); PARTS],
+            gripping: false,
+            creeping: false,
+        };
+        modes.gripping = system.loaded(0, &state, &modes).load.gripping;
+        let loaded = system.loaded(0, &state, &modes);
+        let force = -loaded.on_part().force.dot(&loaded.motion.direction);
+        match force.is_finite() {
+            true => Ok(force),
+            false => Err(system.broken(Some(state), &modes, state.time)),
+        }
     }
 }

@@ -37,7 +37,13 @@ fn assert_near(found: Option<f64>, wanted: Option<f64>, tolerance: f64, what: &s
 
 #[test]
 fn every_set_loads_without_a_warning_and_says_its_source_and_its_errors() {
-    let real = ["real-balls", "real-penetrometer", "real-water-cones"];
+    let real = [
+        "real-balls",
+        "real-penetrometer",
+        "real-plates-silt",
+        "real-plates-simulant",
+        "real-water-cones",
+    ];
     let printed = ["free-link", "katsuragi-durian", "s1-tables", "s1-tables-vertical"];
     let mut all = [&real[..], &printed[..]].concat();
     all.sort_unstable();

@@ -73,7 +73,7 @@ fn a_new_set_is_drawn_compared_and_not_written_over() {
     assert!(error < 1e-3, "{found}");
     let report = here.path().join("runs/my-drops-compare/report.html");
     let report = fs::read_to_string(report).expect("a report");
-    assert!(report.contains("Measured paths and velocities"), "trajectories are drawn");
+    assert!(report.contains("Measured along the path"), "trajectories are drawn");
 }
 
 #[test]

@@ -14,6 +14,7 @@ mod export;
 mod failures;
 mod faults;
 mod folders;
+mod forces;
 mod imports;
 mod kill;
 mod log;

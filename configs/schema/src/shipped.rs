@@ -89,6 +89,11 @@ pub static SHIPPED: &[Shipped] = &[
         text: include_str!("../../poncelet.toml"),
     },
     Shipped {
+        name: "bekker",
+        summary: "A plate pushed slowly into soil by Bekker's law, with example values.",
+        text: include_str!("../../bekker.toml"),
+    },
+    Shipped {
         name: "link",
         summary: "A free link into sand by the resistive force on slender rods.",
         text: include_str!("../../link.toml"),

@@ -124,9 +124,9 @@ fn observed(
     let kinds = layout.kinds();
     ObservedCondition {
         id: condition.id.clone(),
-        reading: reading(set, &layout, condition, &vec![None; layout.times.len()]),
+        reading: reading(set, &layout, condition, [&[], &[]]),
         stated: vec![None; kinds.len()],
-        reach: reach(&kinds, &mean, condition),
+        reach: reach(&layout, &mean, condition),
         order: vec![None; vectors.len()],
         runs: vectors,
         mean,

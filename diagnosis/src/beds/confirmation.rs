@@ -1,7 +1,6 @@
 //! Impacts on fresh beds under conditions that nothing was fitted to: the only number that is quoted as
 //! "the error falls", and the ledgers of both models.
 
-use measurements::Kind;
 use nalgebra::DVector;
 use runner::beds::Record;
 use serde_json::{Value, json};
@@ -11,7 +10,7 @@ use super::error::BedError;
 use super::observables::observables;
 use super::stand::Stand;
 use crate::bench::BenchError;
-use crate::errors::{Errors, Sums};
+use crate::errors::Sums;
 use crate::fit::Fit;
 use crate::held_out::{Fails, HeldOut, LeftOut, NotPredicted, Unit, standard_errors};
 use crate::observed::Observed;
@@ -91,15 +90,8 @@ impl Confirmation {
                 sums.add(&kinds, &observed.mean, error);
             }
         }
-        let unit = match stand.set.kind {
-            Kind::Trajectory => Unit::Position,
-            Kind::Scalar => Unit::Relative,
-        };
-        let pick = |errors: &Errors| match unit {
-            Unit::Position => errors.position,
-            Unit::Relative => errors.relative,
-        };
-        let [before, after, noise_floor] = sums.map(|sums| pick(&sums.errors()));
+        let unit = Unit::of(stand.set.kind);
+        let [before, after, noise_floor] = sums.map(|sums| unit.pick(&sums.errors()));
         let [.., explained] = HeldOut::share(before, after, noise_floor);
         let held_out = HeldOut {
             ratio_at_most: None,

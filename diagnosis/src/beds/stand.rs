@@ -36,6 +36,14 @@ pub enum StandError {
         /// Name of the model.
         model: String,
     },
+    /// Forces over depth, which beds do not answer.
+    #[error(
+        "`{model}` is a bed of grains; forces over depth are compared with resistive models alone"
+    )]
+    Curves {
+        /// Name of the model.
+        model: String,
+    },
     /// Discs before a set in space, or the other way round.
     #[error("`{model}` is a bed in {model_space}, and the set is one in {set_space}")]
     Geometry {
@@ -87,6 +95,9 @@ impl<'a> Stand<'a> {
         let Medium::Grains(medium) = &model.medium else {
             return Err(StandError::NoGrains { model: model.run.name.clone() });
         };
+        if set.kind.curve().is_some() {
+            return Err(StandError::Curves { model: model.run.name.clone() });
+        }
         let of_set = match set.bed.geometry {
             Geometry::Planar => Space::Planar,
             Geometry::Spatial => Space::Spatial,

@@ -33,8 +33,13 @@ impl Foreseen {
             let mean = point.predict(forward.as_ref(), 0).ok()?;
             (mean.len() == layout.len()).then_some((forward, mean))
         };
-        let stop = predict(&Layout { stop_time: true, ..Layout::default() })?.1[0];
-        let layout = layout(bench, &set.conditions[0], stop);
+        let layout = match bench.set.kind.curve() {
+            Some(_) => curve_layout(bench)?,
+            None => {
+                let stop = predict(&Layout { stop_time: true, ..Layout::default() })?.1[0];
+                layout(bench, &set.conditions[0], stop)
+            }
+        };
         let (forward, mean) = predict(&layout)?;
         let observed = ObservedCondition::foreseen(&set, layout, (mean, repeats));
         Some(Self { set, forward, observed })
@@ -87,7 +92,14 @@ fn layout(bench: &Bench<'_>, condition: &Condition, stop: f64) -> Layout {
     let n = PENETRATION_FRAMES;
     let frames = (0..n).map(|frame| last * frame as f64 / (n - 1) as f64);
     let times = flight.into_iter().flatten().copied().chain(frames).collect();
-    Layout { times, along_x: oblique, stop_time: false, final_z, final_x }
+    Layout { times, along_x: oblique, final_z, final_x, ..Layout::default() }
+}
+
+/// A curve as far as any condition of the set has one.
+fn curve_layout(bench: &Bench<'_>) -> Option<Layout> {
+    let layouts = bench.observed.fit.iter().map(|&at| &bench.observed.conditions[at].layout);
+    let end = |one: &&Layout| one.curve.as_ref().and_then(|curve| curve.at.last().copied());
+    layouts.max_by(|a, b| end(a).unwrap_or(0.0).total_cmp(&end(b).unwrap_or(0.0))).cloned()
 }
 
 impl ObservedCondition {
@@ -99,13 +111,12 @@ impl ObservedCondition {
         (mean, repeats): (DVector<f64>, usize),
     ) -> Self {
         let condition = &set.conditions[0];
-        let frames = vec![None; layout.times.len()];
         let kinds: Vec<Observable> = layout.kinds();
         Self {
             id: condition.id.clone(),
-            reading: crate::observed::reading(set, &layout, condition, &frames),
+            reading: crate::observed::reading(set, &layout, condition, [&[], &[]]),
             stated: kinds.iter().map(|kind| crate::observed::stated(&set.stated, *kind)).collect(),
-            reach: crate::observed::reach(&kinds, &mean, condition),
+            reach: crate::observed::reach(&layout, &mean, condition),
             runs: vec![mean.clone(); repeats],
             order: vec![None; repeats],
             layout,

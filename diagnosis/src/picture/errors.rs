@@ -26,7 +26,7 @@ impl Kind {
     fn of(&self, errors: &Errors) -> Option<f64> {
         let error = match self.observable {
             None => errors.relative,
-            Some(kind) => errors.by_kind.iter().find(|(other, _)| *other == kind).map(|(_, e)| *e),
+            Some(kind) => errors.of(kind),
         };
         error.map(|error| self.scale * error)
     }
@@ -64,6 +64,7 @@ fn panels<'a>(found: &'a WhereItFails<'_>) -> Vec<Panel<'a>> {
     let kinds = [
         kind("depth over time (mm)", 1e3, Some(Observable::Depth)),
         kind("range over time (mm)", 1e3, Some(Observable::Range)),
+        kind("force over depth (N)", 1.0, Some(Observable::Force)),
         kind("stopping time (ms)", 1e3, Some(Observable::StopTime)),
         kind("final depth (mm)", 1e3, Some(Observable::FinalDepth)),
         kind("final range (mm)", 1e3, Some(Observable::FinalRange)),

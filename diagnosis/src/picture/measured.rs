@@ -3,6 +3,7 @@
 use measurements::{Condition, Kind, MeasurementSet, Run};
 use plotters::prelude::*;
 
+use super::curves::curves;
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, GREY, Hover, PictureError, colour, fitting, letters, padded, short, svg};
 
@@ -25,7 +26,7 @@ const SCALARS: [Scalar; 3] = [
     ("final range (mm)", 1e3, |run| run.final_x),
 ];
 
-/// Depth over time of every run beside the stated impact speed, a panel per condition; of a set of
+/// Depth over time of every run beside the stated impact speed, or its curve, a panel per condition; of a set of
 /// scalars, every number over the speed.
 ///
 /// # Errors
@@ -34,6 +35,7 @@ pub fn measured(set: &MeasurementSet) -> Result<String, PictureError> {
     match set.kind {
         Kind::Trajectory => paths(set),
         Kind::Scalar => scalars(set),
+        Kind::ForceDepth => curves(set),
     }
 }
 

@@ -1,5 +1,6 @@
-//! Small panels of numbers over time, each with its band of noise.
+//! Small panels of numbers along a path, each with its band of noise.
 
+use measurements::Axis;
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, GREY, Hover, PictureError, fitting, letters, padded, svg};
 use plotters::prelude::*;
@@ -17,16 +18,18 @@ pub(super) struct Track {
     /// Index of the condition in the set.
     condition: usize,
     observable: Observable,
-    /// Places among the residuals, in the order of time.
+    /// Places among the residuals, in the order of time or depth.
     pub(super) places: Vec<usize>,
 }
 
 /// A track with what is drawn of it.
 pub(super) struct Panel {
     pub(super) title: String,
-    /// Time (s) and standard error (m).
+    /// What its numbers lie along, and what they are.
+    pub(super) axes: [Axis; 2],
+    /// Place and standard error (SI).
     pub(super) band: Vec<(f64, f64)>,
-    /// Time (s) and length (m).
+    /// Place and number (SI).
     pub(super) points: Vec<(f64, f64)>,
     /// Likewise, each in a colour.
     pub(super) lines: Vec<(RGBColor, Vec<(f64, f64)>)>,
@@ -35,7 +38,7 @@ pub(super) struct Panel {
 /// The tracks among `residuals`.
 pub(super) fn tracks(residuals: &[Residual]) -> Vec<Track> {
     let mut tracks: Vec<Track> = Vec::new();
-    for (place, one) in residuals.iter().enumerate().filter(|(_, one)| one.time.is_some()) {
+    for (place, one) in residuals.iter().enumerate().filter(|(_, one)| one.place().is_some()) {
         let Residual { condition, observable, .. } = *one;
         let of =
             |track: &&mut Track| (track.condition, track.observable) == (condition, observable);
@@ -51,9 +54,18 @@ impl Track {
     /// What it is and under which condition.
     pub(super) fn title(&self, found: &WhereItFails<'_>) -> String {
         let condition = &found.set.conditions[self.condition];
-        let axis = if self.observable == Observable::Depth { "z" } else { "x" };
+        let axis = match self.observable {
+            Observable::Depth => "z",
+            Observable::Force => "force",
+            _ => "x",
+        };
         let (id, speed, angle) = (&condition.id, condition.speed, condition.angle_deg);
         format!("{axis}, {id}: {speed} m/s, {angle}\u{b0}")
+    }
+
+    /// What its numbers lie along, what they are, and their change along the way.
+    pub(super) fn axes(&self) -> [Axis; 3] {
+        self.observable.axes()
     }
 
     /// Root mean square of the residuals in standard errors.
@@ -63,19 +75,19 @@ impl Track {
         (sum / self.places.len() as f64).sqrt()
     }
 
-    /// Standard errors over time.
+    /// Standard errors along the path.
     pub(super) fn band(&self, residuals: &[Residual]) -> Vec<(f64, f64)> {
-        self.over_time(residuals, |_, one| one.standard_error)
+        self.along(residuals, |_, one| one.standard_error)
     }
 
-    /// What `of` a place is, over time.
-    pub(super) fn over_time(
+    /// What `of` a place is, along the path (SI).
+    pub(super) fn along(
         &self,
         residuals: &[Residual],
         of: impl Fn(usize, &Residual) -> f64,
     ) -> Vec<(f64, f64)> {
         let numbers = self.places.iter().map(|&place| (place, &residuals[place]));
-        numbers.filter_map(|(place, one)| Some((one.time?, of(place, one)))).collect()
+        numbers.filter_map(|(place, one)| Some((one.place()?, of(place, one)))).collect()
     }
 }
 
@@ -104,7 +116,8 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
     let band = panel.band.iter().map(|(t, se)| (*t, TWO_SIDED_95 * se));
     let most =
         numbers.copied().chain(band.clone()).fold(1e-6, |most: f64, (_, y)| most.max(y.abs()));
-    let times = panel.band.iter().map(|(t, _)| 1e3 * t);
+    let [across, up] = panel.axes;
+    let times = panel.band.iter().map(|(t, _)| across.scale * t);
     let (first, last) = (times.clone().fold(0.0, f64::min), times.fold(0.0, f64::max));
     let mut chart = ChartBuilder::on(area)
         .margin_top(24)
@@ -112,11 +125,11 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
         .margin_right(10)
         .x_label_area_size(34)
         .y_label_area_size(46)
-        .build_cartesian_2d(padded(first, last), padded(-1e3 * most, 1e3 * most))?;
+        .build_cartesian_2d(padded(first, last), padded(-up.scale * most, up.scale * most))?;
     let outline: Vec<(f64, f64)> = band
         .clone()
-        .map(|(t, half)| (1e3 * t, 1e3 * half))
-        .chain(band.rev().map(|(t, half)| (1e3 * t, -1e3 * half)))
+        .map(|(t, half)| (across.scale * t, up.scale * half))
+        .chain(band.rev().map(|(t, half)| (across.scale * t, -up.scale * half)))
         .collect();
     chart.draw_series([Polygon::new(outline, GREY.filled())])?;
     chart
@@ -124,30 +137,33 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
         .disable_mesh()
         .x_labels(5)
         .y_labels(5)
-        .x_desc("time (ms)")
-        .y_desc("(mm)")
+        .x_desc(across.label())
+        .y_desc(format!("({})", up.unit))
         .draw()?;
-    let range = [(1e3 * first, 0.0), (1e3 * last, 0.0)];
+    let range = [(first, 0.0), (last, 0.0)];
     chart.draw_series([PathElement::new(range, BLACK.stroke_width(1))])?;
     for (colour, line) in &panel.lines {
-        let line = line.iter().map(|(t, y)| (1e3 * t, 1e3 * y));
+        let line = line.iter().map(|(t, y)| (across.scale * t, up.scale * y));
         chart.draw_series(LineSeries::new(line, colour.stroke_width(2)))?;
     }
-    let points = panel.points.iter().map(|(t, y)| (1e3 * t, 1e3 * y));
+    let points = panel.points.iter().map(|(t, y)| (across.scale * t, up.scale * y));
     chart.draw_series(points.map(|place| Circle::new(place, 2, BLACK.filled())))?;
     chart.draw_series(panel.values().map(|(place, text)| Hover::at(place, text)))?;
     Ok(())
 }
 
 impl Panel {
-    /// Places (ms, mm) with what they say.
+    /// Places (as drawn) with what they say.
     fn values(&self) -> impl Iterator<Item = ((f64, f64), String)> {
         let lines = self.lines.iter().flat_map(|(_, line)| line);
         let noise = |t: f64| self.band.iter().find(|(at, _)| at.to_bits() == t.to_bits());
         lines.chain(&self.points).map(move |&(t, y)| {
-            let (t_ms, y_mm) = (1e3 * t, 1e3 * y);
-            let se = noise(t).map_or(String::new(), |(_, se)| format!(" \u{b1} {:.3}", 1e3 * se));
-            ((t_ms, y_mm), format!("{}\n{t_ms:.1} ms: {y_mm:+.3}{se} mm", self.title))
+            let [across, up] = self.axes;
+            let place = (across.scale * t, up.scale * y);
+            let se =
+                noise(t).map_or(String::new(), |(_, se)| format!(" \u{b1} {:.3}", up.scale * se));
+            let ((x, y), title) = (place, &self.title);
+            (place, format!("{title}\n{x:.1} {}: {y:+.3}{se} {}", across.unit, up.unit))
         })
     }
 }

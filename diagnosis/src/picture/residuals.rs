@@ -29,6 +29,7 @@ pub(crate) fn residuals(found: &WhereItFails<'_>) -> Result<Option<String>, Pict
         .iter()
         .map(|(_, track)| Panel {
             title: track.title(found),
+            axes: [track.axes()[0], track.axes()[1]],
             band: track.band(&first.residuals),
             points: Vec::new(),
             lines: found
@@ -37,7 +38,7 @@ pub(crate) fn residuals(found: &WhereItFails<'_>) -> Result<Option<String>, Pict
                 .enumerate()
                 .map(|(at, model)| {
                     let left = |_: usize, one: &Residual| one.measured - one.predicted;
-                    (colour(at), track.over_time(&model.residuals, left))
+                    (colour(at), track.along(&model.residuals, left))
                 })
                 .collect(),
         })

@@ -8,6 +8,7 @@ use plots::{
 use plotters::prelude::*;
 
 use crate::errors::Errors;
+use crate::held_out::Unit;
 use crate::where_it_fails::WhereItFails;
 
 /// Height (pixels), least width, and least width of a step.
@@ -55,14 +56,10 @@ impl Stairs {
         let (axis, scale) = match found.set.kind {
             Kind::Trajectory => ("positions (mm)", 1e3),
             Kind::Scalar => ("scalars, relative (%)", 1e2),
+            Kind::ForceDepth => ("forces (N)", 1.0),
         };
-        let pick = |errors: &Errors| {
-            let error = match found.set.kind {
-                Kind::Trajectory => errors.position,
-                Kind::Scalar => errors.relative,
-            };
-            error.map(|error| scale * error)
-        };
+        let unit = Unit::of(found.set.kind);
+        let pick = |errors: &Errors| unit.pick(errors).map(|error| scale * error);
         let models = &found.models;
         Self {
             axis,

@@ -39,14 +39,15 @@ pub(crate) fn signatures(found: &WhereItFails<'_>) -> Result<Option<String>, Pic
         .iter()
         .map(|(_, track)| Panel {
             title: track.title(found),
+            axes: [track.axes()[0], track.axes()[1]],
             band: track.band(residuals),
-            points: track.over_time(residuals, |_, one| one.measured - one.predicted),
+            points: track.along(residuals, |_, one| one.measured - one.predicted),
             lines: found
                 .signatures
                 .iter()
                 .enumerate()
                 .map(|(at, signature)| {
-                    (colour(at), track.over_time(residuals, |place, _| signature.change[place]))
+                    (colour(at), track.along(residuals, |place, _| signature.change[place]))
                 })
                 .collect(),
         })

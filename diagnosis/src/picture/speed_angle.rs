@@ -67,8 +67,12 @@ fn panels<'a>(found: &'a WhereItFails<'_>) -> (Vec<Panel<'a>>, usize) {
 }
 
 fn intruder(condition: &Condition) -> String {
-    let (diameter, mass) = (short(1e3 * condition.diameter), short(1e3 * condition.mass));
-    format!("{}, {diameter} mm, {mass} g", condition.shape)
+    let diameter = format!("{}, {} mm", condition.shape, short(1e3 * condition.diameter));
+    // Of a body that is pushed no mass is stated.
+    match condition.mass > 0.0 {
+        true => format!("{diameter}, {} g", short(1e3 * condition.mass)),
+        false => diameter,
+    }
 }
 
 fn draw_panel(area: &Area<'_>, panel: &Panel<'_>, scale: &Scale) -> Drawn {

@@ -1,5 +1,6 @@
-//! Paths and velocities as measured, under what each model predicts.
+//! Paths and velocities, or forces and their slopes, as measured, under what each model predicts.
 
+use measurements::Axis;
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, GREY, Hover, PictureError, colour, fitting, letters, padded, svg};
 use plotters::prelude::*;
@@ -14,13 +15,15 @@ const PANEL: (u32, u32) = (420, 230);
 /// Most tracks.
 const TRACKS: usize = 6;
 
-/// A number over time.
+/// A number over time or depth.
 type Line = Vec<(f64, f64)>;
 
-/// A track as it is drawn: positions on the left, velocities on the right.
+/// A track as it is drawn: its numbers on the left, their changes along the way on the right.
 struct Row {
     title: String,
-    /// Time (ms), and least and greatest position that noise allows (mm).
+    /// Of the way, the numbers and the changes.
+    axes: [Axis; 3],
+    /// Place, and least and greatest number that noise allows, as drawn.
     band: Vec<(f64, f64, f64)>,
     measured: [Line; 2],
     predicted: Vec<[Line; 2]>,
@@ -69,30 +72,36 @@ fn signs(found: &WhereItFails<'_>, shown: usize, all: usize) -> Vec<(Sign, Strin
 impl Row {
     fn of(track: &Track, found: &WhereItFails<'_>) -> Self {
         let measured = &found.models[0].residuals;
-        let path = track.over_time(measured, |_, one| one.measured);
+        let path = track.along(measured, |_, one| one.measured);
         let errors = track.band(measured);
+        let axes @ [across, up, change] = track.axes();
         let band = path.iter().zip(errors).map(|(&(t, y), (_, se))| {
             let half = TWO_SIDED_95 * se;
-            (1e3 * t, 1e3 * (y - half), 1e3 * (y + half))
+            (across.scale * t, up.scale * (y - half), up.scale * (y + half))
         });
+        let drawn = |line: Line, up: Axis| -> Line {
+            line.into_iter().map(|(t, y)| (across.scale * t, up.scale * y)).collect()
+        };
         let both = |path: Line| {
-            let velocity = velocity(&path);
-            [path.into_iter().map(|(t, y)| (1e3 * t, 1e3 * y)).collect(), velocity]
+            let slopes = slopes(&path);
+            [drawn(path, up), drawn(slopes, change)]
         };
         let models = found.models.iter();
         Self {
             title: track.title(found),
+            axes,
             band: band.collect(),
             predicted: models
-                .map(|model| both(track.over_time(&model.residuals, |_, one| one.predicted)))
+                .map(|model| both(track.along(&model.residuals, |_, one| one.predicted)))
                 .collect(),
             measured: both(path),
         }
     }
 
-    /// Positions (0) or velocities (1).
+    /// The numbers (0) or their changes (1).
     fn draw(&self, area: &Area<'_>, side: usize) -> Drawn {
-        let unit = ["mm", "m/s"][side];
+        let [across, up] = [self.axes[0], self.axes[1 + side]];
+        let unit = up.unit;
         let title = fitting(&self.title, PANEL.0 - 60);
         area.draw(&Text::new(title, (54, 5), letters()))?;
         let lines = self.predicted.iter().map(|both| &both[side]);
@@ -120,8 +129,8 @@ impl Row {
             .disable_mesh()
             .x_labels(6)
             .y_labels(5)
-            .x_desc("time (ms)")
-            .y_desc(["position (mm)", "velocity (m/s)"][side])
+            .x_desc(across.label())
+            .y_desc(up.label())
             .draw()?;
         for (at, both) in self.predicted.iter().enumerate() {
             let line = both[side].iter().copied();
@@ -130,7 +139,8 @@ impl Row {
         let measured = self.measured[side].iter();
         chart.draw_series(measured.clone().map(|&at| Circle::new(at, 2, BLACK.filled())))?;
         chart.draw_series(measured.enumerate().map(|(place, &(t, y))| {
-            let mut text = format!("{}\n{t:.1} ms: measured {y:.3} {unit}", self.title);
+            let mut text =
+                format!("{}\n{t:.1} {}: measured {y:.3} {unit}", self.title, across.unit);
             for both in &self.predicted {
                 if let Some((_, predicted)) = both[side].get(place) {
                     text.push_str(&format!("\npredicted {predicted:.3} {unit}"));
@@ -142,13 +152,13 @@ impl Row {
     }
 }
 
-/// Velocity (m/s) at times (ms) halfway between those (s) of a path (m).
-fn velocity(path: &[(f64, f64)]) -> Line {
+/// Change along the way, halfway between the places of a path.
+fn slopes(path: &[(f64, f64)]) -> Line {
     let pairs = path.windows(2).filter(|pair| pair[1].0 > pair[0].0);
     pairs
         .map(|pair| {
             let [(t0, y0), (t1, y1)] = [pair[0], pair[1]];
-            (500.0 * (t0 + t1), (y1 - y0) / (t1 - t0))
+            (0.5 * (t0 + t1), (y1 - y0) / (t1 - t0))
         })
         .collect()
 }
@@ -160,10 +170,11 @@ mod tests {
     #[test]
     fn a_fall_at_one_metre_per_second_has_that_velocity_between_its_readings() {
         let path = [(0.0, 0.0), (0.01, 0.01), (0.01, 0.01), (0.03, 0.03)];
-        let velocities = velocity(&path);
+        let velocities = slopes(&path);
         let times: Vec<f64> = velocities.iter().map(|(t, _)| *t).collect();
         // Halfway, and no reading that stands twice makes an infinite velocity.
-        assert_eq!(times, [5.0, 20.0]);
+        assert!((times[0] - 0.005).abs() < 1e-15 && (times[1] - 0.02).abs() < 1e-15);
+        assert_eq!(times.len(), 2);
         assert!(velocities.iter().all(|(_, v)| (v - 1.0).abs() < 1e-12), "rounding of a division");
     }
 }

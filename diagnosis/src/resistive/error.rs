@@ -21,6 +21,14 @@ pub enum ForwardError {
         /// What there is.
         known: Vec<&'static str>,
     },
+    /// A body that no drive pushes.
+    #[error("condition {condition}: a {shape} cannot be pushed: a drive moves a body of one part")]
+    NotPushed {
+        /// Id of the condition.
+        condition: String,
+        /// Name of the shape.
+        shape: &'static str,
+    },
     /// A size of a shape is not given.
     #[error("condition {condition}: a {shape} needs `{key}`, which the set does not give")]
     MissingSize {

@@ -5,12 +5,14 @@ mod candidates;
 mod error;
 mod needs;
 mod prepared;
+mod pushed;
 mod scatter;
+mod slow;
 
 use configs::{FreeParameter, Medium, Model};
 use std::sync::Arc;
 
-use measurements::{MeasurementSet, ParameterPrior};
+use measurements::{Kind, MeasurementSet, ParameterPrior};
 use resistive::{Effect, RESISTANCE_LAWS};
 
 use crate::apparatus::{Apparatus, is_looked_for};
@@ -100,16 +102,19 @@ impl ResistiveForward {
             scattering,
             apparatus: Apparatus::default(),
         };
-        forward.drop_idle();
+        forward.drop_idle(set.kind);
         forward.parameters.extend_from_slice(apparatus.parameters());
         forward.apparatus = apparatus;
         forward.parameters.extend(forms());
+        for index in slow::unseen(&forward, set) {
+            forward.candidates[index].not_testable = Some(slow::WHY.to_owned());
+        }
         Ok(forward)
     }
 
     /// Sets those parameters aside that no number of the set depends on: the horizontal coefficients
-    /// before vertical impacts, the nodes of a table beyond its angles.
-    fn drop_idle(&mut self) {
+    /// before vertical impacts, the nodes of a table beyond its angles; before slow pushes, what no force shows.
+    fn drop_idle(&mut self, kind: Kind) {
         let still = Scatter::default();
         let all = |values: &[f64]| -> Vec<Option<Vec<f64>>> {
             let at = Request { parameters: values, effects: &[], scatter: &still };
@@ -119,7 +124,14 @@ impl ResistiveForward {
         let matters = |index: usize| {
             let mut values = self.start.clone();
             values[index] += PROBE * if values[index] == 0.0 { 1.0 } else { values[index] };
-            all(&values) != before
+            let after = all(&values);
+            match kind {
+                Kind::ForceDepth => after.iter().zip(&before).any(|(after, before)| {
+                    let both = after.as_ref().zip(before.as_ref());
+                    both.is_some_and(|(a, b)| slow::differs(b, a, PROBE * slow::SEEN))
+                }),
+                Kind::Trajectory | Kind::Scalar => after != before,
+            }
         };
         let (active, idle): (Vec<usize>, Vec<usize>) =
             (0..self.start.len()).partition(|&index| matters(index));

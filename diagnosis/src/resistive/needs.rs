@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use resistive::Needs;
 
-use measurements::{Condition, MeasurementSet, Role, Run};
+use measurements::{Condition, Kind, MeasurementSet, Role, Run};
 
 /// Impact speeds whose largest is so many times the smallest show how a force depends on speed.
 const SPEED_RANGE: f64 = 3.0;
@@ -84,7 +84,9 @@ impl Data<'_> {
     /// Where the runs end, in diameters: the final depth, or the deepest frame.
     fn final_depths(&self) -> impl Iterator<Item = f64> {
         self.runs().filter_map(|(condition, run)| {
-            let deepest = || run.frames.iter().map(|frame| frame.z).reduce(f64::max);
+            let of_forces = run.samples.iter().filter(|_| self.set.kind == Kind::ForceDepth);
+            let depths = run.frames.iter().map(|frame| frame.z);
+            let deepest = || depths.chain(of_forces.map(|sample| sample.at)).reduce(f64::max);
             Some(run.final_z.or_else(deepest)? / condition.diameter)
         })
     }
@@ -98,7 +100,7 @@ fn is_vertical(condition: &Condition) -> bool {
 mod tests {
     use super::*;
     use measurements::{
-        Bed, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, StatedBed, StatedError,
+        Bed, Feasible, FinalDefinition, Frame, Geometry, Instrument, StatedBed, StatedError,
         StopDefinition,
     };
 
@@ -135,6 +137,7 @@ mod tests {
             final_z,
             final_x: None,
             frames,
+            samples: Vec::new(),
         }
     }
 

@@ -8,14 +8,18 @@ use configs::{FreeParameter, ResistiveMedium};
 use engine::math::Vec3;
 use engine::params::{Default, ParamTable};
 use intruders::{Casting, ShapeEntry};
-use measurements::{Condition, FinalDefinition, Geometry, MeasurementSet, Role, StopDefinition};
+use measurements::{
+    Condition, FinalDefinition, Geometry, Kind, MeasurementSet, Role, StopDefinition,
+};
 use resistive::{Coefficients, Effect, Expression, ResistanceEntry};
 use resistive::{
-    Effort, Ending, Impact, ResistanceLaw, Space, State, Surroundings, Tolerance, Trajectory,
+    Driven, Effort, Ending, Impact, ResistanceLaw, Space, State, Surroundings, Tolerance,
+    Trajectory,
 };
 
 use super::bent::Bent;
 use super::error::ForwardError;
+use super::pushed;
 use super::scatter::PathScatter;
 use crate::forward::{Bend, Scatter};
 use crate::observable::Layout;
@@ -39,6 +43,8 @@ pub(super) struct Prepared {
     id: String,
     recent: Mutex<VecDeque<(Inputs, Arc<Seen>)>>,
     layout: Layout,
+    /// Whether a drive keeps its velocity.
+    is_pushed: bool,
     stop: StopDefinition,
     last: FinalDefinition,
     shape: &'static ShapeEntry,
@@ -69,6 +75,8 @@ struct Seen {
     stop: f64,
     /// Depth and range (m) in the end.
     last: (f64, f64),
+    /// Readings of the curve of the layout (SI).
+    curve: Vec<f64>,
     laws: Vec<Box<dyn ResistanceLaw>>,
 }
 
@@ -233,6 +241,11 @@ impl Prepared {
             let condition = condition.id.clone();
             return Err(ForwardError::WrongSpace { condition, shape: shape.name, space: name });
         }
+        let is_pushed = set.kind == Kind::ForceDepth;
+        if is_pushed && shape.links.is_some() {
+            let condition = condition.id.clone();
+            return Err(ForwardError::NotPushed { condition, shape: shape.name });
+        }
         let angle = condition.angle_deg.to_radians();
         let bed = Surroundings {
             bulk_density: set.bed.bulk_density.unwrap_or(medium.bulk_density),
@@ -245,6 +258,7 @@ impl Prepared {
             id: condition.id.clone(),
             recent: Mutex::new(VecDeque::with_capacity(KEPT + 1)),
             layout: layout.clone(),
+            is_pushed,
             stop: set.stop,
             last: set.last,
             shape,
@@ -272,7 +286,11 @@ impl Prepared {
         scatter: &Scatter,
         scattering: &[&str],
     ) -> Result<Vec<f64>, String> {
-        let inputs = self.law.inputs(parameters, added, scatter);
+        let mut inputs = self.law.inputs(parameters, added, scatter);
+        if self.is_pushed {
+            // The depth at which a force is read hangs on these.
+            (inputs.scatter.level, inputs.scatter.scale) = (scatter.level, scatter.scale);
+        }
         // A poisoned lock holds nothing worse than fewer predictions.
         let recent = || self.recent.lock().unwrap_or_else(PoisonError::into_inner);
         let known = recent().iter().find(|(one, _)| *one == inputs).map(|(_, seen)| seen.clone());
@@ -299,6 +317,7 @@ impl Prepared {
         if self.layout.along_x {
             observables.extend(frames.iter().map(|(_, range)| *range));
         }
+        observables.extend(&seen.curve);
         let (depth, range) = read(&seen.last);
         let scalars = [
             (self.layout.stop_time, seen.stop),
@@ -321,6 +340,12 @@ impl Prepared {
     ) -> Result<Seen, String> {
         let laws = self.law.laws(parameters, added, scatter, scattering);
         let impact = self.impact(laws, scatter);
+        if self.is_pushed {
+            let depths = self.layout.curve.as_ref().map_or(&[][..], |curve| &curve.at);
+            let curve = pushed::forces(&impact, depths, scatter)?;
+            let (stop, last, laws) = (0.0, (0.0, 0.0), impact.into_laws());
+            return Ok(Seen { frames: Vec::new(), stop, last, curve, laws });
+        }
         let times: Vec<f64> = self.layout.times.iter().map(|time| time + scatter.clock).collect();
         let (before, after) = split(&times);
         let mut flight = impact.flight(&before).map_err(|error| error.to_string())?;
@@ -339,6 +364,7 @@ impl Prepared {
             frames: flight.iter().chain(seen.states()).map(place).collect(),
             stop: self.stop_time(&impact, &ending) - scatter.clock,
             last,
+            curve: Vec::new(),
             laws: impact.into_laws(),
         })
     }
@@ -372,7 +398,11 @@ impl Prepared {
             velocity: Vec3::new(speed * cosine, 0.0, -speed * sine),
             spin: self.spin,
         });
-        Impact::new(made.assembly, laws, self.bed, made.start)
+        let assembly = match self.is_pushed {
+            true => Box::new(Driven::new(made.assembly)),
+            false => made.assembly,
+        };
+        Impact::new(assembly, laws, self.bed, made.start)
             .with_tolerance(TOLERANCE)
             .with_effort(EFFORT)
     }
@@ -382,7 +412,11 @@ impl Prepared {
 pub(super) fn extent(set: &MeasurementSet) -> [f64; 2] {
     let is_seen = |condition: &&Condition| condition.role == Role::Fit;
     let depths = set.runs.iter().filter(|run| is_seen(&&set.conditions[run.condition]));
-    let depths = depths.flat_map(|run| run.frames.iter().map(|frame| frame.z).chain(run.final_z));
+    let depths = depths.flat_map(|run| {
+        let of_forces = run.samples.iter().filter(|_| set.kind == Kind::ForceDepth);
+        let frames = run.frames.iter().map(|frame| frame.z);
+        frames.chain(run.final_z).chain(of_forces.map(|sample| sample.at))
+    });
     let seen = || set.conditions.iter().filter(is_seen);
     let widest = seen().map(|condition| condition.diameter).fold(f64::MIN_POSITIVE, f64::max);
     let speed = seen().map(|condition| condition.speed).fold(f64::MIN_POSITIVE, f64::max);

@@ -44,6 +44,9 @@ struct ResidualRow<'a> {
     standard_error: f64,
     #[serde(serialize_with = "inert")]
     model: &'a str,
+    // A column of sets of forces alone: all of their numbers are at a depth.
+    #[serde(serialize_with = "six_digits_or_null", skip_serializing_if = "Option::is_none")]
+    depth_m: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -61,6 +64,8 @@ struct SignatureRow<'a> {
     effect: &'a str,
     #[serde(serialize_with = "six_digits")]
     signature: f64,
+    #[serde(serialize_with = "six_digits_or_null", skip_serializing_if = "Option::is_none")]
+    depth_m: Option<f64>,
 }
 
 /// Force errors by model, condition and depth.
@@ -98,6 +103,7 @@ pub(super) fn residuals(found: &WhereItFails<'_>) -> Result<String, csv::Error> 
             predicted: one.predicted,
             standard_error: one.standard_error,
             model: &model.model,
+            depth_m: one.depth,
         })
     }))
 }
@@ -116,6 +122,7 @@ pub(super) fn signatures(found: &WhereItFails<'_>) -> Result<Option<String>, csv
             standard_error: one.standard_error,
             effect: &signature.effect,
             signature: *change,
+            depth_m: one.depth,
         })
     });
     table(rows).map(Some)

@@ -191,6 +191,7 @@ impl Laboratory {
             final_z: Some(rest[0] + level + self.camera * normal(random)),
             final_x: (angle < 90.0).then_some(rest[1]),
             frames,
+            samples: Vec::new(),
         }
     }
 

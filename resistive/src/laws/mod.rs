@@ -5,6 +5,7 @@ mod added_mass;
 mod air_drag;
 mod anisotropic_drag;
 mod anisotropic_friction;
+mod bekker;
 mod bottom_wall;
 mod buoyancy;
 mod camera_scale;
@@ -48,6 +49,7 @@ pub static RESISTANCE_LAWS: &[&ResistanceEntry] = &[
     &two_term_vector::ENTRY,
     &two_term_components::ENTRY,
     &poncelet::ENTRY,
+    &bekker::ENTRY,
     &link::ENTRY,
     &viscous_drag::ENTRY,
     &yield_stress::ENTRY,

@@ -72,6 +72,7 @@ fn set(conditions: Vec<Condition>) -> MeasurementSet {
         final_z: Some(depth),
         final_x: None,
         frames: vec![Frame { t: -0.02, z: -0.03, x: 0.0, sigma: None }],
+        samples: Vec::new(),
     };
     let depth = |one: &Condition| one.diameter * if one.speed > 2.5 { 3.0 } else { 1.0 };
     let runs = conditions.iter().enumerate().map(|(index, one)| followed(index, depth(one)));
@@ -112,6 +113,7 @@ fn forward(set: &MeasurementSet) -> ResistiveForward {
     let layout = Layout {
         times: vec![-0.04, -0.02, 0.0, 0.005, 0.01, 0.02, 0.03, 0.05, 0.08],
         along_x: true,
+        curve: None,
         stop_time: true,
         final_z: true,
         final_x: true,

@@ -2,6 +2,7 @@
 
 mod closed_forms;
 mod effects;
+mod forces;
 mod formulas;
 #[path = "../../examples/late_drag/effect.rs"]
 mod late_drag;

@@ -66,6 +66,7 @@ fn empty_set() -> MeasurementSet {
             final_z: Some(0.1),
             final_x: (conditions[condition].angle_deg < 90.0).then_some(0.1),
             frames: Vec::new(),
+            samples: Vec::new(),
         }
     };
     MeasurementSet {

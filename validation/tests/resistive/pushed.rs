@@ -61,6 +61,10 @@ fn a_plate_feels_drag_and_a_friction_linear_in_depth_and_the_drive_does_their_wo
     assert!(seen.len() > 30);
     for [depth, found] in &seen {
         assert!((found / force(*depth) - 1.0).abs() < ROUND_OFF, "{depth} m: {found} N");
+        // At the touch itself the body is not in the bed yet.
+        let known = plate.resistance_at(depth.max(1e-12)).expect("a force");
+        let error = (known - force(*depth)).abs();
+        assert!(error < ROUND_OFF * force(DEPTH), "{depth} m: {known} N without integration");
     }
     let weight = 0.1 * BED.gravity;
     let against = 0.5 * (force(0.0) + force(DEPTH)) * DEPTH;
@@ -80,6 +84,8 @@ fn a_cone_sets_the_medium_in_motion_at_the_rate_of_its_section() {
         let section = if *depth < height { PI * depth * depth } else { 0.0 };
         let expected = 0.7 * BED.bulk_density * section * SPEED * SPEED;
         assert!((found - expected).abs() < ROUND_OFF * 0.1, "{depth} m: {found} N");
+        let known = cone.resistance_at(*depth).expect("a force");
+        assert!((known - expected).abs() < ROUND_OFF * 0.1, "{depth} m: {known} N");
     }
     // Half of the work on the medium is held in its motion, half was lost in getting it there.
     let volume = PI / 3.0 * height.powi(3);

@@ -155,6 +155,7 @@ impl Laboratory {
             final_z: Some(final_z),
             final_x: (setting.angle < 90.0).then_some(final_x),
             frames,
+            samples: Vec::new(),
         }
     }
 

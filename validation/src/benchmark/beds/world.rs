@@ -203,6 +203,7 @@ fn seen(
         final_z: Some(deepest),
         final_x: None,
         frames: seen.collect(),
+        samples: Vec::new(),
     }
 }
 

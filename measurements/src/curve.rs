@@ -1,0 +1,61 @@
+//! Readings along one axis that are no positions, such as a force over depth.
+
+use super::columns::ColumnSpec;
+use super::{Instrument, Kind, MeasurementSet};
+
+/// A kind of set whose runs are curves.
+pub struct Curve {
+    /// The kind.
+    pub kind: Kind,
+    /// As `measurement.toml` writes it.
+    pub word: &'static str,
+    /// Its runs in words.
+    pub plural: &'static str,
+    /// What of a condition was measured, as a function.
+    pub function: &'static str,
+    /// What the readings lie along.
+    pub along: Axis,
+    /// What is read.
+    pub value: Axis,
+    /// Key of its tables below `[files]`.
+    pub(super) files: &'static str,
+    /// Columns of a table with a column of runs, and of one of a single run.
+    pub(super) columns: [&'static [ColumnSpec; 4]; 2],
+    /// Key of the error of one reading, with its unit.
+    pub sigma_key: &'static str,
+    /// What the set states of it.
+    pub(super) sigma: fn(&Instrument) -> Option<f64>,
+}
+
+/// An axis of a drawing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axis {
+    /// In words.
+    pub name: &'static str,
+    /// The unit of the drawing.
+    pub unit: &'static str,
+    /// How many of that unit are one of SI.
+    pub scale: f64,
+}
+
+impl Axis {
+    /// As it stands beside a drawing.
+    #[must_use]
+    pub fn label(&self) -> String {
+        format!("{} ({})", self.name, self.unit)
+    }
+}
+
+impl Curve {
+    /// What `set` states of the error of one reading (SI).
+    #[must_use]
+    pub fn stated_sigma(&self, set: &MeasurementSet) -> Option<f64> {
+        (self.sigma)(&set.instrument)
+    }
+
+    /// Whether `set` states the error of any reading.
+    pub(super) fn has_stated_errors(&self, set: &MeasurementSet) -> bool {
+        let mut samples = set.runs.iter().flat_map(|run| &run.samples);
+        self.stated_sigma(set).is_some() || samples.any(|sample| sample.sigma.is_some())
+    }
+}

@@ -1,0 +1,32 @@
+//! The kinds of curves that a set may hold.
+
+use super::Kind;
+use super::curve::Curve;
+use super::force_depth;
+
+/// Every kind; a line here makes one known.
+static CURVES: [&Curve; 1] = [&force_depth::CURVE];
+
+impl Kind {
+    /// What is known of the kind, if its runs are curves.
+    #[must_use]
+    pub fn curve(self) -> Option<&'static Curve> {
+        CURVES.into_iter().find(|curve| curve.kind == self)
+    }
+
+    /// Whether runs have readings along their way.
+    #[must_use]
+    pub fn has_readings(self) -> bool {
+        self != Self::Scalar
+    }
+
+    /// The words for all kinds.
+    pub(super) fn words() -> Vec<&'static str> {
+        ["trajectory", "scalar"].into_iter().chain(CURVES.map(|curve| curve.word)).collect()
+    }
+
+    /// The kind that `word` is of, of curves.
+    pub(super) fn of_curve(word: &str) -> Option<Self> {
+        CURVES.into_iter().find(|curve| curve.word == word).map(|curve| curve.kind)
+    }
+}

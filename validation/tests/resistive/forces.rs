@@ -1,0 +1,231 @@
+//! Plates that are pushed into a medium of a known law: the force over depth names what is hidden, and nothing else.
+
+use std::f64::consts::FRAC_PI_2;
+
+use configs::{LoadOptions, Model, ModelSource, find_shipped};
+use diagnosis::bench::{Bench, DEFAULT_SEED};
+use diagnosis::diagnose::diagnose;
+use diagnosis::forward::Forward;
+use diagnosis::observed::Observed;
+use diagnosis::resistive::ResistiveForward;
+use diagnosis::verdict::{Diagnosis, Status, Verdict};
+use engine::grains::Space;
+use engine::math::Vec3;
+use engine::params::ParamTable;
+use intruders::Casting;
+use measurements::{
+    Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role,
+    Run, Sample, StatedBed, StatedError, StopDefinition,
+};
+use rand::RngExt;
+use rand_pcg::Pcg64;
+use resistive::{Driven, Impact, Recorder};
+
+use super::rig::{BED, law};
+
+/// Sizes (m) and speeds (m/s) of the plates.
+const DIAMETERS: [f64; 3] = [0.03, 0.045, 0.06];
+const SPEEDS: [f64; 2] = [0.005, 0.02];
+
+/// How deep they are pushed (m), and readings on the way.
+const DEPTH: f64 = 0.05;
+const READINGS: f64 = 100.0;
+
+const REPEATS: usize = 5;
+
+/// Error of a reading (N), scatter of the coefficients from run to run and of the force along the way, relative.
+const READING: f64 = 0.02;
+const COEFFICIENTS: f64 = 0.02;
+const WAY: f64 = 0.03;
+
+/// Nodes of the scatter along the way.
+const NODES: usize = 6;
+
+fn condition(diameter: f64, speed: f64) -> Condition {
+    Condition {
+        id: format!("d{}-v{}", 1e3 * diameter, 1e3 * speed),
+        role: Role::Fit,
+        speed,
+        angle_deg: 90.0,
+        shape: "cylinder".into(),
+        diameter,
+        mass: 0.0,
+        spin: 0.0,
+        packing: None,
+        bed_depth: None,
+        length: None,
+        height: Some(0.01),
+        shaft_diameter: Some(0.01),
+        apex_deg: None,
+        link_angle_deg: None,
+    }
+}
+
+/// What the solver's driven motion reads of a push against drag, friction and the effect `hidden`.
+fn push(condition: &Condition, hidden: Option<(&str, f64)>, random: &mut Pcg64) -> Vec<Sample> {
+    let mut params = ParamTable::new();
+    for (key, value) in
+        [("diameter", condition.diameter), ("height", 0.01), ("shaft_diameter", 0.01)]
+    {
+        params.set(key, value);
+    }
+    let velocity = Vec3::new(0.0, 0.0, -condition.speed);
+    let casting =
+        Casting { params: &params, space: Space::Spatial, mass: 0.1, velocity, spin: 0.0 };
+    let made = (intruders::find("cylinder").expect("a shape").assembly)(&casting);
+    let friction = 18.0 * (1.0 + COEFFICIENTS * normal(random));
+    let mut laws = vec![law("two-term-vector", &[("drag", 1.2), ("friction", friction)])];
+    laws.extend(hidden.map(|(name, q)| law(name, &[("q", q)])));
+    let impact = Impact::new(Box::new(Driven::new(made.assembly)), laws, BED, made.start);
+    let way: Vec<f64> = (0..NODES).map(|_| 1.0 + WAY * normal(random)).collect();
+    let mut samples = Vec::new();
+    let duration = DEPTH / condition.speed;
+    let mut recorder = Recorder::new(&impact, duration / READINGS, |sample| {
+        let (part, force) = (&sample.parts[0], sample.parts[0].dynamic + sample.parts[0].friction);
+        samples.push((part.part.immersion.depth, force.z));
+    });
+    impact.run(duration, &mut recorder).expect("a push");
+    drop(recorder);
+    let read = |(at, force): (f64, f64)| {
+        let place = (at / DEPTH).clamp(0.0, 1.0) * (NODES - 1) as f64;
+        let (below, share) = ((place as usize).min(NODES - 2), place.fract());
+        let share = if place as usize > below { 1.0 } else { share };
+        let factor = (1.0 - share) * way[below] + share * way[below + 1];
+        Sample { at, value: force * factor + READING * normal(random), sigma: None }
+    };
+    samples.into_iter().map(read).collect()
+}
+
+/// A normal number (Box & Muller).
+fn normal(random: &mut Pcg64) -> f64 {
+    let [a, b] = [(); 2].map(|()| random.random::<f64>());
+    (-2.0 * libm::log(1.0 - a)).sqrt() * libm::cos(4.0 * FRAC_PI_2 * b)
+}
+
+fn measured(hidden: Option<(&str, f64)>, seed: u64) -> MeasurementSet {
+    let mut random = Pcg64::new(u128::from(seed), 7);
+    let conditions: Vec<Condition> = DIAMETERS
+        .into_iter()
+        .flat_map(|diameter| SPEEDS.map(|speed| condition(diameter, speed)))
+        .collect();
+    let places = (0..conditions.len()).flat_map(|at| (0..REPEATS).map(move |repeat| (at, repeat)));
+    let runs = places.map(|(at, repeat)| Run {
+        name: format!("{at}-{repeat}"),
+        condition: at,
+        repeat: Some(repeat as i64),
+        order: None,
+        session: None,
+        stop_time: None,
+        final_z: None,
+        final_x: None,
+        frames: Vec::new(),
+        samples: push(&conditions[at], hidden, &mut random),
+    });
+    let runs = runs.collect();
+    MeasurementSet {
+        id: "plates".into(),
+        source: None,
+        kind: Kind::ForceDepth,
+        instrument: Instrument {
+            force_sigma: Some(READING),
+            level_sigma: Some(1e-4),
+            zero_sigma: Some(2e-4),
+            ..Instrument::default()
+        },
+        bed: Bed {
+            geometry: Geometry::Spatial,
+            bulk_density: Some(BED.bulk_density),
+            gravity: BED.gravity,
+            grain_diameter: None,
+            stated: StatedBed::default(),
+        },
+        baseline: None,
+        stated: StatedError::default(),
+        stop: StopDefinition::ComponentZero,
+        last: FinalDefinition::Resting,
+        feasible: Feasible::default(),
+        priors: Vec::new(),
+        conditions,
+        runs,
+        keep: Vec::new(),
+        notes: Vec::new(),
+    }
+}
+
+fn before(set: &MeasurementSet, observed: &Observed) -> ResistiveForward {
+    let shipped = find_shipped("two-term-vector").expect("a shipped model");
+    let source = ModelSource::Text {
+        name: "two-term-vector.toml".to_owned(),
+        text: shipped.text.to_owned(),
+        folder: ".".into(),
+    };
+    let model = Model::load(source, &LoadOptions::default()).expect("a model").model;
+    ResistiveForward::new(&model, set, &observed.layouts()).expect("a model for plates")
+}
+
+fn diagnosed(set: &MeasurementSet) -> Diagnosis {
+    let observed = Observed::of(set);
+    let forward = before(set, &observed);
+    diagnose(&Bench { set, observed: &observed, forward: &forward }, DEFAULT_SEED)
+        .expect("forces are finite")
+}
+
+#[test]
+fn a_hidden_cohesion_is_named_by_forces_with_its_amplitude() {
+    let hidden = 1.5;
+    let found = diagnosed(&measured(Some(("yield-stress", hidden)), 1));
+    assert_eq!(found.verdict, Verdict::Supported, "{:?}", found.unexplained);
+    assert_eq!(found.effects, ["yield-stress"]);
+    let effect = found.ranking.iter().find(|one| one.id == "yield-stress").expect("it is ranked");
+    let (q, se) = (effect.q.expect("an amplitude"), effect.se.expect("an error"));
+    // Four standard errors: chance takes one in fifteen thousand.
+    assert!((q - hidden).abs() < 4.0 * se && se < 0.3 * hidden, "{q} ± {se}");
+}
+
+#[test]
+fn a_hidden_power_of_depth_is_named_by_forces() {
+    let found = diagnosed(&measured(Some(("depth-exponent", 0.3)), 2));
+    assert_eq!(found.verdict, Verdict::Supported, "{:?}", found.unexplained);
+    assert_eq!(found.effects, ["depth-exponent"]);
+}
+
+#[test]
+fn forces_of_the_model_itself_show_nothing() {
+    let named = (0..6)
+        .filter(|seed| {
+            let found = diagnosed(&measured(None, 10 + seed));
+            assert!(found.ranking.iter().any(|one| one.status == Status::Ranked));
+            found.verdict != Verdict::NothingDetected
+        })
+        .count();
+    // Each set is rejected with a probability of 2 % at most: two of six happen once in two hundred.
+    assert!(named <= 1, "{named} of 6");
+}
+
+#[test]
+fn what_a_slow_push_cannot_show_is_not_tested() {
+    let set = measured(None, 1);
+    let observed = Observed::of(&set);
+    let forward = before(&set, &observed);
+    // Of 20 mm/s the drag is a hundred-thousandth of the force.
+    assert_eq!(forward.idle(), ["resistance.drag"]);
+    let candidates = forward.candidates();
+    let is_tested = |id: &str| {
+        let candidate = candidates.iter().find(|one| one.id == id).expect("it is listed");
+        candidate.not_testable.is_none()
+    };
+    for (id, expected) in [("yield-stress", true), ("depth-exponent", true), ("added-mass", false)]
+    {
+        assert_eq!(is_tested(id), expected, "{id}");
+    }
+}
+
+#[test]
+fn a_set_of_forces_that_is_written_is_read_back() {
+    let set = measured(None, 3);
+    let folder = tempfile::tempdir().expect("a folder");
+    set.write(folder.path()).expect("files");
+    let loaded = MeasurementSet::load(folder.path()).expect("a set");
+    assert!(loaded.contradictions.is_empty(), "{:?}", loaded.contradictions);
+    assert_eq!(MeasurementSet { notes: Vec::new(), ..loaded.set }, set);
+}
