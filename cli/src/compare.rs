@@ -126,10 +126,11 @@ pub(crate) fn run(args: &Args) -> CommandResult {
 const MOST_NUMBERS: usize = 24;
 
 /// An error of a table: its key, its heading, and what it is multiplied with.
-const ERRORS: [(&str, &str, f64); 7] = [
+const ERRORS: [(&str, &str, f64); 8] = [
     ("z_m", "z (mm)", 1e3),
     ("x_m", "x (mm)", 1e3),
     ("force_N", "force (N)", 1.0),
+    ("acceleration_m_s2", "acceleration (m/s²)", 1.0),
     ("stop_time_s", "stop time (ms)", 1e3),
     ("final_z_m", "depth (mm)", 1e3),
     ("final_x_m", "range (mm)", 1e3),

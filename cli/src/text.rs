@@ -12,14 +12,20 @@ pub(crate) fn noise_words(noise: &Value) -> String {
             "from repeats: coefficients {:.1} %, force along the path {:.1} %, readings {}",
             percent("coefficient_sd"),
             percent("path_force_sd"),
-            match noise["force_sigma_N"].as_f64() {
-                Some(force) => format!("{force:.3} N"),
-                None =>
-                    format!("{:.2} mm", 1e3 * noise["position_sigma_m"].as_f64().unwrap_or(0.0)),
-            }
+            reading(noise)
         ),
         Some("stated") => "as stated by the set".to_owned(),
         _ => "not known".to_owned(),
+    }
+}
+
+/// The error of a reading in its own unit.
+fn reading(noise: &Value) -> String {
+    let number = |key: &str| noise[key].as_f64();
+    match (number("force_sigma_N"), number("acceleration_sigma_m_s2")) {
+        (Some(force), _) => format!("{force:.3} N"),
+        (_, Some(acceleration)) => format!("{acceleration:.3} m/s²"),
+        _ => format!("{:.2} mm", 1e3 * number("position_sigma_m").unwrap_or(0.0)),
     }
 }
 

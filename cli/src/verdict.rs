@@ -145,6 +145,7 @@ fn held_out(diagnosis: &Diagnosis) -> String {
         Unit::Position => format!("{:.3} mm", 1e3 * error),
         Unit::Relative => format!("{:.1} %", 1e2 * error),
         Unit::Force => format!("{error:.3} N"),
+        Unit::Acceleration => format!("{error:.3} m/s²"),
     };
     let which = match held_out.conditions {
         LeftOut::Holdout => "held-out conditions",

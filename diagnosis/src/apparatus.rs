@@ -31,6 +31,10 @@ pub mod defaults {
 /// The range of each parameter, in standard deviations of its prior.
 const RANGE: f64 = 20.0;
 
+/// Most that the clock of an accelerometer is off by, in its steps. At contact a reading may jump: a fit that moves the
+/// contact past a reading that it uses does not find back.
+const FELT: f64 = 1.4;
+
 /// Most bodies, and most sessions, that have parameters of their own: each costs a column of every fit.
 const MOST: usize = 64;
 
@@ -69,9 +73,13 @@ impl Apparatus {
             let each = layouts.iter().zip(&set.conditions);
             each.filter(|(_, condition)| condition.role == Role::Fit).map(|(layout, _)| layout)
         };
-        let is_timed = fitted().any(|one| one.stop_time || !one.times.is_empty());
+        let is_felt = set.kind == Kind::Acceleration;
+        let is_timed = fitted().any(|one| one.stop_time || !one.times.is_empty() || is_felt);
         if let Some(sigma) = clock_sigma(set).filter(|_| is_timed) {
             all.add(Fault::Clock, "time-zero", "s", sigma);
+            if let Some(frame) = frame(set).filter(|_| is_felt) {
+                all.confine_last(FELT * frame);
+            }
         }
         let level = instrument.level_sigma.unwrap_or(0.0);
         let grain = 0.5 * set.bed.grain_diameter.unwrap_or(0.0);
@@ -106,6 +114,13 @@ impl Apparatus {
                 prior: Some(Prior { mean: 0.0, sigma }),
                 kind: ParameterKind::Apparatus,
             });
+        }
+    }
+
+    /// Confines the last parameter to this size.
+    fn confine_last(&mut self, size: f64) {
+        if let Some(last) = self.parameters.last_mut() {
+            (last.min, last.max) = (last.min.max(-size), last.max.min(size));
         }
     }
 
@@ -231,18 +246,27 @@ fn clock_sigma(set: &MeasurementSet) -> Option<f64> {
     if set.instrument.time_sigma.is_some() {
         return set.instrument.time_sigma;
     }
+    frame(set).map(|frame| defaults::FRAMES * frame)
+}
+
+/// Time between two readings (s).
+fn frame(set: &MeasurementSet) -> Option<f64> {
     let frame = set.instrument.rate.filter(|rate| *rate > 0.0).map(|rate| 1.0 / rate);
-    let interval = || {
-        let steps = set.runs.iter().flat_map(|run| run.frames.windows(2));
-        let mut steps: Vec<f64> = steps.map(|pair| pair[1].t - pair[0].t).collect();
+    let middle = |mut steps: Vec<f64>| {
         steps.sort_by(f64::total_cmp);
         steps.get(steps.len() / 2).copied()
     };
-    let frame = match set.kind {
-        Kind::Trajectory => frame.or_else(interval),
+    match set.kind {
+        Kind::Trajectory => frame.or_else(|| {
+            let steps = set.runs.iter().flat_map(|run| run.frames.windows(2));
+            middle(steps.map(|pair| pair[1].t - pair[0].t).collect())
+        }),
+        Kind::Acceleration => frame.or_else(|| {
+            let steps = set.runs.iter().flat_map(|run| run.samples.windows(2));
+            middle(steps.map(|pair| pair[1].at - pair[0].at).collect())
+        }),
         Kind::Scalar | Kind::ForceDepth => frame,
-    };
-    frame.map(|frame| defaults::FRAMES * frame)
+    }
 }
 
 fn is_same_body(one: &Condition, other: &Condition) -> bool {

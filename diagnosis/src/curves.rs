@@ -1,12 +1,28 @@
-//! Curves of several runs at common places: forces over depth.
+//! Curves of several runs at common places: forces over depth, accelerations over time.
 
-use measurements::{Curve, MeasurementSet, Run, Sample};
+use measurements::{Condition, Curve, Frame, Kind, MeasurementSet, Run, Sample};
+
+use crate::resampling::{common_grid, depth_and_range};
 
 /// Most places that are compared; neighbours tell the same.
 pub(crate) const PLACES: usize = 24;
 
 /// Error that a reading is credited with where the set states none, over the greatest of the set.
 const UNSTATED: f64 = 1e-3;
+
+/// Most times before contact that are compared, and fewest readings of a run of an accelerometer.
+const FLIGHT: usize = 6;
+const FEWEST: usize = 3;
+
+/// Share of the time to the stop up to which accelerations are compared: at the stop they jump.
+const BEFORE_STOP: f64 = 0.9;
+
+/// Share of the speed at contact that counts as stopped.
+const STOPPED: f64 = 0.05;
+
+/// Readings so many steps beside the contact are left out, and those beyond this share of the range.
+const BESIDE: f64 = 1.5;
+const WITHIN: f64 = 0.99;
 
 /// Readings at the same place to this share of the greatest are one, their mean.
 const SAME: f64 = 1e-9;
@@ -23,9 +39,57 @@ pub(crate) struct CommonCurve {
 }
 
 impl CommonCurve {
+    /// Of `runs` under `condition`, as the kind of `set` has them.
+    pub(crate) fn of(set: &MeasurementSet, condition: &Condition, runs: &[&Run]) -> Self {
+        match set.kind {
+            Kind::Acceleration => Self::over_time(set, condition, runs),
+            _ => Self::over_depth(runs),
+        }
+    }
+
+    /// Of `runs` with an accelerometer, at common times: some before contact, and up to the stop less a tenth of the way
+    /// there. Left out are times at which any run is beyond the range of its accelerometer, and those beside the contact,
+    /// where a reading may jump.
+    fn over_time(set: &MeasurementSet, condition: &Condition, runs: &[&Run]) -> Self {
+        let frame = |one: &Sample| Frame { t: one.at, z: one.value, x: 0.0, sigma: one.sigma };
+        let tracks: Vec<Vec<Frame>> =
+            runs.iter().map(|run| run.samples.iter().map(frame).collect()).collect();
+        if tracks.iter().any(|track| track.len() < FEWEST) {
+            return Self::default();
+        }
+        let each: Vec<&[Frame]> = tracks.iter().map(Vec::as_slice).collect();
+        let grid = common_grid(&each);
+        let values: Vec<Vec<f64>> = each
+            .iter()
+            .map(|track| depth_and_range(track, &grid).into_iter().map(|one| one.0).collect())
+            .collect();
+        let n = values.len() as f64;
+        let mean: Vec<f64> =
+            (0..grid.len()).map(|at| values.iter().map(|run| run[at]).sum::<f64>() / n).collect();
+        let step = grid.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+        let range = set.instrument.acceleration_range.unwrap_or(f64::INFINITY);
+        let is_kept = |at: &usize| {
+            let is_seen = values.iter().all(|run| run[*at].abs() < WITHIN * range);
+            is_seen && grid[*at].abs() > BESIDE * step
+        };
+        let known = (condition.speed, set.bed.gravity);
+        let stop = BEFORE_STOP * stopped(&grid, &mean, known);
+        let (before, after): (Vec<usize>, Vec<usize>) = (0..grid.len())
+            .filter(is_kept)
+            .filter(|&at| grid[at] <= stop)
+            .partition(|&at| grid[at] < 0.0);
+        let kept: Vec<usize> =
+            thinned(&before, FLIGHT).into_iter().chain(thinned(&after, PLACES)).collect();
+        Self {
+            sigma: kept.iter().map(|&at| stated_sigma(runs, grid[at])).collect(),
+            values: values.iter().map(|run| kept.iter().map(|&at| run[at]).collect()).collect(),
+            at: kept.iter().map(|&at| grid[at]).collect(),
+        }
+    }
+
     /// Of `runs`, on the way in: equally spaced over what all of them cover, no denser than their readings, and linear
     /// between these. Readings above the surface, and behind the deepest, are left out.
-    pub(crate) fn of(runs: &[&Run]) -> Self {
+    fn over_depth(runs: &[&Run]) -> Self {
         let ways: Vec<Vec<Sample>> = runs.iter().map(|run| way_in(&run.samples)).collect();
         let end = |of: fn(&[Sample]) -> Option<&Sample>| {
             ways.iter().filter_map(move |way| of(way)).map(|sample| sample.at)
@@ -74,14 +138,68 @@ fn interpolated(way: &[Sample], at: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Root mean square of what the runs state for the reading nearest to `place`, if all state it.
-fn stated_sigma(ways: &[Vec<Sample>], place: f64) -> Option<f64> {
-    let mut sum = 0.0;
-    for way in ways {
-        let near = |one: &&Sample| (one.at - place).abs();
-        sum += way.iter().min_by(|a, b| near(a).total_cmp(&near(b)))?.sigma?.powi(2);
+/// What readings of a run are.
+trait Readings {
+    fn readings(&self) -> &[Sample];
+}
+
+impl Readings for Vec<Sample> {
+    fn readings(&self) -> &[Sample] {
+        self
     }
-    Some((sum / ways.len() as f64).sqrt())
+}
+
+impl Readings for &Run {
+    fn readings(&self) -> &[Sample] {
+        &self.samples
+    }
+}
+
+/// Root mean square of what the runs state for the reading nearest to `place`, if all state it.
+fn stated_sigma(runs: &[impl Readings], place: f64) -> Option<f64> {
+    let mut sum = 0.0;
+    for run in runs {
+        let near = |one: &&Sample| (one.at - place).abs();
+        let nearest = run.readings().iter().min_by(|a, b| near(a).total_cmp(&near(b)));
+        sum += nearest?.sigma?.powi(2);
+    }
+    Some((sum / runs.len() as f64).sqrt())
+}
+
+/// `count` of `all`, evenly spaced, first and last among them.
+fn thinned(all: &[usize], count: usize) -> Vec<usize> {
+    let n = all.len();
+    match n <= count {
+        true => all.to_vec(),
+        false => (0..count).map(|k| all[(k * (n - 1) + (count - 1) / 2) / (count - 1)]).collect(),
+    }
+}
+
+/// Downward velocities (m/s) at times `at` (s) from contact on, at a speed (m/s), of what reads `felt` (m/s²) in
+/// gravity (m/s²), and the ways (m).
+fn fallen(at: &[f64], felt: &[f64], (speed, gravity): (f64, f64)) -> Vec<[f64; 3]> {
+    let mut all: Vec<[f64; 3]> = Vec::new();
+    let (mut time, mut velocity, mut way, mut before) = (0.0, speed, 0.0, 0.0);
+    for (&t, &felt) in at.iter().zip(felt).filter(|(t, _)| **t > 0.0) {
+        let step = t - time;
+        let next = velocity + step * (gravity - 0.5 * (before + felt));
+        way += 0.5 * step * (velocity + next);
+        (time, velocity, before) = (t, next, felt);
+        all.push([time, velocity, way]);
+    }
+    all
+}
+
+/// When (s) the velocity falls below 5 % of the speed at contact; infinite where it does not.
+fn stopped(at: &[f64], felt: &[f64], known: (f64, f64)) -> f64 {
+    let path = fallen(at, felt, known);
+    path.iter().find(|[_, v, _]| *v < STOPPED * known.0).map_or(f64::INFINITY, |[t, ..]| *t)
+}
+
+/// How deep (m) a body comes that reads `felt` (m/s²) at the times `at` (s) from a speed and in gravity.
+pub(crate) fn way(at: &[f64], felt: &[f64], known: (f64, f64)) -> f64 {
+    let deepest = fallen(at, felt, known).iter().fold(0.0_f64, |most, [.., way]| most.max(*way));
+    deepest.max(f64::MIN_POSITIVE)
 }
 
 /// Root mean square error of one reading of `curve` (SI).
@@ -124,7 +242,7 @@ mod tests {
         let one =
             run(&[[-1e-3, 0.0], [1e-3, 1.0], [2e-3, 1.5], [2e-3, 2.5], [4e-3, 4.0], [3e-3, 0.5]]);
         let other = run(&[[1e-3, 3.0], [2e-3, 4.0], [5e-3, 7.0]]);
-        let common = CommonCurve::of(&[&one, &other]);
+        let common = CommonCurve::over_depth(&[&one, &other]);
         // Three readings each: from 1 mm to 4 mm in two steps.
         let expected = [[1.0, 2.5, 4.0], [3.0, 4.5, 6.0]];
         for (found, expected) in common.values.iter().zip(expected) {
@@ -136,8 +254,18 @@ mod tests {
     }
 
     #[test]
+    fn a_body_that_feels_a_constant_force_stops_when_and_where_it_must() {
+        let at: Vec<f64> = (0..=200).map(|k| 1e-3 * f64::from(k)).collect();
+        let felt = vec![30.0; at.len()];
+        // 2 m/s less 20 m/s² from 1 ms on, on average: after 95 ms 5 % are left, on a way of 0.1 m to rest.
+        let known = (2.0, 10.0);
+        assert!((stopped(&at, &felt, known) - 0.0958).abs() < 1.5e-3);
+        assert!((way(&at, &felt, known) / 0.1 - 1.0).abs() < 0.03);
+    }
+
+    #[test]
     fn runs_without_a_common_way_give_nothing() {
         let (one, other) = (run(&[[1e-3, 1.0], [2e-3, 2.0]]), run(&[[3e-3, 1.0], [4e-3, 2.0]]));
-        assert!(CommonCurve::of(&[&one, &other]).at.is_empty());
+        assert!(CommonCurve::over_depth(&[&one, &other]).at.is_empty());
     }
 }

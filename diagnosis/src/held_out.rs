@@ -84,6 +84,9 @@ pub enum Unit {
     /// Forces (N).
     #[serde(rename = "N")]
     Force,
+    /// Accelerations (m/s²).
+    #[serde(rename = "m/s^2")]
+    Acceleration,
 }
 
 impl Unit {
@@ -94,6 +97,7 @@ impl Unit {
             Kind::Trajectory => Self::Position,
             Kind::Scalar => Self::Relative,
             Kind::ForceDepth => Self::Force,
+            Kind::Acceleration => Self::Acceleration,
         }
     }
 
@@ -104,6 +108,7 @@ impl Unit {
             Self::Position => errors.position,
             Self::Relative => errors.relative,
             Self::Force => errors.of(Observable::Force),
+            Self::Acceleration => errors.of(Observable::Acceleration),
         }
     }
 }

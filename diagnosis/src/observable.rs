@@ -25,7 +25,8 @@ pub struct Layout {
 pub struct Curve {
     /// What is read.
     pub observable: Observable,
-    /// Where: of a force, the depth below the undisturbed surface as it is read (m).
+    /// Where: of a force, the depth below the undisturbed surface as it is read (m); of an acceleration, the time since
+    /// first contact (s).
     pub at: Vec<f64>,
 }
 
@@ -38,6 +39,8 @@ pub enum Observable {
     Range,
     /// Force of the bed against the motion at a depth (N).
     Force,
+    /// Reading of an accelerometer at a time (m/s²).
+    Acceleration,
     /// Stopping time (s).
     StopTime,
     /// Final depth (m).
@@ -94,8 +97,15 @@ impl Layout {
 
 impl Observable {
     /// Every kind, in the order of a vector.
-    pub const ALL: [Self; 6] =
-        [Self::Depth, Self::Range, Self::Force, Self::StopTime, Self::FinalDepth, Self::FinalRange];
+    pub const ALL: [Self; 7] = [
+        Self::Depth,
+        Self::Range,
+        Self::Force,
+        Self::Acceleration,
+        Self::StopTime,
+        Self::FinalDepth,
+        Self::FinalRange,
+    ];
 
     /// Its key in JSON, with the unit.
     #[must_use]
@@ -104,6 +114,7 @@ impl Observable {
             Self::Depth => "z_m",
             Self::Range => "x_m",
             Self::Force => "force_N",
+            Self::Acceleration => "acceleration_m_s2",
             Self::StopTime => "stop_time_s",
             Self::FinalDepth => "final_z_m",
             Self::FinalRange => "final_x_m",
@@ -113,7 +124,7 @@ impl Observable {
     /// Whether it is a number of the whole impact rather than of a time.
     #[must_use]
     pub fn is_scalar(self) -> bool {
-        !matches!(self, Self::Depth | Self::Range | Self::Force)
+        !matches!(self, Self::Depth | Self::Range | Self::Force | Self::Acceleration)
     }
 
     /// Whether it is a place, whose errors are lengths.
@@ -130,6 +141,11 @@ impl Observable {
             Self::Force => {
                 [axis("depth", "mm", 1e3), axis("force", "N", 1.0), axis("stiffness", "N/mm", 1e-3)]
             }
+            Self::Acceleration => [
+                axis("time", "ms", 1e3),
+                axis("acceleration", "m/s²", 1.0),
+                axis("change", "m/s² per ms", 1e-3),
+            ],
             Self::StopTime => {
                 [axis("time", "ms", 1e3), axis("time", "ms", 1e3), axis("change", "1", 1.0)]
             }
@@ -145,6 +161,7 @@ impl Observable {
         match kind {
             Kind::Trajectory | Kind::Scalar => None,
             Kind::ForceDepth => Some(Self::Force),
+            Kind::Acceleration => Some(Self::Acceleration),
         }
     }
 }

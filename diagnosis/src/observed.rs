@@ -205,7 +205,8 @@ impl ObservedCondition {
             true => frames_of(&runs, condition, share),
             false => CommonFrames::default(),
         };
-        let common_curve = observable.map(|_| CommonCurve::of(&runs)).unwrap_or_default();
+        let common_curve =
+            observable.map(|_| CommonCurve::of(set, condition, &runs)).unwrap_or_default();
         // Beside numbers with a stated error, one that has neither that nor repeats has no weight.
         let unrepeated = set.runs.len() <= set.conditions.len();
         let only_stated = set.kind == Kind::Scalar && unrepeated && set.states_errors();
@@ -252,7 +253,7 @@ impl ObservedCondition {
             id: condition.id.clone(),
             reading: reading(set, &layout, condition, [&frames.sigma, &common_curve.sigma]),
             stated: kinds.iter().map(|kind| stated(&set.stated, *kind)).collect(),
-            reach: reach(&layout, &mean, condition),
+            reach: reach(set, &layout, &mean, condition),
             layout,
             runs: vectors,
             order,
@@ -408,7 +409,15 @@ fn mean(vectors: &[DVector<f64>], len: usize) -> DVector<f64> {
 }
 
 /// Greatest depth (m) among the numbers `mean`, or of forces; a diameter where none is measured.
-pub(crate) fn reach(layout: &Layout, mean: &DVector<f64>, condition: &Condition) -> f64 {
+pub(crate) fn reach(
+    set: &MeasurementSet,
+    layout: &Layout,
+    mean: &DVector<f64>,
+    condition: &Condition,
+) -> f64 {
+    if let (Kind::Acceleration, Some(curve)) = (set.kind, &layout.curve) {
+        return curves::way(&curve.at, mean.as_slice(), (condition.speed, set.bed.gravity));
+    }
     let kinds = layout.kinds();
     let depths = kinds.iter().zip(mean.iter());
     let depths = depths
@@ -446,7 +455,9 @@ pub(crate) fn reading(
         kinds.len(),
         kinds.iter().enumerate().map(|(at, kind)| match kind {
             Observable::Depth | Observable::Range => frame(at % n),
-            Observable::Force => own(places, at - tracks).unwrap_or(of_curve),
+            Observable::Force | Observable::Acceleration => {
+                own(places, at - tracks).unwrap_or(of_curve)
+            }
             Observable::StopTime => time,
             Observable::FinalDepth | Observable::FinalRange => position,
         }),
@@ -459,7 +470,7 @@ pub(crate) fn stated(stated: &StatedError, kind: Observable) -> Option<f64> {
         Observable::StopTime => stated.stop_time,
         Observable::Depth | Observable::FinalDepth => stated.final_z,
         Observable::Range | Observable::FinalRange => stated.final_x,
-        Observable::Force => None,
+        Observable::Force | Observable::Acceleration => None,
     }
 }
 

@@ -14,7 +14,7 @@ pub struct Residual {
     pub condition: usize,
     /// What it is.
     pub observable: Observable,
-    /// When (s), for positions along the path.
+    /// When (s), for positions and accelerations along the path.
     pub time: Option<f64>,
     /// How deep (m), for forces along the path.
     pub depth: Option<f64>,
@@ -91,7 +91,7 @@ pub fn residuals(
             all.push(Residual {
                 condition,
                 observable,
-                time: place.filter(|_| observable.is_position()),
+                time: place.filter(|_| observable != Observable::Force),
                 depth: place.filter(|_| observable == Observable::Force),
                 measured: observed.mean[at],
                 predicted: predicted[at],

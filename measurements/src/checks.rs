@@ -3,7 +3,7 @@
 use super::contradictions::Contradiction;
 use super::document::Document;
 use super::findings::Findings;
-use super::{Kind, MeasurementSet, confounded, magnitudes, pushes, ranges, signs};
+use super::{Kind, MeasurementSet, accelerometers, confounded, magnitudes, pushes, ranges, signs};
 
 impl MeasurementSet {
     /// Whether the set states the error of any number that it compares: of readings, if it has
@@ -20,7 +20,7 @@ impl MeasurementSet {
                 let one = frames.any(|frame| frame.sigma.is_some());
                 self.instrument.position_sigma.is_some() || one
             }
-            Kind::ForceDepth => {
+            Kind::ForceDepth | Kind::Acceleration => {
                 self.kind.curve().is_some_and(|curve| curve.has_stated_errors(self))
             }
         }
@@ -39,6 +39,7 @@ pub(super) fn check(
     }
     let contradictions = match set.kind {
         Kind::ForceDepth => pushes::check(set, &document.places, findings),
+        Kind::Acceleration => accelerometers::check(set, &document.places, findings),
         Kind::Trajectory | Kind::Scalar => {
             signs::check(set, &document.places, findings);
             magnitudes::check(set, &document.places, findings)

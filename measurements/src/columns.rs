@@ -116,7 +116,8 @@ impl ColumnNames {
 }
 
 /// Columns of differences, which have no zero of their own.
-const WITHOUT_ZERO: [&str; 4] = ["sigma_z", "sigma_force", "t_zero", "z_zero"];
+const WITHOUT_ZERO: [&str; 5] =
+    ["sigma_z", "sigma_force", "sigma_acceleration", "t_zero", "z_zero"];
 
 fn renamed(table: TableReader<'_>, spec: &ColumnSpec, span: Option<Span>) -> Option<Renamed> {
     table.header()?;
@@ -125,7 +126,11 @@ fn renamed(table: TableReader<'_>, spec: &ColumnSpec, span: Option<Span>) -> Opt
         Content::Name | Content::Count => (None, 1.0, 0.0),
         Content::Quantity(dimension) => {
             let example = dimension.si_unit();
-            let unit = table.text("unit", None, &example, "the unit of the column")?;
+            let mut unit = table.text("unit", None, &example, "the unit of the column")?;
+            // Where an acceleration stands, no gram is meant.
+            if dimension == Dimension::ACCELERATION && unit.value == "g" {
+                "gn".clone_into(&mut unit.value);
+            }
             check_unit(&table, &unit.value, unit.span, dimension);
             let sign = table.number(&keys::SIGN)?;
             if sign.value.abs() < 1.0 {

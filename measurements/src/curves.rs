@@ -2,10 +2,10 @@
 
 use super::Kind;
 use super::curve::Curve;
-use super::force_depth;
+use super::{acceleration, force_depth};
 
 /// Every kind; a line here makes one known.
-static CURVES: [&Curve; 1] = [&force_depth::CURVE];
+static CURVES: [&Curve; 2] = [&force_depth::CURVE, &acceleration::CURVE];
 
 impl Kind {
     /// What is known of the kind, if its runs are curves.

@@ -177,7 +177,7 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
     let stop = stop.or_else(|| {
         let (stop, word) = match kind? {
             Kind::Scalar => (StopDefinition::ComponentZero, words[0]),
-            Kind::Trajectory => (StopDefinition::SpeedFivePercent, words[1]),
+            Kind::Trajectory | Kind::Acceleration => (StopDefinition::SpeedFivePercent, words[1]),
             // What is pushed does not stop.
             Kind::ForceDepth => return Some(StopDefinition::ComponentZero),
         };
@@ -216,11 +216,15 @@ fn instrument(
         unstated.positive(value, path)
     };
     let is_forces = curve.is_some_and(|curve| curve.kind == Kind::ForceDepth);
+    let is_felt = curve.is_some_and(|curve| curve.kind == Kind::Acceleration);
+    let acceleration = "instrument.acceleration_sigma_m_s2";
     let position = "instrument.position_sigma_m";
     let instrument = Instrument {
         rate: number(&keys::RATE, "instrument.rate_hz", !is_forces),
         position_sigma: number(&keys::POSITION_SIGMA, position, curve.is_none()),
         force_sigma: number(&keys::FORCE_SIGMA, "instrument.force_sigma_N", is_forces),
+        acceleration_sigma: number(&keys::ACCELERATION_SIGMA, acceleration, is_felt),
+        acceleration_range: optional(&table, &keys::ACCELERATION_RANGE),
         speed_sigma_rel: number(&keys::SPEED_SIGMA, "instrument.speed_sigma_rel", !is_forces),
         level_sigma: number(&keys::LEVEL_SIGMA, "instrument.level_sigma_m", true),
         // Unlike an error of readings, none of these may be missed: zero says that it is exact.

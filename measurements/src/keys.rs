@@ -39,6 +39,20 @@ pub(super) const FORCE_SIGMA: ParamSpec = key(
     (0.0, 1e4),
     "the root mean square error of one reading of a force",
 );
+pub(super) const ACCELERATION_SIGMA: ParamSpec = key(
+    "acceleration_sigma_m_s2",
+    Dimension::ACCELERATION,
+    NOT_NEGATIVE,
+    (0.0, 1e3),
+    "the root mean square error of one reading of an acceleration",
+);
+pub(super) const ACCELERATION_RANGE: ParamSpec = key(
+    "acceleration_range_m_s2",
+    Dimension::ACCELERATION,
+    POSITIVE,
+    (1.0, 1e6),
+    "the size of accelerations beyond which the accelerometer reads nothing",
+);
 pub(super) const SPEED_SIGMA: ParamSpec = key(
     "speed_sigma_rel",
     NUMBER,

@@ -6,9 +6,11 @@
 //! `cells` and `table` read a table, `runs`, `trajectories` and `curve_table` know the tables there are, `several` finds
 //! more than one of the latter two; `curves` lists what is read along one axis and is no position, each kind a `curve` in a file of its own; `fall` and `departure` see fall and contact on any scale, `level` finds one surface for several runs, `speeds` reads speeds that are
 //! not stated; `checks`, `ranges`, `signs`,
-//! `magnitudes`, `pushes` and `confounded` look at the whole; `smooth`, `contact`, `zeros`, `stops` and `definitions` hold what
+//! `magnitudes`, `pushes`, `accelerometers` and `confounded` look at the whole; `smooth`, `contact`, `zeros`, `stops` and `definitions` hold what
 //! it states against its frames, and `contradictions` says where they do not agree.
 
+mod acceleration;
+mod accelerometers;
 mod agreement;
 mod bodies;
 mod cells;
@@ -119,6 +121,8 @@ pub enum Kind {
     Scalar,
     /// Force over depth of a body that is pushed at a stated speed.
     ForceDepth,
+    /// Acceleration over time, as an accelerometer in the body reads it: 0 in free fall, gravity at rest.
+    Acceleration,
 }
 
 /// What is known of the instrument.
@@ -130,6 +134,10 @@ pub struct Instrument {
     pub position_sigma: Option<f64>,
     /// Root mean square of one reading of a force (N).
     pub force_sigma: Option<f64>,
+    /// Root mean square of one reading of an acceleration (m/s²).
+    pub acceleration_sigma: Option<f64>,
+    /// Size of accelerations beyond which the accelerometer reads nothing (m/s²).
+    pub acceleration_range: Option<f64>,
     /// How well the set impact speed is known, relative, per run.
     pub speed_sigma_rel: Option<f64>,
     /// How well the level of the surface is known in one run (m).
@@ -322,9 +330,9 @@ impl Run {
 /// One reading of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Where along it (SI): a depth below the undisturbed surface.
+    /// Where along it (SI): a depth below the undisturbed surface, or a time since first contact.
     pub at: f64,
-    /// What was read (SI): the force of the bed against the motion.
+    /// What was read (SI): the force of the bed against the motion, or an acceleration upward.
     pub value: f64,
     /// Root mean square error of this reading (SI), where the table says it.
     pub sigma: Option<f64>,

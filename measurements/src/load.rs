@@ -17,7 +17,9 @@ use super::findings::Findings;
 use super::row::file_name;
 use super::table::Format;
 use super::trajectories::Source;
-use super::{MeasurementSet, Run, checks, curve_table, order, runs, several, speeds, trajectories};
+use super::{
+    Kind, MeasurementSet, Run, checks, curve_table, order, runs, several, speeds, trajectories,
+};
 
 /// A set and what came with it.
 #[derive(Clone, Debug)]
@@ -230,13 +232,14 @@ fn read_tables(
 fn shift(set: &mut MeasurementSet, zeros: &[[f64; 2]], format: &Format) {
     let sign = |key: &str| format.columns.of(key).map_or(1.0, |column| column.sign);
     let (clock, depth) = (sign("t"), sign("z"));
+    let is_over_depth = set.kind == Kind::ForceDepth;
     for (run, [t, z]) in set.runs.iter_mut().zip(zeros) {
         for frame in &mut run.frames {
             frame.t -= clock * t;
             frame.z -= depth * z;
         }
         for sample in &mut run.samples {
-            sample.at -= depth * z;
+            sample.at -= if is_over_depth { depth * z } else { clock * t };
         }
     }
 }

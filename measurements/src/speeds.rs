@@ -23,6 +23,7 @@ pub(super) fn fill(set: &mut MeasurementSet, places: &[ConditionPlaces], finding
                 Kind::ForceDepth => {
                     "a set of forces over depth has to state it: the speed of the push"
                 }
+                Kind::Acceleration => "a set of accelerations has to state it",
                 Kind::Trajectory => "no run has the frames before contact that would show it",
             };
             findings.report(

@@ -93,6 +93,8 @@ impl MeasurementSet {
         file.number("rate_hz", self.instrument.rate);
         file.number("position_sigma_m", self.instrument.position_sigma);
         file.number("force_sigma_N", self.instrument.force_sigma);
+        file.number("acceleration_sigma_m_s2", self.instrument.acceleration_sigma);
+        file.number("acceleration_range_m_s2", self.instrument.acceleration_range);
         file.number("speed_sigma_rel", self.instrument.speed_sigma_rel);
         file.number("level_sigma_m", self.instrument.level_sigma);
         file.number("time_sigma_s", self.instrument.time_sigma);

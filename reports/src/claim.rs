@@ -77,6 +77,7 @@ fn errors(diagnosis: &Value) -> Option<[String; 3]> {
         Some(match held_out["unit"].as_str() {
             Some("m") => format!("{:.3} mm", 1e3 * error),
             Some("N") => format!("{error:.3} N"),
+            Some("m/s^2") => format!("{error:.3} m/s²"),
             _ => format!("{:.1} %", 100.0 * error),
         })
     };

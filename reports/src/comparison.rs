@@ -11,10 +11,11 @@ use crate::{ReportError, Texts, object};
 pub(crate) const RESULT: &str = "comparison.json";
 
 /// Errors of a table: their key, heading, and what they are multiplied with.
-const ERRORS: [(&str, &str, f64); 7] = [
+const ERRORS: [(&str, &str, f64); 8] = [
     ("z_m", "z (mm)", 1e3),
     ("x_m", "x (mm)", 1e3),
     ("force_N", "force (N)", 1.0),
+    ("acceleration_m_s2", "acceleration (m/s²)", 1.0),
     ("stop_time_s", "stop time (ms)", 1e3),
     ("final_z_m", "depth (mm)", 1e3),
     ("final_x_m", "range (mm)", 1e3),

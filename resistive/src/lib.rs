@@ -8,6 +8,7 @@
 pub mod assembly;
 mod driven;
 mod error;
+mod felt;
 pub mod formula;
 mod holding;
 pub mod impact;
@@ -25,6 +26,7 @@ use engine::math::Vec3;
 pub use assembly::{Assembly, Compact, Part, PartLoad, State};
 pub use driven::Driven;
 pub use error::ImpactError;
+pub use felt::Accelerometer;
 pub use impact::{Effort, Ending, Impact, PartStop};
 pub use laws::{
     Acts, Coefficients, Direction, Draft, Effect, Expression, Facts, ForceError, Kind, Needs,

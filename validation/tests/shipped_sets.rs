@@ -43,6 +43,7 @@ fn every_set_loads_without_a_warning_and_says_its_source_and_its_errors() {
         "real-plates-silt",
         "real-plates-simulant",
         "real-water-cones",
+        "real-water-cones-acceleration",
     ];
     let printed = ["free-link", "katsuragi-durian", "s1-tables", "s1-tables-vertical"];
     let mut all = [&real[..], &printed[..]].concat();

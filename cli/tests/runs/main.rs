@@ -1,6 +1,7 @@
 //! What `plunge run`, `sweep`, `bed`, `recover`, `compare` of runs, `--on` and `check` of sets promise, seen
 //! from outside: bytes, folders, exit codes.
 
+mod accelerations;
 mod beds;
 mod check_sets;
 mod common;

@@ -126,7 +126,7 @@ fn observed(
         id: condition.id.clone(),
         reading: reading(set, &layout, condition, [&[], &[]]),
         stated: vec![None; kinds.len()],
-        reach: reach(&layout, &mean, condition),
+        reach: reach(set, &layout, &mean, condition),
         order: vec![None; vectors.len()],
         runs: vectors,
         mean,

@@ -38,7 +38,7 @@ pub enum StandError {
     },
     /// Forces over depth, which beds do not answer.
     #[error(
-        "`{model}` is a bed of grains; forces over depth are compared with resistive models alone"
+        "`{model}` is a bed of grains; forces and accelerations are compared with resistive models alone"
     )]
     Curves {
         /// Name of the model.

@@ -116,7 +116,7 @@ impl ObservedCondition {
             id: condition.id.clone(),
             reading: crate::observed::reading(set, &layout, condition, [&[], &[]]),
             stated: kinds.iter().map(|kind| crate::observed::stated(&set.stated, *kind)).collect(),
-            reach: crate::observed::reach(&layout, &mean, condition),
+            reach: crate::observed::reach(set, &layout, &mean, condition),
             runs: vec![mean.clone(); repeats],
             order: vec![None; repeats],
             layout,

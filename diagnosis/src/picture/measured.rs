@@ -35,7 +35,7 @@ pub fn measured(set: &MeasurementSet) -> Result<String, PictureError> {
     match set.kind {
         Kind::Trajectory => paths(set),
         Kind::Scalar => scalars(set),
-        Kind::ForceDepth => curves(set),
+        Kind::ForceDepth | Kind::Acceleration => curves(set),
     }
 }
 

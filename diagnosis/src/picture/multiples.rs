@@ -57,6 +57,7 @@ impl Track {
         let axis = match self.observable {
             Observable::Depth => "z",
             Observable::Force => "force",
+            Observable::Acceleration => "acceleration",
             _ => "x",
         };
         let (id, speed, angle) = (&condition.id, condition.speed, condition.angle_deg);

@@ -57,6 +57,7 @@ impl Stairs {
             Kind::Trajectory => ("positions (mm)", 1e3),
             Kind::Scalar => ("scalars, relative (%)", 1e2),
             Kind::ForceDepth => ("forces (N)", 1.0),
+            Kind::Acceleration => ("accelerations (m/s²)", 1.0),
         };
         let unit = Unit::of(found.set.kind);
         let pick = |errors: &Errors| unit.pick(errors).map(|error| scale * error);

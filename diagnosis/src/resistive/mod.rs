@@ -3,6 +3,7 @@
 mod bent;
 mod candidates;
 mod error;
+mod felt;
 mod needs;
 mod prepared;
 mod pushed;
@@ -130,7 +131,7 @@ impl ResistiveForward {
                     let both = after.as_ref().zip(before.as_ref());
                     both.is_some_and(|(a, b)| slow::differs(b, a, PROBE * slow::SEEN))
                 }),
-                Kind::Trajectory | Kind::Scalar => after != before,
+                Kind::Trajectory | Kind::Scalar | Kind::Acceleration => after != before,
             }
         };
         let (active, idle): (Vec<usize>, Vec<usize>) =

@@ -36,9 +36,11 @@ pub(super) fn contains(set: &MeasurementSet, need: Needs) -> bool {
         Needs::Shallow => data.final_depths().any(|depth| depth < DEEP),
         Needs::Masses => data.distinct(|one| Some(one.mass)) > 1,
         Needs::Diameters => data.distinct(|one| Some(one.diameter)) > 1,
-        Needs::FramesBeforeImpact => {
-            data.runs().any(|(_, run)| run.frames.iter().any(|frame| frame.t < 0.0))
-        }
+        Needs::FramesBeforeImpact => data.runs().any(|(_, run)| {
+            let frames = run.frames.iter().map(|frame| frame.t);
+            let felt = run.samples.iter().filter(|_| set.kind == Kind::Acceleration);
+            frames.chain(felt.map(|sample| sample.at)).any(|time| time < 0.0)
+        }),
         Needs::Conditions => data.conditions().count() > 1,
     }
 }

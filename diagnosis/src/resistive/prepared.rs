@@ -19,6 +19,7 @@ use resistive::{
 
 use super::bent::Bent;
 use super::error::ForwardError;
+use super::felt;
 use super::pushed;
 use super::scatter::PathScatter;
 use crate::forward::{Bend, Scatter};
@@ -287,8 +288,8 @@ impl Prepared {
         scattering: &[&str],
     ) -> Result<Vec<f64>, String> {
         let mut inputs = self.law.inputs(parameters, added, scatter);
-        if self.is_pushed {
-            // The depth at which a force is read hangs on these.
+        if self.layout.curve.is_some() {
+            // The depth at which a force is read, and what an accelerometer reads, hang on these.
             (inputs.scatter.level, inputs.scatter.scale) = (scatter.level, scatter.scale);
         }
         // A poisoned lock holds nothing worse than fewer predictions.
@@ -343,6 +344,11 @@ impl Prepared {
         if self.is_pushed {
             let depths = self.layout.curve.as_ref().map_or(&[][..], |curve| &curve.at);
             let curve = pushed::forces(&impact, depths, scatter)?;
+            let (stop, last, laws) = (0.0, (0.0, 0.0), impact.into_laws());
+            return Ok(Seen { frames: Vec::new(), stop, last, curve, laws });
+        }
+        if let Some(curve) = &self.layout.curve {
+            let curve = felt::readings(&impact, &curve.at, scatter)?;
             let (stop, last, laws) = (0.0, (0.0, 0.0), impact.into_laws());
             return Ok(Seen { frames: Vec::new(), stop, last, curve, laws });
         }

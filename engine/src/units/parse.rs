@@ -34,6 +34,7 @@ const ATOMS: &[Atom] = &[
     atom("cc", Dimension::VOLUME, 1.0, -6, ""),
     atom("g", Dimension::MASS, 1.0, -3, "umk"),
     atom("t", Dimension::MASS, 1.0, 3, ""),
+    atom("gn", Dimension::ACCELERATION, 9.80665, 0, "m"),
     atom("s", Dimension::TIME, 1.0, 0, "num"),
     atom("min", Dimension::TIME, 60.0, 0, ""),
     atom("h", Dimension::TIME, 3600.0, 0, ""),

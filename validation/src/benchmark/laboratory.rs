@@ -209,7 +209,7 @@ fn film(sphere: &Sphere<'_>, design: &Design, chance: &mut Chance) -> Result<Run
     };
     let last = ((path.stop_time + AFTERWARDS) * RATE) as i32;
     let frames = match design.kind {
-        Kind::Scalar | Kind::ForceDepth => Vec::new(),
+        Kind::Scalar | Kind::ForceDepth | Kind::Acceleration => Vec::new(),
         Kind::Trajectory => (-FLIGHT_FRAMES..=last)
             .map(|frame| {
                 let t = f64::from(frame) / RATE;

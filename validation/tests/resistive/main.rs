@@ -1,5 +1,6 @@
 //! Impacts on resistive media: closed forms, ledgers, rest, and every effect.
 
+mod accelerations;
 mod closed_forms;
 mod effects;
 mod forces;

@@ -1,0 +1,33 @@
+//! Acceleration over time, as an accelerometer in the body reads it.
+
+use engine::units::Dimension;
+
+use super::Kind;
+use super::columns::{ColumnSpec, Content, column};
+use super::curve::{Axis, Curve};
+
+const fn columns(run: bool) -> [ColumnSpec; 4] {
+    [
+        column("run", Content::Name, run),
+        column("t", Content::Quantity(Dimension::TIME), true),
+        column("acceleration", Content::Quantity(Dimension::ACCELERATION), true),
+        column("sigma_acceleration", Content::Quantity(Dimension::ACCELERATION), false),
+    ]
+}
+
+static OF_MANY: [ColumnSpec; 4] = columns(true);
+static OF_ONE: [ColumnSpec; 4] = columns(false);
+
+/// The line of the kind.
+pub(super) static CURVE: Curve = Curve {
+    kind: Kind::Acceleration,
+    word: "acceleration",
+    plural: "accelerations over time",
+    function: "a(t)",
+    along: Axis { name: "time", unit: "ms", scale: 1e3 },
+    value: Axis { name: "acceleration", unit: "m/s²", scale: 1.0 },
+    files: "accelerations",
+    columns: [&OF_MANY, &OF_ONE],
+    sigma_key: "acceleration_sigma_m_s2",
+    sigma: |instrument| instrument.acceleration_sigma,
+};

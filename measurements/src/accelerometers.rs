@@ -1,0 +1,113 @@
+//! What no accelerometer in a falling body reads: order, signs, zeros and units.
+
+use configs::{Diagnostic, shorten};
+
+use super::conditions::ConditionPlaces;
+use super::contradictions::{Contradiction, ContradictionKind};
+use super::findings::Findings;
+use super::{MeasurementSet, Run};
+
+/// Share of gravity by which a reading before contact may miss that of free fall.
+const FALLING: f64 = 0.5;
+
+/// Change of the velocity over that of a stop from the stated speed, beyond which a unit is wrong.
+const MOST: f64 = 3.0;
+
+/// Refuses what is no vertical impact, times that run back and signs; names zeros and units.
+pub(super) fn check(
+    set: &MeasurementSet,
+    places: &[ConditionPlaces],
+    findings: &mut Findings,
+) -> Vec<Contradiction> {
+    for (condition, place) in set.conditions.iter().zip(places) {
+        let id = shorten(&condition.id);
+        if condition.angle_deg < 90.0 || condition.shape.contains("link") {
+            let message =
+                format!("the accelerations of `{id}` are not of a vertical impact of one body");
+            let help =
+                "an accelerometer reads along its own axis, which has to be that of the motion";
+            findings.report(Diagnostic::error(message).at(place.angle, "expected 90").help(help));
+        }
+    }
+    for run in &set.runs {
+        if !findings.full() && run.samples.windows(2).any(|pair| pair[0].at >= pair[1].at) {
+            let name = shorten(&run.name);
+            findings.report(
+                Diagnostic::error(format!("the time does not go on in the run `{name}`"))
+                    .at(places[run.condition].id, "measured under this condition")
+                    .help("the times of a run rise from row to row"),
+            );
+        }
+    }
+    if findings.errors() == 0 {
+        check_signs(set, places, findings);
+    }
+    match findings.errors() {
+        0 => check_units(set, places).into_iter().collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Refuses readings that count downward, or from another zero.
+fn check_signs(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+    let largest = |run: &Run| {
+        let after = run.samples.iter().filter(|one| one.at > 0.0).map(|one| one.value);
+        after.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
+    };
+    let all = set.runs.len();
+    let contrary: Vec<&Run> = set.runs.iter().filter(|run| largest(run) < 0.0).collect();
+    if 2 * contrary.len() > all {
+        findings.report(
+            Diagnostic::error(format!(
+                "the acceleration is negative where it is largest in {} of {all} runs",
+                contrary.len()
+            ))
+            .at(places[contrary[0].condition].id, "the bed pushes upward")
+            .help(
+                "does it count downward? then say below [columns]: \
+                 acceleration = { name = \"acceleration\", unit = \"m/s^2\", sign = -1 }",
+            ),
+        );
+        return;
+    }
+    let before = || set.runs.iter().flat_map(|run| &run.samples).filter(|one| one.at < 0.0);
+    let n = before().count();
+    let mean = before().map(|one| one.value).sum::<f64>() / n.max(1) as f64;
+    if n > 0 && mean.abs() > FALLING * set.bed.gravity {
+        findings.report(
+            Diagnostic::error(format!(
+                "the readings before contact are {mean:.2} m/s^2, and those of a body in free fall are 0"
+            ))
+            .at(places[0].id, "t = 0 is first contact")
+            .help(
+                "an accelerometer reads 0 in free fall and gravity at rest; `zero` below [columns] says what \
+                 this one reads in free fall",
+            ),
+        );
+    }
+}
+
+/// Names a unit with which bodies would be slowed down by far more than their speed.
+fn check_units(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contradiction> {
+    let ratio = |run: &Run| {
+        let condition = &set.conditions[run.condition];
+        let pairs = run.samples.windows(2).filter(|pair| pair[0].at >= 0.0);
+        let change = pairs.map(|pair| {
+            let felt = 0.5 * (pair[0].value + pair[1].value);
+            (pair[1].at - pair[0].at) * (felt - set.bed.gravity)
+        });
+        let possible = condition.speed + (set.bed.gravity * condition.diameter).sqrt();
+        change.sum::<f64>() / possible
+    };
+    let mut ratios: Vec<(f64, usize)> =
+        set.runs.iter().map(|run| (ratio(run), run.condition)).collect();
+    ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let &(ratio, condition) = ratios.get(ratios.len() / 2)?;
+    (ratio > MOST).then(|| {
+        let message = format!("the accelerations take {ratio:.1} times the speed at contact away");
+        let diagnostic = Diagnostic::error(message)
+            .at(places[condition].speed, "the stated speed")
+            .help("are they in g, or the times in ms? [columns] gives the units of a table");
+        Contradiction { kind: ContradictionKind::Speeds, diagnostic }
+    })
+}
