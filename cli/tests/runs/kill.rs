@@ -11,6 +11,7 @@ use tempfile::TempDir;
 use crate::common::{
     Call, Ended, assert_same_run, ended_on_the_way, folder, names, signal, small_model, wait_for,
 };
+use crate::ignored::is_ignored;
 
 /// A run that flushes and checkpoints all the time.
 const BUSY: [&str; 3] = ["run.duration=60 ms", "run.checkpoint_every=200", "log.flush_every=100"];
@@ -71,14 +72,6 @@ fn killed_at_random_times_and_resumed_a_run_ends_at_the_same_bytes() {
         }
     }
     resumes_to_the_same_bytes(&out);
-}
-
-/// Whether this process, and so what it starts, ignores a signal; Linux says so.
-fn is_ignored(number: i32) -> bool {
-    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    let mask = mask.map_or(0, |mask| u64::from_str_radix(mask.trim(), 16).expect("a mask"));
-    mask >> (number - 1) & 1 == 1
 }
 
 #[test]

@@ -16,6 +16,7 @@ mod failures;
 mod faults;
 mod folders;
 mod forces;
+mod ignored;
 mod imports;
 mod kill;
 mod log;

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 use crate::common::{Call, Ended, folder, names, signal, small_model};
+use crate::ignored::is_ignored;
 
 /// Longest time from a signal to the end.
 const PROMISED: Duration = Duration::from_secs(2);
@@ -57,18 +58,12 @@ fn ended_by(name: &str, call: Call, after: Duration) -> String {
 /// Ends the call that `make` makes at two moments, by two signals.
 fn ends_at_once(make: impl Fn() -> Call, says: &str) {
     for (name, after) in [("TERM", 0), ("INT", 250)] {
-        if name == "INT" && is_interrupt_ignored() {
-            continue; // by a shell that started the tests in the background: then commands ignore it too
+        if name == "INT" && is_ignored(2) {
+            continue; // then commands ignore it too
         }
         let said = ended_by(name, make(), Duration::from_millis(after));
         assert!(said.contains(says), "{said}");
     }
-}
-
-fn is_interrupt_ignored() -> bool {
-    let status = fs::read_to_string("/proc/self/status").expect("Linux says it");
-    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).expect("a mask");
-    u64::from_str_radix(mask.trim(), 16).expect("a mask") >> 1 & 1 == 1
 }
 
 /// A folder with a run whose logs hold what they hold so many times over, as if nobody had ended them.
@@ -108,7 +103,7 @@ fn shipped(set: &str) -> PathBuf {
 
 #[test]
 fn a_stopped_export_leaves_nothing_and_the_same_command_writes_it() {
-    let run = long_run(300);
+    let run = long_run(1500);
     for format in ["csv", "vtp", "extxyz"] {
         let out = run.path().join(format);
         let export = || Call::new(["export", "--to", format, "--quiet"]).arg(run.path());
