@@ -26,7 +26,7 @@ pub(crate) struct Args {
     /// Which of the effects of the diagnosis; without, what its verdict names.
     #[arg(long, value_name = "NAME", requires = "from")]
     effect: Option<String>,
-    /// The file to write; it is not written over.
+    /// The file to write; without --force an existing file is refused.
     #[arg(short, long, value_name = "NEW.toml")]
     output: PathBuf,
     /// Write over the file.

@@ -31,22 +31,22 @@ pub(crate) struct Beds {
     /// The folder of prepared beds and finished impacts, which are never run again.
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
-    /// Time to spend on impacts, such as "20 min"; it shapes the plan.
+    /// Time to spend on impacts, such as "20 min": the largest plan that fits is chosen.
     #[arg(long, value_name = "TIME", value_parser = time)]
     budget: Option<f64>,
     /// Print which impacts would be run, and how long they would take; run nothing.
     #[arg(long)]
     pub(crate) plan: bool,
-    /// Go on with impacts that were stopped; what is kept is taken up in any case.
+    /// Continue impacts that were stopped; finished ones are taken from the cache in any case.
     #[arg(long)]
     resume: bool,
-    /// Let this candidate compensate as a parameter of the model: its change is fitted, not ranked.
+    /// Make this candidate a parameter of the model: its change is fitted, not ranked. Repeatable.
     #[arg(long = "free", value_name = "CANDIDATE")]
     free: Vec<String>,
-    /// Where impacts are run. A scheduler gets those that are not kept yet, and is waited for.
+    /// Where impacts run. A scheduler gets those that are not in the cache; the command waits for it.
     #[arg(long, value_name = "WHERE", default_value = "local")]
     on: On,
-    /// Hold these candidates alone against the measurements; what the apparatus may do is left out unless it is named.
+    /// Rank this candidate only; repeatable. Candidates of the apparatus are left out unless they are named.
     #[arg(long = "candidate", value_name = "CANDIDATE")]
     candidates: Vec<String>,
 }
@@ -55,7 +55,7 @@ pub(crate) fn time(text: &str) -> Result<f64, String> {
     let seconds = units::parse(text, Dimension::TIME).map_err(|error| error.to_string())?;
     match seconds > 0.0 {
         true => Ok(seconds),
-        false => Err("a budget is above zero".to_owned()),
+        false => Err("a budget must be above zero".to_owned()),
     }
 }
 

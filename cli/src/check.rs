@@ -19,7 +19,7 @@ pub(crate) struct Args {
     /// A model file, or the name of a shipped model. Or a measurement set: its folder or its file.
     #[arg(value_name = "MODEL|SET")]
     model: PathBuf,
-    /// Measure on a column of the bed what bed and impact will take here: some seconds, once for a bed.
+    /// Estimate time and memory on this machine from a column of the bed: some seconds, once per bed.
     #[arg(long)]
     pub(crate) measure: bool,
     #[command(flatten)]

@@ -28,8 +28,8 @@ pub(crate) struct Args {
     /// The folder of the run to compare with RUN_A.
     #[arg(value_name = "RUN_B")]
     second: Option<PathBuf>,
-    /// A model file or the name of a shipped model; give several to see the error fall. Without,
-    /// the baseline that the set names.
+    /// A model file or the name of a shipped model; repeatable. Without it, the baseline that the set
+    /// names.
     #[arg(long = "model", value_name = "MODEL")]
     models: Vec<PathBuf>,
     #[command(flatten)]

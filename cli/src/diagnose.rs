@@ -25,7 +25,7 @@ use crate::workbench::{Candidate, Flags, failed};
 pub(crate) struct Args {
     /// A measurement set: its folder, or its measurement.toml.
     set: PathBuf,
-    /// A model file or the name of a shipped model; without, the baseline that the set names.
+    /// A model file or the name of a shipped model. Without it, the baseline that the set names.
     #[arg(long, value_name = "MODEL")]
     model: Option<PathBuf>,
     /// Simulate a hundred sets of the same design and say how often verdicts are right: some minutes.

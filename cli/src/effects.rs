@@ -268,7 +268,7 @@ fn as_text(law: &Described) -> String {
         line("shows with", &law.shows_with.join(", "));
     }
     for (index, twin) in law.twins.iter().enumerate() {
-        let name = if index == 0 { "told apart" } else { "" };
+        let name = if index == 0 { "separable" } else { "" };
         line(name, &format!("from {}", twin.describe()));
     }
     line("diagnosis", &law.on_beds.text());

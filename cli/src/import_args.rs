@@ -19,7 +19,7 @@ pub(crate) struct Args {
     /// Print one JSON object to stdout.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Say nothing when it went well.
+    /// Print nothing on success.
     #[arg(long)]
     pub(crate) quiet: bool,
     #[command(flatten)]

@@ -72,7 +72,7 @@ enum Command {
     /// Validate a model, or a measurement set, and show what it means in SI, without running it.
     #[command(after_help = "Example: plunge check my-model.toml")]
     Check(check::Args),
-    /// Compare revisions of a model with measurements: how wrong, and where. Or a run with a run.
+    /// Compare models with measurements: errors, and where the force is wrong. Or compare two runs.
     #[command(
         after_help = "Example: plunge compare drops --model two-term-vector --model poncelet"
     )]

@@ -63,7 +63,7 @@ pub(crate) struct Args {
     /// Print one JSON object to stdout.
     #[arg(long)]
     json: bool,
-    /// Say nothing when it went well.
+    /// Print nothing on success.
     #[arg(long)]
     quiet: bool,
 }

@@ -36,10 +36,10 @@ pub(crate) struct Args {
     /// The folder of the campaign; without it, `runs/` and its name.
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Say which points there are and what they would take; run nothing.
+    /// Print the points with time and memory; run nothing.
     #[arg(long)]
     plan: bool,
-    /// Say how far the campaign has come; run nothing.
+    /// Print how many points are done; run nothing.
     #[arg(long, conflicts_with = "plan")]
     status: bool,
     /// Where points are run. A scheduler gets those that are not done; --status says how far it is.
@@ -48,7 +48,7 @@ pub(crate) struct Args {
     /// Run this point of the plan alone: what a scheduler's tasks do.
     #[arg(long, value_name = "N", hide = true, conflicts_with_all = ["plan", "status", "on"])]
     point: Option<usize>,
-    /// Time after which to stop, such as "20 min"; the same command goes on.
+    /// Time after which to stop, such as "20 min"; the same command continues.
     #[arg(long, value_name = "TIME", value_parser = time)]
     budget: Option<f64>,
     /// Points at a time, 1 to 256, each on one thread; one per core otherwise.

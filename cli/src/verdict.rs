@@ -102,7 +102,7 @@ fn ranking(diagnosis: &Diagnosis) -> String {
     for effect in diagnosis.ranking.iter().filter(|effect| effect.status != Status::Ranked) {
         let what = match effect.status {
             Status::NotIntegrated => "could not be computed",
-            Status::Imitated => "not told from the parameters",
+            Status::Imitated => "imitated by the parameters",
             Status::NotTestable | Status::NotTested | Status::Ranked => "not testable",
         };
         text.push_str(&format!(" {what}: {} ({})\n", effect.id, effect.note));

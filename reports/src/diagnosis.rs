@@ -298,7 +298,7 @@ fn card(at: usize, effect: &Value, named: &[String]) -> Card {
     let mut notes: Vec<_> = law.map(|law| ("law", law.formula.to_owned())).into_iter().collect();
     let note = text(&effect["note"]);
     if !note.is_empty() {
-        notes.push(("told apart", note));
+        notes.push(("separable", note));
     }
     notes.extend(law.map(|law| ("source", law.source.to_owned())));
     Card {
@@ -334,7 +334,7 @@ fn ranking(diagnosis: &Value) -> Vec<Part> {
     for (status, heading) in [
         ("not-testable", "not testable with these data"),
         ("not-tested", "not tested"),
-        ("imitated", "not told from the parameters of the model"),
+        ("imitated", "imitated by the parameters of the model"),
         ("not-integrated", "could not be computed"),
     ] {
         let mut refused = Table::new(&[heading, "why"]);

@@ -62,7 +62,7 @@ pub enum ReportError {
         folder: PathBuf,
     },
     /// A log that is not beside the summary of its run.
-    #[error("{} is not there, which says what {} came to", summary.display(), log.display())]
+    #[error("{} is missing; it has the results of {}", summary.display(), log.display())]
     NoSummary {
         /// The log.
         log: PathBuf,

@@ -38,7 +38,7 @@ pub enum BaselineError {
     #[error(transparent)]
     Config(#[from] configs::ConfigError),
     /// Too few runs ended.
-    #[error("condition {condition}: {found} impacts came to an end, and two are needed at least")]
+    #[error("condition {condition}: only {found} impacts finished; at least two are needed")]
     TooFew {
         /// Id of the condition.
         condition: String,
