@@ -274,7 +274,7 @@ impl Plan {
             stage("scatter of beds", &baseline)?,
             stage("correlation of pairs", &again)?,
             later("response to packing", sides * of_sides, beds_of_sides),
-            later("held out, as it is", confirm, beds_of(confirm_draws, confirming)),
+            later("held out, unchanged", confirm, beds_of(confirm_draws, confirming)),
             stage("screening, if anything is missing", &screened)?,
             later("line search, at most", lines, 0),
             later("confirmation of a name", confirm, 0),
