@@ -20,6 +20,7 @@ mod import_args;
 mod import_tables;
 mod movie;
 mod new;
+mod new_schemas;
 mod new_set;
 mod next;
 mod output;

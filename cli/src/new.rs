@@ -5,9 +5,11 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
+use configs::json_schema::header;
 use configs::{SHIPPED, Shipped, find_shipped, nearest};
 use serde_json::json;
 
+use crate::new_schemas::{self, MODEL};
 use crate::new_set;
 use crate::output::{self, CommandError, CommandResult};
 use crate::table_file;
@@ -16,7 +18,7 @@ use crate::table_file;
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// Name of the model and, with .toml, of the file: a-z, 0-9, - and _. The name `measurements` makes a
-    /// folder of that name with a measurement set.
+    /// folder of that name with a measurement set, the name `schemas` one with schemas for editors.
     #[arg(required_unless_present = "list")]
     name: Option<String>,
     /// The shipped model to start from: the one of that name if there is one, else vertical-2d.
@@ -43,6 +45,9 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     };
     if name == new_set::NAME {
         return new_set::run(args.json, args.quiet);
+    }
+    if name == new_schemas::NAME {
+        return new_schemas::run(args.json, args.quiet);
     }
     let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
     if name.is_empty() || name.len() > 64 || !name.chars().all(fits) {
@@ -105,7 +110,7 @@ fn starter(shipped: &Shipped, name: &str) -> String {
         true => MORE_ON_RESISTANCE,
         false => MORE_ON_GRAINS,
     };
-    format!("{text}{more}")
+    format!("{}{text}{more}", header(&format!("./{}/{MODEL}", new_schemas::NAME)))
 }
 
 const MORE_ON_GRAINS: &str = "

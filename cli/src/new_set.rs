@@ -5,9 +5,11 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use anyhow::Context as _;
+use configs::json_schema::header;
 use measurements::TEMPLATE;
 use serde_json::json;
 
+use crate::new_schemas::{self, SET};
 use crate::output::{self, CommandError, CommandResult};
 use crate::workbench::write_whole;
 
@@ -27,7 +29,11 @@ pub(crate) fn run(json: bool, quiet: bool) -> CommandResult {
         made => made.with_context(|| format!("cannot make {NAME}"))?,
     }
     for (name, text) in TEMPLATE {
-        write_whole(&folder.join(name), text)?;
+        let schema = match name.ends_with(".toml") {
+            true => header(&format!("../{}/{SET}", new_schemas::NAME)),
+            false => String::new(),
+        };
+        write_whole(&folder.join(name), &format!("{schema}{text}"))?;
     }
     match (json, quiet) {
         (true, _) => output::json_to_stdout(&json!({

@@ -48,7 +48,7 @@ impl Range {
 
 /// One parameter of a law, effect or shape: the same entry reads the file, documents the parameter
 /// in `plunge effects` and bounds a fit.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParamSpec {
     /// The key in the TOML table, `snake_case`.
     pub key: &'static str,

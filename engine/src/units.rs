@@ -5,8 +5,10 @@
 use std::fmt;
 
 mod parse;
+mod pattern;
 
 pub use parse::{UnitError, UnitFault, dimension_of, parse};
+pub use pattern::pattern;
 
 /// The physical dimension of a quantity: powers of kilogram, metre and second, doubled so that
 /// `N/m^1.5` has whole numbers, and a flag for plane angles.

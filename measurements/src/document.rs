@@ -1,7 +1,7 @@
 //! `measurement.toml`: everything of a set but its tables.
 
 use configs::document::Value;
-use configs::reader::TableReader;
+use configs::reader::{Answer, TableReader};
 use configs::{Diagnostic, Span, limits};
 use engine::params::ParamSpec;
 
@@ -160,14 +160,24 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
     let frame = optional_text(&table, "frame", "…", "the frame of reference in words");
     let phase = optional_text(&table, "phase", "…", "the part of the motion in words");
     let words = ["component-zero", "speed-5-percent"];
-    let stop = optional_choice(&table, "stop_definition", &words).map(|word| match word {
-        "component-zero" => StopDefinition::ComponentZero,
-        _ => StopDefinition::SpeedFivePercent,
-    });
-    let last = optional_choice(&table, "final", &["deepest", "resting"]).map(|word| match word {
+    let stop =
+        optional_choice(&table, "stop_definition", &words, "when an intruder counts as stopped")
+            .map(|word| match word {
+                "component-zero" => StopDefinition::ComponentZero,
+                _ => StopDefinition::SpeedFivePercent,
+            });
+    let last = optional_choice(
+        &table,
+        "final",
+        &["deepest", "resting"],
+        "which depth and range a run gives",
+    )
+    .map(|word| match word {
         "deepest" => FinalDefinition::Deepest,
         _ => FinalDefinition::Resting,
     });
+    table.asks("notes", "what was assumed, of a set that was written by plunge", || Answer::Texts);
+    table.asks("keep", "runs that are used as they are, however stray they look", || Answer::Texts);
     let notes = table.texts("notes");
     let keep = table.texts("keep").unwrap_or_default();
     let definitions = ["stop_definition", "final"].map(|key| table.span_of(key));
@@ -256,15 +266,16 @@ fn stated(table: TableReader<'_>, curve: Option<&Curve>, unstated: &mut Unstated
 }
 
 fn bed(table: TableReader<'_>, planar: bool, unstated: &mut Unstated) -> Bed {
-    let geometry = match optional_choice(&table, "geometry", &["3d", "2d"]) {
-        Some("2d") => Geometry::Planar,
-        Some(_) => Geometry::Spatial,
-        None => {
-            let word = if planar { "2d" } else { "3d" };
-            unstated.assume(format!("bed.geometry = \"{word}\""));
-            if planar { Geometry::Planar } else { Geometry::Spatial }
-        }
-    };
+    let geometry =
+        match optional_choice(&table, "geometry", &["3d", "2d"], "grains of space or of a plane") {
+            Some("2d") => Geometry::Planar,
+            Some(_) => Geometry::Spatial,
+            None => {
+                let word = if planar { "2d" } else { "3d" };
+                unstated.assume(format!("bed.geometry = \"{word}\""));
+                if planar { Geometry::Planar } else { Geometry::Spatial }
+            }
+        };
     let density = match geometry {
         Geometry::Planar => optional(&table, &keys::AREA_DENSITY),
         Geometry::Spatial => optional(&table, &keys::BULK_DENSITY),
@@ -317,16 +328,27 @@ fn files(table: TableReader<'_>, kind: Option<Kind>) -> Option<Files> {
         (Some(Kind::Trajectory), _) => readings(&table, "trajectories")?,
         _ => Vec::new(),
     };
-    let missing = match optional_choice(&table, "missing", &["error", "drop"]) {
+    let missing = match optional_choice(
+        &table,
+        "missing",
+        &["error", "drop"],
+        "what cells without a number do",
+    ) {
         Some("drop") => Missing::Drop,
         _ => Missing::Error,
     };
-    let delimiter = optional_choice(&table, "delimiter", &Delimiter::ALL.map(Delimiter::word))
-        .and_then(|word| Delimiter::ALL.into_iter().find(|one| one.word() == word));
-    let decimal = optional_choice(&table, "decimal", &[".", ","]).map(|word| match word {
-        "." => Decimal::Point,
-        _ => Decimal::Comma,
-    });
+    let delimiter = optional_choice(
+        &table,
+        "delimiter",
+        &Delimiter::ALL.map(Delimiter::word),
+        "what stands between cells",
+    )
+    .and_then(|word| Delimiter::ALL.into_iter().find(|one| one.word() == word));
+    let decimal = optional_choice(&table, "decimal", &[".", ","], "what stands before decimals")
+        .map(|word| match word {
+            "." => Decimal::Point,
+            _ => Decimal::Comma,
+        });
     table.finish();
     let format = Format { delimiter, decimal, columns: ColumnNames::default() };
     Some(Files { runs: runs?, readings, missing, format })
@@ -365,6 +387,7 @@ fn optional_choice(
     table: &TableReader<'_>,
     key: &'static str,
     known: &[&'static str],
+    meaning: &str,
 ) -> Option<&'static str> {
-    table.has(key).then(|| table.choice(key, known, &[], "")).flatten()
+    table.has(key).then(|| table.choice(key, known, &[], meaning)).flatten()
 }

@@ -6,7 +6,7 @@
 //! `cells` and `table` read a table, `runs`, `trajectories` and `curve_table` know the tables there are, `several` finds
 //! more than one of the latter two; `curves` lists what is read along one axis and is no position, each kind a `curve` in a file of its own; `fall` and `departure` see fall and contact on any scale, `level` finds one surface for several runs, `speeds` reads speeds that are
 //! not stated; `checks`, `ranges`, `signs`,
-//! `magnitudes`, `pushes`, `accelerometers` and `confounded` look at the whole; `smooth`, `contact`, `zeros`, `stops` and `definitions` hold what
+//! `json_schema` describes `measurement.toml` to editors; `magnitudes`, `pushes`, `accelerometers` and `confounded` look at the whole; `smooth`, `contact`, `zeros`, `stops` and `definitions` hold what
 //! it states against its frames, and `contradictions` says where they do not agree.
 
 mod acceleration;
@@ -33,6 +33,7 @@ mod feasible;
 mod findings;
 mod force_depth;
 mod header;
+pub mod json_schema;
 mod keys;
 mod level;
 mod lines;

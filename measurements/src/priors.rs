@@ -1,9 +1,12 @@
 //! `[parameters]`: what is known of coefficients of a model before the measurements.
 
 use configs::document::{Entry, Value};
-use configs::reader::TableReader;
+use configs::reader::{Answer, TableReader};
 use configs::{Diagnostic, toml_string};
 use engine::units;
+
+/// What the schema calls the table.
+pub(super) const PRIORS: &str = "priors";
 
 /// What an entry looks like.
 const EXAMPLE: &str = "drag = { prior = \"1.1 ± 0.1\" }";
@@ -39,6 +42,8 @@ impl ParameterPrior {
 
 /// Reads the table below `root`; faults are reported.
 pub(super) fn read(root: &TableReader<'_>) -> Vec<ParameterPrior> {
+    let what = "what is known of coefficients beforehand";
+    root.asks("parameters", what, || Answer::Defined(PRIORS));
     let Some(node) = root.node("parameters") else { return Vec::new() };
     let Value::Table(table) = &node.value else {
         root.reader.report(

@@ -40,6 +40,8 @@ pub(crate) fn run(sh: &Shell) -> Result<ExitCode> {
             cmd!(sh, "cargo-deny --locked check bans licenses sources"),
         ),
         ("typos", cmd!(sh, "typos --version"), cmd!(sh, "typos")),
+        // Models, sets and campaigns against their schemas; `.taplo.toml` lists them.
+        ("taplo", cmd!(sh, "taplo --version"), cmd!(sh, "taplo lint")),
     ];
     for (name, version, check) in tools {
         if !is_installed(version) {

@@ -21,7 +21,7 @@ Chores of the repository.
 
 Usage: cargo xtask <task>
 
-  lint               fmt, clippy, doc and tidy, then cargo-deny and typos
+  lint               fmt, clippy, doc and tidy, then cargo-deny, typos and taplo
   tidy               the rules of the repository that no other tool knows
   bench [ARG]...     grain-steps per second, in release; the arguments go to the program
   bench resistive    impacts per second on resistive media, in release
@@ -34,6 +34,8 @@ Usage: cargo xtask <task>
   fuzz [READER] [--minutes N]
                      changed files against every reader, or those with this word in the name of their
                      test: model, formula, set, log, checkpoint; 10 minutes each
+  schema [--check]   the JSON schemas of models, sets and campaigns, written to configs/schemas, or held
+                     against what is there
   three-shapes [ARG]...
                      cylinder, hemisphere and cone on beds of grains, in release; the same
   validate [ARG]...  the published results, run again in release, and the page of them; the arguments
@@ -54,6 +56,7 @@ enum Task {
     Help,
     Lint,
     Mutants(Vec<u32>),
+    Schema { check: bool },
     Tidy,
     ThreeShapes(Vec<OsString>),
     Validate(Vec<OsString>),
@@ -86,6 +89,7 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
             Some("help") => Task::Help,
             Some("lint") => Task::Lint,
             Some("mutants") => return mutants(parser),
+            Some("schema") => return schema(parser),
             Some("tidy") => Task::Tidy,
             Some("three-shapes") => return Ok(Task::ThreeShapes(parser.raw_args()?.collect())),
             Some("validate") => return Ok(Task::Validate(parser.raw_args()?.collect())),
@@ -98,6 +102,19 @@ fn parse(args: impl Iterator<Item = OsString>) -> Result<Task, lexopt::Error> {
         Some(Arg::Short('h') | Arg::Long("help")) => Ok(Task::Help),
         Some(other) => Err(other.unexpected()),
     }
+}
+
+/// Schemas, written or checked.
+fn schema(mut parser: lexopt::Parser) -> Result<Task, lexopt::Error> {
+    let mut check = false;
+    while let Some(arg) = parser.next()? {
+        match arg {
+            Arg::Short('h') | Arg::Long("help") => return Ok(Task::Help),
+            Arg::Long("check") => check = true,
+            other => return Err(other.unexpected()),
+        }
+    }
+    Ok(Task::Schema { check })
 }
 
 /// Mutants by their numbers.
@@ -177,6 +194,13 @@ fn run(task: Task) -> Result<ExitCode> {
         Task::Mutants(numbers) => {
             sh.change_dir(root()?);
             mutants::run(&sh, &numbers)
+        }
+        Task::Schema { check } => {
+            let bless = if check { "0" } else { "1" };
+            start(
+                cmd!(sh, "cargo test --quiet --locked -p plunge --test schemas")
+                    .env("BLESS", bless),
+            )
         }
         Task::Tidy => {
             sh.change_dir(root()?);
@@ -292,6 +316,13 @@ mod tests {
         let args = ["--peers", "--help"];
         let task = Task::Bench(args.map(OsString::from).into());
         assert_eq!(parsed(&["bench", args[0], args[1]]), Ok(task));
+    }
+
+    #[test]
+    fn schemas_are_written_unless_they_are_only_checked() {
+        assert_eq!(parsed(&["schema"]), Ok(Task::Schema { check: false }));
+        assert_eq!(parsed(&["schema", "--check"]), Ok(Task::Schema { check: true }));
+        assert!(parsed(&["schema", "model"]).is_err());
     }
 
     #[test]

@@ -4,7 +4,8 @@
 //! [`Model`], which also prints itself as a complete, re-runnable file ([`Model::resolved_toml`]).
 //!
 //! `document` is the TOML with its places, `reader` reads tables key by key, `read` knows the
-//! tables of a model, `checks` compares values with each other, `diagnostics` shows what is wrong.
+//! tables of a model, `checks` compares values with each other, `diagnostics` shows what is wrong,
+//! `json_schema` makes schemas for editors of what readers ask.
 
 mod absorbing;
 mod build;
@@ -16,6 +17,7 @@ pub mod edit;
 pub mod estimate;
 pub mod grains_csv;
 mod guess;
+pub mod json_schema;
 mod launching;
 pub mod limits;
 mod load;

@@ -25,7 +25,7 @@ pub(crate) enum Written {
 }
 
 impl Written {
-    fn toml(&self) -> String {
+    pub(crate) fn toml(&self) -> String {
         let number = |value: f64, dimension: Dimension| match dimension == Dimension::NONE {
             true => format!("{value:?}"),
             false => quoted(&units::format_si(value, dimension)),

@@ -5,12 +5,13 @@ use thiserror::Error;
 use super::Dimension;
 
 /// A unit that has a symbol of its own: `coefficient · 10^exponent` in SI.
-struct Atom {
-    symbol: &'static str,
-    dimension: Dimension,
+pub(super) struct Atom {
+    pub(super) symbol: &'static str,
+    pub(super) dimension: Dimension,
     coefficient: f64,
     exponent: i32,
-    prefixes: &'static str,
+    /// Prefixes that it takes, in their ASCII spelling.
+    pub(super) prefixes: &'static str,
 }
 
 const fn atom(
@@ -27,7 +28,7 @@ const TURN_PER_MINUTE: f64 = std::f64::consts::TAU / 60.0;
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// Whole symbols come before prefixed ones, so `min` is the minute.
-const ATOMS: &[Atom] = &[
+pub(super) const ATOMS: &[Atom] = &[
     atom("m", Dimension::LENGTH, 1.0, 0, "numck"),
     atom("in", Dimension::LENGTH, 0.0254, 0, ""),
     atom("inch", Dimension::LENGTH, 0.0254, 0, ""),
@@ -51,7 +52,8 @@ const ATOMS: &[Atom] = &[
 /// Names of a length that depends on a camera.
 const PIXELS: [&str; 4] = ["px", "pixel", "pixels", "pix"];
 
-const PREFIXES: &[(char, char, i32)] = &[
+/// As written, in ASCII, and the power of ten.
+pub(super) const PREFIXES: &[(char, char, i32)] = &[
     ('n', 'n', -9),
     ('u', 'u', -6),
     ('µ', 'u', -6),

@@ -4,7 +4,7 @@ use engine::params::Default as ParamDefault;
 
 use crate::diagnostics::{Diagnostic, nearest, shorten};
 use crate::model::{Coefficient, EffectChoice, ResistanceChoice};
-use crate::reader::{Found, TableReader};
+use crate::reader::{Answer, Found, TableReader};
 
 /// The paths of the free numbers: those that `free` lists, tables node by node, else the required
 /// coefficients of the baseline as far as they are numbers.
@@ -13,6 +13,7 @@ pub(super) fn free(
     resistance: Option<&ResistanceChoice>,
     effects: Option<&[EffectChoice]>,
 ) -> Option<Vec<String>> {
+    table.asks("free", "the numbers that a fit may change, by their paths", || Answer::Texts);
     let given = table.raw_texts("free", "resistance.drag");
     let (resistance, effects) = (resistance?, effects?);
     let free = match given? {

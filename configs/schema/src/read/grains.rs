@@ -10,7 +10,7 @@ use super::step::time_step;
 use super::{CommonTables, DataFolder, KINDS, Places, energy, impact, intruder_example, laws};
 use crate::limits;
 use crate::model::{GrainLog, GrainMedium, LogSettings, Medium, Model, RunSettings, Stepping};
-use crate::reader::TableReader;
+use crate::reader::{Answer, TableReader};
 use crate::resolved::Resolved;
 use crate::specs;
 
@@ -122,6 +122,7 @@ fn log(table: TableReader<'_>) -> Option<(LogSettings, GrainLog)> {
         "the number of steps between flushes of the log",
     );
     let frames_per_s = table.number(&specs::FRAMES_PER_S);
+    table.asks("grains", "whether frames of all grains are logged", || Answer::Boolean);
     let grains = table.boolean("grains", true);
     let fields_at = table.numbers(&specs::FIELDS_AT);
     table.finish();

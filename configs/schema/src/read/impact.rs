@@ -12,7 +12,7 @@ use crate::limits;
 use crate::model::{
     ConditionLists, Container, IMPACT, INTRUSION, Impact, Intruder, StartPositions,
 };
-use crate::reader::{Found, TableReader};
+use crate::reader::{Answer, Found, TableReader};
 use crate::specs;
 
 /// The intruder of a bed of grains.
@@ -21,6 +21,8 @@ pub(super) fn in_grains(
     space: Space,
     places: &mut Places,
 ) -> Option<Intruder> {
+    let wall = "whether a wall as wide as the top stands behind it, which is not felt";
+    table.asks("recessive_wall", wall, || Answer::Boolean);
     let recessive_wall = match table.has("recessive_wall") {
         true => table.boolean("recessive_wall", false),
         false => Some(false),
@@ -237,6 +239,8 @@ pub(super) fn start_positions(
 
 /// `x`, and in space `y`, or both as `position = [x, y]`.
 fn start(table: &TableReader<'_>, space: Space) -> Option<(Option<f64>, Option<f64>)> {
+    let place = "where the intruder's centre starts, from the left and the front side";
+    table.asks("position", place, || Answer::Numbers(specs::POSITION, Some(2)));
     let has_y = space == Space::Spatial && table.has("y");
     if !table.has("position") {
         let x = table.optional_number(&specs::X);
@@ -275,6 +279,7 @@ fn start(table: &TableReader<'_>, space: Space) -> Option<(Option<f64>, Option<f
 
 /// `x_range`, or the middle third of the container.
 fn x_range(table: &TableReader<'_>, container: Option<&Container>) -> Option<(f64, f64)> {
+    table.asks("x_range", specs::X_RANGE.meaning, || Answer::Numbers(specs::X_RANGE, Some(2)));
     let range = match table.has("x_range") {
         true => {
             let [from, to] = several(table, &specs::X_RANGE)?;
@@ -299,6 +304,7 @@ fn x_range(table: &TableReader<'_>, container: Option<&Container>) -> Option<(f6
 
 /// A list of exactly so many quantities.
 fn several<const N: usize>(table: &TableReader<'_>, spec: &ParamSpec) -> Option<[Found<f64>; N]> {
+    table.asks(spec.key, spec.meaning, || Answer::Numbers(*spec, Some(N)));
     let Node { span, value } = table.node(spec.key)?;
     if let Value::Array(nodes) = value
         && nodes.len() == N

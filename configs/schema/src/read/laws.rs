@@ -75,8 +75,8 @@ fn grain_forces(tables: Vec<TableReader<'_>>, space: Space) -> Option<Vec<GrainF
 }
 
 fn grain_force(table: &TableReader<'_>, space: Space) -> Option<GrainForceChoice> {
-    let example = GRAIN_FORCES.first().map_or("", |force| force.name);
-    let name = table.text("name", None, example, "the effect")?;
+    let known: Vec<&'static str> = GRAIN_FORCES.iter().map(|force| force.name).collect();
+    let name = table.name("name", &known, "the effect")?;
     let (entry, span) = (find_grain_force(&name.value)?, name.span?);
     if entry.planar && space == Space::Spatial {
         table.reader.report(
@@ -102,12 +102,12 @@ pub(super) fn given_twice(name: &str, again: Span, first: Span) -> Diagnostic {
 fn law(table: &TableReader<'_>, slot: ActsOn, base: Option<&LawChoice>) -> Option<LawChoice> {
     let known: Vec<&'static LawEntry> =
         contact_laws::LAWS.iter().filter(|law| law.acts_on == slot).copied().collect();
-    let example = known.first().map_or("", |law| law.name);
+    let names: Vec<&'static str> = known.iter().map(|law| law.name).collect();
     let meaning = match slot {
         ActsOn::ContactBase => "the contact law",
         ActsOn::ContactEffect => "the effect",
     };
-    let name = table.text("name", None, example, meaning)?;
+    let name = table.name("name", &names, meaning)?;
     let span = name.span?;
     let Some(entry) = known.iter().find(|law| law.name == name.value).copied() else {
         table.reader.report(explain_law(&name.value, span, slot, &known));

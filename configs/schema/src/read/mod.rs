@@ -5,7 +5,7 @@ use engine::params::ParamSpec;
 
 use crate::diagnostics::{Diagnostic, Span};
 use crate::model::{EnergySettings, Model};
-use crate::reader::TableReader;
+use crate::reader::{Answer, TableReader};
 use crate::specs;
 
 mod bed;
@@ -22,7 +22,7 @@ mod sizes;
 mod step;
 
 pub(crate) use bed_file::DataFolder;
-pub(crate) use own_effect::formula_fault;
+pub(crate) use own_effect::{KEYS_OF_PARAMETER, PARAMETERS, formula_fault};
 
 /// Where the values stand that semantic checks compare.
 #[derive(Default)]
@@ -135,6 +135,8 @@ fn mass(
     density: &ParamSpec,
     size: Option<f64>,
 ) -> Option<f64> {
+    table.can_do_without("mass");
+    table.asks(density.key, density.meaning, || Answer::Number(*density));
     let (has_mass, has_density) = (table.has("mass"), table.has("density"));
     match (has_mass, has_density) {
         (true, true) => {

@@ -9,11 +9,17 @@ use resistive::{Acts, Direction, Draft, OwnEffect, OwnEffectError, OwnParameter,
 use super::Places;
 use crate::diagnostics::{Diagnostic, Span, nearest, shorten};
 use crate::document::{Entry, Table, Value};
-use crate::reader::{Found, TableReader};
+use crate::reader::{Answer, Found, TableReader};
 use crate::resolved::quoted;
 
 /// What says in `name` that an effect is a formula.
 pub(super) const EXPRESSION: &str = "expression";
+
+/// What schemas call the parameters of a formula.
+pub(crate) const PARAMETERS: &str = "parameters-of-a-formula";
+
+/// The keys of one of them.
+pub(crate) const KEYS_OF_PARAMETER: [&str; 3] = ["value", "unit", "range"];
 
 /// What a table of a formula is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -168,6 +174,7 @@ fn kind(table: &TableReader<'_>, direction: Direction) -> Option<Direction> {
 
 /// The parameters, written to the resolved model in SI.
 fn parameters(table: &TableReader<'_>, purpose: Purpose) -> Option<Vec<OwnParameter>> {
+    table.asks("parameters", "the numbers of the formula", || Answer::Defined(PARAMETERS));
     let Some(node) = table.node("parameters") else { return Some(Vec::new()) };
     let Value::Table(list) = &node.value else {
         table.reader.report(
@@ -206,8 +213,6 @@ struct Declaration<'a> {
 }
 
 impl Declaration<'_> {
-    const KEYS: [&'static str; 3] = ["value", "unit", "range"];
-
     fn read(&self) -> Option<OwnParameter> {
         let Value::Table(own) = &self.entry.node.value else {
             let what = format!("this is {}; expected a table", self.entry.node.value.kind());
@@ -215,9 +220,9 @@ impl Declaration<'_> {
             return self.fail(self.entry.node.span, what, help);
         };
         if let Some(unknown) =
-            own.entries.iter().find(|entry| !Self::KEYS.contains(&entry.key.as_str()))
+            own.entries.iter().find(|entry| !KEYS_OF_PARAMETER.contains(&entry.key.as_str()))
         {
-            let near = nearest(&unknown.key, Self::KEYS);
+            let near = nearest(&unknown.key, KEYS_OF_PARAMETER);
             let label =
                 near.map_or("unknown key".to_owned(), |near| format!("did you mean `{near}`?"));
             return self.fail(unknown.key_span, label, "keys: value, unit, range");

@@ -194,7 +194,7 @@ fn effects(
 
 fn effect(table: &TableReader<'_>, space: Space, places: &mut Places) -> Option<EffectChoice> {
     if table.peek_text("name") == Some(EXPRESSION) {
-        let name = table.text("name", None, EXPRESSION, "the effect")?;
+        let name = table.name("name", &[EXPRESSION], "the effect")?;
         let (own, span) = own_effect(table, space, Purpose::Part, places)?;
         let values = own.draft().parameters.iter().find(|one| one.name == "q");
         let q = values.and_then(|q| q.value)?;
@@ -219,7 +219,7 @@ fn own_candidates(
     let wanted = tables.len();
     let mut candidates: Vec<(Arc<OwnEffect>, Span)> = Vec::new();
     for table in tables {
-        let name = table.text("name", None, EXPRESSION, "the effect");
+        let name = table.name("name", &[EXPRESSION], "the effect");
         let Some(name) = name else { continue };
         if name.value != EXPRESSION {
             table.reader.report(
@@ -246,12 +246,11 @@ fn own_candidates(
 /// The law that `name` says.
 fn entry(table: &TableReader<'_>, slot: Slot) -> Option<(&'static ResistanceEntry, Span)> {
     let known = || RESISTANCE_LAWS.iter().filter(|law| Slot::of(law) == slot);
-    let example = known().next().map_or("", |law| law.name);
-    let name = table.text("name", None, example, &format!("the {}", slot.name()))?;
+    let names: Vec<&'static str> = known().map(|law| law.name).collect();
+    let name = table.name("name", &names, &format!("the {}", slot.name()))?;
     let span = name.span?;
     let found = known().find(|law| law.name == name.value).copied();
     if found.is_none() {
-        let names: Vec<&str> = known().map(|law| law.name).collect();
         table.reader.report(explain(&name.value, span, slot, &names));
     }
     Some((found?, span))

@@ -7,7 +7,7 @@ use engine::params::ParamSpec;
 use super::{disc_area, mass, sphere_volume};
 use crate::diagnostics::Diagnostic;
 use crate::model::Material;
-use crate::reader::{Found, TableReader};
+use crate::reader::{Answer, Found, TableReader};
 use crate::specs;
 
 /// The sizes, and what the grains are made of.
@@ -72,6 +72,7 @@ fn lognormal(table: &TableReader<'_>) -> Option<SizeDistribution> {
     let limit = |spec: &ParamSpec, reach: f64| match table.has(spec.key) {
         true => table.number(spec),
         false => {
+            table.asks(spec.key, spec.meaning, || Answer::Number(*spec));
             let value = median?.value * libm::exp(reach * sigma?.value);
             table.note(spec, value);
             Some(Found { value, span: None })

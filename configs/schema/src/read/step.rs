@@ -3,7 +3,7 @@
 use engine::params::ParamSpec;
 
 use crate::model::TimeStep;
-use crate::reader::TableReader;
+use crate::reader::{Answer, TableReader};
 
 /// A fixed step or `"auto"`.
 pub(super) fn time_step(
@@ -11,6 +11,8 @@ pub(super) fn time_step(
     spec: &ParamSpec,
     default: Option<&str>,
 ) -> Option<TimeStep> {
+    table.asks(spec.key, spec.meaning, || Answer::Number(*spec));
+    table.asks(spec.key, spec.meaning, || Answer::Choice(vec!["auto"]));
     let auto = match table.has(spec.key) {
         true => table.peek_text(spec.key) == Some("auto"),
         false => default == Some("auto"),

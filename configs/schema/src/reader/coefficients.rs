@@ -3,7 +3,7 @@
 use engine::params::ParamSpec;
 use resistive::Expression;
 
-use super::{Found, TableReader};
+use super::{Answer, Found, TableReader};
 use crate::diagnostics::Diagnostic;
 use crate::document::Value;
 use crate::model::{AngleTable, Coefficient};
@@ -17,12 +17,13 @@ impl TableReader<'_> {
         spec: &'static ParamSpec,
         variables: &[&str],
     ) -> Option<Coefficient> {
+        self.asks_number(spec, Answer::Coefficient);
         let is_table =
             self.entry(spec.key).is_some_and(|entry| matches!(entry.node.value, Value::Table(_)));
         if !is_table {
-            return self.number(spec).map(|found| Coefficient::Number(found.value));
+            return self.plain_number(spec).map(|found| Coefficient::Number(found.value));
         }
-        let table = self.table(spec.key, None);
+        let table = self.below(spec.key, None);
         let [formula, angle, value] = ["expression", "angle", "value"].map(|key| table.has(key));
         let read = match (formula, angle || value) {
             (true, true) => {

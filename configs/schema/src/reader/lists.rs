@@ -1,6 +1,6 @@
 //! Lists of strings.
 
-use super::{Found, TableReader};
+use super::{Answer, Found, TableReader};
 use crate::document::Value;
 use crate::resolved::{Written, quoted};
 
@@ -13,6 +13,7 @@ impl TableReader<'_> {
         key: &'static str,
         example: &str,
     ) -> Option<Option<Vec<Found<String>>>> {
+        self.asks(key, "", || Answer::Texts);
         let Some(entry) = self.entry(key) else {
             return Some(None);
         };

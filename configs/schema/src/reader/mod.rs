@@ -3,7 +3,9 @@
 mod coefficients;
 mod kind;
 mod lists;
+mod noting;
 mod numbers;
+mod questions;
 mod unknown;
 mod words;
 
@@ -16,6 +18,8 @@ use crate::resolved::{Resolved, Written};
 
 pub use kind::FileKind;
 pub use numbers::interval;
+use questions::Notes;
+pub use questions::{Answer, Asked, Question, Seen, Word};
 use unknown::Unknown;
 
 /// A value that was read, and where; a default stands nowhere.
@@ -36,6 +40,7 @@ pub struct Reader<'a> {
     resolved: RefCell<Resolved>,
     homes: RefCell<Vec<(String, Vec<&'static str>)>>,
     unknown: RefCell<Vec<Unknown>>,
+    notes: Notes,
 }
 
 impl<'a> Reader<'a> {
@@ -49,7 +54,20 @@ impl<'a> Reader<'a> {
             resolved: RefCell::default(),
             homes: RefCell::default(),
             unknown: RefCell::default(),
+            notes: None,
         }
+    }
+
+    /// The same, which notes what it asks.
+    #[must_use]
+    pub fn noting(sources: &'a Sources, kind: FileKind) -> Self {
+        Self { notes: Some(RefCell::default()), ..Self::new(sources, kind) }
+    }
+
+    /// What was asked, by a reader that notes it.
+    #[must_use]
+    pub fn into_asked(self) -> Asked {
+        self.notes.map(RefCell::into_inner).unwrap_or_default()
     }
 
     /// Takes note of an error or a warning.
@@ -100,6 +118,8 @@ pub struct TableReader<'a> {
     name: String,
     table: Option<&'a Table>,
     section: usize,
+    /// Its number among the notes of what is asked.
+    noted: usize,
     asked: RefCell<Vec<&'static str>>,
     numbers: RefCell<Vec<(&'static str, Option<f64>)>>,
 }
@@ -107,11 +127,13 @@ pub struct TableReader<'a> {
 impl<'a> TableReader<'a> {
     fn new(reader: &'a Reader<'a>, name: &str, header: String, table: Option<&'a Table>) -> Self {
         let section = reader.resolved.borrow_mut().open(header);
+        let noted = reader.notes.as_ref().map_or(0, |notes| notes.borrow_mut().open(name, table));
         Self {
             reader,
             name: name.to_owned(),
             table,
             section,
+            noted,
             asked: RefCell::default(),
             numbers: RefCell::default(),
         }
@@ -142,7 +164,8 @@ impl<'a> TableReader<'a> {
     }
 
     /// Reports that a required key is missing, with an example of what to write.
-    fn missing(&self, key: &str, example: &str, meaning: &str) {
+    fn missing(&self, key: &'static str, example: &str, meaning: &str) {
+        self.misses(key);
         let Some(header) = self.header() else { return };
         let diagnostic = Diagnostic::error(format!("[{}] lacks `{key}`: {meaning}", self.name));
         self.reader.report(
@@ -166,6 +189,12 @@ impl<'a> TableReader<'a> {
     /// `example` as what to write.
     #[must_use]
     pub fn table(&self, key: &'static str, example: Option<&str>) -> TableReader<'a> {
+        self.asks(key, "", || Answer::Table);
+        self.below(key, example)
+    }
+
+    /// The same without a note of it.
+    fn below(&self, key: &'static str, example: Option<&str>) -> TableReader<'a> {
         let name = self.child(key);
         let table = match self.entry(key) {
             Some(Entry { node: Node { value: Value::Table(table), .. }, .. }) => Some(table),
@@ -183,6 +212,7 @@ impl<'a> TableReader<'a> {
             }
             None => {
                 if let Some(example) = example {
+                    self.misses(key);
                     let noun = self.reader.kind.noun();
                     self.reader.report(
                         Diagnostic::error(format!("the table [{name}] is missing"))
@@ -198,6 +228,7 @@ impl<'a> TableReader<'a> {
     /// The elements of an array of tables below this one.
     #[must_use]
     pub fn tables(&self, key: &'static str, at_most: usize) -> Vec<TableReader<'a>> {
+        self.asks(key, "", || Answer::Tables);
         let name = self.child(key);
         let Some(entry) = self.entry(key) else {
             return Vec::new();

@@ -3,7 +3,7 @@
 use engine::params::{Default as ParamDefault, ParamSpec, ParamTable, Range};
 use engine::units::{self, Dimension};
 
-use super::{FileKind, Found, TableReader};
+use super::{Answer, FileKind, Found, TableReader};
 use crate::diagnostics::{Diagnostic, Span, shorten};
 use crate::document::{Node, Value};
 use crate::limits;
@@ -15,6 +15,12 @@ const USUAL_SPEED: f64 = 2.0;
 impl TableReader<'_> {
     /// A number or quantity as its specification says.
     pub fn number(&self, spec: &ParamSpec) -> Option<Found<f64>> {
+        self.asks_number(spec, Answer::Number);
+        self.plain_number(spec)
+    }
+
+    /// The same without a note of it.
+    pub(super) fn plain_number(&self, spec: &ParamSpec) -> Option<Found<f64>> {
         let found = match self.entry(spec.key) {
             Some(entry) => self.number_at(&entry.node, spec),
             None => match spec.default {
@@ -40,8 +46,9 @@ impl TableReader<'_> {
 
     /// A number that may be left out; the outer `None` is an error that was reported.
     pub fn optional_number(&self, spec: &ParamSpec) -> Option<Option<Found<f64>>> {
+        self.asks_number(spec, Answer::Number);
         match self.has(spec.key) {
-            true => self.number(spec).map(Some),
+            true => self.plain_number(spec).map(Some),
             false => Some(None),
         }
     }
@@ -54,6 +61,7 @@ impl TableReader<'_> {
         unit: &str,
         dimension: Dimension,
     ) -> Option<Option<Found<f64>>> {
+        self.asks(key, "", || Answer::NumberInUnit(dimension));
         let Some(entry) = self.entry(key) else { return Some(None) };
         let text = match &entry.node.value {
             Value::Float(number) => format!("{number:?} {unit}"),
@@ -106,6 +114,7 @@ impl TableReader<'_> {
 
     /// A list of quantities, each as its specification says.
     pub fn numbers(&self, spec: &ParamSpec) -> Option<Option<Vec<Found<f64>>>> {
+        self.asks_number(spec, |spec| Answer::Numbers(spec, None));
         let Some(entry) = self.entry(spec.key) else {
             return Some(None);
         };
@@ -134,6 +143,7 @@ impl TableReader<'_> {
 
     /// Reports that a required list is missing, with an example of what to write.
     pub(crate) fn missing_list(&self, spec: &ParamSpec, example: &str) {
+        self.asks_number(spec, |spec| Answer::Numbers(spec, None));
         self.missing(spec.key, example, spec.meaning);
     }
 
@@ -283,6 +293,7 @@ impl TableReader<'_> {
 
     /// A number that is not written to the resolved model; something derived from it is.
     pub(crate) fn quiet_number(&self, spec: &ParamSpec) -> Option<Found<f64>> {
+        self.asks_number(spec, Answer::Number);
         self.entry(spec.key).and_then(|entry| self.number_at(&entry.node, spec))
     }
 

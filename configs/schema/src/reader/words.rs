@@ -1,6 +1,6 @@
 //! Strings, names, choices, whole numbers and truth values.
 
-use super::{Found, TableReader};
+use super::{Answer, Found, TableReader};
 use crate::diagnostics::{Diagnostic, nearest, shorten};
 use crate::document::{Node, Value};
 use crate::limits;
@@ -15,6 +15,8 @@ impl TableReader<'_> {
         allowed: std::ops::RangeInclusive<u64>,
         meaning: &str,
     ) -> Option<Found<u64>> {
+        let integers = || Answer::Integer(allowed.clone());
+        self.asks_or(key, meaning, integers, || default.map(|value| value.to_string()));
         let found = match self.entry(key) {
             None => match default {
                 Some(value) => Found { value, span: None },
@@ -52,6 +54,7 @@ impl TableReader<'_> {
 
     /// `true` or `false`.
     pub fn boolean(&self, key: &'static str, default: bool) -> Option<bool> {
+        self.asks_or(key, "", || Answer::Boolean, || Some(default.to_string()));
         let value = match self.entry(key) {
             None => default,
             Some(entry) => match entry.node.value {
@@ -68,6 +71,28 @@ impl TableReader<'_> {
 
     /// A string, without writing it to the resolved model.
     pub(crate) fn raw_text(
+        &self,
+        key: &'static str,
+        default: Option<&str>,
+        example: &str,
+        meaning: &str,
+    ) -> Option<Found<String>> {
+        self.asks_text(key, default, meaning, || Answer::Text);
+        self.plain_text(key, default, example, meaning)
+    }
+
+    fn asks_text(
+        &self,
+        key: &'static str,
+        default: Option<&str>,
+        meaning: &str,
+        answer: impl FnOnce() -> Answer,
+    ) {
+        self.asks_or(key, meaning, answer, || default.filter(|text| !text.is_empty()).map(quoted));
+    }
+
+    /// A string without a note of it, which is not written to the resolved model.
+    fn plain_text(
         &self,
         key: &'static str,
         default: Option<&str>,
@@ -109,7 +134,30 @@ impl TableReader<'_> {
         example: &str,
         meaning: &str,
     ) -> Option<Found<String>> {
-        let found = self.raw_text(key, default, example, meaning)?;
+        self.asks_text(key, default, meaning, || Answer::Text);
+        self.written_text(key, default, example, meaning)
+    }
+
+    /// A string that a list of those in `known` explains; who asks refuses others.
+    pub(crate) fn name(
+        &self,
+        key: &'static str,
+        known: &[&'static str],
+        meaning: &str,
+    ) -> Option<Found<String>> {
+        self.asks_text(key, None, meaning, || Answer::Choice(known.to_vec()));
+        self.written_text(key, None, known.first().copied().unwrap_or_default(), meaning)
+    }
+
+    /// A string without a note of it.
+    fn written_text(
+        &self,
+        key: &'static str,
+        default: Option<&str>,
+        example: &str,
+        meaning: &str,
+    ) -> Option<Found<String>> {
+        let found = self.plain_text(key, default, example, meaning)?;
         self.write(key, Written::Text(found.value.clone()));
         Some(found)
     }
@@ -117,6 +165,7 @@ impl TableReader<'_> {
     /// A list of strings; `None` when the file does not give it or it is something else, which is
     /// reported.
     pub fn texts(&self, key: &'static str) -> Option<Vec<String>> {
+        self.asks(key, "", || Answer::Texts);
         let entry = self.entry(key)?;
         let text = |node: &Node| match &node.value {
             Value::Text(text) if text.len() <= limits::STRING_BYTES => Some(text.clone()),
@@ -139,7 +188,8 @@ impl TableReader<'_> {
         default: Option<&str>,
         meaning: &str,
     ) -> Option<Found<String>> {
-        let found = self.text(key, default, "my-run", meaning)?;
+        self.asks_text(key, default, meaning, || Answer::Slug);
+        let found = self.written_text(key, default, "my-run", meaning)?;
         let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
         if (1..=64).contains(&found.value.len()) && found.value.chars().all(fits) {
             return Some(found);
@@ -171,7 +221,7 @@ impl TableReader<'_> {
         later: &[&str],
         meaning: &str,
     ) -> Option<&'static str> {
-        let found = self.text(key, None, known.first().copied().unwrap_or_default(), meaning)?;
+        let found = self.name(key, known, meaning)?;
         if let Some(name) = known.iter().find(|name| **name == found.value) {
             return Some(name);
         }

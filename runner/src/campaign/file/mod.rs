@@ -22,6 +22,7 @@
 //! intruder.mass = ["20 g", "40 g"]
 //! ```
 
+pub mod json_schema;
 mod read;
 mod settings;
 

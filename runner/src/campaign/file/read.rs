@@ -4,12 +4,18 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use configs::document::{Node, Table, Value};
-use configs::reader::{Found, Reader, TableReader};
+use configs::reader::{Answer, Found, Reader, TableReader};
 use configs::{Diagnostic, Sources, Span, nearest, shorten};
 use configs::{ModelSource, SHIPPED, find_shipped, paths};
 
 use super::settings::{axis, leaves, range, settings};
 use super::{Axis, Campaign, CampaignModel, POINTS, Sample, SampleMethod, SampledRange, Setting};
+
+/// What the schema calls the tables that set keys of a model.
+pub(super) const SETTINGS: &str = "settings";
+pub(super) const AXES: &str = "axes";
+pub(super) const RANGES: &str = "ranges";
+pub(super) const POINTS_ONE_BY_ONE: &str = "points";
 
 /// The campaign in `root`, or nothing if what is wrong with it leaves none; all of it is reported.
 pub(super) fn campaign(
@@ -22,8 +28,12 @@ pub(super) fn campaign(
     let name = head.slug("name", None, "the name of the campaign and of its folder");
     let models = models(&head, folder, allow_paths);
     let seeds = seeds(&head);
+    let logs = "whether logs of points stay once the points are done";
+    head.asks("keep_logs", logs, || Answer::Boolean);
     let keep_logs = head.boolean("keep_logs", false);
+    root.asks("set", "what every point has", || Answer::Defined(SETTINGS));
     let fixed = tables(&root, "set").map(|table| settings(reader, table)).unwrap_or_default();
+    root.asks("product", "every value with every other", || Answer::Defined(AXES));
     let product: Vec<Axis> = tables(&root, "product")
         .map(leaves)
         .unwrap_or_default()
@@ -70,6 +80,11 @@ fn models(
     allow_paths: &[PathBuf],
 ) -> Option<Vec<CampaignModel>> {
     head.header()?;
+    if !head.has("models") {
+        head.misses("models");
+    }
+    let what = "what every point is a change of: files beside this one, or shipped models";
+    head.asks("models", what, || Answer::Texts);
     let names = head.raw_texts("models", "vertical-2d")?.unwrap_or_default();
     if names.is_empty() {
         let message = "[campaign] names no model: `models` is what every point is a change of";
@@ -119,6 +134,8 @@ fn source(name: &str, folder: &Path, allow_paths: &[PathBuf]) -> Result<ModelSou
 
 /// `seeds = 3` for 1, 2, 3, or a list.
 fn seeds(head: &TableReader<'_>) -> Option<Vec<u64>> {
+    let what = "in place of run.seed of each model: a list, or a number for 1, 2, and so on";
+    head.asks("seeds", what, || Answer::Integers(1..=POINTS as u64));
     let Some(node) = head.node("seeds") else { return Some(Vec::new()) };
     let number = |value: &Value| match value {
         Value::Integer(number) => u64::try_from(*number).ok(),
@@ -148,6 +165,7 @@ fn seeds(head: &TableReader<'_>) -> Option<Vec<u64>> {
 
 fn listed(root: &TableReader<'_>) -> Option<Vec<Vec<Setting>>> {
     // What stands there is read whole, so its keys are not asked for one by one.
+    root.asks("point", "points one by one", || Answer::Defined(POINTS_ONE_BY_ONE));
     let Some(node) = root.node("point") else { return Some(Vec::new()) };
     let of_point = |node: &Node| match &node.value {
         Value::Table(table) => Some(settings(root.reader, table)),
@@ -178,6 +196,7 @@ fn sample(root: &TableReader<'_>) -> Option<Option<Sample>> {
     let most = method.map_or(POINTS, |(_, method)| method.most_points());
     let count = table.integer("count", None, 1..=most as u64, "how many points are drawn");
     let seed = table.integer("seed", Some(1), 0..=u64::MAX >> 1, "what the draw starts from");
+    table.asks("ranges", "what is drawn", || Answer::Defined(RANGES));
     let ranges: Vec<SampledRange> = tables(&table, "ranges")
         .map(leaves)
         .unwrap_or_default()

@@ -1,0 +1,106 @@
+//! The schema of a model.
+
+use std::path::Path;
+
+use serde_json::{Map, Value, json};
+
+use super::probes;
+use super::variation::without_each_key;
+use super::{Format, Gathered};
+use crate::diagnostics::Sources;
+use crate::document::{self, Table};
+use crate::read::{self, DataFolder, KEYS_OF_PARAMETER, PARAMETERS};
+use crate::reader::{Asked, FileKind, Reader};
+
+/// The schema of a model file.
+#[must_use]
+pub fn model() -> Value {
+    let (texts, whole) = probes::models();
+    let mut gathered = Gathered::new(format());
+    for (at, text) in texts.into_iter().enumerate() {
+        let mut sources = Sources::default();
+        let id = sources.add("model.toml", text);
+        let Ok(root) = document::parse(&sources, id) else { continue };
+        gathered.add(&asked(&sources, &root, Path::new(".")));
+        if at < whole {
+            for less in without_each_key(&root, &|key| key == "parameters") {
+                gathered.add(&asked(&sources, &less, Path::new(".")));
+            }
+        }
+    }
+    gathered.schema()
+}
+
+/// What a reader asks of the model `text`, whose data files lie in `folder`; nothing where it is no TOML.
+#[must_use]
+pub fn read_model(text: &str, folder: &Path) -> Asked {
+    let mut sources = Sources::default();
+    let id = sources.add("model.toml", text);
+    match document::parse(&sources, id) {
+        Ok(root) => asked(&sources, &root, folder),
+        Err(_) => Asked::default(),
+    }
+}
+
+fn asked(sources: &Sources, root: &Table, folder: &Path) -> Asked {
+    let reader = Reader::noting(sources, FileKind::Model);
+    let _ = read::model(reader.root(root), &DataFolder { folder, allow_paths: &[], known: None });
+    reader.into_asked()
+}
+
+fn format() -> Format {
+    let number = json!({ "type": "number" });
+    let [value, unit, range] = KEYS_OF_PARAMETER;
+    let parameter = json!({
+        "type": "object",
+        "properties": {
+            value: { "type": "number", "description": "in the unit of the parameter" },
+            unit: { "type": "string", "description": "such as N or kg/m; 1 where there is none", "default": "1" },
+            range: {
+                "type": "array", "items": number, "minItems": 2, "maxItems": 2,
+                "description": "between what a fit looks for it, in the unit of the parameter",
+            },
+        },
+        "additionalProperties": false,
+    });
+    Format {
+        title: "plunge model",
+        description: "An impact into grains or into a medium with a resistive force.",
+        takes_bare: false,
+        own: &[
+            ("contact_law", "name"),
+            ("effect", "name"),
+            ("bed.effect", "name"),
+            ("resistance", "name"),
+            ("intruder", "shape"),
+            ("container", "shape"),
+            ("bed", "source"),
+            ("bed.grains", "distribution"),
+        ],
+        of_file: &[("medium", "kind"), ("medium", "dimension")],
+        definitions: json!({
+            PARAMETERS: { "type": "object", "additionalProperties": parameter },
+        }),
+    }
+}
+
+/// The schema of files that set any keys of a model: nothing is required, lists of tables take anything, and what
+/// stands at a key is what `leaf` makes of the schema of its value.
+#[must_use]
+pub fn loosened(model: &Value, leaf: &impl Fn(&Value) -> Value) -> Value {
+    let is_table = |value: &Value| value.get("properties").is_some();
+    let is_list_of_tables = |value: &Value| value.get("items").is_some_and(is_table);
+    let Some(keys) = model.get("properties").and_then(Value::as_object) else { return leaf(model) };
+    let properties: Map<String, Value> = keys
+        .iter()
+        .map(|(key, value)| {
+            let loose = match (is_table(value), is_list_of_tables(value)) {
+                (true, _) => loosened(value, leaf),
+                (_, true) => json!({}),
+                _ => leaf(value),
+            };
+            (key.clone(), loose)
+        })
+        .collect();
+    json!({ "type": "object", "properties": properties, "additionalProperties": false })
+}
