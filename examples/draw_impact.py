@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws an impact from the logs of a run: the bed at four times, and where the energy went.
 
-Needs: pip install -r .ci/python-requirements.txt matplotlib numpy
+Needs: pip install mcap mcap-protobuf-support matplotlib numpy
 """
 
 import argparse

@@ -2,7 +2,7 @@
 """Lists the topics of a run log and sums its energy ledger again, from the fields alone.
 
 Exits with 1 if any step disagrees with the log's own `unaccounted_J` by more than round-off.
-Needs: pip install -r .ci/python-requirements.txt
+Needs: pip install mcap mcap-protobuf-support
 """
 
 import argparse

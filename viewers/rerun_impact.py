@@ -4,7 +4,7 @@
     python viewers/rerun_impact.py runs/hemisphere-3d                     # shows it
     python viewers/rerun_impact.py runs/hemisphere-3d -o hemisphere.rrd   # a file to open later
 
-Needs: pip install -r .ci/python-requirements.txt numpy rerun-sdk==0.41.0. Rerun calls the interface that
+Needs: pip install mcap mcap-protobuf-support numpy rerun-sdk==0.41.0. Rerun calls the interface that
 maps protobuf fields to curves unstable, hence the version. Of the messages that it reads by itself it takes
 neither radii and colours of grains nor what is drawn on `/scene`: these are put into it here.
 """

@@ -20,8 +20,6 @@ mod import_args;
 mod import_tables;
 mod movie;
 mod new;
-mod new_schemas;
-mod new_set;
 mod next;
 mod output;
 mod own_effects;
@@ -89,7 +87,7 @@ enum Command {
     /// Describe the laws and effects that a model can use.
     #[command(after_help = "Example: plunge effects yield-stress")]
     Effects(effects::Args),
-    /// Write a commented starter model, or, called `measurements`, a measurement set.
+    /// Write what comes with plunge here: commented models, measurement sets, files to fill in, layouts, schemas.
     #[command(after_help = "Example: plunge new measurements")]
     New(new::Args),
     /// Run a campaign: many models, seeds and settings side by side, each once.

@@ -1,12 +1,10 @@
-//! `plunge new schemas` writes the schemas that are kept, and what `plunge new` writes names them and fits them.
+//! `plunge new schemas` writes the schemas that are kept.
 //!
 //! `BLESS=1` in the environment writes the kept ones anew, as `cargo xtask schema` does.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-
-use fixtures::Schema;
 
 const NAMES: [&str; 3] = ["model.json", "measurement.json", "campaign.json"];
 
@@ -42,22 +40,4 @@ fn schemas_that_are_kept_are_those_that_plunge_writes() {
     }
     let again = plunge(folder.path(), &["new", "schemas"]).expect_err("a second time");
     assert!(again.contains("schemas exists already"), "{again}");
-}
-
-#[test]
-fn what_is_written_to_start_from_names_its_schema_and_fits_it() {
-    let folder = tempfile::tempdir().expect("a folder for the test");
-    for name in ["schemas", "measurements", "my-drop", "poncelet"] {
-        plunge(folder.path(), &["new", name]).unwrap_or_else(|error| panic!("{error}"));
-    }
-    for file in ["measurements/measurement.toml", "my-drop.toml", "poncelet.toml"] {
-        let file = folder.path().join(file);
-        let text = read(file.clone());
-        let path = text.lines().next().and_then(|line| line.strip_prefix("#:schema "));
-        let path = path.unwrap_or_else(|| panic!("{}: {text}", file.display()));
-        let schema = read(file.parent().expect("a folder").join(path));
-        let schema = Schema::new(&serde_json::from_str(&schema).expect("JSON"));
-        let faults = schema.unwrap_or_else(|error| panic!("{error}")).faults(&text);
-        assert_eq!(faults, Ok(Vec::new()), "{}", file.display());
-    }
 }

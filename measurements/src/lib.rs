@@ -6,8 +6,9 @@
 //! `cells` and `table` read a table, `runs`, `trajectories` and `curve_table` know the tables there are, `several` finds
 //! more than one of the latter two; `curves` lists what is read along one axis and is no position, each kind a `curve` in a file of its own; `fall` and `departure` see fall and contact on any scale, `level` finds one surface for several runs, `speeds` reads speeds that are
 //! not stated; `checks`, `ranges`, `signs`,
-//! `json_schema` describes `measurement.toml` to editors; `magnitudes`, `pushes`, `accelerometers` and `confounded` look at the whole; `smooth`, `contact`, `zeros`, `stops` and `definitions` hold what
-//! it states against its frames, and `contradictions` says where they do not agree.
+//! `magnitudes`, `pushes`, `accelerometers` and `confounded` look at the whole; `smooth`, `contact`, `zeros`, `stops` and `definitions` hold what
+//! it states against its frames, and `contradictions` says where they do not agree. `shipped` lists the sets that come with
+//! the program, and `json_schema` describes `measurement.toml` to editors.
 
 mod acceleration;
 mod accelerometers;
@@ -48,6 +49,7 @@ mod reading;
 mod row;
 mod runs;
 mod several;
+mod shipped;
 mod signs;
 mod smooth;
 mod speeds;
@@ -73,6 +75,7 @@ pub use level::common_level;
 pub use load::{Loaded, SetError};
 pub use priors::ParameterPrior;
 pub use reading::Reading;
+pub use shipped::{SHIPPED_SETS, ShippedSet, find as find_shipped_set};
 pub use strays::{Cleaned, without_strays};
 pub use template::TEMPLATE;
 pub use write::WriteError;

@@ -1,4 +1,8 @@
-//! `plunge new`: a commented starter model in the current folder.
+//! `plunge new`: files to start from in the current folder: models, measurement sets and what else comes with the
+//! program.
+
+mod library;
+mod schemas;
 
 use std::fs::{self, OpenOptions};
 use std::io::{ErrorKind, Write};
@@ -7,30 +11,30 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use configs::json_schema::header;
 use configs::{SHIPPED, Shipped, find_shipped, nearest};
-use serde_json::json;
+use serde_json::{Map, Value, json};
 
-use crate::new_schemas::{self, MODEL};
-use crate::new_set;
+use self::library::{Content, Group, Text, model_schema};
 use crate::output::{self, CommandError, CommandResult};
 use crate::table_file;
+use crate::workbench::write_whole;
 
 /// Arguments of `plunge new`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// Name of the model and, with .toml, of the file: a-z, 0-9, - and _. The name `measurements` makes a
-    /// folder of that name with a measurement set, the name `schemas` one with schemas for editors.
+    /// What to write: a name that --list shows, or any other for a model: a-z, 0-9, - and _. A model becomes a file
+    /// with .toml behind its name.
     #[arg(required_unless_present = "list")]
     name: Option<String>,
     /// The shipped model to start from: the one of that name if there is one, else vertical-2d.
     #[arg(long, value_name = "SHIPPED")]
     from: Option<String>,
-    /// List the shipped models.
+    /// List everything that can be written.
     #[arg(long)]
     list: bool,
     /// Print one JSON object to stdout.
     #[arg(long)]
     json: bool,
-    /// Print nothing on success.
+    /// Say nothing when it went well.
     #[arg(long)]
     quiet: bool,
 }
@@ -43,51 +47,93 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         (Some(name), false) => name,
         _ => return list(args.json),
     };
-    if name == new_set::NAME {
-        return new_set::run(args.json, args.quiet);
+    let known = if args.from.is_none() { library::content(name)? } else { None };
+    let written = match known {
+        Some(Content::Folder(files)) => folder(name, &files)?,
+        Some(Content::File(text)) => {
+            let file = PathBuf::from(format!("{name}.toml"));
+            write_new(&file, &text)?;
+            json!({ "file": file.display().to_string() })
+        }
+        None => model(name, args.from.as_deref())?,
+    };
+    match (args.json, args.quiet) {
+        (true, _) => output::json_to_stdout(&written),
+        (false, true) => Ok(()),
+        (false, false) => output::to_stdout(&said(name, &written)),
     }
-    if name == new_schemas::NAME {
-        return new_schemas::run(args.json, args.quiet);
+}
+
+/// What was written, and what to do with it.
+fn said(name: &str, written: &Value) -> String {
+    if let Some(from) = written["from"].as_str() {
+        let file = written["file"].as_str().unwrap_or_default();
+        return format!(
+            "{file} written, from {from}\nplunge check {file}   shows what it means\nplunge run {file}     runs it\n"
+        );
     }
+    let invented = if name == library::MEASUREMENTS { ", with invented numbers" } else { "" };
+    let files: Vec<&str> =
+        written["files"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+    let what = match written["file"].as_str() {
+        Some(file) => format!("{file} written"),
+        None => format!("{name}/ written{invented}: {}", files.join(", ")),
+    };
+    format!("{what}\n{}", library::advice(name))
+}
+
+/// Writes a model under its name, from the shipped one that `from` names.
+fn model(name: &str, from: Option<&str>) -> Result<Value, CommandError> {
     let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
     if name.is_empty() || name.len() > 64 || !name.chars().all(fits) {
         return Err(CommandError::bad_input(format!(
             "`{name}` is not a valid name: use 1 to 64 of a-z, 0-9, - and _"
         )));
     }
-    let shipped = match &args.from {
+    let shipped = match from {
         Some(from) => find_shipped(from).ok_or_else(|| unknown(from))?,
         None => find_shipped(name).unwrap_or(&SHIPPED[0]),
     };
     let file = PathBuf::from(format!("{name}.toml"));
     write_new(&file, &starter(shipped, name))?;
-    match (args.json, args.quiet) {
-        (true, _) => output::json_to_stdout(&json!({
-            "file": file.display().to_string(),
-            "from": shipped.name,
-        })),
-        (false, true) => Ok(()),
-        (false, false) => output::to_stdout(&format!(
-            "{0} written, from {1}\nplunge check {0}   shows what it means\nplunge run {0}     runs it\n",
-            file.display(),
-            shipped.name
-        )),
+    Ok(json!({ "file": file.display().to_string(), "from": shipped.name }))
+}
+
+/// Writes `files` into a folder that must not exist yet.
+fn folder(name: &str, files: &[Text]) -> Result<Value, CommandError> {
+    match fs::create_dir(name) {
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+            return Err(CommandError::bad_input(format!(
+                "{name} exists already; rename it, or start in another folder"
+            )));
+        }
+        made => made.with_context(|| format!("cannot make {name}"))?,
     }
+    for (file, text) in files {
+        write_whole(&Path::new(name).join(file), text)?;
+    }
+    let names: Vec<&str> = files.iter().map(|(file, _)| *file).collect();
+    Ok(json!({ "folder": name, "files": names }))
 }
 
 fn list(as_json: bool) -> CommandResult {
+    let items = library::items();
     if as_json {
-        let models: Vec<_> = SHIPPED
-            .iter()
-            .map(|shipped| json!({ "name": shipped.name, "summary": shipped.summary }))
-            .collect();
-        return output::json_to_stdout(&json!({ "models": models }));
+        let of = |group: Group| {
+            let items = items.iter().filter(|item| item.group == group);
+            items.map(|item| json!({ "name": item.name, "summary": item.summary })).collect()
+        };
+        let groups: Map<String, Value> =
+            Group::ALL.map(|(group, key, _)| (key.to_owned(), of(group))).into_iter().collect();
+        return output::json_to_stdout(&Value::Object(groups));
     }
-    let lines: Vec<String> = SHIPPED
-        .iter()
-        .map(|shipped| format!("{:<21}{}\n", shipped.name, shipped.summary))
-        .collect();
-    output::to_stdout(&lines.concat())
+    let width = items.iter().map(|item| item.name.len()).max().unwrap_or_default();
+    let of = |group: Group| -> String {
+        let items = items.iter().filter(|item| item.group == group);
+        items.map(|item| format!("  {:<width$}  {}\n", item.name, item.summary)).collect()
+    };
+    let groups = Group::ALL.map(|(group, _, heading)| format!("{heading}:\n{}", of(group)));
+    output::to_stdout(&format!("{}\nplunge new NAME writes it here.\n", groups.join("\n")))
 }
 
 fn unknown(name: &str) -> CommandError {
@@ -110,7 +156,7 @@ fn starter(shipped: &Shipped, name: &str) -> String {
         true => MORE_ON_RESISTANCE,
         false => MORE_ON_GRAINS,
     };
-    format!("{}{text}{more}", header(&format!("./{}/{MODEL}", new_schemas::NAME)))
+    format!("{}{text}{more}", header(&model_schema()))
 }
 
 const MORE_ON_GRAINS: &str = "
