@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use configs::edit::{AddedEffect, Addition, add_effects};
 use configs::{LoadOptions, Model, ModelSource, nearest};
+use diagnosis::missing_force::FOUND;
 use serde_json::{Value, json};
 
 use crate::output::{self, CommandError, CommandResult};
@@ -23,7 +24,8 @@ pub(crate) struct Args {
     /// Take the effect and the fitted values from a diagnosis.json.
     #[arg(long, value_name = "DIAGNOSIS.json", conflicts_with_all = ["name", "values"])]
     from: Option<PathBuf>,
-    /// Which of the effects of the diagnosis; without, what its verdict names.
+    /// Which of the effects of the diagnosis, or `found` for the formula of the missing force; without, what its verdict
+    /// names.
     #[arg(long, value_name = "NAME", requires = "from")]
     effect: Option<String>,
     /// The file to write; without --force an existing file is refused.
@@ -93,7 +95,7 @@ fn by_hand(name: &str, values: &[String]) -> Result<Addition, CommandError> {
         .collect::<Result<_, CommandError>>()?;
     Ok(Addition {
         effects: vec![AddedEffect { name: name.to_owned(), values }],
-        fitted: Vec::new(),
+        ..Addition::default()
     })
 }
 
@@ -127,6 +129,9 @@ fn strings(list: &Value) -> Vec<&str> {
 /// # Errors
 /// If it says nothing of one of them.
 pub(crate) fn from_diagnosis(object: &Value, effects: &[&str]) -> Result<Addition, String> {
+    if effects == [FOUND] {
+        return found(&object["missing_force"]);
+    }
     let named = strings(&object["effects"]);
     let empty = Vec::new();
     let ranking = object["ranking"].as_array().unwrap_or(&empty);
@@ -159,11 +164,66 @@ pub(crate) fn from_diagnosis(object: &Value, effects: &[&str]) -> Result<Additio
             }
         })
         .collect::<Result<_, String>>()?;
-    let fitted = parameters
-        .as_object()
-        .into_iter()
-        .flatten()
-        .filter_map(|(path, entry)| Some((path.clone(), entry["value"].as_f64()?)))
-        .collect();
-    Ok(Addition { effects: additions, fitted })
+    Ok(Addition { effects: additions, fitted: fitted(parameters), candidates: Vec::new() })
+}
+
+/// The formula of the missing force that a diagnosis offers, with the parameters of the model with it.
+fn found(missing_force: &Value) -> Result<Addition, String> {
+    let (Some(q), Some(table)) = (missing_force["q"].as_f64(), missing_force["candidate"].as_str())
+    else {
+        return Err("it offers no formula for a missing force".to_owned());
+    };
+    let effect =
+        AddedEffect { name: FOUND.to_owned(), values: vec![("q".to_owned(), format!("{q}"))] };
+    Ok(Addition {
+        effects: vec![effect],
+        fitted: fitted(&missing_force["parameters"]),
+        candidates: vec![table.to_owned()],
+    })
+}
+
+/// Paths and values of `parameters`.
+fn fitted(parameters: &Value) -> Vec<(String, f64)> {
+    let entries = parameters.as_object().into_iter().flatten();
+    entries.filter_map(|(path, entry)| Some((path.clone(), entry["value"].as_f64()?))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use configs::find_shipped;
+
+    #[test]
+    fn the_formula_of_a_missing_force_becomes_an_effect_and_comments_stay() {
+        let object = json!({
+            "effects": [],
+            "missing_force": {
+                "q": 15.4,
+                "candidate": "[[candidate]]\nname = \"expression\"\nid = \"found\"\nkind = \"friction\"\n\
+                    force = \"q * rho * g * A * D * exp(0 - ((z / mm - 19.5) / 5.6)^2)\"\n\
+                    parameters.q = { unit = \"1\", range = [-10000, 10000] }\n\
+                    parameters.mm = { value = 0.001, unit = \"m\" }\n",
+                "parameters": { "resistance.drag": { "value": 1.25, "unit": "1" } },
+            },
+        });
+        let addition = from_diagnosis(&object, &[FOUND]).expect("a formula");
+        let shipped = find_shipped("two-term-vector").expect("it ships").text;
+        let text = add_effects(shipped, &addition).expect("it is added");
+        let comments = |text: &str| text.lines().filter(|line| line.contains('#')).count();
+        assert_eq!(comments(&text), comments(shipped));
+        let source = ModelSource::Text { name: "new".into(), text, folder: ".".into() };
+        let loaded = Model::load(source, &LoadOptions::default()).expect("the model loads");
+        let configs::Medium::Resistive(medium) = loaded.model.medium else { panic!("a force law") };
+        let found =
+            medium.effects.iter().find(|one| one.effect.name() == FOUND).expect("it is there");
+        assert!((found.q - 15.4).abs() < 1e-9);
+        assert!(medium.candidates.is_empty());
+    }
+
+    #[test]
+    fn a_diagnosis_without_a_formula_says_so() {
+        let object = json!({ "missing_force": null });
+        let error = from_diagnosis(&object, &[FOUND]).expect_err("nothing to add");
+        assert!(error.contains("no formula"), "{error}");
+    }
 }

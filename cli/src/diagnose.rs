@@ -6,9 +6,10 @@ use configs::edit::add_effects;
 use diagnosis::bench::Bench;
 use diagnosis::calibrate::{Size, calibrate};
 use diagnosis::diagnose::diagnose;
+use diagnosis::missing_force::FOUND;
 use diagnosis::next::recommend;
 use diagnosis::verdict::{Diagnosis, Verdict};
-use diagnosis::where_it_fails::WhereItFails;
+use diagnosis::where_it_fails::{WhereItFails, files_of};
 use serde_json::{Value, json};
 
 use crate::add::from_diagnosis;
@@ -80,6 +81,9 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     }
     let where_it_fails = WhereItFails::of_diagnosis(&bench, &model.name, &diagnosis, flags.seed)
         .map_err(|error| failed(error, &model.name))?;
+    if let Some(force) = &diagnosis.missing_force {
+        files.extend(files_of(force, &measured.set).map_err(anyhow::Error::new)?);
+    }
     files.extend(where_it_fails.files().map_err(anyhow::Error::new)?);
     files.extend(report::of_results(&files, flags.quiet));
     results.write(&files)?;
@@ -97,6 +101,10 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     output::to_stdout(&text)
 }
 
+fn has_formula(diagnosis: &Diagnosis) -> bool {
+    diagnosis.missing_force.as_ref().is_some_and(|force| force.formula.is_some())
+}
+
 /// A model for each effect worth adding: names and texts of files.
 fn propose(
     model: &Candidate,
@@ -109,6 +117,7 @@ fn propose(
         Verdict::NotSeparable => {
             diagnosis.not_separable.iter().map(|id| vec![id.as_str()]).collect()
         }
+        Verdict::NoneOfTheCandidates if has_formula(diagnosis) => vec![vec![FOUND]],
         _ => Vec::new(),
     };
     proposals

@@ -3,6 +3,7 @@
 use diagnosis::calibrate::Calibration;
 use diagnosis::forward::Bound;
 use diagnosis::held_out::{Fails, LeftOut, Unit};
+use diagnosis::missing_force::MissingForce;
 use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Verdict};
 use serde_json::Value;
 
@@ -53,12 +54,43 @@ pub(crate) fn as_text(
         let on = diagnosis.unexplained.depends_on.join(", ");
         text.push_str(&format!("What remains of the force depends on {on}.\n"));
     }
-    if let Some(table) = &diagnosis.unexplained.suggestion {
-        let intro = "A suggestion, not a finding: put this into the model file and diagnose again.";
-        text.push_str(&format!("\n{intro}\n\n{table}"));
+    if let Some(force) = &diagnosis.missing_force {
+        text.push_str(&missing_force(force));
     }
     text.push_str(&held_out(diagnosis));
     text
+}
+
+/// What force is missing, and the formula for it.
+fn missing_force(force: &MissingForce) -> String {
+    let mut text = format!("\nMissing force ({}): {}.\n", force.file, force.words);
+    let (Some(formula), Some(q), Some(held_out)) = (&force.formula, force.q, &force.holdout) else {
+        return text + "No formula of the library predicts what was held out.\n";
+    };
+    let se = force.se.map_or(String::new(), |se| format!(" \u{b1} {se:.3}"));
+    text.push_str(&format!(
+        "A formula that fits and predicts; not an explanation:\n  {formula}\n  q = {q:.4}{se}\n"
+    ));
+    if let (Some(before), Some(after), Some(floor)) =
+        (held_out.before, held_out.after, held_out.noise_floor)
+    {
+        let [before, after, floor] =
+            [before, after, floor].map(|error| shown(held_out.unit, error));
+        text.push_str(&format!(
+            "Error on conditions that were not fitted to: {before} without it, {after} with it (noise of the means {floor}).\n"
+        ));
+    }
+    text + "`plunge add MODEL --from diagnosis.json --effect found -o NEW.toml` makes it a part of the model.\n"
+}
+
+/// An error with its unit.
+fn shown(unit: Unit, error: f64) -> String {
+    match unit {
+        Unit::Position => format!("{:.3} mm", 1e3 * error),
+        Unit::Relative => format!("{:.1} %", 1e2 * error),
+        Unit::Force => format!("{error:.3} N"),
+        Unit::Acceleration => format!("{error:.3} m/s²"),
+    }
 }
 
 /// The name of an effect, with the unit of its amplitude where that is no pure number.
@@ -141,12 +173,7 @@ fn held_out(diagnosis: &Diagnosis) -> String {
     let (Some(held_out), false) = (&diagnosis.holdout, diagnosis.amplitudes.is_empty()) else {
         return String::new();
     };
-    let shown = |error: f64| match held_out.unit {
-        Unit::Position => format!("{:.3} mm", 1e3 * error),
-        Unit::Relative => format!("{:.1} %", 1e2 * error),
-        Unit::Force => format!("{error:.3} N"),
-        Unit::Acceleration => format!("{error:.3} m/s²"),
-    };
+    let shown = |error: f64| shown(held_out.unit, error);
     let which = match held_out.conditions {
         LeftOut::Holdout => "held-out conditions",
         LeftOut::OneAtATime => "conditions left out one at a time (the set holds out none)",

@@ -79,6 +79,9 @@ pub enum BenchError {
         /// Length of the layout.
         expected: usize,
     },
+    /// A formula that is no force.
+    #[error("a formula of the missing force cannot be read: {0}")]
+    Formula(String),
     /// Neither repeats nor stated errors.
     #[error(
         "there are neither repeats nor stated errors: repeat at least one condition, or state `[noise]`"

@@ -2,19 +2,19 @@
 
 use measurements::MeasurementSet;
 use serde::Serialize;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 use thiserror::Error;
 
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::errors::Errors;
-use crate::fit::Fit;
+use crate::fitted_parameters::parameters;
 use crate::force_error::ForceError;
-use crate::forward::{Bound, Forward, ParameterKind};
+use crate::forward::Forward;
 use crate::lack_of_fit::lack_of_fit;
 use crate::noise::{Noise, NoiseSource};
 use crate::observed::Observed;
 use crate::residual::{Unpredicted, predictable};
-use crate::rounding::{rounded, six_digits, six_digits_or_null};
+use crate::rounding::{six_digits, six_digits_or_null};
 use crate::sensitivity::Point;
 use crate::where_it_fails::{Failing, WhereItFails};
 
@@ -196,25 +196,4 @@ fn compare_one(
         failing,
         fitted,
     })
-}
-
-/// Value, standard error and unit of every free parameter of the model; no error of one that is held at the end of its
-/// range.
-#[must_use]
-pub fn parameters(forward: &dyn Forward, fit: &Fit) -> Map<String, Value> {
-    let values = forward.parameters().iter().zip(&fit.point.parameters).enumerate();
-    values
-        .filter(|(_, (parameter, _))| parameter.kind == ParameterKind::Model)
-        .map(|(at, (parameter, value))| {
-            let se = fit.standard_error(at).map_or(Value::Null, rounded);
-            let at_bound = Bound::at(*value, parameter.min, parameter.max);
-            let entry = json!({
-                "value": rounded(*value),
-                "se": se,
-                "unit": parameter.unit,
-                "at_bound": at_bound,
-            });
-            (parameter.name.clone(), entry)
-        })
-        .collect()
 }

@@ -5,17 +5,17 @@
 //! must leave no lack of fit and must predict conditions that were not fitted to.
 
 use crate::bench::{Bench, BenchError, Fitted};
-use crate::compare::parameters;
+use crate::fitted_parameters::parameters;
 use crate::force_error::ForceErrors;
 use crate::held_out::HeldOut;
 use crate::lack_of_fit::lack_of_fit;
 use crate::marginal::{Marginals, marginals};
+use crate::missing_force::missing_force;
 use crate::noise::{Noise, NoiseSource};
 use crate::pair::{Pair, best_pair};
 use crate::ranked::ranked;
 use crate::score::Ranking;
 use crate::sensitivity::Point;
-use crate::suggestion::suggestion;
 use crate::verdict::{
     Amplitude, ApparatusError, Diagnosis, Evidence, Strength, StrengthReason, Unexplained, Verdict,
 };
@@ -326,6 +326,13 @@ impl Judge<'_> {
             Some(known) => known,
             None => HeldOut::of(bench, before, proposed)?,
         };
+        let missing_force = match verdict {
+            Verdict::NoneOfTheCandidates => {
+                let best = ranking.scores.first();
+                missing_force(bench, &self.baseline, best.map(|score| score.delta))?
+            }
+            _ => None,
+        };
         let mut strength_reasons = doubts(bench, proposed, &amplitudes, &held_out);
         let is_nothing = matches!(
             verdict,
@@ -353,6 +360,7 @@ impl Judge<'_> {
             noise: proposed.noise.to_json(bench.set),
             holdout: Some(held_out),
             unexplained,
+            missing_force,
             apparatus: ApparatusError::all(bench.forward, proposed),
             preparation: ApparatusError::of_preparation(bench.forward, &proposed.fit),
             next: Vec::new(),
@@ -490,11 +498,7 @@ fn unexplained(
         Verdict::NoneOfTheCandidates | Verdict::Pair => remaining.depends_on(),
         _ => remaining.drifts(),
     };
-    let suggestion = match verdict {
-        Verdict::NoneOfTheCandidates => suggestion(bench.set, &remaining),
-        _ => None,
-    };
-    Ok(Unexplained { depends_on, hint, suggestion })
+    Ok(Unexplained { depends_on, hint })
 }
 
 /// Whether a model leaves no lack of fit; one that leaves nothing to judge by is not adequate.

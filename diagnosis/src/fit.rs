@@ -9,7 +9,7 @@ use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use crate::forward::{Forward, ParameterKind, PredictError};
+use crate::forward::{Bound, Forward, ParameterKind, PredictError};
 use crate::observed::Observed;
 use crate::sensitivity::Point;
 use crate::weights::Weight;
@@ -82,6 +82,19 @@ impl Fit {
         &self.free
     }
 
+    /// The point that fits best to first order where `residual` is what is left over at this one, within the ranges of
+    /// `scales`; `None` where the unknowns are not told apart.
+    pub(crate) fn moved(&self, residual: &DVector<f64>, scales: &[Scale]) -> Option<Point> {
+        let factor = Cholesky::new(self.jacobian.tr_mul(&self.jacobian))?;
+        let steps = factor.solve(&self.jacobian.tr_mul(residual));
+        let mut point = self.point.clone();
+        for (&at, step) in self.free.iter().zip(steps.iter()) {
+            let place = value_mut(&mut point, at);
+            *place = (*place + step).clamp(scales[at].min, scales[at].max);
+        }
+        Some(point)
+    }
+
     /// Covariance of the unknowns that are not held at a bound.
     #[must_use]
     pub fn free_covariance(&self) -> DMatrix<f64> {
@@ -112,11 +125,26 @@ impl Data<'_> {
     /// # Errors
     /// If the model cannot be integrated at the start or at the end.
     pub(crate) fn fit_as_listed(&self, start: &Point) -> Result<Fit, PredictError> {
-        let scales = self.scales(start);
+        self.fit_but(start, &self.scales(start), self.forms(start))
+    }
+
+    /// What a fit as listed would be that ends at `point`.
+    ///
+    /// # Errors
+    /// If the model cannot be integrated there.
+    pub(crate) fn as_listed_at(&self, point: Point) -> Result<Fit, PredictError> {
+        let (scales, mut held) = (self.scales(&point), self.forms(&point));
+        for (at, scale) in scales.iter().enumerate() {
+            held[at] |= Bound::at(value(&point, at), scale.min, scale.max).is_some();
+        }
+        self.result(point, &scales, &held)
+    }
+
+    /// Which unknowns of `point` are numbers of a form.
+    fn forms(&self, point: &Point) -> Vec<bool> {
         let parameters = self.forward.parameters().iter();
-        let held = parameters.map(|parameter| parameter.kind == ParameterKind::Form);
-        let held = held.chain(start.effects.iter().map(|_| false)).collect();
-        self.fit_but(start, &scales, held)
+        let forms = parameters.map(|parameter| parameter.kind == ParameterKind::Form);
+        forms.chain(point.effects.iter().map(|_| false)).collect()
     }
 
     /// Fits what is not `held`.

@@ -3,9 +3,14 @@
 //! A resistive-force model answers by integrating an impact; a grain bed answers from cached runs, whose
 //! number is finite, and says how far off it may be for that.
 
+use std::sync::Arc;
+
 use nalgebra::DMatrix;
+use resistive::{Draft, OwnEffectError, Space};
 use serde::Serialize;
 use thiserror::Error;
+
+use crate::field::Field;
 
 /// A model that predicts the observables of every condition of a measurement set.
 ///
@@ -63,6 +68,55 @@ pub trait Forward: Sync {
         let _ = condition;
         None
     }
+
+    /// The model as one to which forces can be added by formulas; `None` for a model that is no force law.
+    fn by_formulas(&self) -> Option<&dyn ByFormulas> {
+        None
+    }
+}
+
+/// A force law to which forces can be added that no list has, by their formulas.
+pub trait ByFormulas: Sync {
+    /// The dimension in which formulas are written.
+    fn space(&self) -> Space;
+
+    /// The model with `drafts` as candidates behind its own; indices of its own stay.
+    ///
+    /// # Errors
+    /// If a draft is not an effect.
+    fn extended(&self, drafts: Vec<Draft>) -> Result<Box<dyn Forward + '_>, OwnEffectError>;
+
+    /// What the body of `condition` goes through in the bed on the run that `at` asks for, about `n` moments of it, and
+    /// what it would meet there by each of `others`; of the first part of a chain.
+    ///
+    /// # Errors
+    /// If the model cannot be integrated with these values.
+    fn passage(
+        &self,
+        condition: usize,
+        at: &Request<'_>,
+        others: &[Request<'_>],
+        n: usize,
+    ) -> Result<Vec<Moment>, PredictError>;
+}
+
+/// A body in the bed at one moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// Time since contact (s).
+    pub time: f64,
+    /// Way forward along the surface (m).
+    pub way: f64,
+    /// Depth of its lowest point (m).
+    pub depth: f64,
+    /// Speed (m/s).
+    pub speed: f64,
+    /// ρ g A D (N): bulk density, gravity, area that drag and friction act on, and diameter.
+    pub unit: f64,
+    /// Force of the model against the motion (N).
+    pub force: f64,
+    /// The same of other models in this state.
+    pub others: Vec<f64>,
 }
 
 /// Odds of 100 to 1, in χ²: as rare as an error that a verdict allows itself.
@@ -230,6 +284,8 @@ pub struct Scatter {
     /// Force normal to the velocity, in units of the resistance, at nodes likewise; in the plane of
     /// motion, positive out of the bed.
     pub sideways: Vec<f64>,
+    /// A force that the model lacks, on every run.
+    pub field: Option<Arc<Field>>,
     /// Relative change of the strength of every effect of the request with depth, from the surface to the greatest of the
     /// set, and with speed, from rest to the greatest: an effect of the same kind and another form.
     pub bend: Bend,
@@ -241,10 +297,23 @@ impl Scatter {
     /// Whether this is the run of the mean bed.
     #[must_use]
     pub fn is_still(&self) -> bool {
-        let Self { coefficients, speed, level, clock, scale, mass, tilt, along, sideways, .. } =
-            self;
+        let Self {
+            coefficients,
+            speed,
+            level,
+            clock,
+            scale,
+            mass,
+            tilt,
+            along,
+            sideways,
+            field,
+            ..
+        } = self;
         let lists = coefficients.iter().chain(along).chain(sideways);
-        lists.chain([speed, level, clock, scale, mass, tilt]).all(|value| *value == 0.0)
+        let is_still =
+            lists.chain([speed, level, clock, scale, mass, tilt]).all(|value| *value == 0.0);
+        is_still && field.is_none()
     }
 }
 

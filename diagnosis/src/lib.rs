@@ -11,8 +11,9 @@
 //!    ([`errors`], [`lack_of_fit`], [`force_error`], [`residual`]), and [`where_it_fails`] writes that
 //!    as tables and [`mod@picture`]s;
 //! 5. [`diagnose::diagnose`] says which effect is missing, as a [`verdict`];
-//! 6. [`mod@calibrate`] says how often such verdicts come true before sets of the same design;
-//! 7. [`next::recommend`] says what to measure next where several effects remain.
+//! 6. [`mod@missing_force`] says, where no listed effect explains the data, what force is missing;
+//! 7. [`mod@calibrate`] says how often such verdicts come true before sets of the same design;
+//! 8. [`next::recommend`] says what to measure next where several effects remain.
 //!
 //! [`runs`] holds a run against a run.
 
@@ -29,12 +30,15 @@ pub mod diagnose;
 mod directions;
 mod discovery;
 pub mod errors;
+pub mod field;
 pub mod fit;
+pub mod fitted_parameters;
 pub mod force_error;
 pub mod forward;
 pub mod held_out;
 pub mod lack_of_fit;
 mod marginal;
+pub mod missing_force;
 pub mod next;
 pub mod noise;
 pub mod observable;
@@ -56,7 +60,6 @@ pub mod sensitivity;
 mod signature;
 mod significance;
 mod strength;
-pub mod suggestion;
 #[cfg(test)]
 mod test_sets;
 pub mod verdict;

@@ -8,6 +8,7 @@ use crate::between::Between;
 use crate::fit::Fit;
 use crate::forward::{Bound, Forward, ParameterKind};
 use crate::held_out::HeldOut;
+use crate::missing_force::MissingForce;
 use crate::rounding::{six_digits, six_digits_or_null};
 use crate::sensitivity::Point;
 pub use crate::strength::{Strength, StrengthReason};
@@ -118,6 +119,8 @@ pub struct Diagnosis {
     pub holdout: Option<HeldOut>,
     /// What no listed effect explains.
     pub unexplained: Unexplained,
+    /// The force that is missing where no listed effect explains the data.
+    pub missing_force: Option<MissingForce>,
     /// Errors that runs share, as the fit finds them.
     pub apparatus: Vec<ApparatusError>,
     /// By what the measured bed differs from that of the model, as the fit finds it.
@@ -293,9 +296,6 @@ pub struct Unexplained {
     pub depends_on: Vec<&'static str>,
     /// One sentence; empty if nothing remains.
     pub hint: String,
-    /// A candidate of one's own to try, as a table for the model file: a guess, not a finding.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub suggestion: Option<String>,
 }
 
 impl Diagnosis {
@@ -320,6 +320,7 @@ impl Diagnosis {
             apparatus: Vec::new(),
             preparation: Vec::new(),
             unexplained: Unexplained { hint: why, ..Unexplained::default() },
+            missing_force: None,
             next: Vec::new(),
             parameters: Map::new(),
             amplitudes: Vec::new(),

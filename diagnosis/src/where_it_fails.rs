@@ -10,7 +10,7 @@ mod tables;
 
 use measurements::MeasurementSet;
 
-pub use self::files::{FILES, FilesError};
+pub use self::files::{FILES, FilesError, MISSING_FORCE, files_of};
 pub use self::signature::Signature;
 
 use crate::bench::{Bench, BenchError, Fitted};

@@ -5,6 +5,7 @@ use serde_json::Value;
 
 use crate::claim;
 use crate::comparison::{by_kind, views};
+use crate::figure::figure;
 use crate::numbers::{fixed, four_digits, list, probability, text, texts};
 use crate::page::{Card, Page, Part, Section, Table};
 use crate::{ReportError, Texts, object};
@@ -133,6 +134,7 @@ pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
     let set = text(&found["set"]);
     let mut sections = vec![
         Section::new("Verdict", verdict(&diagnosis, texts)?),
+        Section::new("The missing force", missing_force(&diagnosis, texts)),
         Section::new("Effects", effects(&diagnosis)),
     ];
     // What is left over stands with the verdict.
@@ -196,14 +198,40 @@ fn verdict(diagnosis: &Value, texts_of: &Texts) -> Result<Vec<Part>, ReportError
         let on = depends_on.join(", ");
         parts.push(Part::Text(format!("What remains of the force depends on {on}.")));
     }
-    if let Some(suggestion) = unexplained["suggestion"].as_str() {
-        parts.push(Part::Text(
-            "A suggestion, not a finding: put this into the model file and diagnose again."
-                .to_owned(),
-        ));
-        parts.push(Part::Listing(suggestion.to_owned()));
-    }
     Ok(parts)
+}
+
+/// The force that no listed effect explains, and the formula for it.
+fn missing_force(diagnosis: &Value, texts: &Texts) -> Vec<Part> {
+    let force = &diagnosis["missing_force"];
+    let Some(words) = force["words"].as_str() else { return Vec::new() };
+    let mut parts = vec![Part::Text(format!("{words}."))];
+    let caption = "Force that the model lacks, against the motion, with the band that holds it with 95 %: a panel per \
+                   condition, depth to the right.";
+    parts.extend(texts.get("missing_force.svg").map(|svg| figure(svg, caption)));
+    match force["candidate"].as_str() {
+        Some(table) => {
+            let error = |key: &str| fixed(force["holdout"][key].as_f64().map(|one| 1e3 * one), 3);
+            let errors = match force["holdout"]["unit"].as_str() {
+                Some("m") => format!(
+                    " On conditions that were not fitted to the error falls from {} to {} mm; their means are known to {} mm.",
+                    error("before"),
+                    error("after"),
+                    error("noise_floor")
+                ),
+                _ => String::new(),
+            };
+            let q = four_digits(&force["q"]);
+            parts.push(Part::Text(format!(
+                "A formula fits and predicts; it does not explain. Its amplitude q is {q}.{errors}"
+            )));
+            parts.push(Part::Listing(table.to_owned()));
+        }
+        None => parts.push(Part::Text(
+            "No formula of the library predicts conditions that were not fitted to.".to_owned(),
+        )),
+    }
+    parts
 }
 
 /// Which conditions that were held out are in no error, in a sentence; none if all are judged.

@@ -3,6 +3,7 @@
 mod events;
 mod margin;
 
+use engine::math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::assembly::{Assembly, COORDINATES, PARTS, State};
@@ -299,6 +300,13 @@ impl Impact {
             states.push(solver.at(time));
         }
         Ok(states)
+    }
+
+    /// Force (N) of the medium on part `index` where it is and as it moves in `state`, without what holds a part that
+    /// rests.
+    #[must_use]
+    pub fn force_in(&self, index: usize, state: &State) -> Vec3 {
+        self.system().loaded(index, state, &self.last_modes(state)).on_part().force
     }
 
     /// The modes at the start.

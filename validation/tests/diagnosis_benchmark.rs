@@ -49,6 +49,22 @@ fn nothing_is_named_where_nothing_is_hidden() {
 }
 
 #[test]
+fn a_layer_that_no_list_has_is_found_where_it_is_and_its_formula_predicts() {
+    let layer = |hidden: &[Hidden], _: f64| hidden == [Hidden::Layer];
+    let (_, answer) = answers(Row::Beyond, 1, layer).remove(0);
+    assert_eq!(answer.verdict, Verdict::NoneOfTheCandidates);
+    let missing = answer.missing.expect("a missing force");
+    // Its friction is larger around 20 mm, by exp(−((z − 20 mm)/6 mm)²).
+    let formula = missing.formula.expect("a formula");
+    let (_, centre) = formula.split_once("z / mm - ").expect("a layer of the bed");
+    let centre: f64 = centre.split(')').next().and_then(|text| text.parse().ok()).expect("a depth");
+    assert!((centre - 20.0).abs() < 2.0, "{formula}");
+    let [before, after, floor] = missing.held_out.expect("errors").map(|error| error.expect("one"));
+    assert!(before > 2.0 * floor && after < 0.5 * before, "{before} {after} {floor}");
+    assert!(missing.log_odds > 20.0, "{}", missing.log_odds);
+}
+
+#[test]
 fn what_the_data_cannot_show_is_refused_not_ranked() {
     let some = |hidden: &[Hidden], _: f64| hidden[0] == Hidden::YieldStress;
     for (_, answer) in answers(Row::Vertical, 1, some) {

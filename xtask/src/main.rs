@@ -27,8 +27,10 @@ Usage: cargo xtask <task>
   bench resistive    impacts per second on resistive media, in release
   bench diagnosis [ARG]...
                      how often the diagnosis is right, in release; the arguments go to the program
+  bench beyond [ARG]...
+                     what is said of forces outside the list, in release; likewise
   bench beds [ARG]...
-                     the same on small beds of grains
+                     how often the diagnosis is right on small beds of grains
   mutants [NUMBER]...
                      wrong lines, one at a time in a copy of the sources: which of them no test notices
   fuzz [READER] [--minutes N]
@@ -171,6 +173,10 @@ fn benchmark(mut args: Vec<OsString>) -> Result<Task, lexopt::Error> {
             args.remove(0);
             Ok(Task::BenchDiagnosis(args))
         }
+        Some("beyond") => {
+            args.splice(0..1, ["--only", "beyond"].map(OsString::from));
+            Ok(Task::BenchDiagnosis(args))
+        }
         Some("resistive") if args.len() == 1 => Ok(Task::BenchResistive),
         Some(name) if !name.starts_with('-') => {
             let named = args.join(OsStr::new(" "));
@@ -307,6 +313,8 @@ mod tests {
         );
         let quick = vec![OsString::from("--quick")];
         assert_eq!(parsed(&["bench", "beds", "--quick"]), Ok(Task::BenchBeds(quick)));
+        let beyond = ["--only", "beyond", "--quick"].map(OsString::from).into();
+        assert_eq!(parsed(&["bench", "beyond", "--quick"]), Ok(Task::BenchDiagnosis(beyond)));
         assert_eq!(
             parsed(&["bench", "diagnoses"]),
             Err("no benchmark is called `diagnoses`".into())

@@ -19,6 +19,9 @@ pub struct Addition {
     /// New SI values of numbers that are there already, by their paths: `resistance.drag`,
     /// `resistance.drag_x@45`, `effect.janssen.q`.
     pub fitted: Vec<(String, f64)>,
+    /// Candidates that the model gets first, each as the text of a table `[[candidate]]`; an effect of the same name makes
+    /// it a part of the model.
+    pub candidates: Vec<String>,
 }
 
 /// An effect with its parameters as text: TOML if it parses as TOML, else a string.
@@ -107,6 +110,9 @@ pub fn add_effects(text: &str, addition: &Addition) -> Result<String, EditError>
     for (path, value) in &addition.fitted {
         set_number(&mut document, path, *value)
             .ok_or_else(|| EditError::UnknownNumber { path: path.clone() })?;
+    }
+    for table in &addition.candidates {
+        candidates::append(&mut document, table)?;
     }
     for effect in &addition.effects {
         add(&mut document, effect)?;
@@ -357,7 +363,7 @@ mod tests {
 
     #[test]
     fn an_effect_is_added_and_nothing_else_changes() {
-        let addition = Addition { effects: vec![janssen()], fitted: Vec::new() };
+        let addition = Addition { effects: vec![janssen()], ..Addition::default() };
         let text = add_effects(MODEL, &addition).unwrap();
         let expected = MODEL.replace(
             "[\"resistance.friction_z\"]",
@@ -372,7 +378,7 @@ mod tests {
             ("resistance.drag_x@45".to_owned(), 0.25),
             ("resistance.friction_z".to_owned(), 3.5),
         ];
-        let text = add_effects(MODEL, &Addition { effects: Vec::new(), fitted }).unwrap();
+        let text = add_effects(MODEL, &Addition { fitted, ..Addition::default() }).unwrap();
         let expected = MODEL.replace("1.6 g/cm", "2.5 g/cm").replace("\"4 N/m\"", "\"3.5 N/m\"");
         assert_eq!(text, expected);
     }
@@ -381,7 +387,7 @@ mod tests {
     fn a_default_that_is_fitted_is_written_out() {
         let link = "[resistance]\nname = \"link\"\ndrag = 3.0 # eta_d\n\n[run]\n";
         let fitted = vec![("resistance.plunging".to_owned(), 12.5)];
-        let text = add_effects(link, &Addition { effects: Vec::new(), fitted }).unwrap();
+        let text = add_effects(link, &Addition { fitted, ..Addition::default() }).unwrap();
         assert_eq!(text, link.replace("# eta_d\n", "# eta_d\nplunging = 12.5\n"));
     }
 
@@ -392,16 +398,16 @@ mod tests {
                 name: name.to_owned(),
                 values: vec![(key.to_owned(), "1".to_owned())],
             }],
-            fitted: Vec::new(),
+            ..Addition::default()
         };
         let message = |addition| add_effects(MODEL, &addition).unwrap_err().to_string();
         assert!(message(one("jansen", "q")).contains("did you mean `janssen`?"));
         assert!(message(one("rolling-resistance", "q")).contains("acts in a grains medium"));
         assert!(message(one("janssen", "p")).contains("it has: q"));
-        let twice = Addition { effects: vec![janssen(), janssen()], fitted: Vec::new() };
+        let twice = Addition { effects: vec![janssen(), janssen()], ..Addition::default() };
         assert!(message(twice).contains("already"));
         let lost =
-            Addition { effects: Vec::new(), fitted: vec![("resistance.grag".to_owned(), 1.0)] };
+            Addition { fitted: vec![("resistance.grag".to_owned(), 1.0)], ..Addition::default() };
         assert!(message(lost).contains("resistance.grag"));
     }
 

@@ -141,7 +141,7 @@ fn an_effect_added_to_the_text_of_a_model_is_in_the_model() {
             name: name.to_owned(),
             values: vec![(key.to_owned(), value.to_owned())],
         }],
-        fitted: Vec::new(),
+        ..Addition::default()
     };
     let text = find_shipped("two-term-vector").expect("a shipped model").text;
     let edited = add_effects(text, &addition("janssen", "q", "0.4")).expect("an effect");
@@ -168,7 +168,7 @@ fn every_effect_can_be_written_in_a_model_and_added_to_one() {
         let name = entry.name.to_owned();
         let q = entry.params[0].plausible.max.to_string();
         let effects = vec![AddedEffect { name, values: vec![("q".to_owned(), q)] }];
-        let added = add_effects(text, &Addition { effects, fitted: Vec::new() });
+        let added = add_effects(text, &Addition { effects, ..Addition::default() });
         let added = added.unwrap_or_else(|error| panic!("{}: {error}", entry.name));
         let model = load(&added, &[]).unwrap_or_else(|error| panic!("{error}")).model;
         let effect = &medium(&model).effects[0];
@@ -181,7 +181,7 @@ fn every_effect_can_be_written_in_a_model_and_added_to_one() {
 fn a_fitted_node_of_a_shipped_table_changes_in_its_place_alone() {
     let text = find_shipped("two-term-components").expect("a shipped model").text;
     let fitted = vec![("resistance.drag_x@45".to_owned(), 0.2)];
-    let edited = add_effects(text, &Addition { effects: Vec::new(), fitted }).expect("a number");
+    let edited = add_effects(text, &Addition { fitted, ..Addition::default() }).expect("a number");
     assert_eq!(edited, text.replace("0.16064 kg/m", "0.2 kg/m"));
     let model = load(&edited, &[]).unwrap_or_else(|error| panic!("{error}")).model;
     let drag = medium(&model).coefficients_at(45_f64.to_radians()).get("drag_x");

@@ -10,7 +10,7 @@ use super::plan::Plan;
 use super::stand::{Draw, Stand};
 use super::variation::Variation;
 use crate::bench::Bench;
-use crate::compare::parameters;
+use crate::fitted_parameters::parameters;
 use crate::observed::Observed;
 use crate::rounding::rounded;
 use crate::sensitivity::Point;

@@ -3,7 +3,9 @@
 mod bent;
 mod candidates;
 mod error;
+mod extended;
 mod felt;
+mod field;
 mod needs;
 mod prepared;
 mod pushed;
@@ -18,7 +20,7 @@ use resistive::{Effect, RESISTANCE_LAWS};
 
 use crate::apparatus::{Apparatus, is_looked_for};
 use crate::forward::{
-    Candidate, Forward, Parameter, ParameterKind, PredictError, Prior, Request, Scatter,
+    ByFormulas, Candidate, Forward, Parameter, ParameterKind, PredictError, Prior, Request, Scatter,
 };
 use crate::next::Designs;
 use crate::observable::Layout;
@@ -186,8 +188,22 @@ impl Forward for ResistiveForward {
     }
 
     fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError> {
-        let added: Vec<(&Effect, f64)> =
-            at.effects.iter().map(|&(index, q)| (&self.effects[index], q)).collect();
+        self.predict_with(condition, at, &self.added(at.effects))
+    }
+
+    fn by_formulas(&self) -> Option<&dyn ByFormulas> {
+        Some(self)
+    }
+}
+
+impl ResistiveForward {
+    /// Effects of the list with amplitudes, by their indices.
+    fn added(&self, effects: &[(usize, f64)]) -> Vec<(&Effect, f64)> {
+        effects.iter().map(|&(index, q)| (&self.effects[index], q)).collect()
+    }
+
+    /// Values of all free parameters of the model, and what differs from run to run with the errors of the apparatus.
+    fn inputs(&self, condition: usize, at: &Request<'_>, is_extended: bool) -> (Vec<f64>, Scatter) {
         let mut values = self.start.clone();
         for (&index, &value) in self.active.iter().zip(at.parameters) {
             values[index] = value;
@@ -195,15 +211,28 @@ impl Forward for ResistiveForward {
         let others = &at.parameters[self.active.len().min(at.parameters.len())..];
         let (errors, forms) = others.split_at(self.apparatus.parameters().len().min(others.len()));
         let mut scatter = self.apparatus.added_to(at.scatter, condition, errors);
-        if !added.is_empty() {
+        if is_extended {
             scatter.bend.0.iter_mut().zip(forms).for_each(|(bend, form)| *bend += form);
         }
+        (values, scatter)
+    }
+
+    /// The observables of `condition` with `added`, whatever effects `at` asks for.
+    fn predict_with(
+        &self,
+        condition: usize,
+        at: &Request<'_>,
+        added: &[(&Effect, f64)],
+    ) -> Result<Vec<f64>, PredictError> {
+        let (values, scatter) = self.inputs(condition, at, !added.is_empty());
         let prepared = &self.conditions[condition];
-        prepared.predict(&values, &added, &scatter, &self.scattering).map_err(|why| PredictError {
-            condition,
-            id: prepared.id().to_owned(),
-            why,
-        })
+        prepared
+            .predict(&values, added, &scatter, &self.scattering)
+            .map_err(|why| self.failed(condition, why))
+    }
+
+    fn failed(&self, condition: usize, why: String) -> PredictError {
+        PredictError { condition, id: self.conditions[condition].id().to_owned(), why }
     }
 }
 

@@ -13,16 +13,17 @@ use measurements::{
 };
 use resistive::{Coefficients, Effect, Expression, ResistanceEntry};
 use resistive::{
-    Driven, Effort, Ending, Impact, ResistanceLaw, Space, State, Surroundings, Tolerance,
-    Trajectory,
+    Driven, Effort, Ending, Impact, Recorder, ResistanceLaw, Sample, Space, State, Surroundings,
+    Tolerance, Trajectory,
 };
 
 use super::bent::Bent;
 use super::error::ForwardError;
 use super::felt;
+use super::field::FieldForce;
 use super::pushed;
 use super::scatter::PathScatter;
-use crate::forward::{Bend, Scatter};
+use crate::forward::{Bend, Moment, Scatter};
 use crate::observable::Layout;
 
 /// Longer than any impact (s): what has not stopped then never does.
@@ -204,6 +205,9 @@ impl Law {
         if scatter.tilt != 0.0 {
             laws.extend(Effect::listed("tilt").map(|tilt| tilt.build(scatter.tilt, self.angle)));
         }
+        if let Some(field) = &scatter.field {
+            laws.push(Box::new(FieldForce { field: Arc::clone(field), angle: self.angle }));
+        }
         if let Some(path) = PathScatter::of(scatter) {
             laws.push(Box::new(path));
         }
@@ -277,6 +281,47 @@ impl Prepared {
     /// Name of the condition in the set.
     pub(super) fn id(&self) -> &str {
         &self.id
+    }
+
+    /// The dimension of the bed.
+    pub(super) fn space(&self) -> Space {
+        self.space
+    }
+
+    /// The impact with these parameters, `added` effects and what differs from run to run.
+    pub(super) fn impact_with(
+        &self,
+        parameters: &[f64],
+        added: &[(&Effect, f64)],
+        scatter: &Scatter,
+        scattering: &[&str],
+    ) -> Impact {
+        self.impact(self.law.laws(parameters, added, scatter, scattering), scatter)
+    }
+
+    /// About `n` moments of the way of `impact` in the bed, from contact until the body rests or has come as deep as it
+    /// is pushed, with the forces of `others` there.
+    pub(super) fn passage(
+        &self,
+        impact: &Impact,
+        others: &[Impact],
+        n: usize,
+    ) -> Result<Vec<Moment>, String> {
+        let duration = match (self.is_pushed, &self.layout.curve) {
+            (true, Some(curve)) => {
+                curve.at.iter().copied().fold(0.0, f64::max) / self.speed.max(f64::MIN_POSITIVE)
+            }
+            _ => impact.run(DURATION, &mut ()).map_err(|error| error.to_string())?.time,
+        };
+        let from = impact.assembly().part(0, impact.start()).tip.x;
+        let mut moments = Vec::with_capacity(n + 1);
+        let interval = duration / n.max(1) as f64;
+        let mut seen = Recorder::new(impact, interval, |sample: &Sample<'_>| {
+            moments.extend(moment(sample, from, (impact, others)));
+        });
+        impact.run(duration, &mut seen).map_err(|error| error.to_string())?;
+        drop(seen);
+        Ok(moments)
     }
 
     /// The observables, in the order of the layout.
@@ -428,6 +473,31 @@ pub(super) fn extent(set: &MeasurementSet) -> [f64; 2] {
     let speed = seen().map(|condition| condition.speed).fold(f64::MIN_POSITIVE, f64::max);
     // A set without depths may still have stopping times.
     [depths.fold(widest, f64::max), speed]
+}
+
+/// The body in a sample of `impact`, whose way began at `from` (m); `None` out of the bed and at rest, where no force is
+/// against its motion.
+fn moment(
+    sample: &Sample<'_>,
+    from: f64,
+    (impact, others): (&Impact, &[Impact]),
+) -> Option<Moment> {
+    let part = &sample.parts[0].part;
+    let (velocity, speed) = (part.velocity, part.velocity.norm());
+    let (depth, area) = (part.immersion.depth, part.immersion.loaded_area);
+    let against = |impact: &Impact| -impact.force_in(0, sample.state).dot(&velocity) / speed;
+    (depth > 0.0 && speed > 0.0).then(|| {
+        let bed = impact.bed();
+        Moment {
+            time: sample.time,
+            way: part.tip.x - from,
+            depth,
+            speed,
+            unit: bed.bulk_density * bed.gravity * area * part.immersion.diameter,
+            force: against(impact),
+            others: others.iter().map(against).collect(),
+        }
+    })
 }
 
 /// The times before first contact, in falling order, and the others.

@@ -1,9 +1,11 @@
 //! The files: tables, numbers and pictures.
 
+use measurements::MeasurementSet;
 use plots::PictureError;
 use thiserror::Error;
 
 use super::{WhereItFails, json, tables};
+use crate::missing_force::{MissingForce, table};
 use crate::picture;
 
 /// Names of all files that there may be.
@@ -22,6 +24,9 @@ pub const FILES: [&str; 12] = [
     "signatures.svg",
 ];
 
+/// The picture of a missing force.
+pub const MISSING_FORCE: &str = "missing_force.svg";
+
 /// What keeps a table or picture from being written.
 #[derive(Debug, Error)]
 pub enum FilesError {
@@ -34,6 +39,21 @@ pub enum FilesError {
     /// A picture.
     #[error(transparent)]
     Picture(#[from] PictureError),
+}
+
+/// Names and texts of the files of `force`: along the paths as a table, and its picture.
+///
+/// # Errors
+/// If a file cannot be written.
+pub fn files_of(
+    force: &MissingForce,
+    set: &MeasurementSet,
+) -> Result<Vec<(String, String)>, FilesError> {
+    let picture = picture::missing_force(set, &force.readings)?;
+    Ok(vec![
+        (force.file.to_owned(), table(set, &force.readings)?),
+        (MISSING_FORCE.to_owned(), picture),
+    ])
 }
 
 impl WhereItFails<'_> {

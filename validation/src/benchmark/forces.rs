@@ -63,6 +63,8 @@ pub(super) struct Sphere<'a> {
 struct Motion {
     time: f64,
     depth: f64,
+    /// How far it has come along the surface (m).
+    way: f64,
     velocity: [f64; 2],
     speed: f64,
     /// Unit vector of the velocity; zero at rest.
@@ -71,10 +73,11 @@ struct Motion {
 
 impl Sphere<'_> {
     /// Acceleration (m/s²) at `time` (s) after contact.
-    pub(super) fn acceleration(&self, time: f64, [_, z, vx, vz]: State) -> [f64; 2] {
+    pub(super) fn acceleration(&self, time: f64, [x, z, vx, vz]: State) -> [f64; 2] {
         let speed = libm::hypot(vx, vz);
         let ahead = [vx, vz].map(|v| v / speed.max(STILL));
-        let motion = Motion { time, depth: z.max(0.0), velocity: [vx, vz], speed, ahead };
+        let motion =
+            Motion { time, depth: z.max(0.0), way: x.max(0.0), velocity: [vx, vz], speed, ahead };
         let Setting { mass, diameter, .. } = self.setting;
         let area = FRAC_PI_4 * diameter * diameter;
 
@@ -109,7 +112,7 @@ impl Sphere<'_> {
 
     /// All that is against the motion (N).
     fn resistance(&self, motion: &Motion, area: f64) -> f64 {
-        let Motion { time, depth, speed, .. } = *motion;
+        let Motion { time, depth, way, speed, .. } = *motion;
         let diameter = self.setting.diameter;
         let (own_speed, weight) = ((GRAVITY * diameter).sqrt(), DENSITY * GRAVITY * area);
         let ratio = depth / diameter;
@@ -123,7 +126,7 @@ impl Sphere<'_> {
             * weight
             * loaded
             * self.effective_depth(depth)
-            * self.friction_factor(depth, speed);
+            * self.friction_factor(time, depth, speed);
 
         let mut force = drag + friction + self.amplitude(Hidden::YieldStress) * weight * diameter;
         let viscous = self.amplitude(Hidden::ViscousDrag);
@@ -137,11 +140,23 @@ impl Sphere<'_> {
         if speed < 0.3 * self.speed {
             force += self.amplitude(Hidden::LateForce) * weight * diameter;
         }
+        force +=
+            self.amplitude(Hidden::SaturatingDrag) * weight * diameter * libm::tanh(speed / 0.4);
+        force += self.amplitude(Hidden::Furrow) * weight * way;
+        force += self.amplitude(Hidden::Memory) * DENSITY * area * own_speed * self.speed;
         let pressure = self.amplitude(Hidden::DecayingPressure);
         if pressure != 0.0 {
             force *= 1.0 + pressure * libm::exp(-time / 0.02);
         }
         force
+    }
+
+    /// Force (N) against the motion at `depth` (m) and `speed` (m/s), `time` (s) after contact and `way` (m) along the
+    /// surface.
+    pub(super) fn against(&self, time: f64, [way, depth, speed]: [f64; 3]) -> f64 {
+        let motion = Motion { time, depth, way, velocity: [0.0; 2], speed, ahead: [0.0; 2] };
+        let diameter = self.setting.diameter;
+        self.resistance(&motion, FRAC_PI_4 * diameter * diameter)
     }
 
     /// Depth that friction grows with (m).
@@ -154,8 +169,14 @@ impl Sphere<'_> {
         }
     }
 
-    fn friction_factor(&self, depth: f64, speed: f64) -> f64 {
+    fn friction_factor(&self, time: f64, depth: f64, speed: f64) -> f64 {
         let mut factor = 1.0 + self.amplitude(Hidden::Drift) * self.progress;
+        factor *= 1.0 + self.amplitude(Hidden::Ageing) * time / 0.05;
+        let angle = libm::sin(2.0 * self.setting.angle_deg.to_radians());
+        factor *= 1.0 + self.amplitude(Hidden::AngleFriction) * angle * angle;
+        if depth > 0.8 * self.setting.diameter {
+            factor *= 1.0 + self.amplitude(Hidden::Step);
+        }
         let rate = self.amplitude(Hidden::RateFriction);
         if rate != 0.0 {
             factor *= 1.0 + rate * libm::log1p(speed / 0.3);

@@ -59,10 +59,22 @@ pub enum Hidden {
     LateForce,
     /// In no list: beds that become stiffer in the course of the campaign.
     Drift,
+    /// In no list: a drag that saturates with speed.
+    SaturatingDrag,
+    /// In no list: friction that depends on the impact angle alone.
+    AngleFriction,
+    /// In no list: friction that grows with the time since contact.
+    Ageing,
+    /// In no list: friction on the way along the surface, whatever the depth.
+    Furrow,
+    /// In no list: friction that jumps at a depth which the diameter sets.
+    Step,
+    /// In no list: a force that remembers the greatest speed.
+    Memory,
 }
 
 /// How many there are.
-pub(super) const COUNT: usize = Hidden::Drift as usize + 1;
+pub(super) const COUNT: usize = Hidden::Memory as usize + 1;
 
 /// Amplitudes by `Hidden as usize`; 0 for what is not there.
 pub(super) type Amplitudes = [f64; COUNT];
@@ -197,6 +209,32 @@ pub static FORMS: [Form; COUNT] = [
         "friction × (1 + q × share of the campaign that is over)",
         (UP, 0.02, 5.0),
     ),
+    form(
+        Hidden::SaturatingDrag,
+        ("saturating-drag", Unlisted),
+        "q ρ g A D tanh(v/0.4 m/s)",
+        (UP, 0.1, 500.0),
+    ),
+    form(
+        Hidden::AngleFriction,
+        ("angle-friction", Unlisted),
+        "friction × (1 + q sin²(2 θ)), θ the impact angle",
+        (UP, 0.02, 20.0),
+    ),
+    form(Hidden::Ageing, ("ageing", Unlisted), "friction × (1 + q t/50 ms)", (UP, 0.02, 50.0)),
+    form(Hidden::Furrow, ("furrow", Unlisted), "q ρ g A x, x the way forward", (UP, 0.1, 500.0)),
+    form(
+        Hidden::Step,
+        ("step", Unlisted),
+        "friction × (1 + q) deeper than 0.8 D",
+        (UP, 0.02, 50.0),
+    ),
+    form(
+        Hidden::Memory,
+        ("memory", Unlisted),
+        "q ρ A V_s v₀, v₀ the impact speed",
+        (UP, 0.02, 50.0),
+    ),
 ];
 
 const fn form(
@@ -245,6 +283,12 @@ impl Hidden {
         matches!(self, Self::AnisotropicDrag | Self::AnisotropicFriction | Self::Lift)
     }
 
+    /// Whether it is drawn with the seeds of the release alone, so that nothing is fitted to it.
+    #[must_use]
+    pub fn is_for_release(self) -> bool {
+        matches!(self, Self::Furrow | Self::Step | Self::Memory)
+    }
+
     /// Those that the list has.
     pub fn listed() -> impl Iterator<Item = Self> {
         FORMS.iter().map(|form| form.hidden).filter(|hidden| hidden.is_listed())
@@ -266,7 +310,7 @@ mod tests {
             assert_eq!(form.hidden as usize, place);
             assert_eq!(form.hidden.form().id, form.id);
         }
-        assert_eq!((Hidden::listed().count(), Hidden::unlisted().count()), (21, 6));
+        assert_eq!((Hidden::listed().count(), Hidden::unlisted().count()), (21, 12));
     }
 
     #[test]

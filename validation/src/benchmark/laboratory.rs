@@ -1,5 +1,6 @@
 //! Measurements in the world: repeats whose beds differ, seen by a camera.
 
+use diagnosis::missing_force::Reading;
 use measurements::{
     Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
     Role, Run, StatedBed, StatedError, StopDefinition,
@@ -55,6 +56,16 @@ impl Nature {
         }
         amplitudes
     }
+}
+
+/// Force (N) against the motion that the model of `reading` lacks where the sphere is, in the mean bed.
+pub(super) fn missing_force(design: &Design, nature: &Nature, reading: &Reading) -> f64 {
+    let setting = design.settings[reading.condition];
+    let n = design.settings.len();
+    let progress = (block(reading.condition, n) as f64 + 0.5) / n as f64;
+    let amplitudes = nature.amplitudes();
+    let sphere = mean_bed(setting, nature, &amplitudes, progress);
+    sphere.against(reading.time, [reading.way, reading.depth, reading.speed]) - reading.model
 }
 
 /// Where spheres come to rest in mean beds, as a camera without noise reads it: x, z (m) by condition.

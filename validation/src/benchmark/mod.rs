@@ -9,6 +9,7 @@
 //! [`calibration`] say how often it was right, [`table`] and [`json`] write that down.
 
 pub mod beds;
+mod beyond;
 pub mod calibration;
 pub mod chance;
 pub mod design;
@@ -25,6 +26,7 @@ pub mod next;
 pub mod path;
 mod peers;
 pub mod plan;
+pub mod score;
 pub mod scores;
 pub mod strength;
 pub mod table;

@@ -82,6 +82,8 @@ pub enum Row {
     Apparatus,
     /// Sets that leave several effects, with one and two more conditions.
     Next,
+    /// Nothing, listed effects and strong ones outside the list, in beds that scatter little.
+    Beyond,
 }
 
 /// Which random numbers a benchmark is drawn with.
@@ -136,7 +138,7 @@ impl Row {
 
     /// Every row: those of the tables, and what is drawn only where it is asked for.
     pub fn all() -> impl Iterator<Item = Self> {
-        Self::TABLES.into_iter().chain([Self::Next])
+        Self::TABLES.into_iter().chain([Self::Next, Self::Beyond])
     }
 
     /// Name on the command line.
@@ -156,6 +158,7 @@ impl Row {
             Self::Repeats => "repeats",
             Self::Apparatus => "apparatus",
             Self::Next => "next",
+            Self::Beyond => "beyond",
         }
     }
 }
@@ -193,7 +196,7 @@ impl Size {
             Row::ScalarNulls => drawer.nothing(&Design::scalars(), self.share(60)),
             Row::Unlisted => {
                 let mut plans = Vec::new();
-                for (kind, hidden) in Hidden::unlisted().enumerate() {
+                for (kind, hidden) in drawer.unlisted().enumerate() {
                     for (level, strength) in [0.06, 0.12].into_iter().enumerate() {
                         for draw in 0..self.share(4) {
                             plans.push(drawer.plan(
@@ -248,6 +251,26 @@ impl Size {
                 }
                 plans
             }
+            Row::Beyond => {
+                let design =
+                    Design { coefficient_scatter: 0.02, path_scatter: 0.05, ..full.clone() };
+                let mut plans = Vec::new();
+                for draw in 0..self.share(3) {
+                    for (kind, hidden) in drawer.unlisted().enumerate() {
+                        for (level, strength) in BEYOND.into_iter().enumerate() {
+                            let place = [kind, level, draw];
+                            plans.push(drawer.plan(place, &design, (&[hidden], strength)));
+                        }
+                    }
+                    let none = (0..NOTHING).map(|at| [NONE, at, draw]);
+                    plans.extend(none.map(|place| drawer.plan(place, &design, (&[], 0.0))));
+                    let listed = Hidden::listed().filter(|hidden| !hidden.is_of_apparatus());
+                    plans.extend(listed.enumerate().map(|(at, hidden)| {
+                        drawer.plan([LISTED, at, draw], &design, (&[hidden], BEYOND[0]))
+                    }));
+                }
+                plans
+            }
             Row::Next => {
                 let designs = [Design::vertical(), Design::one_intruder()];
                 // Two in five of these leave several effects: forty sets to be extended.
@@ -288,6 +311,14 @@ impl Size {
     }
 }
 
+/// Strengths of what no list has, where a formula is asked for.
+const BEYOND: [f64; 2] = [0.12, 0.24];
+
+/// Sets without anything beside these, by draw; and places in the grid for them and for listed effects.
+const NOTHING: usize = 12;
+const NONE: usize = 100;
+const LISTED: usize = 101;
+
 /// Draws the worlds of one row.
 #[derive(Clone, Copy)]
 struct Drawer {
@@ -317,6 +348,12 @@ impl Drawer {
             hidden: hidden.to_vec(),
             strength,
         }
+    }
+
+    /// Effects outside the list that are drawn with these seeds.
+    fn unlisted(self) -> impl Iterator<Item = Hidden> {
+        let is_release = self.seeds == Seeds::Release;
+        Hidden::unlisted().filter(move |hidden| is_release || !hidden.is_for_release())
     }
 
     fn nothing(self, design: &Design, count: usize) -> Vec<Plan> {

@@ -24,6 +24,8 @@ pub fn report(trials: &[Trial], bins: &[Bin]) -> String {
     text.push_str(&by_effect(trials));
     text.push_str("\n### Verdicts on what is outside the list\n\n");
     text.push_str(&by_unlisted(trials));
+    text.push_str("\n### Formulas of missing forces\n\n");
+    text.push_str(&formulas(trials));
     text.push_str("\n### Other methods\n\n");
     text.push_str(&peers());
     text
@@ -148,6 +150,29 @@ fn by_unlisted(trials: &[Trial]) -> String {
         (!list.is_empty()).then(|| [hidden.id().to_owned(), list.join(", ")])
     });
     table(["hidden", "verdicts"], rows)
+}
+
+/// What is said of the missing force, set by set.
+fn formulas(trials: &[Trial]) -> String {
+    let of_row = trials.iter().filter(|trial| trial.plan.row == Row::Beyond);
+    let rows = of_row.filter_map(|trial| {
+        let missing = trial.answer()?.missing.as_ref()?;
+        let hidden: Vec<&str> = trial.plan.hidden.iter().map(|one| one.id()).collect();
+        let millimetres = |error: Option<f64>| match error {
+            Some(error) => format!("{:.2}", 1e3 * error),
+            None => "-".to_owned(),
+        };
+        let errors = missing.held_out.unwrap_or_default().map(millimetres);
+        Some([
+            hidden.join(" + "),
+            percent(trial.plan.strength),
+            missing.formula.as_deref().unwrap_or("none").replace("q * rho * g * A * D * ", ""),
+            errors.join(" / "),
+        ])
+    });
+    let head =
+        ["hidden", "strength", "formula, over q ρ g A D", "held out, mm: without / with / noise"];
+    table(head, rows)
 }
 
 fn peers() -> String {

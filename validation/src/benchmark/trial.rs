@@ -5,6 +5,8 @@ use std::time::Instant;
 use configs::{ConfigError, LoadOptions, Model, ModelSource, find_shipped};
 use diagnosis::bench::{Bench, BenchError, DEFAULT_SEED, Fitted};
 use diagnosis::diagnose::diagnose;
+use diagnosis::held_out::HeldOut;
+use diagnosis::missing_force::MissingForce;
 use diagnosis::observable::Observable;
 use diagnosis::observed::Observed;
 use diagnosis::pair::best_two;
@@ -17,7 +19,7 @@ use resistive::find_resistance;
 use serde::{Deserialize, Serialize};
 
 use super::chance::Chance;
-use super::laboratory::{Nature, measure, resting_points};
+use super::laboratory::{Nature, measure, missing_force, resting_points};
 use super::next::Resolved;
 use super::path::WorldError;
 use super::plan::{Plan, Row};
@@ -81,8 +83,23 @@ pub struct Answer {
     /// Whether more conditions leave the truth alone; none where that is not asked, or where the set does
     /// not leave several effects.
     pub resolved: Option<Resolved>,
+    /// The force that is missing, where no listed effect explains the data.
+    pub missing: Option<Missing>,
     /// Time that the diagnosis took (s).
     pub seconds: f64,
+}
+
+/// What a diagnosis said of the missing force.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Missing {
+    /// The formula that it offers.
+    pub formula: Option<String>,
+    /// Error on held-out conditions without and with the formula, and noise of their means (m).
+    pub held_out: Option<[Option<f64>; 3]>,
+    /// Moments at which the true missing force lies within its 95 % band, and all.
+    pub covered: [usize; 2],
+    /// Logarithm of the odds of a missing force against none.
+    pub log_odds: f64,
 }
 
 /// The model that every set is diagnosed with.
@@ -169,7 +186,8 @@ fn answer(
     };
     let rest = resting_points(&plan.design, nature).map_err(|error| error.to_string())?;
     let endpoint = endpoints(&bench, &diagnosis, &rest).map_err(|error| error.to_string())?;
-    Ok(Answer::new(diagnosis, nature, Apart { pair, endpoint, resolved, seconds }))
+    let missing = diagnosis.missing_force.as_ref().map(|force| Missing::of(force, plan, nature));
+    Ok(Answer::new(diagnosis, nature, Apart { pair, endpoint, resolved, missing, seconds }))
 }
 
 /// What is learned beside a diagnosis.
@@ -177,7 +195,26 @@ struct Apart {
     pair: Option<Vec<String>>,
     endpoint: Option<[f64; 2]>,
     resolved: Option<Resolved>,
+    missing: Option<Missing>,
     seconds: f64,
+}
+
+impl Missing {
+    fn of(force: &MissingForce, plan: &Plan, nature: &Nature) -> Self {
+        /// Standard deviations to either side that hold 95 % of a normal distribution.
+        const NORMAL_95: f64 = 1.96;
+        let within = force.readings.iter().filter(|one| {
+            let truth = missing_force(&plan.design, nature, one);
+            (one.force - truth).abs() <= NORMAL_95 * one.se
+        });
+        let errors = |one: &HeldOut| [one.before, one.after, one.noise_floor];
+        Self {
+            formula: force.formula.clone(),
+            held_out: force.holdout.as_ref().map(errors),
+            covered: [within.count(), force.readings.len()],
+            log_odds: force.log_odds,
+        }
+    }
 }
 
 impl Answer {
@@ -210,6 +247,7 @@ impl Answer {
             endpoint: apart.endpoint,
             pair: apart.pair,
             resolved: apart.resolved,
+            missing: apart.missing,
             seconds: apart.seconds,
         }
     }

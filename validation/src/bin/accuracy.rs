@@ -27,7 +27,8 @@ Usage: cargo xtask bench diagnosis [--seeds development|release] [--only ROW]...
   --seeds WHICH  random numbers for work on the diagnosis (default), or those of the tables
   --only ROW     one row; may be given several times
                  (singles, nulls, unlisted, pairs, one-intruder, vertical, scalars, scalar-nulls,
-                 camera, beds, repeats; and next, which is drawn only where it is asked for)
+                 camera, beds, repeats, apparatus; and next and beyond, which are drawn only where they are
+                 asked for)
   --sets N       worlds per effect and strength (3); all rows grow with it
   --quick        a third of singles, nulls and unlisted
   --threads N    sets diagnosed at a time (one per core)
@@ -35,7 +36,7 @@ Usage: cargo xtask bench diagnosis [--seeds development|release] [--only ROW]...
                  are of one program: a changed diagnosis wants another file
   --json         one JSON object, every set in it
   --out DIR      writes the worlds and tables as results.md and the calibration as calibration.svg to DIR
-  --export DIR   writes the first set of what is asked for to DIR, and diagnoses nothing
+  --export DIR   writes the sets of what is asked for to folders in DIR, and diagnoses nothing
 
 Exit status: 0 done, 1 failed, 2 the command line was not understood.
 ";
@@ -108,12 +109,20 @@ fn count(text: &str) -> Result<usize, String> {
 fn work(wish: &Wish, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
     let plans = wish.size.plans(wish.seeds);
     if let Some(folder) = &wish.export {
-        let plan = plans.first().ok_or("nothing is asked for")?;
-        let (nature, set) = draw(plan)?;
-        set.write(folder)?;
-        writeln!(out, "{}: drag {}, friction {}", folder.display(), nature.drag, nature.friction)?;
-        for (hidden, q) in nature.hidden {
-            writeln!(out, "hidden: {}, q = {q}: {}", hidden.id(), hidden.form().law)?;
+        for (number, plan) in plans.iter().enumerate() {
+            let folder = folder.join(format!("{:04}", number + 1));
+            match draw(plan) {
+                Ok((nature, set)) => {
+                    fs::create_dir_all(&folder)?;
+                    set.write(&folder)?;
+                    let (drag, friction) = (nature.drag, nature.friction);
+                    writeln!(out, "{}: drag {drag}, friction {friction}", folder.display())?;
+                    for (hidden, q) in nature.hidden {
+                        writeln!(out, "hidden: {}, q = {q}: {}", hidden.id(), hidden.form().law)?;
+                    }
+                }
+                Err(why) => writeln!(out, "{}: not drawn, {why}", folder.display())?,
+            }
         }
         return Ok(ExitCode::SUCCESS);
     }

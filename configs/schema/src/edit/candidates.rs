@@ -12,6 +12,25 @@ pub(super) const EXPRESSION: &str = "expression";
 const CANDIDATE: &str = "candidate";
 const EFFECT: &str = "effect";
 
+/// Adds the candidates of `text`, which is a model with nothing else, to those of the model.
+pub(super) fn append(document: &mut DocumentMut, text: &str) -> Result<(), EditError> {
+    let toml = |why: &dyn std::fmt::Display| EditError::Toml(why.to_string());
+    let own: DocumentMut = text.parse().map_err(|why: toml_edit::TomlError| toml(&why))?;
+    let tables = own.get(CANDIDATE).and_then(Item::as_array_of_tables).into_iter().flatten();
+    let list = document.entry(CANDIDATE).or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
+    for table in tables {
+        let mut table = table.clone();
+        table.decor_mut().set_prefix("\n");
+        table.set_position(None);
+        match list {
+            Item::ArrayOfTables(list) => list.push(table),
+            Item::Value(Value::Array(list)) => list.push(table.into_inline_table()),
+            _ => return Err(toml(&format!("`{CANDIDATE}` is no list of tables"))),
+        }
+    }
+    Ok(())
+}
+
 /// Makes the candidate that `effect` names a part of the model, with its amplitude (SI): its table stays
 /// where it is, under the header of an effect. False if the model has no such candidate.
 pub(super) fn adopt(document: &mut DocumentMut, effect: &AddedEffect) -> Result<bool, EditError> {
@@ -121,7 +140,7 @@ mod tests {
     fn adopted(model: &str, key: &str) -> Result<String, EditError> {
         let values = vec![(key.to_owned(), "250".to_owned())];
         let effects = vec![AddedEffect { name: "late-drag".to_owned(), values }];
-        add_effects(model, &Addition { effects, fitted: Vec::new() })
+        add_effects(model, &Addition { effects, ..Addition::default() })
     }
 
     #[test]
@@ -143,7 +162,7 @@ mod tests {
         let text = adopted(&inline, "q").unwrap();
         assert!(text.contains("q = { unit = \"N/mm\", range = [0, 5], value = 0.25 }"), "{text}");
         let fitted = vec![("effect.late-drag.q".to_owned(), 1500.0)];
-        let again = add_effects(&text, &Addition { effects: Vec::new(), fitted }).unwrap();
+        let again = add_effects(&text, &Addition { fitted, ..Addition::default() }).unwrap();
         assert_eq!(again, text.replace("0.25", "1.5"));
     }
 
@@ -152,7 +171,7 @@ mod tests {
         let error = adopted(MODEL, "p").unwrap_err().to_string();
         assert!(error.contains("has no parameter `p`"), "{error}");
         let effects = vec![AddedEffect { name: "late-drag".to_owned(), values: Vec::new() }];
-        let error = add_effects(MODEL, &Addition { effects, fitted: Vec::new() }).unwrap_err();
+        let error = add_effects(MODEL, &Addition { effects, ..Addition::default() }).unwrap_err();
         assert!(error.to_string().contains("q=0.4"), "{error}");
     }
 }

@@ -1,0 +1,103 @@
+//! A force against the motion of a body, over its depth, its speed and its impact angle.
+
+/// Nodes over depth (m), speed (m/s) and angle (rad): between them a field is linear, beyond constant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// In rising order, at least one of each.
+    pub axes: [Vec<f64>; 3],
+}
+
+impl Grid {
+    /// How many nodes there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.axes.iter().map(Vec::len).product()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Node `index`: depth, speed, angle.
+    #[must_use]
+    pub fn node(&self, index: usize) -> [f64; 3] {
+        let [_, speeds, angles] = self.axes.each_ref().map(Vec::len);
+        let (rest, angle) = (index / angles, index % angles);
+        [self.axes[0][rest / speeds], self.axes[1][rest % speeds], self.axes[2][angle]]
+    }
+
+    /// The node in units of the extent of each axis, for distances.
+    #[must_use]
+    pub fn scaled(&self, index: usize) -> [f64; 3] {
+        let node = self.node(index);
+        std::array::from_fn(|axis| {
+            let ends = &self.axes[axis];
+            let width = ends[ends.len() - 1] - ends[0];
+            if width > 0.0 { (node[axis] - ends[0]) / width } else { 0.0 }
+        })
+    }
+
+    /// The nodes around `place` with their shares: a field there is the sum of its values times these.
+    #[must_use]
+    pub fn shares_at(&self, place: [f64; 3]) -> [(usize, f64); 8] {
+        let [_, speeds, angles] = self.axes.each_ref().map(Vec::len);
+        let ends: [[(usize, f64); 2]; 3] =
+            std::array::from_fn(|axis| shares(&self.axes[axis], place[axis]));
+        std::array::from_fn(|corner| {
+            let [depth, speed, angle] =
+                [ends[0][corner >> 2 & 1], ends[1][corner >> 1 & 1], ends[2][corner & 1]];
+            ((depth.0 * speeds + speed.0) * angles + angle.0, depth.1 * speed.1 * angle.1)
+        })
+    }
+}
+
+/// The two nodes around `x` with their shares.
+fn shares(nodes: &[f64], x: f64) -> [(usize, f64); 2] {
+    let upper = nodes.partition_point(|&node| node <= x);
+    let last = nodes.len() - 1;
+    match upper {
+        0 => [(0, 1.0), (0, 0.0)],
+        upper if upper > last => [(last, 1.0), (last, 0.0)],
+        upper => {
+            let share = (x - nodes[upper - 1]) / (nodes[upper] - nodes[upper - 1]);
+            [(upper - 1, 1.0 - share), (upper, share)]
+        }
+    }
+}
+
+/// A force over a grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// Where it is given.
+    pub grid: Grid,
+    /// In units of ρ g A D, by node: bulk density, gravity, area that drag and friction act on, diameter.
+    pub values: Vec<f64>,
+}
+
+impl Field {
+    /// The force at a depth (m), a speed (m/s) and an impact angle (rad), in units of ρ g A D.
+    #[must_use]
+    pub fn at(&self, place: [f64; 3]) -> f64 {
+        let shares = self.grid.shares_at(place);
+        shares.into_iter().map(|(node, share)| share * self.values[node]).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_field_is_linear_between_nodes_and_constant_beyond() {
+        let grid = Grid { axes: [vec![0.0, 0.1], vec![0.0, 1.0, 2.0], vec![1.0]] };
+        let of = |[depth, speed, _]: [f64; 3]| 3.0 + 20.0 * depth - speed + 5.0 * depth * speed;
+        let values = (0..grid.len()).map(|node| of(grid.node(node))).collect();
+        let field = Field { grid, values };
+        for place in [[0.03, 0.4, 1.0], [0.1, 2.0, 1.0], [0.07, 1.9, 0.2]] {
+            assert!((field.at(place) - of(place)).abs() < 1e-12);
+        }
+        assert!((field.at([0.5, 9.0, 1.0]) - of([0.1, 2.0, 1.0])).abs() < 1e-12);
+    }
+}

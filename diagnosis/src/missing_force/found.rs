@@ -1,0 +1,124 @@
+//! The force as a process, where answers are taken around the force that is there.
+
+use std::sync::Arc;
+
+use nalgebra::DVector;
+
+use super::process::Process;
+use super::response::Response;
+use super::with_field::WithField;
+use crate::bench::{Bench, BenchError, Fitted};
+use crate::field::Field;
+use crate::fit::{Data, Fit};
+use crate::forward::{ByFormulas, Moment, Request, Scatter};
+
+/// Moments of each condition at which the force is given.
+pub(super) const MOMENTS: usize = 40;
+
+/// Most times that answers are taken around the force that they gave, each on the way that fits better, and the share of χ²
+/// that is no gain.
+const ROUNDS: usize = 12;
+const HALVINGS: usize = 3;
+const SETTLED: f64 = 0.02;
+
+/// The force as a process, around itself: answers to a force depend on the force that is there.
+pub(super) struct Found {
+    pub(super) field: Field,
+    pub(super) fit: Fit,
+    pub(super) response: Response,
+    pub(super) process: Process,
+    /// What the bodies go through in the model with that force, by condition that is fitted to.
+    pub(super) passages: Vec<Vec<Moment>>,
+}
+
+impl Found {
+    /// From `fit`, which is of the model with the force of `field`; `None` where nothing stops the bodies, or nothing can
+    /// be told.
+    pub(super) fn from(
+        bench: &Bench<'_>,
+        by: &dyn ByFormulas,
+        (baseline, fit): (&Fitted, Fit),
+        field: Field,
+    ) -> Result<Option<Self>, BenchError> {
+        let Some(mut found) = Self::around(bench, by, (baseline, fit), field)? else {
+            return Ok(None);
+        };
+        for _ in 0..ROUNDS {
+            let Some(next) = found.nearer(bench, by, baseline)? else { break };
+            let is_settled = found.fit.chi2 - next.fit.chi2 < SETTLED * next.fit.chi2;
+            found = next;
+            if is_settled {
+                break;
+            }
+        }
+        Ok(Some(found))
+    }
+
+    /// Around the mean of the process, or around a part of the way to it, where the model fits better; `None` where it
+    /// does so nowhere.
+    fn nearer(
+        &self,
+        bench: &Bench<'_>,
+        by: &dyn ByFormulas,
+        baseline: &Fitted,
+    ) -> Result<Option<Self>, BenchError> {
+        let whole: DVector<f64> =
+            &self.process.mean - DVector::from_column_slice(&self.field.values);
+        let mut share = 1.0;
+        for _ in 0..HALVINGS {
+            let step = &whole * share;
+            let values = self.field.values.iter().zip(step.iter()).map(|(at, by)| at + by);
+            let field = Field { grid: self.field.grid.clone(), values: values.collect() };
+            let with = WithField { forward: bench.forward, field: Arc::new(field.clone()) };
+            let data = Data { forward: &with, ..bench.data(&baseline.weights) };
+            // The parameters that fit best beside this force, to first order.
+            let left = &self.fit.residual - self.response.change(&step);
+            let Some(point) = self.fit.moved(&left, &data.scales(&self.fit.point)) else {
+                return Ok(None);
+            };
+            let fits = data.residual(&point).is_ok_and(|left| left.norm_squared() < self.fit.chi2);
+            // Where they do not, they are searched.
+            let fit = match fits {
+                true => Some(data.as_listed_at(point)?),
+                false => data.fit_as_listed(&self.fit.point).ok(),
+            };
+            if let Some(fit) = fit.filter(|fit| fit.chi2 < self.fit.chi2) {
+                return Self::around(bench, by, (baseline, fit), field);
+            }
+            share *= 0.5;
+        }
+        Ok(None)
+    }
+
+    /// What is left over in units of the noise.
+    pub(super) fn misfit(&self) -> f64 {
+        let rows = self.fit.residual.len();
+        self.fit.chi2 / rows.saturating_sub(self.fit.n_free()).max(1) as f64
+    }
+
+    fn around(
+        bench: &Bench<'_>,
+        by: &dyn ByFormulas,
+        (baseline, fit): (&Fitted, Fit),
+        field: Field,
+    ) -> Result<Option<Self>, BenchError> {
+        let scatter = Scatter {
+            coefficients: vec![0.0; bench.forward.n_scattering_coefficients()],
+            field: Some(Arc::new(field.clone())),
+            ..Scatter::default()
+        };
+        let at = Request { parameters: &fit.point.parameters, effects: &[], scatter: &scatter };
+        let passage = |&condition: &usize| by.passage(condition, &at, &[], MOMENTS);
+        let passages: Vec<Vec<Moment>> =
+            bench.observed.fit.iter().map(passage).collect::<Result<_, _>>()?;
+        let relative = passages.iter().flatten().map(|one| one.force / one.unit);
+        let mut relative: Vec<f64> = relative.filter(|force| *force > 0.0).collect();
+        relative.sort_by(f64::total_cmp);
+        let Some(&unit) = relative.get(relative.len() / 2) else { return Ok(None) };
+        let response = Response::of(bench, (&fit, &baseline.weights), &field, &passages)?;
+        let rows = fit.residual.len();
+        let misfit = fit.chi2 / rows.saturating_sub(fit.n_free()).max(1) as f64;
+        let process = Process::of(&response, &field.grid, unit, misfit.max(1.0));
+        Ok(process.map(|process| Self { field, fit, response, process, passages }))
+    }
+}

@@ -1,0 +1,201 @@
+//! The force that a model lacks where no listed effect explains what was measured: as a function of what the body went
+//! through, with a band; and a formula for it that predicts, where one does.
+//!
+//! The force is a Gaussian process over depth, speed and impact angle, seen through the linear answer of the measurements
+//! to a force around each node of a grid; parameters of the model and errors of the apparatus are projected out. A
+//! formula is chosen from a library of dimensionless forms ([`library`]) by what it explains in the space of the
+//! measurements, refitted as a part of the model, and kept where it takes a quarter of a clear error on conditions that
+//! were not fitted to. It fits and predicts; it does not explain.
+
+mod formula;
+mod found;
+mod library;
+mod process;
+mod response;
+mod table;
+mod term;
+mod with_field;
+
+use std::sync::Arc;
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+pub use self::formula::{FOUND, Formula};
+pub use self::table::{Reading, table};
+
+use self::formula::Search;
+use self::found::Found;
+use self::term::State;
+use self::with_field::WithField;
+use crate::bench::{Bench, BenchError, Fitted};
+use crate::field::Field;
+use crate::fitted_parameters::parameters;
+use crate::forward::Moment;
+use crate::held_out::HeldOut;
+use crate::rounding::{six_digits, six_digits_or_null};
+
+/// The file with the force along the paths.
+pub const FILE: &str = "missing_force.csv";
+
+/// Standard errors to either side that 95 % of normal numbers lie within.
+const TWO_SIDED_95: f64 = 1.96;
+
+/// Misfit, in units of the noise, from which a force is looked for once more around the best formula, and how often.
+const FAR: f64 = 1.5;
+const AGAIN: usize = 3;
+
+/// Parts of the depth over which the force is summed up in words.
+const PARTS: usize = 10;
+
+/// What a model lacks.
+#[derive(Clone, Debug, Serialize)]
+pub struct MissingForce {
+    /// The table with the force and its band.
+    pub file: &'static str,
+    /// The force as a formula, `q` being its amplitude; none where no formula predicts.
+    pub formula: Option<String>,
+    /// `friction` or `drag`, as a model file writes it.
+    pub kind: Option<&'static str>,
+    /// The amplitude.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub q: Option<f64>,
+    /// Its standard error.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub se: Option<f64>,
+    /// What the force looks like.
+    pub words: String,
+    /// Errors on held-out conditions without and with the formula.
+    pub holdout: Option<HeldOut>,
+    /// Logarithm of the odds of some force against none.
+    #[serde(serialize_with = "six_digits")]
+    pub log_odds: f64,
+    /// Likewise of the best listed effect.
+    #[serde(serialize_with = "six_digits_or_null")]
+    pub log_odds_of_best_effect: Option<f64>,
+    /// Parameters of the model with the formula, with their units.
+    #[serde(skip_serializing_if = "Map::is_empty")]
+    pub parameters: Map<String, Value>,
+    /// The table of the formula for a model file.
+    pub candidate: Option<String>,
+    /// The force along the paths.
+    #[serde(skip)]
+    pub readings: Vec<Reading>,
+    /// The model with the formula, fitted.
+    #[serde(skip)]
+    pub fitted: Option<Fitted>,
+}
+
+/// What `baseline` lacks; `fall` is the fall of the deviance by the best listed effect. `None` of models that are no force
+/// laws, and where nothing can be told.
+///
+/// # Errors
+/// If the model fails.
+pub fn missing_force(
+    bench: &Bench<'_>,
+    baseline: &Fitted,
+    fall: Option<f64>,
+) -> Result<Option<MissingForce>, BenchError> {
+    let Some(by) = bench.forward.by_formulas() else { return Ok(None) };
+    let grid = response::grid(bench);
+    let nothing = Field { values: vec![0.0; grid.len()], grid };
+    let start = (baseline, baseline.fit.clone());
+    let Some(mut found) = Found::from(bench, by, start, nothing)? else { return Ok(None) };
+    let look = |found: &Found| {
+        let states = states(bench, &found.passages);
+        let near = &found.fit.point.parameters;
+        let search =
+            Search { bench, by, baseline, near, response: &found.response, states: &states };
+        search.refitted()
+    };
+    let mut refitted = look(&found);
+    for _ in 0..AGAIN {
+        // Answers far from the force that is there mislead: once more around the best formula.
+        let Some(best) = refitted.first().filter(|_| found.misfit() > FAR) else { break };
+        let field = best.field(bench, &found.field.grid);
+        let with = WithField { forward: bench.forward, field: Arc::new(field.clone()) };
+        let with = Bench { forward: &with, ..*bench };
+        let Ok(fit) = with.data(&baseline.weights).fit_as_listed(&best.point()) else { break };
+        let Some(next) = Found::from(bench, by, (baseline, fit), field)? else { break };
+        if next.fit.chi2 >= found.fit.chi2 {
+            break;
+        }
+        found = next;
+        refitted.extend(look(&found));
+        refitted.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+    }
+    let formula = Formula::kept(bench, by, baseline, refitted)?;
+    let readings = table::readings(bench, by, (&found, baseline))?;
+    let band = in_words(&readings);
+    Ok(Some(MissingForce {
+        file: FILE,
+        words: match &formula {
+            Some(formula) => format!("{}; {band}", formula.words),
+            None => band,
+        },
+        kind: formula.as_ref().map(|one| one.kind),
+        q: formula.as_ref().map(Formula::amplitude),
+        se: formula
+            .as_ref()
+            .and_then(|one| one.fitted.fit.standard_error(one.fitted.fit.point.parameters.len())),
+        holdout: formula.as_ref().map(|one| one.holdout.clone()),
+        log_odds: found.process.log_odds,
+        log_odds_of_best_effect: fall.map(|fall| 0.5 * fall),
+        parameters: formula
+            .as_ref()
+            .map_or_else(Map::new, |one| parameters(bench.forward, &one.fitted.fit)),
+        candidate: formula.as_ref().map(Formula::table),
+        formula: formula.as_ref().map(|one| one.force.clone()),
+        fitted: formula.map(|one| one.fitted),
+        readings,
+    }))
+}
+
+/// What the bodies go through.
+fn states(bench: &Bench<'_>, passages: &[Vec<Moment>]) -> Vec<State> {
+    let gravity = bench.set.bed.gravity;
+    let each = bench.observed.fit.iter().zip(passages);
+    each.flat_map(|(&condition, moments)| {
+        let body = &bench.set.conditions[condition];
+        let (angle, diameter) = (body.angle_deg.to_radians(), body.diameter);
+        moments.iter().map(move |one| {
+            let (depth, speed) = (one.depth, one.speed);
+            State { depth, speed, angle, diameter, gravity }
+        })
+    })
+    .collect()
+}
+
+/// Where the band leaves out zero, in a sentence.
+fn in_words(readings: &[Reading]) -> String {
+    let reach = readings.iter().map(|one| one.depth).fold(0.0, f64::max);
+    let is_clear = |one: &&Reading| one.force.abs() > TWO_SIDED_95 * one.se;
+    let clearest = (0..PARTS).filter_map(|part| {
+        let inside = |one: &&Reading| {
+            let share = PARTS as f64 * one.depth / reach;
+            (part as f64..part as f64 + 1.0).contains(&share) && is_clear(one)
+        };
+        readings.iter().filter(inside).max_by(|a, b| a.clarity().total_cmp(&b.clarity()))
+    });
+    let clearest: Vec<&Reading> = clearest.collect();
+    if clearest.is_empty() {
+        return "within its band the missing force is zero everywhere".to_owned();
+    }
+    let ends = clearest.iter().fold((f64::INFINITY, 0.0_f64), |(least, most), one| {
+        (least.min(one.depth), most.max(one.depth))
+    });
+    let Some(best) = clearest.iter().max_by(|a, b| a.clarity().total_cmp(&b.clarity())) else {
+        return String::new();
+    };
+    let share = 100.0 * best.force / best.model;
+    format!(
+        "the missing force is clear of zero from {:.0} to {:.0} mm deep, and clearest at {:.0} mm and {:.2} m/s: \
+         {:+.3} \u{b1} {:.3} N, {share:+.0} % of the model's",
+        1e3 * ends.0,
+        1e3 * ends.1,
+        1e3 * best.depth,
+        best.speed,
+        best.force,
+        best.se
+    )
+}

@@ -1,0 +1,167 @@
+//! A force as a Gaussian process over depth, speed and angle, seen through the answer of the measurements to it.
+//!
+//! The force at the nodes of a grid is normal beforehand, with a covariance that falls with the square of their distance
+//! (Rasmussen & Williams 2006, Gaussian Processes for Machine Learning, eq. 2.31). Parameters of the model and errors of the
+//! apparatus are projected out of the answer and of the residual. Its size and its three lengths are averaged over a
+//! grid, weighed by the evidence of each (ibid., eq. 5.8).
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use super::response::Response;
+use crate::field::Grid;
+use crate::noise::log_determinant;
+
+/// Sizes of the force over that of the model, and lengths over the extent of each axis, that are tried.
+const SIZES: [f64; 4] = [0.05, 0.15, 0.5, 1.5];
+const LENGTHS: [f64; 3] = [0.12, 0.3, 1.0];
+const ANGLES: [f64; 2] = [0.5, 2.0];
+
+/// Lengths of the half of the variance that all nodes share: a force that only resists has a mean.
+const LONG: [f64; 3] = [2.0; 3];
+
+/// Share of the variance of each node that no other shares.
+const OWN: f64 = 1e-6;
+
+/// Settings less likely by this logarithm than the best do not count.
+const NEGLIGIBLE: f64 = 8.0;
+
+/// What measurements say of the force at the nodes, in units of ρ g A D.
+#[derive(Clone, Debug)]
+pub(super) struct Process {
+    /// By node of the grid; nothing where no path comes near.
+    pub(super) mean: DVector<f64>,
+    /// Of the nodes that some path comes near.
+    covariance: DMatrix<f64>,
+    /// Logarithm of the odds of such a force against none.
+    pub(super) log_odds: f64,
+}
+
+/// One size and three lengths.
+struct Setting {
+    log_odds: f64,
+    mean: DVector<f64>,
+    size: f64,
+    solved: Cholesky<f64, Dyn>,
+}
+
+impl Setting {
+    /// `factor` is that of its lengths.
+    fn covariance(&self, factor: &DMatrix<f64>) -> DMatrix<f64> {
+        factor * self.solved.inverse() * factor.transpose() * (self.size * self.size)
+    }
+}
+
+impl Process {
+    /// Of `response` on `grid`; `unit` is the size of the model's force in units of ρ g A D, and `misfit` the variance of
+    /// what is left over in units of the noise: what no force that is near enough explains counts as noise.
+    pub(super) fn of(response: &Response, grid: &Grid, unit: f64, misfit: f64) -> Option<Self> {
+        let gram = response.beside.tr_mul(&response.beside) / misfit;
+        let pull = response.beside.tr_mul(&response.residual) / misfit;
+        let places: Vec<[f64; 3]> = response.nodes.iter().map(|&node| grid.scaled(node)).collect();
+        let angles = if grid.axes[2].len() > 1 { &ANGLES[..] } else { &ANGLES[..1] };
+        let (mut factors, mut settings) = (Vec::new(), Vec::new());
+        for depth in LENGTHS {
+            for speed in LENGTHS {
+                for &angle in angles {
+                    let factor = factor(&places, [depth, speed, angle])?;
+                    let inner = factor.tr_mul(&(&gram * &factor));
+                    let seen = factor.tr_mul(&pull);
+                    let sizes = SIZES.iter().map(|size| size * unit);
+                    let tried = sizes.filter_map(|size| setting(&factor, &inner, &seen, size));
+                    settings.extend(tried.map(|one| (factors.len(), one)));
+                    factors.push(factor);
+                }
+            }
+        }
+        let all = || settings.iter().map(|(_, one)| one);
+        let best = all().map(|one| one.log_odds).fold(f64::NEG_INFINITY, f64::max);
+        let share = |one: &Setting| libm::exp(one.log_odds - best);
+        let total: f64 = all().map(share).sum();
+        let log_odds = best + libm::log(total / settings.len() as f64);
+        let counts = |one: &&(usize, Setting)| one.1.log_odds > best - NEGLIGIBLE;
+        let n = response.nodes.len();
+        let mut mean = DVector::zeros(n);
+        for (_, one) in settings.iter().filter(counts) {
+            mean.axpy(share(one) / total, &one.mean, 1.0);
+        }
+        let mut covariance = DMatrix::zeros(n, n);
+        for (lengths, one) in settings.iter().filter(counts) {
+            let off = &one.mean - &mean;
+            let own = one.covariance(&factors[*lengths]);
+            covariance += (own + &off * off.transpose()) * (share(one) / total);
+        }
+        let mut whole = DVector::zeros(grid.len());
+        response.nodes.iter().zip(mean.iter()).for_each(|(&node, value)| whole[node] = *value);
+        log_odds.is_finite().then_some(Self { mean: whole, covariance, log_odds })
+    }
+
+    /// Variance of the sum of the forces at the nodes that some path comes near, times `weights`.
+    pub(super) fn variance(&self, weights: &DVector<f64>) -> f64 {
+        weights.dot(&(&self.covariance * weights)).max(0.0)
+    }
+}
+
+/// Cholesky factor of the covariance of a force of size 1.
+fn factor(places: &[[f64; 3]], lengths: [f64; 3]) -> Option<DMatrix<f64>> {
+    let covariance = DMatrix::from_fn(places.len(), places.len(), |a, b| {
+        let alike = |lengths: [f64; 3]| {
+            let apart = |axis: usize| (places[a][axis] - places[b][axis]) / lengths[axis];
+            libm::exp(-0.5 * (0..3).map(|axis| apart(axis).powi(2)).sum::<f64>())
+        };
+        0.5 * (alike(lengths) + alike(LONG)) + if a == b { OWN } else { 0.0 }
+    });
+    Cholesky::new(covariance).map(|factor| factor.l())
+}
+
+/// What follows from a force of `size` whose covariance has `factor`.
+fn setting(
+    factor: &DMatrix<f64>,
+    inner: &DMatrix<f64>,
+    seen: &DVector<f64>,
+    size: f64,
+) -> Option<Setting> {
+    let n = seen.len();
+    let solved = Cholesky::new(DMatrix::identity(n, n) + inner * (size * size))?;
+    let pulled = solved.solve(seen);
+    let log_odds = 0.5 * (size * size * seen.dot(&pulled) - log_determinant(&solved));
+    let mean = factor * pulled * (size * size);
+    Some(Setting { log_odds, mean, size, solved })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_force_without_any_answer_is_what_it_was_beforehand() {
+        let n = 4;
+        let places: Vec<[f64; 3]> = (0..n).map(|k| [k as f64 / 3.0, 0.0, 0.0]).collect();
+        let factor = factor(&places, [0.25; 3]).expect("positive definite");
+        let nothing = DMatrix::zeros(n, n);
+        let one = setting(&factor, &nothing, &DVector::zeros(n), 2.0).expect("a setting");
+        assert!(one.log_odds.abs() < 1e-12, "nothing is learned");
+        assert!(one.mean.norm() < 1e-12);
+        let sd = one.covariance(&factor)[(0, 0)].sqrt();
+        assert!((sd - 2.0).abs() < 1e-5, "{sd}");
+    }
+
+    #[test]
+    fn a_node_that_is_measured_exactly_has_the_force_that_was_measured() {
+        let places = [[0.0; 3], [1.0, 0.0, 0.0]];
+        let factor = factor(&places, [0.12; 3]).expect("positive definite");
+        // One reading of the first node, 3 with a standard deviation of 1e-3.
+        let answer = DMatrix::from_row_slice(1, 2, &[1e3, 0.0]);
+        let (gram, pull) = (answer.tr_mul(&answer), answer.tr_mul(&DVector::from_element(1, 3e3)));
+        let (inner, seen) = (factor.tr_mul(&(&gram * &factor)), factor.tr_mul(&pull));
+        let one = setting(&factor, &inner, &seen, 1.0).expect("a setting");
+        assert!((one.mean[0] - 3.0).abs() < 1e-4, "{}", one.mean[0]);
+        assert!((one.covariance(&factor)[(0, 0)].sqrt() / 1e-3 - 1.0).abs() < 1e-3);
+        assert!(
+            (one.covariance(&factor)[(1, 1)] - 1.0).abs() < 1e-4,
+            "far away nothing is learned"
+        );
+        // Its odds are those of a normal of variance 1 + 1e-6 against one of 1e-6.
+        let expected = 0.5 * (9e6 - 9.0 / (1.0 + 1e-6)) - 0.5 * libm::log(1.0 + 1e6);
+        assert!((one.log_odds / expected - 1.0).abs() < 1e-5, "{} {expected}", one.log_odds);
+    }
+}

@@ -1,0 +1,210 @@
+//! How measurements answer to a small force around each node of depth, speed and angle.
+
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::term::State;
+use super::with_field::WithField;
+use crate::bench::Bench;
+use crate::field::{Field, Grid};
+use crate::fit::Fit;
+use crate::forward::{Forward, Moment, PredictError};
+use crate::projection::Basis;
+use crate::sensitivity::Point;
+use crate::weights::Weight;
+
+/// Nodes over depth and over speed, and the most over angle.
+const DEPTHS: usize = 14;
+const SPEEDS: usize = 6;
+const ANGLES: usize = 6;
+
+/// A force that is looked at is this share of what stops the bodies.
+const STEP: f64 = 0.02;
+
+/// A node that counts less than this on a path does nothing there.
+const NEAR: f64 = 1e-3;
+
+/// Angles that differ by less are one (rad).
+const SAME_ANGLE: f64 = 1e-6;
+
+/// The grid over what the conditions of the bench that are fitted to go through.
+pub(super) fn grid(bench: &Bench<'_>) -> Grid {
+    let conditions = || bench.observed.fit.iter().map(|&at| &bench.set.conditions[at]);
+    let depth = bench.observed.fit.iter().map(|&at| bench.observed.conditions[at].reach);
+    let depth = depth.fold(f64::MIN_POSITIVE, f64::max);
+    let speed = conditions().map(|one| one.speed).fold(f64::MIN_POSITIVE, f64::max);
+    let mut angles: Vec<f64> = conditions().map(|one| one.angle_deg.to_radians()).collect();
+    angles.sort_by(f64::total_cmp);
+    angles.dedup_by(|a, b| (*a - *b).abs() < SAME_ANGLE);
+    if angles.len() > ANGLES {
+        angles = spaced(angles[0], angles[angles.len() - 1], ANGLES);
+    }
+    Grid { axes: [spaced(0.0, depth, DEPTHS), spaced(0.0, speed, SPEEDS), angles] }
+}
+
+fn spaced(from: f64, to: f64, n: usize) -> Vec<f64> {
+    (0..n).map(|k| from + (to - from) * k as f64 / (n - 1) as f64).collect()
+}
+
+/// The answer of all that was fitted to, whitened, and what of it no parameter of the model imitates.
+pub(super) struct Response {
+    /// Change of the whitened observables of each fitted condition per ρ g A D at a node.
+    blocks: Vec<DMatrix<f64>>,
+    /// What parameters imitate.
+    basis: Basis,
+    /// What the model without any further force leaves over beside them, to first order.
+    pub(super) residual: DVector<f64>,
+    /// The nodes that some path comes near.
+    pub(super) nodes: Vec<usize>,
+    /// The answers beside the parameters, a column for each of these.
+    pub(super) beside: DMatrix<f64>,
+    rows: usize,
+    /// States in the nodes' order, by fitted condition.
+    states: Vec<Vec<State>>,
+}
+
+impl Response {
+    /// Around `fit`, which is of the model with the force of `field`; `passages` by condition that is fitted to.
+    pub(super) fn of(
+        bench: &Bench<'_>,
+        (fit, weights): (&Fit, &[Weight]),
+        field: &Field,
+        passages: &[Vec<Moment>],
+    ) -> Result<Self, PredictError> {
+        let near: Vec<Vec<bool>> = (bench.observed.fit.iter().zip(passages))
+            .map(|(&at, moments)| {
+                near(&field.grid, moments, bench.set.conditions[at].angle_deg.to_radians())
+            })
+            .collect();
+        let blocks: Vec<DMatrix<f64>> = bench
+            .observed
+            .fit
+            .par_iter()
+            .zip(weights)
+            .zip(passages)
+            .zip(&near)
+            .map(|(((&condition, weight), moments), near)| {
+                let step = STEP * strength(moments);
+                let columns = columns(bench.forward, &fit.point, condition, (field, near, step))?;
+                Ok(weight.whiten_columns(&columns))
+            })
+            .collect::<Result<_, PredictError>>()?;
+        let basis = Basis::of(&fit.jacobian);
+        let rows = fit.residual.len();
+        let states = bench.observed.fit.iter().map(|&at| states(bench, &field.grid, at)).collect();
+        let mut response = Self {
+            blocks,
+            basis,
+            residual: DVector::zeros(rows),
+            nodes: (0..field.grid.len()).filter(|&at| near.iter().any(|near| near[at])).collect(),
+            beside: DMatrix::zeros(rows, 0),
+            rows,
+            states,
+        };
+        let columns: Vec<DVector<f64>> = response
+            .nodes
+            .iter()
+            .map(|&node| {
+                response
+                    .stacked(response.blocks.iter().map(|block| block.column(node).into_owned()))
+            })
+            .collect();
+        response.beside = DMatrix::from_columns(&columns);
+        let there = response.change(&DVector::from_column_slice(&field.values));
+        response.residual = response.basis.rest(&(&fit.residual + there));
+        Ok(response)
+    }
+
+    /// What a force of these values at the nodes would change beside the parameters; `values` by fitted condition, in
+    /// units of ρ g A D.
+    pub(super) fn of_values(&self, values: &[Vec<f64>]) -> DVector<f64> {
+        let parts = self.blocks.iter().zip(values);
+        self.stacked(parts.map(|(block, values)| block * DVector::from_column_slice(values)))
+    }
+
+    /// Change of the whitened observables by a force of these `values` at the nodes, parameters as they are.
+    pub(super) fn change(&self, values: &DVector<f64>) -> DVector<f64> {
+        self.placed(self.blocks.iter().map(|block| block * values))
+    }
+
+    /// The answers with the parameters as they are, a column for each of [`Self::nodes`].
+    pub(super) fn whole(&self) -> DMatrix<f64> {
+        let column = |&node: &usize| {
+            self.placed(self.blocks.iter().map(|block| block.column(node).into_owned()))
+        };
+        DMatrix::from_columns(&self.nodes.iter().map(column).collect::<Vec<_>>())
+    }
+
+    /// The states at the nodes, by fitted condition.
+    pub(super) fn states(&self) -> &[Vec<State>] {
+        &self.states
+    }
+
+    /// Blocks of all fitted conditions as one column, beside the parameters.
+    fn stacked(&self, parts: impl Iterator<Item = DVector<f64>>) -> DVector<f64> {
+        self.basis.rest(&self.placed(parts))
+    }
+
+    /// Blocks of all fitted conditions as one column; the rows below, of what is known beforehand, answer to no force.
+    fn placed(&self, parts: impl Iterator<Item = DVector<f64>>) -> DVector<f64> {
+        let mut column = DVector::zeros(self.rows);
+        let mut at = 0;
+        for part in parts {
+            column.rows_mut(at, part.len()).copy_from(&part);
+            at += part.len();
+        }
+        column
+    }
+}
+
+/// Force of the model on the way, in units of ρ g A D.
+fn strength(moments: &[Moment]) -> f64 {
+    let mean = |of: fn(&Moment) -> f64| moments.iter().map(of).sum::<f64>() / moments.len() as f64;
+    let (force, unit) = (mean(|one| one.force), mean(|one| one.unit));
+    if force > 0.0 && unit > 0.0 { force / unit } else { 1.0 }
+}
+
+/// Which nodes count on a path.
+fn near(grid: &Grid, moments: &[Moment], angle: f64) -> Vec<bool> {
+    let mut near = vec![false; grid.len()];
+    for one in moments {
+        for (node, share) in grid.shares_at([one.depth, one.speed, angle]) {
+            near[node] |= share > NEAR;
+        }
+    }
+    near
+}
+
+fn columns(
+    forward: &dyn Forward,
+    point: &Point,
+    condition: usize,
+    (field, near, step): (&Field, &[bool], f64),
+) -> Result<DMatrix<f64>, PredictError> {
+    let with = |values: Vec<f64>| {
+        let field = Arc::new(Field { grid: field.grid.clone(), values });
+        point.predict(&WithField { forward, field }, condition)
+    };
+    let mean = with(field.values.clone())?;
+    let columns: Vec<DVector<f64>> = (0..near.len())
+        .map(|node| {
+            if !near[node] {
+                return DVector::zeros(mean.len());
+            }
+            let mut values = field.values.clone();
+            values[node] += step;
+            // A node with which it cannot be integrated is one that nothing is known of.
+            with(values).map_or_else(|_| DVector::zeros(mean.len()), |there| (there - &mean) / step)
+        })
+        .collect();
+    Ok(DMatrix::from_columns(&columns))
+}
+
+fn states(bench: &Bench<'_>, grid: &Grid, condition: usize) -> Vec<State> {
+    let body = &bench.set.conditions[condition];
+    let (diameter, gravity) = (body.diameter, bench.set.bed.gravity);
+    let nodes = (0..grid.len()).map(|node| grid.node(node));
+    nodes.map(|[depth, speed, angle]| State { depth, speed, angle, diameter, gravity }).collect()
+}

@@ -1,0 +1,127 @@
+//! The missing force along the paths of the bodies, as numbers and as a table.
+
+use std::sync::Arc;
+
+use measurements::MeasurementSet;
+use nalgebra::DVector;
+
+use super::found::{Found, MOMENTS};
+use crate::bench::{Bench, Fitted};
+use crate::fit::Fit;
+use crate::forward::{ByFormulas, Moment, PredictError, Request, Scatter};
+
+/// The missing force at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// Index of the condition.
+    pub condition: usize,
+    /// Time since contact (s).
+    pub time: f64,
+    /// Way forward along the surface (m).
+    pub way: f64,
+    /// Depth of the lowest point (m).
+    pub depth: f64,
+    /// Speed (m/s).
+    pub speed: f64,
+    /// Force that the model lacks, against the motion (N).
+    pub force: f64,
+    /// Its standard deviation (N).
+    pub se: f64,
+    /// Force of the model against the motion (N).
+    pub model: f64,
+}
+
+impl Reading {
+    /// How clear of zero it is, in standard deviations.
+    pub(super) fn clarity(&self) -> f64 {
+        self.force.abs() / self.se.max(f64::MIN_POSITIVE)
+    }
+}
+
+/// The force on the way of the model with the force that it lacks: what is missing in the fitted model, its own
+/// parameters included. A force that parameters imitate is no less missing where the fit has put it into them.
+pub(super) fn readings(
+    bench: &Bench<'_>,
+    by: &dyn ByFormulas,
+    (found, baseline): (&Found, &Fitted),
+) -> Result<Vec<Reading>, PredictError> {
+    let fit = &found.fit;
+    let still = |field| Scatter {
+        coefficients: vec![0.0; bench.forward.n_scattering_coefficients()],
+        field,
+        ..Scatter::default()
+    };
+    let (alone, with) = (still(None), still(Some(Arc::new(found.field.clone()))));
+    let at = |parameters, scatter| Request { parameters, effects: &[], scatter };
+    // The model as it is fitted; the one with the force, without it; and the latter with each parameter moved.
+    let moved: Vec<(Vec<f64>, f64)> = fit.free().iter().map(|&index| moved(fit, index)).collect();
+    let mut others = vec![at(&baseline.fit.point.parameters, &alone)];
+    others.push(at(&fit.point.parameters, &alone));
+    others.extend(moved.iter().map(|(parameters, _)| at(parameters, &alone)));
+    let covariance = fit.free_covariance() * found.misfit().max(1.0);
+    // By how much the parameters follow a force at a node.
+    let follow = fit.free_covariance() * fit.jacobian.tr_mul(&found.response.whole());
+    let place = |node: usize| found.response.nodes.iter().position(|one| *one == node);
+    let mut readings = Vec::new();
+    for &condition in &bench.observed.fit {
+        let angle = bench.set.conditions[condition].angle_deg.to_radians();
+        let moments = by.passage(condition, &at(&fit.point.parameters, &with), &others, MOMENTS)?;
+        for one in moments {
+            let (model, own) = (one.others[0], one.others[1]);
+            let slopes =
+                one.others[2..].iter().zip(&moved).map(|(there, (_, by))| (there - own) / by);
+            let slope = DVector::from_iterator(moved.len(), slopes);
+            let mut weights = -follow.tr_mul(&slope);
+            let mut force = own - model;
+            for (node, share) in found.field.grid.shares_at([one.depth, one.speed, angle]) {
+                force += one.unit * share * found.process.mean[node];
+                if let Some(at) = place(node) {
+                    weights[at] += one.unit * share;
+                }
+            }
+            let variance = found.process.variance(&weights) + slope.dot(&(&covariance * &slope));
+            let Moment { time, way, depth, speed, .. } = one;
+            let se = variance.sqrt();
+            readings.push(Reading { condition, time, way, depth, speed, force, se, model });
+        }
+    }
+    Ok(readings)
+}
+
+/// The parameters of `fit` with one of them moved a little, and by how much.
+fn moved(fit: &Fit, index: usize) -> (Vec<f64>, f64) {
+    /// Of a standard error, or of the value where that is less.
+    const STEP: f64 = 0.1;
+    let mut parameters = fit.point.parameters.clone();
+    let value = parameters[index];
+    let se = fit.standard_error(index).unwrap_or(STEP * value.abs());
+    let by = if value == 0.0 { STEP * se } else { STEP * se.min(value.abs()) };
+    let by = if by > 0.0 { by } else { STEP };
+    parameters[index] += by;
+    (parameters, by)
+}
+
+/// `readings` as CSV.
+///
+/// # Errors
+/// If the table cannot be written.
+pub fn table(set: &MeasurementSet, readings: &[Reading]) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record([
+        "condition",
+        "time_s",
+        "depth_m",
+        "speed_m_per_s",
+        "missing_force_n",
+        "standard_deviation_n",
+        "model_force_n",
+    ])?;
+    for one in readings {
+        let numbers = [one.time, one.depth, one.speed, one.force, one.se, one.model];
+        let mut row = vec![set.conditions[one.condition].id.clone()];
+        row.extend(numbers.map(|number| format!("{number:.6e}")));
+        writer.write_record(row)?;
+    }
+    let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}

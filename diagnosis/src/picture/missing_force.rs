@@ -1,0 +1,98 @@
+//! The force that a model lacks over depth, with its band, a panel per condition.
+
+use measurements::MeasurementSet;
+use plots::legend::{self, Sign};
+use plots::{Area, Drawn, GREY, Hover, PictureError, colour, fitting, letters, padded, svg};
+use plotters::prelude::*;
+
+use super::TWO_SIDED_95;
+use crate::missing_force::Reading;
+
+/// Size of a panel (pixels), and panels side by side.
+const PANEL: (u32, u32) = (313, 200);
+const COLUMNS: usize = 3;
+
+/// Most conditions with a panel of their own.
+const CONDITIONS: usize = 12;
+
+/// One in so many moments says its numbers.
+const HOVERS: usize = 4;
+
+/// How much of the colour a band has.
+const PALE: f64 = 0.25;
+
+pub(crate) fn missing_force(
+    set: &MeasurementSet,
+    readings: &[Reading],
+) -> Result<String, PictureError> {
+    let mut conditions: Vec<usize> = readings.iter().map(|one| one.condition).collect();
+    conditions.dedup();
+    conditions.truncate(CONDITIONS);
+    let rows = conditions.len().div_ceil(COLUMNS).max(1);
+    let height = PANEL.1 * rows as u32;
+    let signs = [
+        (Sign::Line(colour(1)), "force that the model lacks, against the motion".to_owned()),
+        (Sign::Square(pale()), "its band, 95 %".to_owned()),
+    ];
+    svg((PANEL.0 * COLUMNS as u32, height + legend::height(signs.len())), |area| {
+        let (charts, below) = area.split_vertically(height);
+        let panels = charts.split_evenly((rows, COLUMNS));
+        for (&condition, panel) in conditions.iter().zip(&panels) {
+            let own: Vec<&Reading> =
+                readings.iter().filter(|one| one.condition == condition).collect();
+            draw(panel, &set.conditions[condition].id, &own)?;
+        }
+        legend::draw(&below, &signs)
+    })
+}
+
+/// The colour of a band on white.
+fn pale() -> RGBColor {
+    let RGBColor(r, g, b) = colour(1);
+    let towards = |end: u8| (255.0 + (f64::from(end) - 255.0) * PALE).round() as u8;
+    RGBColor(towards(r), towards(g), towards(b))
+}
+
+fn draw(area: &Area<'_>, name: &str, readings: &[&Reading]) -> Drawn {
+    area.draw(&Text::new(fitting(name, PANEL.0 - 60), (52, 5), letters()))?;
+    let deepest = readings.iter().map(|one| 1e3 * one.depth).fold(1e-3, f64::max);
+    let ends = |one: &Reading| [-1.0, 1.0].map(|side| one.force + side * TWO_SIDED_95 * one.se);
+    let all = readings.iter().flat_map(|one| ends(one));
+    let (least, most) =
+        all.fold((0.0_f64, 1e-9_f64), |(least, most), x| (least.min(x), most.max(x)));
+    let mut chart = ChartBuilder::on(area)
+        .margin_top(24)
+        .margin_left(6)
+        .margin_right(10)
+        .x_label_area_size(34)
+        .y_label_area_size(46)
+        .build_cartesian_2d(padded(0.0, deepest), padded(least, most))?;
+    chart
+        .configure_mesh()
+        .x_labels(5)
+        .y_labels(5)
+        .x_desc("depth (mm)")
+        .y_desc("force (N)")
+        .light_line_style(WHITE)
+        .bold_line_style(GREY)
+        .draw()?;
+    let place = |one: &Reading| 1e3 * one.depth;
+    let lower = readings.iter().map(|one| (place(one), ends(one)[0]));
+    let upper = readings.iter().rev().map(|one| (place(one), ends(one)[1]));
+    chart.draw_series([Polygon::new(lower.chain(upper).collect::<Vec<_>>(), pale().filled())])?;
+    chart.draw_series(LineSeries::new([(0.0, 0.0), (deepest, 0.0)], BLACK.stroke_width(1)))?;
+    let line = readings.iter().map(|one| (place(one), one.force));
+    chart.draw_series(LineSeries::new(line, colour(1).stroke_width(2)))?;
+    chart.draw_series(readings.iter().step_by(HOVERS).map(|one| {
+        let text = format!(
+            "{:.1} mm deep, {:.2} m/s\n{:+.3} \u{b1} {:.3} N; the model: {:.3} N",
+            place(one),
+            one.speed,
+            one.force,
+            one.se,
+            one.model
+        );
+        Hover::at((place(one), one.force), text)
+    }))?;
+    Ok(())
+}
