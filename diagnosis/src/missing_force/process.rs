@@ -156,10 +156,11 @@ mod tests {
         let one = setting(&factor, &inner, &seen, 1.0).expect("a setting");
         assert!((one.mean[0] - 3.0).abs() < 1e-4, "{}", one.mean[0]);
         assert!((one.covariance(&factor)[(0, 0)].sqrt() / 1e-3 - 1.0).abs() < 1e-3);
-        assert!(
-            (one.covariance(&factor)[(1, 1)] - 1.0).abs() < 1e-4,
-            "far away nothing is learned"
-        );
+        // Far away half of the variance is shared still, over a length of 2: exp(−1/8) of it at a distance of 1.
+        let shared = 0.5 * libm::exp(-0.125);
+        let there = one.covariance(&factor)[(1, 1)];
+        assert!((there - (1.0 - shared * shared)).abs() < 1e-4, "{there}");
+        assert!((one.mean[1] - 3.0 * shared).abs() < 1e-4, "{}", one.mean[1]);
         // Its odds are those of a normal of variance 1 + 1e-6 against one of 1e-6.
         let expected = 0.5 * (9e6 - 9.0 / (1.0 + 1e-6)) - 0.5 * libm::log(1.0 + 1e6);
         assert!((one.log_odds / expected - 1.0).abs() < 1e-5, "{} {expected}", one.log_odds);
