@@ -328,8 +328,12 @@ impl Judge<'_> {
         };
         let missing_force = match verdict {
             Verdict::NoneOfTheCandidates => {
-                let best = ranking.scores.first();
-                missing_force(bench, &self.baseline, best.map(|score| score.delta))?
+                let best = ranking.scores.first().map(|score| score.delta);
+                match missing_force(bench, &self.baseline, best) {
+                    // The verdict stands without it.
+                    Err(BenchError::Predict(_) | BenchError::Singular { .. }) => None,
+                    other => other?,
+                }
             }
             _ => None,
         };
