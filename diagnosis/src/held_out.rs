@@ -1,7 +1,7 @@
 //! Errors on conditions that were not fitted to.
 
 use measurements::Kind;
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use serde::Serialize;
 
 use rand::RngExt;
@@ -135,6 +135,9 @@ pub const NEARER: f64 = 0.75;
 
 /// Largest error on held-out conditions, over the noise of their means, that counts as noise.
 pub const WITHIN: f64 = 1.3;
+
+/// Share of the information on a combination of parameters that has to be left without a condition.
+const ALONE: f64 = 1e-8;
 
 /// Number of resamples of the conditions, and the least number of conditions to resample.
 const CHOICES: usize = 1000;
@@ -397,7 +400,7 @@ impl Predicted {
             let own = residual.rows(start, rows).into_owned();
             let slope = jacobian.rows(start, rows).into_owned();
             start += rows;
-            let Some(others) = Cholesky::new(&all - slope.tr_mul(&slope)) else {
+            let Some(others) = told_apart(&all - slope.tr_mul(&slope), &all) else {
                 predicted.push(Err("it alone fixes a parameter".to_owned()));
                 continue;
             };
@@ -408,6 +411,17 @@ impl Predicted {
         }
         Ok(predicted)
     }
+}
+
+/// The factor of the information `others` on the parameters, if it fixes every combination that `all` fixes: differences
+/// of rounding fix nothing.
+fn told_apart(others: DMatrix<f64>, all: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
+    let scale = all.diagonal().map(f64::sqrt);
+    let n = others.nrows();
+    let share = DMatrix::from_fn(n, n, |i, j| others[(i, j)] / (scale[i] * scale[j]));
+    let pivots = Cholesky::new(share)?.l_dirty().diagonal();
+    let is_fixed = pivots.iter().all(|pivot| pivot * pivot > ALONE);
+    is_fixed.then(|| Cholesky::new(others)).flatten()
 }
 
 /// Logarithm of the normal density of a whitened `residual`, whose prediction has covariance
@@ -471,6 +485,21 @@ mod tests {
         assert_eq!(kept, [(0, -1.0, -2.0)]);
         let left: Vec<_> = others.iter().map(|one| (one.condition.as_str(), one.by)).collect();
         assert_eq!(left, [("1.5 m/s at 90", Fails::After), ("2 m/s at 90", Fails::Both)]);
+    }
+
+    #[test]
+    fn what_is_left_by_rounding_fixes_no_parameter() {
+        // The second column differs from the first in the last row alone.
+        let rows = DMatrix::from_row_slice(3, 2, &[3.0, 3.0, 7.0, 7.0, 2.0, 1.0]);
+        let all = rows.tr_mul(&rows);
+        let without = |row: usize| {
+            let slope = rows.rows(row, 1).into_owned();
+            &all - slope.tr_mul(&slope)
+        };
+        assert!(told_apart(without(0), &all).is_some());
+        let mut rounded = without(2);
+        rounded[(1, 1)] *= 1.0 + 1e-13;
+        assert!(told_apart(rounded, &all).is_none());
     }
 
     fn held_out(judged: usize, by: Option<Fails>, gain: f64) -> HeldOut {
