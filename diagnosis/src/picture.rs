@@ -8,6 +8,7 @@ mod errors;
 mod measured;
 mod missing_force;
 mod multiples;
+mod panel;
 mod residuals;
 mod revisions;
 mod signatures;

@@ -172,16 +172,15 @@ impl Search<'_> {
         let (amplitudes, parameters) = (choice.amplitudes.clone(), self.near.to_vec());
         let force = force(&choice.terms, &amplitudes, self.states);
         let effects = vec![(first, amplitudes[0])];
-        let fit =
-            self.fit(vec![draft(FOUND, force.clone(), self.by)], Point { parameters, effects })?;
+        let fit = self.fit(draft(FOUND, force.clone(), self.by), Point { parameters, effects })?;
         let fitted = Fitted { fit, ..self.baseline.clone() };
         Some(Refitted { force, terms: choice.terms.clone(), amplitudes, fitted })
     }
 
     /// The fit from `start`, or from half of its amplitudes where the model cannot be integrated with them.
-    fn fit(&self, drafts: Vec<Draft>, start: Point) -> Option<Fit> {
+    fn fit(&self, draft: Draft, start: Point) -> Option<Fit> {
         const HALVINGS: usize = 3;
-        let extended = self.by.extended(drafts).ok()?;
+        let extended = self.by.extended(vec![draft]).ok()?;
         let with = Bench { forward: &*extended, ..*self.bench };
         let data = with.data(&self.baseline.weights);
         let mut point = start;

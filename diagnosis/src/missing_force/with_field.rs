@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use nalgebra::DMatrix;
-
 use crate::field::Field;
 use crate::forward::{Candidate, Forward, Parameter, PredictError, Request, Scatter};
 
@@ -29,9 +27,5 @@ impl Forward for WithField<'_> {
     fn predict(&self, condition: usize, at: &Request<'_>) -> Result<Vec<f64>, PredictError> {
         let scatter = Scatter { field: Some(Arc::clone(&self.field)), ..at.scatter.clone() };
         self.forward.predict(condition, &Request { scatter: &scatter, ..*at })
-    }
-
-    fn own_covariance(&self, condition: usize, effects: &[(usize, f64)]) -> Option<DMatrix<f64>> {
-        self.forward.own_covariance(condition, effects)
     }
 }

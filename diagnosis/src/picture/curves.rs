@@ -2,8 +2,10 @@
 
 use measurements::{Condition, Curve, MeasurementSet, Run};
 use plots::legend::{self, Sign};
-use plots::{Area, Drawn, GREY, Hover, PictureError, colour, fitting, letters, padded, svg};
+use plots::{Area, Drawn, Hover, PictureError, colour, fitting, letters, padded, svg};
 use plotters::prelude::*;
+
+use super::panel::framed;
 
 /// Size of a panel (pixels), and panels side by side.
 const PANEL: (u32, u32) = (313, 220);
@@ -43,22 +45,11 @@ fn draw(area: &Area<'_>, curve: &Curve, condition: &Condition, runs: &[&Run]) ->
     };
     let across = ends(&mut samples().map(|one| along.scale * one.at));
     let up = ends(&mut samples().map(|one| value.scale * one.value));
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(24)
-        .margin_left(6)
-        .margin_right(10)
-        .x_label_area_size(34)
-        .y_label_area_size(46)
-        .build_cartesian_2d(padded(across.0, across.1), padded(up.0, up.1))?;
-    chart
-        .configure_mesh()
-        .x_labels(5)
-        .y_labels(5)
-        .x_desc(along.label())
-        .y_desc(value.label())
-        .light_line_style(WHITE)
-        .bold_line_style(GREY)
-        .draw()?;
+    let mut chart = framed(
+        area,
+        [padded(across.0, across.1), padded(up.0, up.1)],
+        [&along.label(), &value.label()],
+    )?;
     for run in runs {
         let line = run.samples.iter().map(|one| (along.scale * one.at, value.scale * one.value));
         chart.draw_series(LineSeries::new(line.clone(), colour(0).stroke_width(1)))?;

@@ -4,8 +4,9 @@ use measurements::{Condition, Kind, MeasurementSet, Run};
 use plotters::prelude::*;
 
 use super::curves::curves;
+use super::panel::framed;
 use plots::legend::{self, Sign};
-use plots::{Area, Drawn, GREY, Hover, PictureError, colour, fitting, letters, padded, short, svg};
+use plots::{Area, Drawn, Hover, PictureError, colour, fitting, letters, padded, short, svg};
 
 /// Size of a panel (pixels), and panels side by side.
 const PANEL: (u32, u32) = (313, 220);
@@ -74,22 +75,8 @@ fn draw_paths(area: &Area<'_>, condition: &Condition, gravity: f64, runs: &[&Run
     let depths = frames().map(|frame| 1e3 * frame.z);
     let (high, low) = (depths.clone().fold(0.0, f64::min), depths.fold(1e-3, f64::max));
     let down = padded(high, low);
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(24)
-        .margin_left(6)
-        .margin_right(10)
-        .x_label_area_size(34)
-        .y_label_area_size(46)
-        .build_cartesian_2d(padded(first, last), down.end..down.start)?;
-    chart
-        .configure_mesh()
-        .x_labels(5)
-        .y_labels(5)
-        .x_desc("time (ms)")
-        .y_desc("depth (mm)")
-        .light_line_style(WHITE)
-        .bold_line_style(GREY)
-        .draw()?;
+    let mut chart =
+        framed(area, [padded(first, last), down.end..down.start], ["time (ms)", "depth (mm)"])?;
     let sinking = speed * libm::sin(angle_deg.to_radians());
     let frame = [padded(first, last), down];
     let line = fall(sinking, gravity, [first, EARLY * last], &frame);
@@ -182,21 +169,8 @@ fn draw_scalar(
     area.draw(&Text::new(title, (52, 5), letters()))?;
     let fastest = set.conditions.iter().fold(1e-9_f64, |most, one| most.max(one.speed));
     let most = set.runs.iter().filter_map(of).fold(1e-12_f64, f64::max);
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(24)
-        .margin_left(6)
-        .margin_right(10)
-        .x_label_area_size(34)
-        .y_label_area_size(46)
-        .build_cartesian_2d(0.0..1.05 * fastest, 0.0..1.1 * scale * most)?;
-    chart
-        .configure_mesh()
-        .x_labels(5)
-        .y_labels(5)
-        .x_desc("impact speed (m/s)")
-        .light_line_style(WHITE)
-        .bold_line_style(GREY)
-        .draw()?;
+    let mut chart =
+        framed(area, [0.0..1.05 * fastest, 0.0..1.1 * scale * most], ["impact speed (m/s)", ""])?;
     for run in &set.runs {
         let Some(value) = of(run) else { continue };
         let condition = &set.conditions[run.condition];

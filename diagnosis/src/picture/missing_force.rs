@@ -2,10 +2,11 @@
 
 use measurements::MeasurementSet;
 use plots::legend::{self, Sign};
-use plots::{Area, Drawn, GREY, Hover, PictureError, colour, fitting, letters, padded, svg};
+use plots::{Area, Drawn, Hover, PictureError, colour, fitting, letters, padded, svg};
 use plotters::prelude::*;
 
 use super::TWO_SIDED_95;
+use super::panel::framed;
 use crate::missing_force::Reading;
 
 /// Size of a panel (pixels), and panels side by side.
@@ -60,22 +61,8 @@ fn draw(area: &Area<'_>, name: &str, readings: &[&Reading]) -> Drawn {
     let all = readings.iter().flat_map(|one| ends(one));
     let (least, most) =
         all.fold((0.0_f64, 1e-9_f64), |(least, most), x| (least.min(x), most.max(x)));
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(24)
-        .margin_left(6)
-        .margin_right(10)
-        .x_label_area_size(34)
-        .y_label_area_size(46)
-        .build_cartesian_2d(padded(0.0, deepest), padded(least, most))?;
-    chart
-        .configure_mesh()
-        .x_labels(5)
-        .y_labels(5)
-        .x_desc("depth (mm)")
-        .y_desc("force (N)")
-        .light_line_style(WHITE)
-        .bold_line_style(GREY)
-        .draw()?;
+    let mut chart =
+        framed(area, [padded(0.0, deepest), padded(least, most)], ["depth (mm)", "force (N)"])?;
     let place = |one: &Reading| 1e3 * one.depth;
     let lower = readings.iter().map(|one| (place(one), ends(one)[0]));
     let upper = readings.iter().rev().map(|one| (place(one), ends(one)[1]));

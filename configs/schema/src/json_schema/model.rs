@@ -55,7 +55,7 @@ fn format() -> Format {
         "type": "object",
         "properties": {
             value: { "type": "number", "description": "in the unit of the parameter" },
-            unit: { "type": "string", "description": "such as N or kg/m; 1 where there is none", "default": "1" },
+            unit: { "type": "string", "description": "the unit, such as N or kg/m; 1 for a pure number", "default": "1" },
             range: {
                 "type": "array", "items": number, "minItems": 2, "maxItems": 2,
                 "description": "between what a fit looks for it, in the unit of the parameter",

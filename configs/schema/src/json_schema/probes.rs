@@ -122,17 +122,7 @@ fn beds() -> Vec<String> {
             "speed = '1 m/s'\ndepth = '1 cm'\nangle = '90 deg'\nattitude = '1 deg'",
         )],
     ];
-    let of = |manner: &Parts<'_>, dimension| {
-        let mut parts = grains(dimension);
-        if manner.iter().any(|(header, _)| *header == "[intrusion]") {
-            parts.retain(|(header, _)| *header != "[impact]");
-        }
-        text(&[parts, manner.clone()])
-    };
-    [2, 3]
-        .into_iter()
-        .flat_map(|dimension| manners.iter().map(move |one| of(one, dimension)))
-        .collect()
+    in_both_dimensions(grains, &manners)
 }
 
 /// Force laws and their impacts in all their manners.
@@ -150,17 +140,20 @@ fn resistances() -> Vec<String> {
         vec![("[[effect]]", upward.clone()), ("[[candidate]]", upward)],
         vec![part("[intrusion]", "speed = '1 m/s'\ndepth = '1 cm'\nangle = '90 deg'")],
     ];
-    let of = |manner: &Parts<'_>, dimension| {
-        let mut parts = resistive(dimension);
+    in_both_dimensions(resistive, &manners)
+}
+
+/// The medium of `base` with each of `manners`, as discs and as spheres; what is pushed does not fall.
+fn in_both_dimensions<'a>(base: fn(u8) -> Parts<'a>, manners: &[Parts<'a>]) -> Vec<String> {
+    let of = |manner: &Parts<'a>, dimension| {
+        let mut parts = base(dimension);
         if manner.iter().any(|(header, _)| *header == "[intrusion]") {
             parts.retain(|(header, _)| *header != "[impact]");
         }
         text(&[parts, manner.clone()])
     };
-    [2, 3]
-        .into_iter()
-        .flat_map(|dimension| manners.iter().map(move |one| of(one, dimension)))
-        .collect()
+    let of = |dimension| manners.iter().map(move |one| of(one, dimension));
+    [2, 3].into_iter().flat_map(of).collect()
 }
 
 /// Every law and effect by its name alone; effects that borrow from the contact law find one that lends.
