@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use configs::engine::parallel::with_threads;
 use configs::estimate::{Estimate, MEMORY_SHARE, available_memory_bytes};
-use configs::{LoadOptions, Loaded, Model, ModelSource};
+use configs::{LoadOptions, Loaded, Model};
 use runner::schedulers::{Scheduler, SchedulerError};
 
+use crate::host;
 use crate::output::{self, CommandError};
 
 /// The flags that commands about a model share.
@@ -56,7 +57,7 @@ impl Common {
             seed: self.seed,
             allow_paths: self.allow_paths.clone(),
         };
-        let loaded = Model::load(ModelSource::from_argument(model), &options)?;
+        let loaded = Model::load(host::model_source(model), &options)?;
         if !self.quiet {
             output::show_warnings(&loaded);
         }

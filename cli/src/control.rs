@@ -1,6 +1,7 @@
-//! Progress on a terminal, warnings, and whether to go on.
+//! Progress on a terminal or for a host, warnings, and whether to go on.
 
 use std::io::{self, IsTerminal};
+use std::sync::Arc;
 use std::time::Duration;
 
 use configs::printable;
@@ -8,11 +9,13 @@ use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use runner::Watch;
 use runner::run::{Control, Progress};
 
+use crate::host::{self, Host};
 use crate::output::{self, CommandError};
 use crate::signals;
 
-/// What the terminal shows, and signals say, while a model runs.
+/// What the terminal shows, and signals say, while a model runs; or the host in place of both.
 pub(crate) struct Terminal {
+    host: Option<Arc<Host>>,
     bar: ProgressBar,
     bar_of: Option<BarOf>,
     quiet: bool,
@@ -28,9 +31,10 @@ enum BarOf {
 impl Terminal {
     /// A bar of progress, unless nobody would see it.
     pub(crate) fn new(quiet: bool) -> Self {
-        let shown = !quiet && io::stderr().is_terminal();
+        let host = host::current();
+        let shown = !quiet && host.is_none() && io::stderr().is_terminal();
         let bar = if shown { ProgressBar::no_length() } else { ProgressBar::hidden() };
-        Self { bar, bar_of: None, quiet }
+        Self { host, bar, bar_of: None, quiet }
     }
 
     /// What a command that was asked to stop ends with.
@@ -47,7 +51,21 @@ impl Terminal {
     fn say(&self, message: &str) {
         if !self.quiet {
             let text = format!("warning: {}\n", printable(message));
-            self.bar.suspend(|| output::to_stderr(&text));
+            match &self.host {
+                Some(host) => host.tell(&text),
+                None => self.bar.suspend(|| output::to_stderr(&text)),
+            }
+        }
+    }
+
+    fn is_asked_to_stop(&self) -> bool {
+        self.host.as_ref().map_or_else(signals::is_asked_to_stop, |host| host.is_stopped())
+    }
+
+    /// Tells the host; on a terminal, the bar has it.
+    fn tell_progress(&self, words: impl FnOnce() -> String, share: Option<f64>) {
+        if let Some(host) = &self.host {
+            host.is_at(host::Progress { words: words(), share });
         }
     }
 
@@ -80,6 +98,8 @@ impl Watch for Terminal {
             self.bar.enable_steady_tick(Duration::from_millis(200));
         }
         self.bar.set_message(format!("{what} "));
+        let share = progress.done as f64 / progress.of.max(1) as f64;
+        self.tell_progress(|| format!("{} of {} {what}", progress.done, progress.of), Some(share));
         let left = progress.left.map_or(String::new(), |left| {
             format!("about {} left", HumanDuration(Duration::from_secs_f64(left)))
         });
@@ -92,7 +112,7 @@ impl Watch for Terminal {
     }
 
     fn wants_to_stop(&self) -> bool {
-        signals::is_asked_to_stop()
+        self.is_asked_to_stop()
     }
 }
 
@@ -108,7 +128,9 @@ impl Control for Terminal {
         match *progress {
             Progress::Settling { step, time, restlessness } => {
                 self.show(BarOf::Settling, "{spinner} bed settling, {msg}, {per_sec}, {elapsed}");
-                self.bar.set_message(format!("{time:.3} s, {restlessness:.1e} of rest"));
+                let words = format!("{time:.3} s, {restlessness:.1e} of rest");
+                self.tell_progress(|| format!("bed settling, {words}"), None);
+                self.bar.set_message(words);
                 self.bar.set_position(step);
             }
             Progress::Impact { index, of, step, last_step, time, depth, speed } => {
@@ -121,10 +143,10 @@ impl Control for Terminal {
                 }
                 self.bar.set_length(last_step);
                 self.bar.set_position(step);
-                self.bar.set_message(format!(
-                    "{time:.3} s, {:.1} mm deep, {speed:.2} m/s",
-                    1e3 * depth
-                ));
+                let words = format!("{time:.3} s, {:.1} mm deep, {speed:.2} m/s", 1e3 * depth);
+                let share = (index as f64 + step as f64 / last_step.max(1) as f64) / of as f64;
+                self.tell_progress(|| words.clone(), Some(share));
+                self.bar.set_message(words);
             }
         }
     }
@@ -134,6 +156,6 @@ impl Control for Terminal {
     }
 
     fn wants_to_stop(&self) -> bool {
-        signals::is_asked_to_stop()
+        self.is_asked_to_stop()
     }
 }

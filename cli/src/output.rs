@@ -1,10 +1,12 @@
-//! The only place that writes to stdout and stderr, and that knows the exit codes.
+//! The only place that writes to stdout and stderr, or to the host in their place, and that knows the exit codes.
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
 
 use configs::{Color, ConfigError, Loaded, printable};
 use runner::run::RunError;
+
+use crate::host;
 
 /// Why a command did not do what was asked.
 #[derive(Debug)]
@@ -54,23 +56,42 @@ impl From<anyhow::Error> for CommandError {
 /// What a command comes to.
 pub(crate) type CommandResult = Result<(), CommandError>;
 
+/// Why a command has failed, as the command line says it.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct Failure {
+    /// The exit status: 1 failed while running, 2 bad input.
+    pub status: u8,
+    /// What is written to stderr, ending in a line break.
+    pub message: String,
+}
+
+impl Failure {
+    pub(crate) fn usage(error: &clap::Error) -> Self {
+        let status = u8::try_from(error.exit_code()).unwrap_or(2);
+        Self { status, message: error.to_string() }
+    }
+}
+
+impl From<CommandError> for Failure {
+    fn from(error: CommandError) -> Self {
+        let (status, message) = match error {
+            CommandError::BadInput(message) => (2, message),
+            CommandError::Partly { code, message } => (code, printable_lines(&message)),
+            CommandError::Failed(error) => {
+                (1, format!("error: {}\n", printable(&with_causes(&error))))
+            }
+        };
+        Self { status, message }
+    }
+}
+
 /// Shows an error, if there is one, and gives the exit code.
 pub(crate) fn conclude(result: CommandResult) -> ExitCode {
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(CommandError::BadInput(message)) => {
-            to_stderr(&message);
-            ExitCode::from(2)
-        }
-        Err(CommandError::Partly { code, message }) => {
-            to_stderr(&printable_lines(&message));
-            ExitCode::from(code)
-        }
-        Err(CommandError::Failed(error)) => {
-            to_stderr(&format!("error: {}\n", printable(&with_causes(&error))));
-            ExitCode::from(1)
-        }
-    }
+    let Err(error) = result else { return ExitCode::SUCCESS };
+    let Failure { status, message } = error.into();
+    to_stderr(&message);
+    ExitCode::from(status)
 }
 
 /// What went wrong and why, each thing once: some errors say the words of their cause themselves.
@@ -90,6 +111,10 @@ fn printable_lines(text: &str) -> String {
 pub(crate) fn to_stdout(text: &str) -> CommandResult {
     // Names and sources are of files from anywhere. Scripts for shells have tabulators.
     let text = text.split('\t').map(configs::printable).collect::<Vec<_>>().join("\t");
+    if let Some(host) = host::current() {
+        host.print(&text);
+        return Ok(());
+    }
     let mut stdout = io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -107,6 +132,9 @@ pub(crate) fn json_to_stdout(object: &serde_json::Value) -> CommandResult {
 
 /// Writes progress or a diagnostic; when even that fails there is nothing left to do.
 pub(crate) fn to_stderr(text: &str) {
+    if let Some(host) = host::current() {
+        return host.tell(text);
+    }
     let _ = io::stderr().write_all(text.as_bytes());
 }
 
@@ -115,11 +143,11 @@ pub(crate) fn show_warnings(loaded: &Loaded) {
     to_stderr(&loaded.render_warnings(stderr_color()));
 }
 
-/// Colours on a terminal, unless `NO_COLOR` is set.
+/// Colours on a terminal, unless `NO_COLOR` is set; none for a host.
 pub(crate) fn stderr_color() -> Color {
     let unwanted = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
         || std::env::var_os("TERM").is_some_and(|term| term == "dumb");
-    match io::stderr().is_terminal() && !unwanted {
+    match io::stderr().is_terminal() && !unwanted && host::current().is_none() {
         true => Color::On,
         false => Color::Off,
     }

@@ -17,6 +17,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use signal_hook::{flag, low_level};
 
+use crate::host;
 use crate::output;
 
 /// How long a command that asks may take to hear of a signal.
@@ -71,8 +72,11 @@ pub(crate) fn will_be_asked_for() {
     IS_POLLED.store(true, Ordering::Relaxed);
 }
 
-/// Whether a signal has asked to stop.
+/// Whether a signal has asked to stop, or the host.
 pub(crate) fn is_asked_to_stop() -> bool {
+    if let Some(host) = host::current() {
+        return host.is_stopped();
+    }
     will_be_asked_for();
     let is_asked = number() != 0;
     if is_asked {

@@ -6,14 +6,18 @@ use std::path::{Component, Path, PathBuf};
 
 use clap::Args;
 use configs::engine::checkpoint;
-use configs::{LoadOptions, Loaded, Model, ModelSource};
+use configs::{LoadOptions, Loaded, Model};
 use diagnosis::bench::BenchError;
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::where_it_fails;
 use measurements::{ContradictionKind, MeasurementSet, SetError};
 
+use crate::BEGINS_AGAIN;
+use crate::control::stopped;
+use crate::host;
 use crate::output::{self, CommandError, CommandResult, stderr_color};
+use crate::signals;
 
 /// The seed of every resampling when none is given.
 const SEED: u64 = 1;
@@ -183,7 +187,7 @@ impl Flags {
             seed: None,
             allow_paths: self.allow_paths.clone(),
         };
-        let loaded = Model::load(ModelSource::from_argument(path), &options)?;
+        let loaded = Model::load(host::model_source(path), &options)?;
         if !self.quiet {
             output::show_warnings(&loaded);
         }
@@ -369,8 +373,11 @@ impl Results {
     }
 
     /// Writes the files, and what they are from. All of them are on the disk before the first of an earlier call is
-    /// touched: if there is no room for them, those are kept.
+    /// touched: if there is no room for them, those are kept. Whoever has asked to stop waits for no results any more.
     pub(crate) fn write(&self, files: &[(String, String)]) -> CommandResult {
+        if signals::is_asked_to_stop() {
+            return Err(stopped(BEGINS_AGAIN));
+        }
         let cannot = |what: &str, path: &Path, error: io::Error| {
             let shown = format!("cannot {what} {}", path.display());
             CommandError::Failed(anyhow::Error::new(error).context(shown))
