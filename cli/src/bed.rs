@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use configs::engine::bed::BedReport;
+use configs::engine::grain_bed::RestingBed;
 use runner::run::{BedSummary, Control as _, prepare};
 use serde_json::json;
 
@@ -20,6 +21,11 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> CommandResult {
+    prepared(args).map(drop)
+}
+
+/// Prepares the bed, says what `plunge bed` says of it, and gives it.
+pub(crate) fn prepared(args: &Args) -> Result<RestingBed, CommandError> {
     let common = &args.common;
     let model = common.load(&args.model)?.model;
     let grains = model.grains().ok_or_else(|| {
@@ -44,7 +50,8 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         // Not the path itself: one that is not UTF-8 cannot be encoded.
         object["path"] = json!(bed.path.as_ref().map(|path| path.to_string_lossy()));
         object["mean_diameter_m"] = json!(report.mean_diameter);
-        return output::json_to_stdout(&object);
+        output::json_to_stdout(&object)?;
+        return Ok(bed.resting);
     }
     let inside = report
         .packing_fraction_inside
@@ -66,5 +73,6 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         height = report.height,
         diameters = report.height / report.mean_diameter,
         coordination = report.coordination,
-    ))
+    ))?;
+    Ok(bed.resting)
 }

@@ -69,14 +69,27 @@ impl Common {
     /// # Errors
     /// If it needs more than the share that a run may take.
     pub(crate) fn refuse_too_large(&self, model: &Model) -> Result<(), CommandError> {
+        self.refuse_too_large_beside(model, 1)
+    }
+
+    /// The same of a model of which `n` run at a time.
+    ///
+    /// # Errors
+    /// Likewise.
+    pub(crate) fn refuse_too_large_beside(
+        &self,
+        model: &Model,
+        n: u64,
+    ) -> Result<(), CommandError> {
         let (Some(available), Some(grains)) = (available_memory_bytes(), model.grains()) else {
             return Ok(());
         };
         let estimate = Estimate::of(grains);
-        if self.force || estimate.memory_bytes as f64 <= MEMORY_SHARE * available as f64 {
+        let all_bytes = n.saturating_mul(estimate.memory_bytes);
+        if self.force || all_bytes as f64 <= MEMORY_SHARE * available as f64 {
             return Ok(());
         }
-        let [needed, free] = [estimate.memory_bytes, available].map(output::bytes);
+        let [needed, free] = [all_bytes, available].map(output::bytes);
         if estimate.container_bytes as f64 > MEMORY_SHARE * available as f64 {
             return Err(CommandError::bad_input(format!(
                 "cells of the size of the grains over a container {} m wide need about {needed}, and {free} are \
@@ -86,8 +99,9 @@ impl Common {
                 grains.width_of_a_layer()
             )));
         }
+        let beside = if n > 1 { format!(", {n} times side by side,") } else { String::new() };
         Err(CommandError::bad_input(format!(
-            "{} grains need about {needed}, and {free} are free; --force goes on all the same",
+            "{} grains{beside} need about {needed}, and {free} are free; --force goes on all the same",
             estimate.n_grains
         )))
     }

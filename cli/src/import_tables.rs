@@ -8,8 +8,11 @@ use exchange::tracking::{
 use measurements::{ContradictionKind, Loaded, MeasurementSet};
 use serde_json::json;
 
+use crate::BEGINS_AGAIN;
+use crate::control::stopped;
 use crate::import_args::{Args, Tables};
 use crate::output::{self, CommandError, CommandResult, stderr_color};
+use crate::signals;
 use crate::text::{lines, table};
 
 impl Tables {
@@ -88,6 +91,9 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         return Err(CommandError::bad_input(format!(
             "{out} holds another set; --force replaces it"
         )));
+    }
+    if signals::is_asked_to_stop() {
+        return Err(stopped(BEGINS_AGAIN));
     }
     set.write(&out).map_err(failed)?;
     let loaded = MeasurementSet::load(&out)?;

@@ -43,9 +43,10 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::{CommandFactory, Parser, Subcommand};
-
-pub use host::{Host, Progress};
 use output::CommandResult;
+
+pub use configs::engine::grains::Grain;
+pub use host::{Host, Progress};
 pub use output::Failure;
 
 /// Impacts on granular beds: simulate them, compare them with measurements, find what is missing.
@@ -155,10 +156,46 @@ pub fn main() -> ExitCode {
 /// # Errors
 /// What the program would say in its place, with its exit status.
 pub fn call(host: &Arc<Host>, words: &[OsString]) -> Result<String, Failure> {
-    let line = std::iter::once(OsString::from("plunge")).chain(words.iter().cloned());
-    let cli = Cli::try_parse_from(line).map_err(|usage| Failure::usage(&usage))?;
-    host.during(|| cli.command.run().map_err(Failure::from))?;
+    let command: Cli = understood("plunge", words)?;
+    host.during(|| command.command.run())?;
     Ok(host.take_printed())
+}
+
+/// `plunge run` with `words`, once for each of `variants`, which are further values of its `--set`: side by side,
+/// `--threads` at a time and each on one thread, into the folders `001`, `002` … of `--out`. No run begins before
+/// all models have been read. Gives the summaries; reports are not made.
+///
+/// # Errors
+/// As [`call`]; the first of any variant in their order.
+pub fn run_many(
+    host: &Arc<Host>,
+    words: &[OsString],
+    variants: &[Vec<String>],
+) -> Result<Vec<serde_json::Value>, Failure> {
+    let Words { args } = understood::<Words<run::Args>>("plunge run", words)?;
+    Ok(host.during(|| run::many(&args, variants))?)
+}
+
+/// `plunge bed` with `words`: what it prints, and the grains at rest.
+///
+/// # Errors
+/// As [`call`].
+pub fn bed(host: &Arc<Host>, words: &[OsString]) -> Result<(String, Vec<Grain>), Failure> {
+    let Words { args } = understood::<Words<bed::Args>>("plunge bed", words)?;
+    let bed = host.during(|| bed::prepared(&args))?;
+    Ok((host.take_printed(), bed.grains))
+}
+
+/// Arguments of one command, without its name.
+#[derive(Debug, Parser)]
+struct Words<A: clap::Args> {
+    #[command(flatten)]
+    args: A,
+}
+
+fn understood<P: Parser>(program: &str, words: &[OsString]) -> Result<P, Failure> {
+    let line = std::iter::once(OsString::from(program)).chain(words.iter().cloned());
+    P::try_parse_from(line).map_err(|usage| Failure::usage(&usage))
 }
 
 impl Command {

@@ -4,6 +4,7 @@ use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
 
 use configs::{Color, ConfigError, Loaded, printable};
+use runner::CampaignError;
 use runner::run::RunError;
 
 use crate::host;
@@ -42,6 +43,16 @@ impl From<RunError> for CommandError {
         match error {
             RunError::Config(error) => error.into(),
             error if error.is_bad_input() => Self::bad_input(error),
+            error => Self::Failed(error.into()),
+        }
+    }
+}
+
+impl From<CampaignError> for CommandError {
+    fn from(error: CampaignError) -> Self {
+        match error {
+            CampaignError::Config(error) => error.into(),
+            CampaignError::Run(error) => error.into(),
             error => Self::Failed(error.into()),
         }
     }

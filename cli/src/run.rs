@@ -3,11 +3,14 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use configs::{Loaded, Model};
 use reports::run::Course;
 use runner::run::{
     BedSummary, CostSummary, Existing, IntrusionSummary, LinkSummary, ListSummary, Outcome, Places,
     Scatter, Summary,
 };
+use runner::{CampaignError, Stage, Workers};
+use serde_json::{Value, json};
 
 use crate::common::Common;
 use crate::control::Terminal;
@@ -33,15 +36,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let loaded = common.load(&args.model)?;
     let model = &loaded.model;
     common.refuse_too_large(model)?;
-    let places = Places {
-        out: common.out.clone().unwrap_or_else(|| Path::new("runs").join(&model.run.name)),
-        cache: common.cache_folder(),
-        existing: match (common.force, common.resume) {
-            (true, _) => Existing::Replace,
-            (false, true) => Existing::Resume,
-            (false, false) => Existing::Keep,
-        },
-    };
+    let places = places(common, model);
     let mut terminal = Terminal::new(common.quiet);
     let outcome =
         common.on_threads(|| runner::run::run(model, &loaded.original, &places, &mut terminal))?;
@@ -55,7 +50,67 @@ pub(crate) fn run(args: &Args) -> CommandResult {
             report::of_list(&places.out, &summary, common.quiet);
             show(common.json, &*summary, || list_as_text(&summary, &places.out))
         }
-        Outcome::Interrupted => Err(terminal.interrupted("--resume goes on from here")),
+        Outcome::Interrupted => Err(terminal.interrupted(RESUMES)),
+    }
+}
+
+/// Runs the model once with each of `variants`, further values of `--set`: `--threads` at a time, each on one
+/// thread, into the folders `001`, `002` … of `--out`. No model is run before all have been read. Gives the
+/// summaries; reports are left to `plunge report`.
+pub(crate) fn many(args: &Args, variants: &[Vec<String>]) -> Result<Vec<Value>, CommandError> {
+    let Args { model, common } = args;
+    table_file::refuse(model)?;
+    let number = workers(common.threads);
+    let mut loaded = Vec::with_capacity(variants.len());
+    for sets in variants {
+        let sets = [&common.sets[..], sets].concat();
+        let one = Common { sets, ..common.clone() }.load(model)?;
+        common.refuse_too_large_beside(&one.model, number.min(variants.len()) as u64)?;
+        loaded.push(one);
+    }
+    let terminal = Terminal::new(common.quiet);
+    let all: Vec<usize> = (0..loaded.len()).collect();
+    let work = |_: &usize| 1.0;
+    let ran = Workers { number, watch: &terminal }.side_by_side(
+        Stage::Impacts,
+        &all,
+        (&work, 0),
+        |at, control| {
+            let Loaded { model, original, .. } = &loaded[at];
+            let places = places(common, model);
+            let places = Places { out: places.out.join(format!("{:03}", at + 1)), ..places };
+            match runner::run::run(model, original, &places, control)? {
+                Outcome::One(summary) => Ok(json!(summary)),
+                Outcome::List(summary) => Ok(json!(summary)),
+                Outcome::Interrupted => Err(CampaignError::Interrupted),
+            }
+        },
+    );
+    terminal.clear();
+    ran.map_err(|error| match error {
+        CampaignError::Interrupted => terminal.interrupted(RESUMES),
+        error => error.into(),
+    })
+}
+
+/// What is left of a run that was stopped.
+const RESUMES: &str = "--resume goes on from here";
+
+/// Impacts at a time: as many as were `asked` for, else one per core.
+fn workers(asked: Option<u16>) -> usize {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    asked.map_or(cores, usize::from)
+}
+
+fn places(common: &Common, model: &Model) -> Places {
+    Places {
+        out: common.out.clone().unwrap_or_else(|| Path::new("runs").join(&model.run.name)),
+        cache: common.cache_folder(),
+        existing: match (common.force, common.resume) {
+            (true, _) => Existing::Replace,
+            (false, true) => Existing::Resume,
+            (false, false) => Existing::Keep,
+        },
     }
 }
 
@@ -64,11 +119,7 @@ fn show<T: serde::Serialize>(
     summary: &T,
     text: impl FnOnce() -> String,
 ) -> CommandResult {
-    if json {
-        output::json_to_stdout(&serde_json::json!(summary))
-    } else {
-        output::to_stdout(&text())
-    }
+    if json { output::json_to_stdout(&json!(summary)) } else { output::to_stdout(&text()) }
 }
 
 fn one_as_text(summary: &Summary, course: Option<&Course>, out: &Path) -> String {

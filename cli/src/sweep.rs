@@ -313,9 +313,7 @@ fn show(args: &Args, folder: &Folder, results: &Results) -> CommandResult {
 fn of_sweep(error: SweepError) -> CommandError {
     match error {
         SweepError::Folder(error) => of_folder(error),
-        SweepError::Campaign(CampaignError::Config(error)) => error.into(),
-        SweepError::Campaign(CampaignError::Run(error)) => error.into(),
-        SweepError::Campaign(error) => CommandError::Failed(error.into()),
+        SweepError::Campaign(error) => error.into(),
     }
 }
 

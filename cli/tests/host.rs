@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use plunge::{Failure, Host, call};
+use plunge::{Failure, Host, bed, call, run_many};
 use serde_json::Value;
 
 fn words(words: &[&str]) -> Vec<OsString> {
@@ -108,4 +108,40 @@ fn progress_goes_to_the_host_and_it_can_stop() {
     assert!(after < Duration::from_secs(6), "{after:?}");
     let progress = host.progress().expect("progress");
     assert!(progress.words.starts_with("bed settling, ") && progress.share.is_none());
+}
+
+#[test]
+fn many_side_by_side_are_as_each_alone_and_none_begins_where_one_is_wrong() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let small =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/schema/tests/good/small-2d.toml");
+    let [many, cache] = ["many", "cache"].map(|name| folder.path().join(name));
+    let line = |out: &Path| words(&[shown(&small), "--cache", shown(&cache), "--out", shown(out)]);
+    let speed = |speed: f64| vec![format!("impact.speed=\"{speed} m/s\"")];
+    let speeds = [0.5, 0.75, 1.0];
+    let run = |variants: &[Vec<String>]| {
+        let line = [line(&many), words(&["--threads", "2"])].concat();
+        run_many(&Arc::new(Host::default()), &line, variants)
+    };
+    let wrong = run(&[speed(0.5), vec!["impact.sped=1".to_owned()]]).expect_err("a wrong key");
+    assert!(wrong.status == 2 && wrong.message.contains("impact.sped"), "{wrong}");
+    assert!(!many.exists());
+    let (printed, grains) =
+        bed(&Arc::default(), &words(&[shown(&small), "--json", "--cache", shown(&cache)]))
+            .expect("a bed");
+    let printed: Value = serde_json::from_str(&printed).expect("JSON");
+    assert_eq!(printed["grains"].as_u64(), Some(grains.len() as u64));
+    let summaries = run(&speeds.map(speed)).expect("three runs");
+    assert_eq!(summaries.len(), 3);
+    for (at, (summary, speed)) in summaries.iter().zip(speeds).enumerate() {
+        let alone = folder.path().join(format!("alone-{at}"));
+        let set = format!("impact.speed=\"{speed} m/s\"");
+        let rest = words(&["--threads", "1", "--json", "--set", &set]);
+        let line = [words(&["run"]), line(&alone), rest].concat();
+        let printed = call(&Arc::new(Host::default()), &line).expect("a run");
+        assert_eq!(results(summary.to_string().as_bytes()), results(printed.as_bytes()));
+        let logs = [many.join(format!("00{}", at + 1)), alone];
+        let [a, b] = logs.map(|run| std::fs::read(run.join("run.mcap")).expect("a log"));
+        assert!(a == b, "{speed} m/s");
+    }
 }
