@@ -1,5 +1,6 @@
 //! Hertz–Mindlin with damping that sets the restitution.
 
+use engine::contact::Partner;
 use engine::lanes::Lanes;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 
@@ -12,6 +13,8 @@ use crate::registry::{ActsOn, LawEntry};
 /// F_n = max(0, 4/3 E* a δ + 2 √(5/6) β √(S_n m*) dδ/dt)   (N), a = √(R* δ), S_n = 2 E* a
 ///
 /// F_t = −(k_t ξ + 2 √(5/6) β √(k_t m*) v_t), k_t = 8 G* a, |F_t| ≤ μ F_n
+///
+/// E*, G*, β and μ belong to the pair: grains, walls and the intruder may be of three materials.
 ///
 /// It never attracts, and β is the one with which the rebound, so cut off, has the restitution asked for.
 /// For spring and limit see [`hertz::act`]. `tangential_damping` multiplies the viscous part of F_t.
@@ -35,8 +38,9 @@ pub(crate) struct Restitution {
 impl Damping for Restitution {
     const NAME: &'static str = "hertz-mindlin";
 
-    fn of(elastic: &Elastic, values: &ParamTable) -> Self {
-        let ratio = 2.0 * (5.0_f64 / 6.0).sqrt() * damping_ratio(values.get("restitution"));
+    fn of(elastic: &Elastic, values: &ParamTable, partner: Partner) -> Self {
+        let restitution = values.get(restitution_key(partner));
+        let ratio = 2.0 * (5.0_f64 / 6.0).sqrt() * damping_ratio(restitution);
         let tangential = values.get("tangential_damping");
         let factors = [
             ratio * elastic.normal_stiffness(1.0).sqrt(),
@@ -52,15 +56,38 @@ impl Damping for Restitution {
     }
 }
 
-const PARAMS: &[ParamSpec] = &params::specs(
+/// The parameter that holds the restitution of contacts of grains with `partner`.
+#[must_use]
+pub const fn restitution_key(partner: Partner) -> &'static str {
+    match partner {
+        Partner::Grain => "restitution",
+        Partner::Wall => "wall_restitution",
+        Partner::Intruder => "intruder_restitution",
+    }
+}
+
+const RESTITUTION: ParamSpec =
     ParamSpec::number("restitution", "e, speed of a head-on rebound over that of the impact")
         .allowed(Range { min: 0.0, max: 1.0, includes_min: false })
-        .usual(0.1, 1.0),
-    ParamSpec {
-        default: Default::Value(1.0),
-        meaning: "factor on the viscous part of the tangential force; 0 leaves friction alone",
-        ..params::TANGENTIAL_DAMPING
-    },
+        .usual(0.1, 1.0);
+
+const PARAMS: &[ParamSpec] = &params::with_two_more(
+    params::specs(
+        RESTITUTION,
+        ParamSpec {
+            default: Default::Value(1.0),
+            meaning: "factor on the viscous part of the tangential force; 0 leaves friction alone",
+            ..params::TANGENTIAL_DAMPING
+        },
+    ),
+    [
+        RESTITUTION
+            .named(restitution_key(Partner::Wall), "e between grains and walls")
+            .same_as("restitution"),
+        RESTITUTION
+            .named(restitution_key(Partner::Intruder), "e between grains and the intruder")
+            .same_as("restitution"),
+    ],
 );
 
 /// The registry's line.
@@ -86,7 +113,12 @@ mod tests {
     use crate::registry::FromParams;
 
     fn pair(restitution: f64) -> hertz::Pair<Restitution> {
-        let more = [("restitution", restitution), ("tangential_damping", 1.0)];
+        let more = [
+            ("restitution", restitution),
+            ("wall_restitution", restitution),
+            ("intruder_restitution", restitution),
+            ("tangential_damping", 1.0),
+        ];
         HertzMindlin::from_params(&beads(&more)).pair(Partner::Grain)
     }
 

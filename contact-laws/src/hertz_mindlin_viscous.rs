@@ -1,5 +1,6 @@
 //! Hertz–Mindlin with a viscoelastic material.
 
+use engine::contact::Partner;
 use engine::lanes::Lanes;
 use engine::params::{Default, ParamSpec, ParamTable};
 use engine::units::Dimension;
@@ -35,7 +36,7 @@ pub(crate) struct Viscous {
 impl Damping for Viscous {
     const NAME: &'static str = "hertz-mindlin-viscous";
 
-    fn of(elastic: &Elastic, values: &ParamTable) -> Self {
+    fn of(elastic: &Elastic, values: &ParamTable, _: Partner) -> Self {
         let viscous_time = values.get("viscous_time");
         let tangential = values.get("tangential_damping");
         let factors = [

@@ -20,6 +20,7 @@ mod velocity_restitution;
 pub use candidate::{Candidacy, Candidate, MeanGrain, Need};
 pub use grain_force::{GRAIN_FORCES, GrainForceEntry, find_grain_force};
 pub use hertz::damping_ratio;
+pub use hertz_mindlin::restitution_key;
 pub use registry::{ActsOn, FromParams, LawEntry};
 
 /// Every law and effect, in the order of the docs.

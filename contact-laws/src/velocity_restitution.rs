@@ -132,9 +132,10 @@ mod tests {
 
     #[test]
     fn on_an_undamped_hertz_law_it_is_the_viscous_law() {
-        let more =
-            [("restitution", 1.0), ("viscous_time", VISCOUS_TIME), ("tangential_damping", 0.0)];
-        let params = beads(&more);
+        let elastic =
+            [("restitution", 1.0), ("wall_restitution", 1.0), ("intruder_restitution", 1.0)];
+        let more = [("viscous_time", VISCOUS_TIME), ("tangential_damping", 0.0)];
+        let params = beads(&[&elastic[..], &more].concat());
         let base = HertzMindlin::from_params(&params).pair(Partner::Grain);
         let effect = VelocityRestitution::from_params(&params).pair(Partner::Grain);
         let whole = HertzMindlinViscous::from_params(&params).pair(Partner::Grain);

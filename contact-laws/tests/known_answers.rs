@@ -232,3 +232,110 @@ fn a_rolling_spring_swings_with_the_damping_ratio_that_it_is_given() {
         assert_eq!(lost > 0.5 * start, ratio > 0.05, "{lost:e} of {start:e}");
     }
 }
+
+/// Grains of 1 GPa, a steel intruder, and a restitution and a friction for each pair.
+const GRAINS_AND_STEEL: [(&str, f64); 7] = [
+    ("young_modulus", 1e9),
+    ("poisson_ratio", 0.2),
+    ("friction", 0.3),
+    ("restitution", 0.5),
+    ("intruder_young_modulus", 210e9),
+    ("intruder_friction", 0.2),
+    ("intruder_restitution", 0.4),
+];
+
+/// What came of a head-on collision.
+struct Collision {
+    /// (m).
+    largest_overlap: f64,
+    /// (s).
+    duration: f64,
+    /// Speed after over speed before (–).
+    rebound: f64,
+    /// What was lost over what was booked as lost, less one (–).
+    unaccounted: f64,
+}
+
+/// A grain of radius 2 mm and density 2500 kg/m³ meets `partner` of `radius` (m) and `mass` (kg) at 5 m/s.
+fn head_on(given: &[(&str, f64)], partner: Partner, radius: f64, mass: f64, dt: f64) -> Collision {
+    let inverse_radius_eff = 1.0 / 2e-3 + 1.0 / radius;
+    let inverse_mass_eff = 1.0 / (2500.0 * 4.0 / 3.0 * PI * 8e-9) + 1.0 / mass;
+    let mut touching = Touching::new(law("hertz-mindlin", given), partner);
+    let (mut overlap, mut rate, mut force) = (0.0, 5.0, 0.0);
+    let (mut largest_overlap, mut steps) = (0.0_f64, 0);
+    loop {
+        let half = rate - 0.5 * dt * force * inverse_mass_eff;
+        let foretold = half - 0.5 * dt * force * inverse_mass_eff;
+        let before = overlap;
+        overlap += half * dt;
+        let contact = Contact {
+            overlap_rate: foretold,
+            overlap_step: half * dt,
+            inverse_radius_eff,
+            inverse_radius_eff_before: inverse_radius_eff,
+            inverse_mass_eff,
+            ..sheared(overlap, 0.0, 0.0)
+        };
+        force = touching.step(&contact, dt, Response::default()).normal_force;
+        rate = half - 0.5 * dt * force * inverse_mass_eff;
+        largest_overlap = largest_overlap.max(overlap);
+        steps += 1;
+        if overlap <= 0.0 {
+            let start = 0.5 * 25.0 / inverse_mass_eff;
+            let lost = start - 0.5 * rate * rate / inverse_mass_eff;
+            return Collision {
+                largest_overlap,
+                duration: dt * (f64::from(steps) - overlap / (overlap - before)),
+                rebound: -rate / 5.0,
+                unaccounted: (lost - touching.of("normal-damping")) / start,
+            };
+        }
+    }
+}
+
+#[test]
+fn a_grain_meets_steel_as_hertz_says_of_two_materials_and_rebounds_with_the_restitution_of_the_pair()
+ {
+    // Steel of 1 cm in radius; two grains.
+    let steel = 7200.0 * 4.0 / 3.0 * PI * 1e-6;
+    let grain = 2500.0 * 4.0 / 3.0 * PI * 8e-9;
+    let of_steel = 1.0 / (0.96 / 1e9 + 0.96 / 210e9);
+    for (partner, radius, mass, modulus, restitution) in [
+        (Partner::Intruder, 1e-2, steel, of_steel, 0.4),
+        (Partner::Grain, 2e-3, grain, 1e9 / 1.92, 0.5),
+    ] {
+        let (mass_eff, radius_eff): (f64, f64) =
+            (grain * mass / (grain + mass), 2e-3 * radius / (2e-3 + radius));
+        // Johnson, Contact Mechanics (1985), section 11.4.
+        let swing = 15.0 / 16.0 * mass_eff * 25.0 / (modulus * radius_eff.sqrt());
+        let overlap = libm::pow(swing, 0.4);
+        let duration = 2.943_275 * overlap / 5.0;
+        let dt = duration / 2000.0;
+        let undamped = [("restitution", 1.0), ("intruder_restitution", 1.0)];
+        let elastic = [&undamped, &GRAINS_AND_STEEL[..]].concat();
+        let collision = head_on(&elastic, partner, radius, mass, dt);
+        // Second order in a step of 1/2000.
+        assert!((collision.largest_overlap / overlap - 1.0).abs() < 1e-5, "{partner:?}");
+        assert!((collision.duration / duration - 1.0).abs() < 1e-4, "{partner:?}");
+        assert!((collision.rebound - 1.0).abs() < 1e-5, "{partner:?}");
+        let damped = head_on(&GRAINS_AND_STEEL, partner, radius, mass, dt);
+        assert!((damped.rebound - restitution).abs() < 2e-4, "{partner:?} {}", damped.rebound);
+        assert!(damped.unaccounted.abs() < 1e-4, "{partner:?} {}", damped.unaccounted);
+    }
+}
+
+#[test]
+fn a_grain_slides_on_steel_with_the_friction_of_the_pair_and_springs_back_with_its_shear_modulus() {
+    let shear = |young: f64| 2.0 * 1.8 * 1.2 / young;
+    for (partner, young, friction) in [(Partner::Grain, 1e9, 0.3), (Partner::Intruder, 210e9, 0.2)]
+    {
+        let mut touching = Touching::new(law("hertz-mindlin", &GRAINS_AND_STEEL), partner);
+        let overlap = 1e-6;
+        let stiffness = 8.0 / (shear(1e9) + shear(young)) * (1e-3_f64 * overlap).sqrt();
+        let stuck = touching.step(&sheared(overlap, 0.0, 1e-10), 1e-7, Response::default());
+        assert!((-stuck.tangential_force.x / (stiffness * 1e-10) - 1.0).abs() < 1e-12);
+        let slides = touching.step(&sheared(overlap, 0.0, 1e-4), 1e-7, Response::default());
+        let ratio = -slides.tangential_force.x / slides.normal_force;
+        assert!((ratio / friction - 1.0).abs() < 1e-12, "{partner:?} {ratio}");
+    }
+}

@@ -309,6 +309,7 @@ fn a_hertz_contact_of_a_ball_with_a_wall_has_the_theory_s_force_and_rebound() {
         [("intruder_young_modulus", 1e8), ("intruder_poisson_ratio", 0.25)],
         [("friction", 0.0), ("wall_friction", 0.0)],
         [("intruder_friction", 0.0), ("restitution", 1.0)],
+        [("wall_restitution", 1.0), ("intruder_restitution", 1.0)],
         [("tangential_damping", 0.0), ("tangential_damping", 0.0)],
     ];
     let modulus_eff = 0.5 * 1e8 / (1.0 - 0.0625);

@@ -101,7 +101,9 @@ impl Material {
     /// The Hertz–Mindlin law for spheres of it and a rigid wall, damped to `restitution`.
     #[must_use]
     pub fn hertz_mindlin(&self, restitution: f64, friction: f64) -> Box<dyn ContactStage> {
-        stage("hertz-mindlin", &self.hertz(friction, ("restitution", restitution), 1.0))
+        let mut values = self.hertz(friction, ("restitution", restitution), 1.0).to_vec();
+        values.extend([("wall_restitution", restitution), ("intruder_restitution", restitution)]);
+        stage("hertz-mindlin", &values)
     }
 
     /// The viscoelastic law for spheres of it and a rigid wall.

@@ -19,8 +19,8 @@ use crate::registry::FromParams;
 pub(crate) trait Damping: Copy + Send + Sync + 'static {
     /// The name of the law in TOML.
     const NAME: &'static str;
-    /// From the parameters of the law, for contacts with these constants.
-    fn of(elastic: &Elastic, values: &ParamTable) -> Self;
+    /// From the parameters of the law, for contacts with `partner`, which have these constants.
+    fn of(elastic: &Elastic, values: &ParamTable, partner: Partner) -> Self;
     /// c_n and c_t (N s/m) at contact radius a = `contact_radius` (m) and m* = `mass_eff` (kg).
     fn coefficients<R: Lanes>(&self, contact_radius: R, mass_eff: R) -> [R; 2];
 }
@@ -81,7 +81,7 @@ impl<D: Damping> FromParams for Law<D> {
         let pair = |partner| {
             let elastic = Elastic::of(values, partner);
             let friction = params::friction(values, partner);
-            Pair { damping: D::of(&elastic, values), elastic, friction }
+            Pair { damping: D::of(&elastic, values, partner), elastic, friction }
         };
         Self { pairs: Partner::ALL.map(pair) }
     }
@@ -268,7 +268,7 @@ pub(crate) mod tests {
     impl Damping for Undamped {
         const NAME: &'static str = "undamped";
 
-        fn of(_: &Elastic, _: &ParamTable) -> Self {
+        fn of(_: &Elastic, _: &ParamTable, _: Partner) -> Self {
             Self
         }
 

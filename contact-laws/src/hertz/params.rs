@@ -51,6 +51,13 @@ pub(crate) const fn specs_on_base(first: ParamSpec) -> [ParamSpec; 7] {
     ]
 }
 
+/// `specs` and two that one law adds.
+pub(crate) const fn with_two_more(specs: [ParamSpec; 11], more: [ParamSpec; 2]) -> [ParamSpec; 13] {
+    let [a, b, c, d, e, f, g, h, i, j, k] = specs;
+    let [l, m] = more;
+    [a, b, c, d, e, f, g, h, i, j, k, l, m]
+}
+
 const fn of_base(spec: ParamSpec, key: &'static str) -> ParamSpec {
     ParamSpec { key, default: Default::FromBase(key), ..spec }
 }

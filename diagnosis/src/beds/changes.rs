@@ -1,8 +1,10 @@
 //! Candidates that change what every bed of grains has: its contact law, and how it was prepared; one line of
 //! [`CHANGES`] makes one.
 
+use configs::contact_laws::restitution_key;
 use configs::{BedSource, Change, GrainKind, GrainModel, Material};
 use engine::bed::{SizeDistribution, inflation_range};
+use engine::contact::Partner;
 use engine::grains::Space;
 use resistive::Kind;
 
@@ -66,7 +68,7 @@ const WALL_FRICTION: Switch = Switch {
 const RESTITUTION: Switch = Switch {
     id: "restitution",
     kind: Kind::Physics,
-    amplitude: "relative change of the damping of normal contacts, of −ln e",
+    amplitude: "relative change of the damping of normal contacts, of −ln e of each pair",
     screen: 0.5,
     range: (-0.9, 4.0),
     separable_from: "from velocity-restitution: a wide range of speeds",
@@ -78,8 +80,13 @@ const RESTITUTION: Switch = Switch {
         },
         change: |model, q| match damping(model) {
             Some("restitution") => {
-                let e = model.medium.contact_law.params.get("restitution");
-                Variation::during(Change::ContactLaw("restitution", libm::pow(e, 1.0 + q)))
+                let damped = |partner| {
+                    let key = restitution_key(partner);
+                    let e = model.medium.contact_law.params.get(key);
+                    Change::ContactLaw(key, libm::pow(e, 1.0 + q))
+                };
+                let during = Partner::ALL.into_iter().map(damped).collect();
+                Variation { before: Vec::new(), during }
             }
             Some(key) => scaled(model, key, q),
             None => Variation::default(),

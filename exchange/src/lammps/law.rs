@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use configs::LawChoice;
-use configs::contact_laws::damping_ratio;
+use configs::contact_laws::{damping_ratio, restitution_key};
 use configs::engine::contact::Partner;
 use configs::engine::params::ParamTable;
 
@@ -23,8 +23,8 @@ pub(super) enum Law<'a> {
     Linear(&'a ParamTable),
     HertzMindlin {
         params: &'a ParamTable,
-        /// The restitution that LAMMPS is told.
-        told: f64,
+        /// The restitution that LAMMPS is told, by [`Partner::index`].
+        told: [f64; 3],
     },
 }
 
@@ -41,14 +41,17 @@ impl<'a> Law<'a> {
     /// LAMMPS takes its damping ratio β from a restitution e by −ln e = πβ/√(1 − β²), which is that
     /// of a law that may attract: so it is told the e that has the β of plunge.
     fn hertz_mindlin(params: &'a ParamTable) -> Result<Self, String> {
-        let restitution = params.get("restitution");
-        let ratio = damping_ratio(restitution);
-        if ratio >= 1.0 {
-            let what =
-                format!("damping beyond critical (contact_law.restitution = {restitution:?})");
-            return Err(what);
+        let mut told = [0.0; 3];
+        for (partner, told) in Partner::ALL.into_iter().zip(&mut told) {
+            let key = restitution_key(partner);
+            let restitution = params.get(key);
+            let ratio = damping_ratio(restitution);
+            if ratio >= 1.0 {
+                let what = format!("damping beyond critical (contact_law.{key} = {restitution:?})");
+                return Err(what);
+            }
+            *told = libm::exp(-PI * ratio / (1.0 - ratio * ratio).sqrt());
         }
-        let told = libm::exp(-PI * ratio / (1.0 - ratio * ratio).sqrt());
         Ok(Self::HertzMindlin { params, told })
     }
 
@@ -138,13 +141,14 @@ fn elastic(params: &ParamTable, partner: Partner) -> [f64; 2] {
 
 /// `limit_damping` keeps the normal force from attracting. Both damp shear as c_t/c_n = √(k_t/S_n)
 /// = 2 √(G*/E*).
-fn hertz_mindlin(params: &ParamTable, told: f64, stiffness: &[f64]) -> Contacts {
+fn hertz_mindlin(params: &ParamTable, told: [f64; 3], stiffness: &[f64]) -> Contacts {
     granular(stiffness, |partner, factor| {
         let [modulus, shear_modulus] = elastic(params, partner);
         format!(
             "hertz {k_n:?} {told:?} tangential mindlin {k_t:?} {shear:?} {friction:?} \
              damping coeff_restitution limit_damping",
             k_n = 4.0 / 3.0 * factor * modulus,
+            told = told[partner.index()],
             k_t = 8.0 * factor * shear_modulus,
             shear = 2.0 * (shear_modulus / modulus).sqrt() * params.get("tangential_damping"),
             friction = friction(params, partner),

@@ -146,6 +146,30 @@ fn a_bed_in_space_has_the_stiffness_and_damping_of_hertz_and_mindlin() {
 }
 
 #[test]
+fn an_intruder_of_another_material_has_its_modulus_its_restitution_and_its_friction() {
+    let steel = [
+        "contact_law.intruder_young_modulus = \"210 GPa\"",
+        "contact_law.intruder_poisson_ratio = 0.2",
+        "contact_law.intruder_restitution = 0.4",
+        "contact_law.intruder_friction = 0.2",
+    ];
+    let Deck { input, .. } = written(3, HERTZ, &steel);
+    let grains = numbers(&input, "pair_coeff 1 1 ");
+    let pair = numbers(&input, "pair_coeff 1 2 ");
+    let [_, _, k_n, told, k_t, _, friction] = pair[..] else { panic!("{pair:?}") };
+    let modulus = 1.0 / (0.9375 / 50e6 + 0.96 / 210e9);
+    let shear_modulus = 1.0 / (2.0 * 1.75 * 1.25 / 50e6 + 2.0 * 1.8 * 1.2 / 210e9);
+    assert!((k_n / (4.0 / 3.0 * modulus) - 1.0).abs() < 1e-14);
+    assert!((k_t / (8.0 * shear_modulus) - 1.0).abs() < 1e-14);
+    assert_eq!(friction.to_bits(), 0.2_f64.to_bits());
+    // A stronger damping: LAMMPS is told less.
+    assert!(told < grains[3] - 0.1, "{told} {}", grains[3]);
+    let message = deck(3, HERTZ, &["contact_law.intruder_restitution = 0.1"]);
+    let message = message.expect_err("beyond critical").to_string();
+    assert!(message.contains("contact_law.intruder_restitution = 0.1"), "{message}");
+}
+
+#[test]
 fn what_lammps_cannot_express_is_refused_by_name_and_all_at_once() {
     let rolling =
         format!("{LINEAR}\n[[effect]]\nname = \"rolling-resistance\"\nrolling_friction = 0.05\n");

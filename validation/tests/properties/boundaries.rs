@@ -45,6 +45,7 @@ fn elastic_spheres() -> Box<dyn ContactStage> {
         body("intruder_young_modulus", "intruder_poisson_ratio"),
         [("friction", 0.0), ("wall_friction", 0.0)],
         [("intruder_friction", 0.0), ("restitution", 1.0)],
+        [("wall_restitution", 1.0), ("intruder_restitution", 1.0)],
     ];
     let tangential_damping = [("tangential_damping", 0.0)];
     stage("hertz-mindlin", &[params.as_flattened(), &tangential_damping].concat())
