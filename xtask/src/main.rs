@@ -212,7 +212,7 @@ fn run(task: Task) -> Result<ExitCode> {
             sh.change_dir(root()?);
             tidy::run(&sh)
         }
-        Task::Bench(args) => study(&sh, "speed", &args),
+        Task::Bench(args) => speed(&sh, args),
         Task::BenchBeds(args) => study(&sh, "beds", &args),
         Task::BenchDiagnosis(args) => study(&sh, "accuracy", &args),
         Task::BenchResistive => study(&sh, "bench", &[]),
@@ -247,6 +247,21 @@ fn written_to(args: &[OsString]) -> PathBuf {
         }
     }
     folder
+}
+
+/// The benchmark of beds, compiled for this processor, or with `--simd avx2` without AVX-512.
+fn speed(sh: &Shell, mut args: Vec<OsString>) -> Result<ExitCode> {
+    let Some(at) = args.iter().position(|arg| arg == "--simd") else {
+        return study(sh, "speed", &args);
+    };
+    anyhow::ensure!(args.get(at + 1).is_some_and(|kind| kind == "avx2"), "--simd takes `avx2`");
+    args.drain(at..at + 2);
+    let flags = "-C target-cpu=native -C target-feature=-avx512f";
+    let cargo = cmd!(
+        sh,
+        "cargo run --quiet --release --locked --target-dir target/avx2 -p validation --bin speed -- {args...}"
+    );
+    start(cargo.env("RUSTFLAGS", flags))
 }
 
 /// Runs a program of `validation`.

@@ -12,7 +12,7 @@ use validation::benchmark::document;
 use validation::command::conclude;
 use validation::speed::lammps::Lammps;
 use validation::speed::plan::{self, Plan};
-use validation::speed::problem::{PROBLEMS, Problem};
+use validation::speed::problem::{PROBLEMS, Problem, usual};
 use validation::speed::report;
 use validation::speed::trial::{Extent, Order, Span};
 
@@ -21,15 +21,18 @@ Grain-steps per second of beds under an impact: of the time loop alone, in proce
 
 Usage: cargo xtask bench [--problem NAME]... [--peers] [--quick] [--repeats N] [--out DIR] [--cache DIR] [--write]
 
-  --problem NAME  2d-15k, 3d-12k, 3d-50k, 3d-200k, or growth for those in space; may be given several
-                  times (all)
+  --problem NAME  2d-15k, 3d-12k, 3d-50k, 3d-200k, or growth for those in space; steel-25k, steel-50k,
+                  steel-100k; may be given several times (all up to steel-25k)
   --peers         LAMMPS too, on the same beds, laws and steps, on one core and on two ranks; it is installed
-                  below target/peers, unless PLUNGE_LAMMPS names an lmp
+                  below target/peers, unless PLUNGE_LAMMPS names an lmp; every pair style that it has for the
+                  law is timed, and beside it an lmp that was built for this processor, which
+                  PLUNGE_LAMMPS_NATIVE names
   --quick         a quarter of the steps, but 100 at least; three repeats
   --repeats N     how often each is timed (5)
   --out DIR       where speed.json, speed.md, problems and decks are written (target/bench)
   --cache DIR     the folder of prepared beds (else $PLUNGE_CACHE, else runs/.cache)
   --write         the tables to docs/performance.md
+  --simd avx2     compiles without AVX-512, into target/avx2 (what the processor has)
 
 Exit status: 0 done, 1 failed or a peer disagrees, 2 the command line was not understood.
 ";
@@ -79,7 +82,7 @@ fn parse(mut args: Parser) -> Result<Option<Wish>, lexopt::Error> {
         }
     }
     if problems.is_empty() {
-        problems = PROBLEMS.iter().collect();
+        problems = usual().collect();
     }
     let from_environment = || std::env::var_os("PLUNGE_CACHE").filter(|folder| !folder.is_empty());
     let cache = cache.or_else(|| from_environment().map(PathBuf::from));
@@ -130,7 +133,11 @@ fn trial(order: &Order, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>>
 
 fn bench(wish: &Bench, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
     let environment = PathBuf::from("target/peers");
-    let lammps = wish.peers.then(|| Lammps::find_or_install(&environment)).transpose()?;
+    let lammps = match wish.peers {
+        true => [Some(Lammps::find_or_install(&environment)?), Lammps::native()?],
+        false => [None, None],
+    };
+    let lammps = lammps.into_iter().flatten().collect();
     let plan = Plan {
         problems: wish.problems.clone(),
         repeats: wish.repeats,

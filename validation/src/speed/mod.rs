@@ -11,6 +11,7 @@ pub mod problem;
 pub mod report;
 pub mod sharing;
 pub mod spread;
+pub mod style;
 pub mod trial;
 
 use std::io;

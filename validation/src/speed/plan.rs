@@ -10,6 +10,7 @@ use super::SpeedError;
 use super::lammps::{Lammps, export};
 use super::problem::{BedTime, Problem};
 use super::spread::Spread;
+use super::style::Style;
 use super::trial::{Extent, Order, Span, Trial};
 
 /// How much is done.
@@ -25,8 +26,8 @@ pub struct Plan {
     pub folder: PathBuf,
     /// The folder of prepared beds.
     pub cache: PathBuf,
-    /// The peer, if there is to be one.
-    pub lammps: Option<Lammps>,
+    /// The peers, if there are to be any: builds of one LAMMPS.
+    pub lammps: Vec<Lammps>,
 }
 
 /// What was measured of one problem.
@@ -40,24 +41,64 @@ pub struct Measured {
     pub one: Vec<Trial>,
     /// plunge on two threads.
     pub two: Vec<Trial>,
-    /// LAMMPS on one core.
-    pub lammps_one: Vec<Trial>,
-    /// LAMMPS on two.
-    pub lammps_two: Vec<Trial>,
+    /// LAMMPS: every style of every build; the style of the same law of the first build comes first.
+    pub peers: Vec<Peer>,
+}
+
+/// A pair style of a build of LAMMPS.
+#[derive(Debug)]
+pub struct Peer {
+    /// The style, as LAMMPS calls it.
+    pub style: String,
+    /// Whether its forces are those of the model.
+    pub is_same_law: bool,
+    /// Where the build comes from.
+    pub build: &'static str,
+    /// On one core.
+    pub one: Vec<Trial>,
+    /// On two ranks, of the first peer alone.
+    pub two: Vec<Trial>,
 }
 
 impl Measured {
-    /// How far the speed of the intruder at the end is from that of LAMMPS, over the latter (–).
+    /// The peer of the same law, of the first build.
     #[must_use]
-    pub fn disagreement(&self) -> Option<f64> {
-        let [own, peer] = [&self.one, &self.lammps_one].map(|trials| {
-            let [x, y, z] = trials.first()?.velocity_m_per_s?;
-            Some([x, y, z])
-        });
+    pub fn first_peer(&self) -> Option<&Peer> {
+        self.peers.first()
+    }
+
+    /// The fastest peer on one core, by the median of CPU time.
+    #[must_use]
+    pub fn fastest_peer(&self) -> Option<&Peer> {
+        let rate = |peer: &Peer| {
+            let spread = Spread::of(peer.one.iter().map(Trial::per_cpu_second));
+            spread.map_or(0.0, |spread| spread.median)
+        };
+        self.peers.iter().max_by(|a, b| rate(a).total_cmp(&rate(b)))
+    }
+
+    /// Rate of plunge on one core over that of `peer` in the same repeat (–).
+    #[must_use]
+    pub fn over(&self, peer: &Peer) -> Option<Spread> {
+        let pairs = self.one.iter().zip(&peer.one);
+        Spread::of(pairs.map(|(own, peer)| own.per_cpu_second() / peer.per_cpu_second()))
+    }
+
+    /// How far the velocity of the intruder at the end is from that of `peer`, over the latter (–).
+    #[must_use]
+    pub fn apart(&self, peer: &Peer) -> Option<f64> {
+        let [own, peer] = [&self.one, &peer.one].map(|trials| trials.first()?.velocity_m_per_s);
         let (own, peer) = (own?, peer?);
         let square = |v: [f64; 3]| v.iter().map(|component| component * component).sum::<f64>();
         let apart = std::array::from_fn(|axis| own[axis] - peer[axis]);
         Some((square(apart) / square(peer)).sqrt())
+    }
+
+    /// The largest of these over the peers of the same law (–).
+    #[must_use]
+    pub fn disagreement(&self) -> Option<f64> {
+        let same = self.peers.iter().filter(|peer| peer.is_same_law);
+        same.filter_map(|peer| self.apart(peer)).max_by(f64::total_cmp)
     }
 }
 
@@ -103,18 +144,20 @@ pub struct Results {
 pub fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Results, SpeedError> {
     let mut written = Vec::new();
     let mut beds = Vec::new();
+    let mut measured = Vec::new();
     for problem in &plan.problems {
         say(&format!("{}: bed", problem.name));
         let (_, first) = problem.write(&plan.folder, &plan.cache)?;
         let (model, again) = problem.write(&plan.folder, &plan.cache)?;
-        if plan.lammps.is_some() {
-            export(&model, &deck(plan, problem))?;
+        let mut one = nothing_of(problem, plan.shorter);
+        if !plan.lammps.is_empty() {
+            let styles = export(&model, &|style| deck(plan, problem, &style.name))?;
+            one.peers = peers(plan, &styles);
         }
+        measured.push(one);
         written.push(model);
         beds.push([first, again]);
     }
-    let mut measured: Vec<Measured> =
-        plan.problems.iter().map(|problem| nothing_of(problem, plan.shorter)).collect();
     let (mut logging, mut ledger) = (Vec::new(), Vec::new());
     for repeat in 1..=plan.repeats {
         for (one, model) in measured.iter_mut().zip(&written) {
@@ -138,16 +181,30 @@ fn nothing_of(problem: &'static Problem, shorter: u64) -> Measured {
     let Span { warm_up, steps } = problem.span;
     // A run looks at its progress every 50 steps.
     let span = Span { warm_up, steps: (steps / shorter).max(100) };
-    let [one, two, lammps_one, lammps_two] = [const { Vec::new() }; 4];
-    Measured { problem, span, one, two, lammps_one, lammps_two }
+    Measured { problem, span, one: Vec::new(), two: Vec::new(), peers: Vec::new() }
+}
+
+/// Every style of every build.
+fn peers(plan: &Plan, styles: &[Style]) -> Vec<Peer> {
+    let of = |lammps: &Lammps| {
+        let build = lammps.build;
+        styles.iter().map(move |style| Peer {
+            style: style.name.clone(),
+            is_same_law: style.is_same_law,
+            build,
+            one: Vec::new(),
+            two: Vec::new(),
+        })
+    };
+    plan.lammps.iter().flat_map(of).collect()
 }
 
 fn is_planar(problem: &Problem) -> bool {
     problem.name.starts_with("2d")
 }
 
-fn deck(plan: &Plan, problem: &Problem) -> PathBuf {
-    plan.folder.join(problem.name).join("lammps")
+fn deck(plan: &Plan, problem: &Problem, style: &str) -> PathBuf {
+    plan.folder.join(problem.name).join("lammps").join(style.replace('/', "-"))
 }
 
 /// One trial of each program.
@@ -155,12 +212,15 @@ fn take_turns(plan: &Plan, measured: &mut Measured, model: &Path) -> Result<(), 
     let span = measured.span;
     let order = |threads| Order { model: model.to_owned(), span, threads, extent: Extent::Steps };
     measured.one.push(order(1).in_a_process()?);
-    if let Some(lammps) = &plan.lammps {
-        measured.lammps_one.push(lammps.trial(&deck(plan, measured.problem), span, 1)?);
+    for peer in &mut measured.peers {
+        let lammps = plan.lammps.iter().find(|lammps| lammps.build == peer.build);
+        let deck = deck(plan, measured.problem, &peer.style);
+        peer.one.extend(lammps.map(|lammps| lammps.trial(&deck, span, 1)).transpose()?);
     }
     measured.two.push(order(2).in_a_process()?);
-    if let Some(lammps) = plan.lammps.as_ref().filter(|lammps| lammps.has_ranks()) {
-        measured.lammps_two.push(lammps.trial(&deck(plan, measured.problem), span, 2)?);
+    let first = plan.lammps.first().filter(|lammps| lammps.has_ranks());
+    if let (Some(lammps), Some(peer)) = (first, measured.peers.first_mut()) {
+        peer.two.push(lammps.trial(&deck(plan, measured.problem, &peer.style), span, 2)?);
     }
     Ok(())
 }

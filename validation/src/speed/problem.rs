@@ -21,8 +21,14 @@ use super::trial::Span;
 /// Of which a larger bed of spheres is made.
 const SPHERES: &str = include_str!("../../speed/spheres.toml");
 
-/// Width and depth of that bed (m).
+/// A steel sphere that hits a bed of softer spheres.
+const STEEL: &str = include_str!("../../speed/steel.toml");
+
+/// Width and depth of that bed of which larger ones are made (m).
 const TILE: f64 = 0.1;
+
+/// Mean diameter (m) of 25 000 grains below the steel sphere.
+const STEEL_GRAIN: f64 = 3e-3;
 
 /// One bed, intruder and law.
 #[derive(Debug, PartialEq, Eq)]
@@ -43,10 +49,12 @@ enum Base {
     Discs,
     /// So many by so many tiles of spheres.
     Spheres(u32),
+    /// So many spheres below a steel one, of the same volume whatever their number.
+    Steel(u32),
 }
 
 /// Every problem, the smallest of its kind first.
-pub static PROBLEMS: [Problem; 4] = [
+pub static PROBLEMS: [Problem; 7] = [
     Problem {
         name: "2d-15k",
         about: "15 000 discs, linear law",
@@ -71,7 +79,33 @@ pub static PROBLEMS: [Problem; 4] = [
         span: Span { warm_up: 50, steps: 100 },
         base: Base::Spheres(4),
     },
+    Problem {
+        name: "steel-25k",
+        about: "25 000 spheres, steel sphere",
+        span: Span { warm_up: 200, steps: 600 },
+        base: Base::Steel(25_000),
+    },
+    Problem {
+        name: "steel-50k",
+        about: "50 000 spheres, steel sphere",
+        span: Span { warm_up: 200, steps: 300 },
+        base: Base::Steel(50_000),
+    },
+    Problem {
+        name: "steel-100k",
+        about: "100 000 spheres, steel sphere",
+        span: Span { warm_up: 100, steps: 200 },
+        base: Base::Steel(100_000),
+    },
 ];
+
+/// Those that are measured when none is named: beds that settle in a minute.
+pub fn usual() -> impl Iterator<Item = &'static Problem> {
+    PROBLEMS.iter().filter(|problem| match problem.base {
+        Base::Steel(count) => count == 25_000,
+        Base::Discs | Base::Spheres(_) => true,
+    })
+}
 
 /// How long a bed took.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -102,6 +136,7 @@ impl Problem {
         let (text, tiles) = match self.base {
             Base::Discs => (find_shipped("vertical-2d").map_or("", |shipped| shipped.text), 1),
             Base::Spheres(tiles) => (SPHERES, tiles),
+            Base::Steel(_) => (STEEL, 1),
         };
         let load = |sets: Vec<String>| {
             let (name, text) = (self.name.to_owned(), text.to_owned());
@@ -109,7 +144,7 @@ impl Problem {
             Model::load(source, &LoadOptions { sets, ..LoadOptions::default() })
                 .map_err(CampaignError::from)
         };
-        let model = load(Vec::new())?.model;
+        let model = load(self.bed_sets())?.model;
         let grains = model.grains().ok_or_else(|| SpeedError::NoTable(folder.clone()))?;
         let clock = Instant::now();
         let bed = prepare(grains, cache, &mut Told::default()).map_err(CampaignError::from)?;
@@ -124,6 +159,18 @@ impl Problem {
         let path = folder.join("model.toml");
         fs::write(&path, model.resolved_toml()).map_err(SpeedError::file(&path))?;
         Ok((path, time))
+    }
+
+    /// What makes the bed of the model.
+    fn bed_sets(&self) -> Vec<String> {
+        let Base::Steel(count) = self.base else { return Vec::new() };
+        let diameter = STEEL_GRAIN * libm::cbrt(25_000.0 / f64::from(count));
+        vec![format!(
+            "bed.grains=[{{ count = {count}, distribution = \"uniform\", diameter_min = \"{} m\", \
+             diameter_max = \"{} m\", density = \"2500 kg/m^3\" }}]",
+            0.95 * diameter,
+            1.05 * diameter
+        )]
     }
 
     /// What makes the problem of the model of its bed.
@@ -200,6 +247,7 @@ impl Control for Told {
 
 #[cfg(test)]
 mod tests {
+    use configs::BedSource;
     use engine::math::Vec3;
 
     use super::*;
@@ -222,6 +270,38 @@ mod tests {
             csv(Space::Planar, &[grain]),
             "x_m,y_m,radius_m,mass_kg\n0.03,0.05,0.0025,0.0001\n"
         );
+    }
+
+    #[test]
+    fn a_bed_below_the_steel_sphere_has_one_volume_and_is_of_two_materials() {
+        let grains_of = |name: &str| {
+            let problem = Problem::find(name).expect("a problem");
+            let (name, text, folder) = ("steel".into(), STEEL.into(), ".".into());
+            let options = LoadOptions { sets: problem.bed_sets(), ..LoadOptions::default() };
+            let source = ModelSource::Text { name, text, folder };
+            Model::load(source, &options).unwrap_or_else(|error| {
+                panic!("{}", error.render(configs::Color::Off));
+            })
+        };
+        let volumes = [("steel-25k", 25_000), ("steel-100k", 100_000)].map(|(name, count)| {
+            let model = grains_of(name).model;
+            let grains = model.grains().expect("a bed");
+            assert_eq!(grains.n_grains(), count);
+            let law = &grains.medium.contact_law.params;
+            for (key, value) in [
+                ("restitution", 0.5),
+                ("intruder_restitution", 0.4),
+                ("wall_restitution", 0.4),
+                ("friction", 0.3),
+                ("intruder_friction", 0.2),
+                ("intruder_young_modulus", 210e9),
+            ] {
+                assert_eq!(law.get(key).to_bits(), f64::to_bits(value), "{key}");
+            }
+            let BedSource::Settle(settle) = &grains.medium.bed.source else { panic!("settled") };
+            settle.grains[0].count as f64 * settle.grains[0].sizes.moment(3)
+        });
+        assert!((volumes[1] / volumes[0] - 1.0).abs() < 1e-12, "{volumes:?}");
     }
 
     #[test]

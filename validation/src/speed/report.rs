@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 use std::fs;
+use std::process::Command;
 use std::thread::available_parallelism;
 
 use serde_json::{Value, json};
 
 use super::lammps::SETTINGS;
-use super::plan::{Measured, Plan, Results};
+use super::plan::{Measured, Peer, Plan, Results};
 use super::sharing::{Crossover, Sharing};
 use super::spread::Spread;
 use super::trial::Trial;
@@ -22,6 +23,24 @@ fn machine() -> String {
     let model = text.lines().find(|line| line.starts_with("model name"));
     let model = model.and_then(|line| line.split_once(": ")).map_or("processor", |(_, name)| name);
     format!("{model}, {cores} cores")
+}
+
+/// The commit that the working folder stands on, with its date; nothing outside of a repository.
+fn commit() -> Option<String> {
+    let output = Command::new("git").args(["log", "-1", "--format=%h, %cs"]).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    let text = text.trim_end();
+    (output.status.success() && !text.is_empty()).then(|| text.to_owned())
+}
+
+/// The widest instructions that this program was compiled for.
+#[must_use]
+pub fn simd() -> &'static str {
+    match (cfg!(target_feature = "avx512f"), cfg!(target_feature = "avx2")) {
+        (true, _) => "avx512",
+        (false, true) => "avx2",
+        _ => "baseline",
+    }
 }
 
 fn by_cpu(trials: &[Trial]) -> Option<Spread> {
@@ -68,6 +87,22 @@ fn sharing(results: &Results) -> Vec<Sharing> {
     spheres.filter_map(Sharing::of).collect()
 }
 
+/// A column of a problem.
+fn of_peer(measured: &Measured, peer: &Peer) -> Value {
+    json!({
+        "problem": measured.problem.name,
+        "peer_style": peer.style,
+        "peer_build": peer.build,
+        "simd": simd(),
+        "same_law": peer.is_same_law,
+        "one_core_grain_steps_per_cpu_s": by_cpu(&peer.one),
+        "two_ranks_grain_steps_per_wall_s": by_wall(&peer.two),
+        "plunge_over_it_one_core": measured.over(peer),
+        "intruder_velocity_apart": measured.apart(peer),
+        "trials": { "one": peer.one, "two": peer.two },
+    })
+}
+
 /// Everything as one JSON object.
 #[must_use]
 pub fn as_json(plan: &Plan, results: &Results) -> Value {
@@ -84,14 +119,11 @@ pub fn as_json(plan: &Plan, results: &Results) -> Value {
                 "memory_per_grain_bytes": memory_per_grain(one),
                 "trials": { "one": one.one, "two": one.two },
             },
-            "lammps": plan.lammps.as_ref().map(|_| json!({
-                "one_core_grain_steps_per_cpu_s": by_cpu(&one.lammps_one),
-                "two_ranks_grain_steps_per_wall_s": by_wall(&one.lammps_two),
-                "trials": { "one": one.lammps_one, "two": one.lammps_two },
-            })),
+            "peers": one.peers.iter().map(|peer| of_peer(one, peer)).collect::<Vec<_>>(),
             "plunge_over_lammps": {
-                "one_core": ratio(by_cpu(&one.one), by_cpu(&one.lammps_one)),
-                "two_cores": ratio(by_wall(&one.two), by_wall(&one.lammps_two)),
+                "one_core": one.first_peer().and_then(|peer| one.over(peer)),
+                "two_cores": ratio(by_wall(&one.two), one.first_peer().and_then(|peer| by_wall(&peer.two))),
+                "fastest": one.fastest_peer().and_then(|peer| one.over(peer)),
             },
             "second_core": Sharing::of(one),
             "intruder_velocity_apart": one.disagreement(),
@@ -101,10 +133,15 @@ pub fn as_json(plan: &Plan, results: &Results) -> Value {
     json!({
         "version": env!("CARGO_PKG_VERSION"),
         "machine": machine(),
+        "commit": commit(),
+        "simd": simd(),
         "repeats": plan.repeats,
-        "peer": plan.lammps.as_ref().map(|lammps| json!({
-            "name": "LAMMPS", "version": lammps.version, "settings": SETTINGS,
-        })),
+        "peer_builds": plan.lammps.iter().map(|lammps| json!({
+            "name": "LAMMPS",
+            "peer_build": lammps.build,
+            "version": lammps.version,
+            "settings": SETTINGS,
+        })).collect::<Vec<_>>(),
         "problems": results.measured.iter().map(problem).collect::<Vec<_>>(),
         "growth": growth(results).iter().map(|(grains, factor)| json!({
             "grains": grains, "cpu_per_grain_step_over_smallest": factor,
@@ -135,31 +172,68 @@ fn share(value: f64) -> String {
     format!("{:.1} %", 100.0 * value)
 }
 
+/// Every style of every build of the peer, on one core.
+fn peers(results: &Results) -> String {
+    if results.measured.iter().all(|one| one.peers.is_empty()) {
+        return String::new();
+    }
+    let mut text = "| problem | style of LAMMPS | build | per CPU-second | plunge over it, in a pair | same law \
+                    | velocity apart |\n| --- | --- | --- | --- | --- | --- | --- |\n"
+        .to_owned();
+    for (one, peer) in
+        results.measured.iter().flat_map(|one| one.peers.iter().map(move |peer| (one, peer)))
+    {
+        let over = one.over(peer).map_or("–".to_owned(), |Spread { median, least, most }| {
+            format!("**{median:.2}** ({least:.2} to {most:.2})")
+        });
+        let cells = [
+            one.problem.name.to_owned(),
+            format!("`{}`", peer.style),
+            peer.build.to_owned(),
+            millions(by_cpu(&peer.one)),
+            over,
+            if peer.is_same_law { "yes" } else { "no" }.to_owned(),
+            one.apart(peer).map_or("–".to_owned(), share),
+        ];
+        let _ = writeln!(text, "| {} |", cells.join(" | "));
+    }
+    text.push('\n');
+    text
+}
+
 /// The tables of the page on performance.
 #[must_use]
 pub fn as_markdown(plan: &Plan, results: &Results) -> String {
     let or_dash = |value: Option<String>| value.unwrap_or_else(|| "–".to_owned());
-    let mut text = format!(
-        "On {}, {} repeats. Millions of grain-steps per second: median (least to most).\n",
+    let mut text = match commit() {
+        Some(commit) => format!("plunge of commit {commit}.\n"),
+        None => String::new(),
+    };
+    let _ = writeln!(
+        text,
+        "On {}, plunge compiled for {}, {} repeats. Millions of grain-steps per second: median (least to most).",
         machine(),
+        simd(),
         plan.repeats
     );
-    if let Some(lammps) = &plan.lammps {
-        let _ = writeln!(text, "LAMMPS {}: {SETTINGS}.", lammps.version);
+    for lammps in &plan.lammps {
+        let _ = writeln!(text, "LAMMPS {} ({}): {SETTINGS}.", lammps.version, lammps.build);
     }
     text.push_str(
-        "\n| problem | plunge, one core, per CPU-second | LAMMPS | ratio | plunge, two threads, per second \
+        "\n| problem | plunge, one core, per CPU-second | LAMMPS, same law | ratio | plunge, two threads, per second \
          | LAMMPS, two ranks | ratio | byte per grain | velocity apart |\n\
          | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
     );
     for one in &results.measured {
-        let [own, peer] = [&one.one, &one.lammps_one].map(|trials| by_cpu(trials));
-        let [own_two, peer_two] = [&one.two, &one.lammps_two].map(|trials| by_wall(trials));
+        let first = one.first_peer();
+        let (own, peer) = (by_cpu(&one.one), first.and_then(|peer| by_cpu(&peer.one)));
+        let (own_two, peer_two) = (by_wall(&one.two), first.and_then(|peer| by_wall(&peer.two)));
+        let paired = first.and_then(|peer| one.over(peer));
         let cells = [
             format!("{}: {}", one.problem.name, one.problem.about),
             millions(own),
             millions(peer),
-            or_dash(ratio(own, peer).map(|ratio| format!("{ratio:.2}"))),
+            or_dash(paired.map(|ratio| format!("{:.2}", ratio.median))),
             millions(own_two),
             millions(peer_two),
             or_dash(ratio(own_two, peer_two).map(|ratio| format!("{ratio:.2}"))),
@@ -169,6 +243,7 @@ pub fn as_markdown(plan: &Plan, results: &Results) -> String {
         let _ = writeln!(text, "| {} |", cells.join(" | "));
     }
     text.push('\n');
+    text.push_str(&peers(results));
     let growth = growth(results);
     if growth.len() > 1 {
         let steps = growth.iter().map(|(grains, factor)| format!("{factor:.2} at {grains}"));
@@ -247,6 +322,16 @@ mod tests {
         }
     }
 
+    fn peer(style: &str, is_same_law: bool, one: Trial) -> Peer {
+        Peer {
+            style: style.to_owned(),
+            is_same_law,
+            build: "wheel",
+            one: vec![one],
+            two: Vec::new(),
+        }
+    }
+
     fn results() -> (Plan, Results) {
         let measured = [1, 3].map(|index| {
             let problem = &PROBLEMS[index];
@@ -257,8 +342,10 @@ mod tests {
                 span: problem.span,
                 one: vec![trial(grains, seconds, -1.01)],
                 two: Vec::new(),
-                lammps_one: vec![trial(grains, 0.5 * seconds, -1.0)],
-                lammps_two: Vec::new(),
+                peers: vec![
+                    peer("granular", true, trial(grains, 0.5 * seconds, -1.0)),
+                    peer("gran/hertz/history", false, trial(grains, 0.25 * seconds, -1.25)),
+                ],
             }
         });
         let plan = Plan {
@@ -267,7 +354,7 @@ mod tests {
             shorter: 1,
             folder: PathBuf::new(),
             cache: PathBuf::new(),
-            lammps: None,
+            lammps: Vec::new(),
         };
         let measured = measured.into();
         (plan, Results { measured, beds: Vec::new(), logging: None, ledger: None, batch: None })
@@ -279,7 +366,20 @@ mod tests {
         let json = as_json(&plan, &results);
         let first = &json["problems"][0];
         assert_eq!(first["plunge"]["one_core_grain_steps_per_cpu_s"]["median"], 1e6);
-        assert_eq!(first["plunge_over_lammps"]["one_core"], 0.5);
+        assert_eq!(first["plunge_over_lammps"]["one_core"]["median"], 0.5);
+        assert_eq!(first["plunge_over_lammps"]["fastest"]["median"], 0.25);
+        let fast = &first["peers"][1];
+        for (key, expected) in [
+            ("problem", json!("3d-12k")),
+            ("peer_style", json!("gran/hertz/history")),
+            ("peer_build", json!("wheel")),
+            ("simd", json!(simd())),
+            ("same_law", json!(false)),
+        ] {
+            assert_eq!(fast[key], expected, "{key}");
+        }
+        // What another law does is told and is no disagreement.
+        assert!(fast["intruder_velocity_apart"].as_f64().is_some_and(|apart| apart > 0.19));
         assert_eq!(first["plunge"]["memory_per_grain_bytes"], 6000.0);
         assert_eq!(json["memory_per_further_grain_bytes"], 1000.0);
         assert_eq!(
@@ -297,7 +397,7 @@ mod tests {
         let [small, large] = &mut results.measured[..] else { panic!("two beds") };
         // 1e6 a second on one core; on two 1.5 times that, and of LAMMPS 2e6 and twice that.
         small.two = vec![trial(1000, 0.1 / 1.5, -1.0)];
-        small.lammps_two = vec![trial(1000, 0.025, -1.0)];
+        small.peers[0].two = vec![trial(1000, 0.025, -1.0)];
         large.two = Vec::new();
         let json = as_json(&plan, &results);
         let second = &json["problems"][0]["second_core"];
@@ -318,5 +418,10 @@ mod tests {
         let row = page.lines().find(|line| line.starts_with("| 3d-12k")).expect("a row");
         assert!(row.contains("| **1.00** (1.00 to 1.00) | **2.00** (2.00 to 2.00) | 0.50 | – | – | – | 6000 | 1.0 % |"), "{row}");
         assert!(page.contains("3.00 at 3000"), "{page}");
+        let fast = page.lines().find(|line| line.contains("| `gran/hertz/history` | wheel |"));
+        assert!(
+            fast.is_some_and(|row| row.contains("| **0.25** (0.25 to 0.25) | no | 19.2 % |")),
+            "{page}"
+        );
     }
 }

@@ -23,8 +23,10 @@ pub struct Sharing {
 impl Sharing {
     /// Of the bed of `measured`; nothing if it was not stepped.
     pub(super) fn of(measured: &Measured) -> Option<Self> {
+        let (peer_one, peer_two) =
+            measured.first_peer().map_or((&[][..], &[][..]), |peer| (&peer.one, &peer.two));
         let [one, two, lammps_one, lammps_two] =
-            [&measured.one, &measured.two, &measured.lammps_one, &measured.lammps_two]
+            [&measured.one[..], &measured.two[..], peer_one, peer_two]
                 .map(|trials| Spread::of(trials.iter().map(Trial::per_wall_second)))
                 .map(|rate| rate.map(|rate| rate.median));
         let share = |two: Option<f64>, one: Option<f64>| Some(two? / (2.0 * one?));
