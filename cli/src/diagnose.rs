@@ -13,6 +13,7 @@ use diagnosis::where_it_fails::{WhereItFails, files_of};
 use serde_json::{Value, json};
 
 use crate::add::from_diagnosis;
+use crate::after;
 use crate::beds::{self, Beds};
 use crate::next;
 use crate::output::{self, CommandError, CommandResult};
@@ -32,6 +33,10 @@ pub(crate) struct Args {
     /// Simulate a hundred sets of the same design and say how often verdicts are right: some minutes.
     #[arg(long)]
     calibrate: bool,
+    /// The diagnosis.json of an earlier diagnosis of the same set: what it expected of the runs that came after it, and
+    /// what they tell.
+    #[arg(long, value_name = "OLD_DIAGNOSIS.json")]
+    after: Option<PathBuf>,
     #[command(flatten)]
     flags: Flags,
     #[command(flatten)]
@@ -49,6 +54,11 @@ pub(crate) fn run(args: &Args) -> CommandResult {
             "--calibrate is of resistive-force models: sets of a bed of grains take hours to simulate\n".to_owned(),
         ));
     }
+    if model.loaded.model.grains().is_some() && args.after.is_some() {
+        return Err(CommandError::BadInput(
+            "--after is of resistive-force models: an earlier diagnosis of a bed of grains is not taken up\n".to_owned(),
+        ));
+    }
     if model.loaded.model.grains().is_some() {
         return beds::diagnose(&args.beds, flags, &measured, &models);
     }
@@ -56,6 +66,10 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         return output::to_stdout("a resistive-force model takes no impacts on beds: seconds\n");
     }
     let forward = model.forward(&measured, flags)?;
+    let sequel = match &args.after {
+        Some(path) => after::held_against(path, &measured, model, flags)?,
+        None => None,
+    };
     let results = flags.results(&measured, "diagnose", &models)?;
     let bench = Bench { set: &measured.set, observed: &measured.observed, forward: &forward };
     let mut diagnosis = diagnose(&bench, flags.seed).map_err(|error| failed(error, &model.name))?;
@@ -71,6 +85,9 @@ pub(crate) fn run(args: &Args) -> CommandResult {
             Some(calibration)
         }
     };
+    if let Some(sequel) = &sequel {
+        diagnosis.after = Some(serde_json::to_value(sequel).map_err(anyhow::Error::new)?);
+    }
     let object = diagnosis.to_json().map_err(anyhow::Error::new)?;
     let text = format!("{object:#}\n");
     let mut files = propose(model, &object, &diagnosis)?;
@@ -95,7 +112,12 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     if let Some(calibration) = &calibration {
         text.push_str(&calibration_as_text(calibration, &diagnosis));
     }
-    text.push_str(&next::as_text(&diagnosis, &next));
+    if let Some(sequel) = &sequel {
+        text.push_str(&after::as_text(sequel));
+    }
+    if let Some(next) = &next {
+        text.push_str(&next::as_text(next));
+    }
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     text.push_str(&format!("\nwritten to {}: {}\n", results.shown(), names.join(", ")));
     output::to_stdout(&text)

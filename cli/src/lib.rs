@@ -4,6 +4,7 @@
 //! stopped by it.
 
 mod add;
+mod after;
 mod bed;
 mod beds;
 mod check;

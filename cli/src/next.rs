@@ -1,30 +1,29 @@
 //! What `plunge diagnose` says of the next experiment.
 
 use comfy_table::Cell;
-use diagnosis::next::Recommendation;
-use diagnosis::verdict::{Diagnosis, Verdict};
+use diagnosis::next::Next;
 
 use crate::text::{lines, table};
 
-/// The recommendations that `diagnosis` carries, best first, as text; nothing where nothing is to be
-/// told apart.
-pub(crate) fn as_text(diagnosis: &Diagnosis, next: &[Recommendation]) -> String {
-    let Some(best) = next.first() else {
-        return match diagnosis.verdict {
-            Verdict::NotSeparable => {
-                "\nNEXT  no feasible condition can be predicted by the model.\n".to_owned()
-            }
-            _ => String::new(),
+/// `next` as text.
+pub(crate) fn as_text(next: &Next) -> String {
+    let Next { open_bits, best, feasible } = next;
+    let Some(last) = best.last() else {
+        let most = feasible.iter().map(|one| one.expected_bits).fold(0.0, f64::max);
+        return match feasible.is_empty() {
+            true => "\nNEXT  no feasible condition can be predicted by the model.\n".to_owned(),
+            false => format!(
+                "\nNothing feasible would tell them apart: the best condition is expected to tell {most:.2} of {open_bits:.2} bit.\n"
+            ),
         };
     };
-    let runs = best.repeats;
-    let head = match best.is_enough() {
-        true => format!("\nNEXT  measure one of these, {runs} runs:\n"),
-        false => format!(
-            "\nNEXT  no feasible condition separates {} with {runs} runs; best:\n",
-            best.separates.join(" and ")
-        ),
+    let runs = last.repeats;
+    let head = match best.len() {
+        1 => format!("\nNEXT  measure this, {runs} runs"),
+        n => format!("\nNEXT  measure these {n}, {runs} runs each"),
     };
+    let head =
+        format!("{head}; expected to tell {:.2} of {open_bits:.2} bit:\n", last.expected_bits);
     let header = [
         "speed (m/s)",
         "angle (deg)",
@@ -34,13 +33,12 @@ pub(crate) fn as_text(diagnosis: &Diagnosis, next: &[Recommendation]) -> String 
         "spin (rad/s)",
         "packing",
         "bed (m)",
-        "delta",
-        "separated",
-        "separates",
+        "told (bit)",
+        "separates most",
     ];
     let mut table = table(&header);
     let or_dash = |value: Option<f64>| value.map_or("-".to_owned(), |value| digits(value, 3));
-    for one in next {
+    for one in best {
         let condition = &one.condition;
         table.add_row(
             [
@@ -52,8 +50,7 @@ pub(crate) fn as_text(diagnosis: &Diagnosis, next: &[Recommendation]) -> String 
                 digits(condition.spin, 3),
                 or_dash(condition.packing),
                 or_dash(condition.bed_depth),
-                format!("{:.1}", one.expected_delta),
-                format!("{:.2}", one.probability_separated()),
+                format!("{:.2}", one.expected_bits),
                 one.separates.join(", "),
             ]
             .map(Cell::new),

@@ -296,15 +296,26 @@ impl Candidate {
         self.forward_before(&exact, measured, flags)
     }
 
+    /// The model before `set`, whose runs are `observed`.
+    ///
+    /// # Errors
+    /// If it cannot predict what the set has.
+    pub(crate) fn forward_of(
+        &self,
+        set: &MeasurementSet,
+        observed: &Observed,
+    ) -> Result<ResistiveForward, CommandError> {
+        ResistiveForward::new(&self.loaded.model, set, &observed.layouts())
+            .map_err(|error| CommandError::bad_input(format!("{}: {error}", self.name)))
+    }
+
     fn forward_before(
         &self,
         set: &MeasurementSet,
         measured: &Measured,
         flags: &Flags,
     ) -> Result<ResistiveForward, CommandError> {
-        let layouts = measured.observed.layouts();
-        let forward = ResistiveForward::new(&self.loaded.model, set, &layouts)
-            .map_err(|error| CommandError::bad_input(format!("{}: {error}", self.name)))?;
+        let forward = self.forward_of(set, &measured.observed)?;
         if !forward.idle().is_empty() {
             let (n, first) = (forward.idle().len(), &forward.idle()[0]);
             let which = match n {

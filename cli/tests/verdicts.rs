@@ -277,3 +277,57 @@ fn a_comparison_and_a_diagnosis_end_soon_after_a_signal_whatever_they_do() {
         }
     }
 }
+
+/// A copy of a shipped set at `to`, with the lines that `keep` holds.
+fn copy_of(set: &str, to: &Path, keep: impl Fn(&str) -> bool) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(shipped(set)).unwrap() {
+        let from = entry.unwrap().path();
+        let all = fs::read_to_string(&from).unwrap();
+        let kept: Vec<&str> = all.lines().filter(|line| keep(line)).collect();
+        fs::write(to.join(from.file_name().unwrap()), kept.join("\n") + "\n").unwrap();
+    }
+}
+
+#[test]
+fn new_runs_are_held_against_what_an_earlier_diagnosis_expected() {
+    let here = tempfile::tempdir().unwrap();
+    let here = here.path();
+    let new = "a90-v4.0";
+    copy_of("s1-tables-vertical", &here.join("early"), |line| !line.contains(new));
+    copy_of("s1-tables-vertical", &here.join("all"), |_| true);
+    assert!(plunge(here, &["diagnose", "early", "--out", "first", "--quiet"]).status.success());
+    let old = "first/diagnosis.json";
+    let said =
+        plunge(here, &["diagnose", "all", "--after", old, "--out", "second", "--json", "--quiet"]);
+    let said: Value = serde_json::from_slice(&said.stdout).expect("one JSON object");
+    let after = &said["after"];
+    let came = after["came"].as_array().expect("the new condition");
+    assert_eq!((came.len(), &came[0]["condition"], &came[0]["runs"]), (1, &new.into(), &1.into()));
+    assert_eq!(came[0]["quantity"], "final_z_m");
+    let measured = came[0]["measured"].as_f64().expect("a depth");
+    let hypotheses = after["hypotheses"].as_array().expect("the effects that were open");
+    let sum = |key: &str| hypotheses.iter().filter_map(|one| one[key].as_f64()).sum::<f64>();
+    assert!((sum("before") - 1.0).abs() < 1e-4 && (sum("after") - 1.0).abs() < 1e-4, "{after}");
+    // The tables are a smooth law: all effects that explain the rest come within their errors.
+    for expected in came[0]["expected"].as_array().expect("one for each hypothesis") {
+        let [value, se] = ["value", "se"].map(|key| expected[key].as_f64().expect("a number"));
+        assert!((value - measured).abs() < 3.0 * se, "{expected} {measured}");
+    }
+    let text =
+        shown(&plunge(here, &["diagnose", "all", "--after", old, "--out", "again", "--quiet"]));
+    assert!(
+        text.contains("\nNEW RUNS  measured, and as expected from the earlier ones:"),
+        "{text}"
+    );
+    for (set, of, why) in [
+        ("early", "first/diagnosis.json", "it rests on every run of the set"),
+        ("early", "second/diagnosis.json", "which the set has not"),
+        ("all", "early/runs.csv", "this is not the diagnosis.json"),
+        ("all", "nowhere.json", "nowhere.json"),
+    ] {
+        let output = plunge(here, &["diagnose", set, "--after", of, "--out", "third"]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && said.contains(why), "{of}: {said}");
+    }
+}

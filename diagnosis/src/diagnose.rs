@@ -4,6 +4,10 @@
 //! to the best of so many (`p1`). What the data cannot tell apart is named together. Whatever is named
 //! must leave no lack of fit and must predict conditions that were not fitted to.
 
+use std::collections::BTreeMap;
+
+use measurements::MeasurementSet;
+
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::fitted_parameters::parameters;
 use crate::force_error::ForceErrors;
@@ -368,6 +372,8 @@ impl Judge<'_> {
             apparatus: ApparatusError::all(bench.forward, proposed),
             preparation: ApparatusError::of_preparation(bench.forward, &proposed.fit),
             next: Vec::new(),
+            measured: measured(bench.set),
+            after: None,
             parameters: parameters(bench.forward, &proposed.fit),
             amplitudes,
             amplitude_correlation: correlation(proposed),
@@ -521,5 +527,17 @@ fn correlation(fitted: &Fitted) -> Option<f64> {
 }
 
 fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {
-    Diagnosis::cannot_tell(ranked(bench, None), why)
+    Diagnosis { measured: measured(bench.set), ..Diagnosis::cannot_tell(ranked(bench, None), why) }
+}
+
+/// The names of all runs of `set`, by condition.
+fn measured(set: &MeasurementSet) -> BTreeMap<String, Vec<String>> {
+    let mut measured: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for run in &set.runs {
+        measured
+            .entry(set.conditions[run.condition].id.clone())
+            .or_default()
+            .push(run.name.clone());
+    }
+    measured
 }

@@ -133,7 +133,24 @@ impl Data<'_> {
     /// # Errors
     /// If the model cannot be integrated there.
     pub(crate) fn as_listed_at(&self, point: Point) -> Result<Fit, PredictError> {
-        let (scales, mut held) = (self.scales(&point), self.forms(&point));
+        let held = self.forms(&point);
+        self.ending_at(point, held)
+    }
+
+    /// Fits as listed, with the covariance that numbers of a form have around it: what a fit predicts elsewhere holds
+    /// what its form leaves open.
+    ///
+    /// # Errors
+    /// If the model cannot be integrated at the start or at the end.
+    pub(crate) fn fit_as_listed_within_forms(&self, start: &Point) -> Result<Fit, PredictError> {
+        let point = self.fit_as_listed(start)?.point;
+        let held = vec![false; point.parameters.len() + point.effects.len()];
+        self.ending_at(point, held)
+    }
+
+    /// What a fit would be that ends at `point`, with what is `held` and what is at a bound.
+    fn ending_at(&self, point: Point, mut held: Vec<bool>) -> Result<Fit, PredictError> {
+        let scales = self.scales(&point);
         for (at, scale) in scales.iter().enumerate() {
             held[at] |= Bound::at(value(&point, at), scale.min, scale.max).is_some();
         }

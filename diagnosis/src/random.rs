@@ -18,6 +18,8 @@ pub(crate) enum Purpose {
     Order = 4,
     /// Choices of held-out conditions.
     HeldOut = 5,
+    /// Measurements that hypotheses expect.
+    Prospect = 8,
     /// Sets that are simulated to see how often verdicts come true.
     Simulation = 6,
 }

@@ -1,5 +1,7 @@
 //! What a diagnosis says, and how it is written.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -125,8 +127,12 @@ pub struct Diagnosis {
     pub apparatus: Vec<ApparatusError>,
     /// By what the measured bed differs from that of the model, as the fit finds it.
     pub preparation: Vec<ApparatusError>,
-    /// Experiments that would tell more, best first.
+    /// Experiments that would tell more, in the order of measuring them.
     pub next: Vec<Value>,
+    /// The names of the runs that it rests on, by condition.
+    pub measured: BTreeMap<String, Vec<String>>,
+    /// What an earlier diagnosis expected of the runs that came after it; null unless one was given.
+    pub after: Option<Value>,
     /// Parameters with what is named added (without, where nothing is), with standard error and unit.
     pub parameters: Map<String, Value>,
     /// Amplitudes of what is named, fitted together.
@@ -322,12 +328,27 @@ impl Diagnosis {
             unexplained: Unexplained { hint: why, ..Unexplained::default() },
             missing_force: None,
             next: Vec::new(),
+            measured: BTreeMap::new(),
+            after: None,
             parameters: Map::new(),
             amplitudes: Vec::new(),
             amplitude_correlation: None,
             baseline: None,
             proposed: None,
         }
+    }
+
+    /// Whether the verdict says that the model lacks an effect.
+    #[must_use]
+    pub fn is_something_missing(&self) -> bool {
+        matches!(
+            self.verdict,
+            Verdict::Supported
+                | Verdict::NotSeparable
+                | Verdict::Pair
+                | Verdict::NoneOfTheCandidates
+                | Verdict::BelowNoise
+        )
     }
 
     /// As one JSON object.

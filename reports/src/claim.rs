@@ -147,13 +147,22 @@ pub(crate) fn probability(diagnosis: &Value) -> Option<String> {
     })
 }
 
-/// Which runs would decide.
+/// Which runs would decide, if any are expected to tell half of what is open.
 pub(crate) fn decides(diagnosis: &Value) -> Option<String> {
     let best = list(&diagnosis["next"]).first()?;
-    // Odds of 100 to 1.
-    best["expected_delta"].as_f64().filter(|delta| *delta >= 9.2)?;
+    let last = list(&diagnosis["next"]).last()?;
+    let [told, open] = ["expected_bits", "open_bits"].map(|key| last[key].as_f64());
+    let (told, open) = (told?, open?);
+    if told < 0.5 * open {
+        return None;
+    }
+    let others = match list(&diagnosis["next"]).len() {
+        1 => String::new(),
+        n => format!(" and {} other conditions", n - 1),
+    };
     Some(format!(
-        "What would decide between {}: {} runs with the {} of {} mm at {} m/s and {}\u{b0}.",
+        "What would decide between {}: {} runs with the {} of {} mm at {} m/s and {}\u{b0}{others}, expected to tell \
+         {told:.1} of {open:.1} bit.",
         texts(&best["separates"]).join(" and "),
         four_digits(&best["repeats"]),
         text(&best["shape"]),

@@ -142,6 +142,7 @@ pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
     sections.extend([
         Section::new("Errors by kind of number", by_kind(texts)),
         Section::new("How often verdicts are right in this design", calibrated(texts)?),
+        Section::new("What the new runs say", after(&diagnosis)),
         Section::new("What to measure next", next(&diagnosis)),
         Section::new("Corrected parameters", corrected(&diagnosis)),
         Section::new("All effects", ranking(&diagnosis)),
@@ -377,41 +378,75 @@ fn ranking(diagnosis: &Value) -> Vec<Part> {
 
 fn next(diagnosis: &Value) -> Vec<Part> {
     let head = [
-        "separates",
         "speed (m/s)",
         "angle (deg)",
         "intruder",
         "diameter (m)",
         "mass (kg)",
         "runs",
-        "expected fall",
-        "separated",
+        "told with those above (bit)",
+        "separates most",
     ];
     let mut table = Table::new(&head);
     for one in list(&diagnosis["next"]) {
         table.rows.push(vec![
-            texts(&one["separates"]).join(" from "),
             four_digits(&one["speed_m_per_s"]),
             four_digits(&one["angle_deg"]),
             text(&one["shape"]),
             four_digits(&one["diameter_m"]),
             four_digits(&one["mass_kg"]),
             four_digits(&one["repeats"]),
-            fixed(one["expected_delta"].as_f64(), 1),
-            fixed(one["probability_separated"].as_f64(), 2),
+            fixed(one["expected_bits"].as_f64(), 2),
+            texts(&one["separates"]).join(" from "),
         ]);
     }
-    let Some(best) = list(&diagnosis["next"]).first() else { return Vec::new() };
-    let runs = four_digits(&best["repeats"]);
-    let intro = match best["expected_delta"].as_f64() {
-        // Odds of 100 to 1.
-        Some(delta) if delta >= 9.2 => format!("One of these conditions, {runs} runs of it:"),
-        _ => format!(
-            "No feasible condition separates {} with {runs} runs; the best would be:",
-            texts(&best["separates"]).join(" and ")
-        ),
-    };
+    let Some(last) = list(&diagnosis["next"]).last() else { return Vec::new() };
+    let bits = |key: &str| fixed(last[key].as_f64(), 2);
+    let intro = format!(
+        "These conditions, in this order, are expected to tell {} of the {} bit that are open about which effect it is:",
+        bits("expected_bits"),
+        bits("open_bits")
+    );
     vec![Part::Text(intro), Part::Table(table)]
+}
+
+/// What an earlier diagnosis expected of new runs, and what they told.
+fn after(diagnosis: &Value) -> Vec<Part> {
+    let after = &diagnosis["after"];
+    let hypotheses = list(&after["hypotheses"]);
+    if hypotheses.is_empty() {
+        return Vec::new();
+    }
+    let mut shares = Table::new(&["hypothesis", "before", "after", "\u{3c7}\u{b2} per number"]);
+    for one in hypotheses {
+        shares.rows.push(vec![
+            text(&one["id"]),
+            fixed(one["before"].as_f64(), 3),
+            fixed(one["after"].as_f64(), 3),
+            fixed(one["chi2_per_number"].as_f64(), 2),
+        ]);
+    }
+    let mut head = vec!["condition".to_owned(), "runs".to_owned(), "measured".to_owned()];
+    head.extend(hypotheses.iter().map(|one| format!("with {}", text(&one["id"]))));
+    let mut came = Table::new(&head.iter().map(String::as_str).collect::<Vec<_>>());
+    for one in list(&after["came"]) {
+        let quantity = text(&one["quantity"]);
+        let mut row = vec![
+            text(&one["condition"]),
+            four_digits(&one["runs"]),
+            format!("{quantity} {}", four_digits(&one["measured"])),
+        ];
+        row.extend(list(&one["expected"]).iter().map(|one| {
+            format!("{} \u{b1} {}", four_digits(&one["value"]), four_digits(&one["se"]))
+        }));
+        came.rows.push(row);
+    }
+    let intro = format!(
+        "The runs that came after the earlier diagnosis tell {} bit of which effect it is. \u{3c7}\u{b2} per number is \
+         about 1 under a hypothesis that expected them.",
+        fixed(after["told_bits"].as_f64(), 2)
+    );
+    vec![Part::Text(intro), Part::Table(shares), Part::Table(came)]
 }
 
 fn corrected(diagnosis: &Value) -> Vec<Part> {

@@ -4,7 +4,7 @@ use measurements::{Condition, Kind, MeasurementSet, Role};
 use nalgebra::DVector;
 
 use super::designs::Designs;
-use super::rival::Rival;
+use super::hypothesis::Hypothesis;
 use crate::bench::Bench;
 use crate::forward::Forward;
 use crate::observable::{Layout, Observable};
@@ -24,7 +24,7 @@ impl Foreseen {
         bench: &Bench<'_>,
         designs: &dyn Designs,
         (condition, repeats): (Condition, usize),
-        leader: &Rival,
+        leader: &Hypothesis,
     ) -> Option<Self> {
         let set = alone(bench.set, condition);
         let predict = |layout: &Layout| -> Option<(Box<dyn Forward>, DVector<f64>)> {

@@ -1,38 +1,43 @@
-//! Which condition to measure next, so that effects are told apart that the set does not separate.
+//! Which conditions to measure next, so that effects are told apart that the set does not separate.
 //!
-//! Every feasible condition is held against the rivals: the effects that cannot be told apart, and the
-//! two that follow them. Each rival predicts what would be measured, with the uncertainty of its fit;
-//! a condition is worth as much as it separates the two of them that it separates least, one of which
-//! explains what was measured (Hunter & Reiner 1965, Technometrics 7, 307; with the covariance of the predictions, Buzzi-Ferraris & Forzatti
-//! 1983, Chem. Eng. Sci. 38, 225).
+//! The hypotheses are the effects that cannot be told apart and the two that follow them, each with its
+//! likelihood. A condition is worth the information that its runs are expected to give about which of them holds
+//! ([`prospect`]). The conditions of a recommendation are chosen one after the other, each with those
+//! before it, so the second tells what the first leaves open.
 
-mod criterion;
 mod designs;
 mod foreseen;
 mod grid;
-mod rival;
+mod hypothesis;
+mod prospect;
+mod sequel;
 
 use measurements::Condition;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use crate::bench::Bench;
+use crate::bench::{Bench, DEFAULT_SEED};
 use crate::forward::SEPARATE;
 use crate::rounding::rounded;
 use crate::verdict::{Diagnosis, Verdict};
 pub use designs::Designs;
 use foreseen::Foreseen;
-use rival::Rival;
+use hypothesis::Hypothesis;
+use prospect::{Prospect, entropy, information};
+pub use sequel::{Came, Sequel, Share, sequel};
 
-/// How many recommendations a diagnosis carries.
-const BEST: usize = 3;
+/// Most conditions that are recommended together.
+const TOGETHER: usize = 3;
 
 /// Fewest repeats that are recommended.
 const REPEATS: usize = 3;
 
 /// Effects that are ranked next to those that are not told apart, and are kept apart from them.
 const FOLLOWERS: usize = 2;
+
+/// What a condition has to add at least to what those before it tell (bits).
+const TELLING: f64 = 0.05;
 
 /// A condition that could be measured next.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,29 +46,24 @@ pub struct Recommendation {
     pub condition: Condition,
     /// Runs of it.
     pub repeats: usize,
-    /// Least difference of χ² that it is expected to make between two rivals, if one of them is there.
-    pub expected_delta: f64,
-    /// The two rivals between which it makes that difference.
+    /// What it is expected to tell, together with those before it in a recommendation (bits).
+    pub expected_bits: f64,
+    /// The two effects between which it makes the largest difference.
     pub separates: [String; 2],
+    /// Difference of χ² that it is expected to make between the two.
+    pub expected_delta: f64,
 }
 
 impl Recommendation {
-    /// Probability that the two are told apart by it, odds 20 to 1.
+    /// Probability that the two are told apart by it, if one of them is there.
     #[must_use]
     pub fn probability_separated(&self) -> f64 {
         let sd = 2.0 * self.expected_delta.sqrt();
         if sd > 0.0 { Normal::standard().cdf((self.expected_delta - SEPARATE) / sd) } else { 0.0 }
     }
 
-    /// Whether more is expected of it than what counts as told apart.
-    #[must_use]
-    pub fn is_enough(&self) -> bool {
-        self.expected_delta >= SEPARATE
-    }
-
-    /// As JSON for a report.
-    #[must_use]
-    pub fn to_json(&self) -> Value {
+    /// As JSON for a report; `open_bits` is what there is to be told.
+    fn to_json(&self, open_bits: f64) -> Value {
         let condition = &self.condition;
         json!({
             "speed_m_per_s": rounded(condition.speed),
@@ -75,6 +75,8 @@ impl Recommendation {
             "packing": condition.packing.map(rounded),
             "bed_depth_m": condition.bed_depth.map(rounded),
             "repeats": self.repeats,
+            "expected_bits": rounded(self.expected_bits),
+            "open_bits": rounded(open_bits),
             "expected_delta": rounded(self.expected_delta),
             "probability_separated": rounded(self.probability_separated()),
             "separates": self.separates,
@@ -82,52 +84,104 @@ impl Recommendation {
     }
 }
 
-/// Every feasible condition that can be predicted, best first; nothing unless `diagnosis` names
-/// several effects that it does not tell apart, or would if they were above the noise. Equal input gives equal bytes.
-pub fn judged(
-    bench: &Bench<'_>,
-    designs: &dyn Designs,
-    diagnosis: &Diagnosis,
-) -> Vec<Recommendation> {
-    let is_open = matches!(diagnosis.verdict, Verdict::NotSeparable | Verdict::BelowNoise);
-    let (true, Some(proposed)) = (is_open && diagnosis.leaders.len() > 1, &diagnosis.proposed)
-    else {
-        return Vec::new();
-    };
-    let rivals = rivals(bench, diagnosis);
-    let Some(leader) = rivals.first() else { return Vec::new() };
-    let repeats = repeats(bench);
-    let noise = &proposed.noise;
-    let mut judged: Vec<Recommendation> = grid::feasible(bench.set)
-        .into_par_iter()
-        .filter_map(|condition| {
-            let foreseen = Foreseen::of(bench, designs, (condition, repeats), leader)?;
-            let (delta, [k, l]) = criterion::least(&foreseen, noise, &rivals)?;
-            let separates = [k, l].map(|at| rivals[at].id.clone());
-            let condition = foreseen.condition().clone();
-            Some(Recommendation { condition, repeats, expected_delta: delta, separates })
-        })
-        .collect();
-    // Stable: among equals the order of the grid decides.
-    judged.sort_by(|a, b| b.expected_delta.total_cmp(&a.expected_delta));
-    judged
+/// What could be measured next.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Next {
+    /// What is not known: the entropy of the effects that may be there (bits).
+    pub open_bits: f64,
+    /// The conditions to measure, in this order; none if no feasible one tells anything.
+    pub best: Vec<Recommendation>,
+    /// Every feasible condition that can be predicted, each judged alone, in the order of the grid.
+    pub feasible: Vec<Recommendation>,
 }
 
-/// Puts the best of [`judged`] into `diagnosis`, and gives them.
+/// A feasible condition, and what hypotheses expect of it.
+struct Feasible {
+    alone: Recommendation,
+    prospect: Prospect,
+}
+
+/// What to measure next, which `diagnosis` then carries; `None` unless `diagnosis` names several effects that it does not
+/// tell apart, or would if they were above the noise. Equal input gives equal bytes.
 pub fn recommend(
     bench: &Bench<'_>,
     designs: &dyn Designs,
     diagnosis: &mut Diagnosis,
-) -> Vec<Recommendation> {
-    let mut best = judged(bench, designs, diagnosis);
-    best.truncate(BEST);
-    diagnosis.next = best.iter().map(Recommendation::to_json).collect();
+) -> Option<Next> {
+    let is_open = matches!(diagnosis.verdict, Verdict::NotSeparable | Verdict::BelowNoise);
+    if !is_open || diagnosis.leaders.len() < 2 {
+        return None;
+    }
+    let hypotheses = hypotheses(bench, diagnosis);
+    let leader = hypotheses.first()?;
+    let probabilities = probabilities(&hypotheses);
+    let noise = &diagnosis.proposed.as_ref()?.noise;
+    let repeats = repeats(bench);
+    let options: Vec<Feasible> = grid::feasible(bench.set)
+        .into_par_iter()
+        .filter_map(|condition| {
+            let foreseen = Foreseen::of(bench, designs, (condition, repeats), leader)?;
+            let before = (foreseen.forward(), 0);
+            let prospect = Prospect::of(before, foreseen.observed(), noise, &hypotheses)?;
+            let expected_bits = information(&[&prospect], &probabilities, DEFAULT_SEED)?;
+            let (expected_delta, [k, l]) = most_apart(&prospect, &hypotheses)?;
+            let separates = [k, l].map(|at| hypotheses[at].name().to_owned());
+            let condition = foreseen.condition().clone();
+            let alone =
+                Recommendation { condition, repeats, expected_bits, separates, expected_delta };
+            Some(Feasible { alone, prospect })
+        })
+        .collect();
+    let next = Next {
+        open_bits: entropy(&probabilities),
+        best: together(&options, &probabilities),
+        feasible: options.into_iter().map(|one| one.alone).collect(),
+    };
+    diagnosis.next = next.best.iter().map(|one| one.to_json(next.open_bits)).collect();
+    Some(next)
+}
+
+/// The conditions that tell most together, found one after the other.
+fn together(options: &[Feasible], probabilities: &[f64]) -> Vec<Recommendation> {
+    let mut best: Vec<Recommendation> = Vec::new();
+    let mut chosen: Vec<&Prospect> = Vec::new();
+    while best.len() < TOGETHER {
+        let told: Vec<f64> = options
+            .par_iter()
+            .map(|option| {
+                let with: Vec<&Prospect> =
+                    chosen.iter().copied().chain([&option.prospect]).collect();
+                information(&with, probabilities, DEFAULT_SEED).unwrap_or(0.0)
+            })
+            .collect();
+        // Among equals the first of the grid.
+        let most = told.iter().enumerate().rev().max_by(|a, b| a.1.total_cmp(b.1));
+        let Some((at, &expected_bits)) = most else { break };
+        let before = best.last().map_or(0.0, |one| one.expected_bits);
+        if expected_bits - before < TELLING {
+            break;
+        }
+        chosen.push(&options[at].prospect);
+        best.push(Recommendation { expected_bits, ..options[at].alone.clone() });
+    }
     best
+}
+
+/// The two hypotheses that are furthest apart, of those that explain what was measured, and how far (a difference of χ²).
+fn most_apart(prospect: &Prospect, hypotheses: &[Hypothesis]) -> Option<(f64, [usize; 2])> {
+    let explaining: Vec<usize> =
+        (0..hypotheses.len()).filter(|&at| hypotheses[at].explains()).collect();
+    let pairs = explaining
+        .iter()
+        .enumerate()
+        .flat_map(|(n, &k)| explaining[n + 1..].iter().map(move |&l| [k, l]));
+    let apart = pairs.filter_map(|[k, l]| Some((prospect.delta(k, l)?, [k, l])));
+    apart.max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// The effects that are not told apart, in the order of the ranking, and those that follow; the leader
 /// first. One around whose fit the model cannot be integrated is left out.
-fn rivals(bench: &Bench<'_>, diagnosis: &Diagnosis) -> Vec<Rival> {
+fn hypotheses(bench: &Bench<'_>, diagnosis: &Diagnosis) -> Vec<Hypothesis> {
     let Some(proposed) = &diagnosis.proposed else { return Vec::new() };
     let best = diagnosis.ranking.first().and_then(|effect| effect.delta).unwrap_or(0.0);
     let is_named = |id: &String| diagnosis.leaders.contains(id);
@@ -137,11 +191,16 @@ fn rivals(bench: &Bench<'_>, diagnosis: &Diagnosis) -> Vec<Rival> {
     named
         .chain(followers)
         .filter_map(|effect| {
-            let behind = best - effect.delta?;
-            Some(((effect.id.clone(), behind), effect.point.as_ref()?))
+            let which = (effect.point.as_ref()?, best - effect.delta?);
+            Hypothesis::fitted(bench, &proposed.weights, which).ok()
         })
-        .filter_map(|(which, point)| Rival::fitted(bench, &proposed.weights, which, point).ok())
         .collect()
+}
+
+/// Of hypotheses that are equally likely before anything is measured.
+fn probabilities(hypotheses: &[Hypothesis]) -> Vec<f64> {
+    let sum: f64 = hypotheses.iter().map(Hypothesis::likelihood).sum();
+    hypotheses.iter().map(|one| one.likelihood() / sum).collect()
 }
 
 /// Runs of each condition of the set, at least [`REPEATS`]: the most common number, of the common ones

@@ -76,7 +76,8 @@ fn said(answer: &Answer) -> Value {
         "resting_error_m": answer.endpoint,
         "pair_found": answer.pair,
         "truth_alone": answer.resolved.map(|resolved| json!({
-            "after_recommended": resolved.recommended, "after_drawn": resolved.drawn,
+            "after_recommended": resolved.recommended, "after_spread": resolved.spread,
+            "after_drawn": resolved.drawn,
         })),
         "cost": { "wall_s": answer.seconds },
     })

@@ -1,10 +1,10 @@
-//! Sets that leave several effects, measured further: under recommended conditions, and under conditions
-//! drawn from the same grid.
+//! Sets that leave several effects, measured further: under recommended conditions, under those of which the effects
+//! expect most different things, and under conditions drawn from the same grid.
 
 use configs::Model;
 use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::diagnose::diagnose;
-use diagnosis::next::{Recommendation, judged};
+use diagnosis::next::{Next, Recommendation, recommend};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::verdict::{Diagnosis, Verdict};
@@ -17,25 +17,31 @@ use super::forces::Setting;
 use super::laboratory::{Nature, measure};
 use super::plan::Plan;
 
-/// Conditions that are added, one after the other.
+/// Conditions that are added together.
 const ADDED: usize = 2;
+
+/// Runs of each of them.
+const REPEATS: usize = 4;
 
 /// Numbers of one stream lie closer together than this.
 const STREAM: u64 = 1 << 52;
 
-/// Whether the truth stands alone after one more condition, and after two.
+/// Whether the truth stands alone after [`ADDED`] more conditions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Resolved {
-    /// By the recommended ones.
-    pub recommended: [bool; ADDED],
-    /// By as many that were drawn.
-    pub drawn: [bool; ADDED],
+    /// The recommended ones.
+    pub recommended: bool,
+    /// Those with the largest difference of χ² between two effects that explain the set.
+    pub spread: bool,
+    /// As many that were drawn.
+    pub drawn: bool,
 }
 
-/// Which of the feasible conditions is measured.
+/// Which of the feasible conditions are measured.
 #[derive(Clone, Copy)]
 enum Choice {
     Recommended,
+    Spread,
     Drawn,
 }
 
@@ -50,52 +56,64 @@ impl Resolved {
         set: &MeasurementSet,
         model: &Model,
     ) -> Result<Option<Self>, String> {
-        let first = Look::at(set, model)?;
-        if first.diagnosis.verdict != Verdict::NotSeparable {
+        let (first, next) = look(set, model)?;
+        let Some(next) = next.filter(|_| first.verdict == Verdict::NotSeparable) else {
             return Ok(None);
-        }
-        let further = |choice: Choice| -> Result<[bool; ADDED], String> {
-            let (mut set, mut resolved) = (set.clone(), [false; ADDED]);
-            let mut later = None;
-            for (step, resolved) in resolved.iter_mut().enumerate() {
-                let look = later.as_ref().unwrap_or(&first);
-                let stream = 1 + ADDED * choice as usize + step;
-                let mut chance = Chance::new(plan.seed + STREAM * stream as u64);
-                let there = match choice {
-                    Choice::Recommended => look.grid.first(),
-                    Choice::Drawn => look.grid.get(chance.below(look.grid.len())),
-                };
-                // Nothing is recommended where nothing is left to be told apart.
-                if let Some(there) = there {
-                    add(&mut set, there, (plan, nature), &mut chance)?;
-                    later = Some(Look::at(&set, model)?);
-                }
-                let diagnosis = &later.as_ref().unwrap_or(&first).diagnosis;
-                *resolved = is_right(plan, diagnosis);
-            }
-            Ok(resolved)
         };
-        let (recommended, drawn) = (further(Choice::Recommended)?, further(Choice::Drawn)?);
-        Ok(Some(Self { recommended, drawn }))
+        let further = |choice: Choice| -> Result<bool, String> {
+            let mut chance = Chance::new(plan.seed + STREAM * (1 + choice as u64));
+            let mut set = set.clone();
+            for there in chosen(choice, &next, &mut chance) {
+                add(&mut set, there, (plan, nature), &mut chance)?;
+            }
+            Ok(is_right(plan, &look(&set, model)?.0))
+        };
+        Ok(Some(Self {
+            recommended: further(Choice::Recommended)?,
+            spread: further(Choice::Spread)?,
+            drawn: further(Choice::Drawn)?,
+        }))
     }
+}
+
+/// [`ADDED`] of the conditions of `next`. Where fewer are recommended, the others are the next best.
+fn chosen<'a>(choice: Choice, next: &'a Next, chance: &mut Chance) -> Vec<&'a Recommendation> {
+    let by = |of: fn(&Recommendation) -> f64| {
+        let mut all: Vec<&Recommendation> = next.feasible.iter().collect();
+        all.sort_by(|a, b| of(b).total_cmp(&of(a)));
+        all
+    };
+    let mut order = match choice {
+        Choice::Recommended => {
+            let others = by(|one| one.expected_bits);
+            let is_other = |one: &&&Recommendation| {
+                next.best.iter().all(|best| best.condition.id != one.condition.id)
+            };
+            next.best.iter().chain(others.iter().filter(is_other).copied()).collect()
+        }
+        Choice::Spread => by(|one| one.expected_delta),
+        Choice::Drawn => {
+            let mut all: Vec<&Recommendation> = next.feasible.iter().collect();
+            let n = all.len();
+            for at in 0..n.min(ADDED) {
+                all.swap(at, at + chance.below(n - at));
+            }
+            all
+        }
+    };
+    order.truncate(ADDED);
+    order
 }
 
 /// What a set says, and what could be measured next.
-struct Look {
-    diagnosis: Diagnosis,
-    grid: Vec<Recommendation>,
-}
-
-impl Look {
-    fn at(set: &MeasurementSet, model: &Model) -> Result<Self, String> {
-        let observed = Observed::of(set);
-        let forward = ResistiveForward::new(model, set, &observed.layouts())
-            .map_err(|error| error.to_string())?;
-        let bench = Bench { set, observed: &observed, forward: &forward };
-        let diagnosis = diagnose(&bench, DEFAULT_SEED).map_err(|error| error.to_string())?;
-        let grid = judged(&bench, model, &diagnosis);
-        Ok(Self { diagnosis, grid })
-    }
+fn look(set: &MeasurementSet, model: &Model) -> Result<(Diagnosis, Option<Next>), String> {
+    let observed = Observed::of(set);
+    let forward = ResistiveForward::new(model, set, &observed.layouts())
+        .map_err(|error| error.to_string())?;
+    let bench = Bench { set, observed: &observed, forward: &forward };
+    let mut diagnosis = diagnose(&bench, DEFAULT_SEED).map_err(|error| error.to_string())?;
+    let next = recommend(&bench, model, &mut diagnosis);
+    Ok((diagnosis, next))
 }
 
 fn is_right(plan: &Plan, diagnosis: &Diagnosis) -> bool {
@@ -111,12 +129,8 @@ fn add(
     chance: &mut Chance,
 ) -> Result<(), String> {
     let setting = setting(&next.condition, &plan.design);
-    let design = Design {
-        settings: vec![setting],
-        held_out: 0,
-        repeats: next.repeats,
-        ..plan.design.clone()
-    };
+    let design =
+        Design { settings: vec![setting], held_out: 0, repeats: REPEATS, ..plan.design.clone() };
     let measured = measure(&design, nature, chance).map_err(|error| error.to_string())?;
     let (at, last) = (set.conditions.len(), set.runs.len() as i64);
     set.conditions.extend(

@@ -315,25 +315,23 @@ fn amplitudes(rows: &mut Vec<Score>, singles: &[Answered<'_>]) {
 fn next(rows: &mut Vec<Score>, extended: &[Answered<'_>]) {
     let unseparated: Vec<Resolved> =
         extended.iter().filter_map(|(_, answer)| answer.resolved).collect();
-    let label = |what: &str| format!("several effects left (8 %): {what}");
-    for (at, number) in ["one", "two"].into_iter().enumerate() {
-        let by_both = [
-            Share::of(&unseparated, |one| one.recommended[at]),
-            Share::of(&unseparated, |one| one.drawn[at]),
-        ];
-        // Unresolved sets halved, by two.
-        let target = if at == 1 { Target::AtLeast(0.5) } else { Target::None };
-        for (share, (which, target)) in
-            by_both.into_iter().zip([("recommended", target), ("drawn", Target::None)])
-        {
-            let what = format!("truth alone after {number} {which}");
-            rows.push(row(label(&what), share, target));
-        }
+    let label = |what: &str| format!("several effects left (8 %), two more conditions: {what}");
+    let arms: [(&str, fn(&Resolved) -> bool); 3] = [
+        ("recommended", |one| one.recommended),
+        ("of largest spread", |one| one.spread),
+        ("drawn", |one| one.drawn),
+    ];
+    for (which, is_right) in arms {
+        let share = Share::of(&unseparated, is_right);
+        rows.push(row(label(&format!("truth alone with those {which}")), share, Target::None));
+    }
+    let [recommended, others @ ..] = arms;
+    for (which, is_right) in others {
         let one_alone: Vec<&Resolved> =
-            unseparated.iter().filter(|one| one.recommended[at] != one.drawn[at]).collect();
-        let share = Share::of(&one_alone, |one| one.recommended[at]);
+            unseparated.iter().filter(|one| recommended.1(one) != is_right(one)).collect();
+        let share = Share::of(&one_alone, |one| recommended.1(one));
         let p = mcnemar(share.hits, share.n - share.hits);
-        let what = format!("after {number}, resolved by the recommended alone (McNemar p {p:.3})");
+        let what = format!("with the recommended and not with those {which} (McNemar p {p:.3})");
         rows.push(row(label(&what), share, Target::None));
     }
 }

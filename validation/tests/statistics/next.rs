@@ -2,15 +2,18 @@
 
 use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::diagnose::diagnose;
-use diagnosis::next::{Recommendation, judged, recommend};
+use diagnosis::next::{Next, Recommendation, Sequel, recommend, sequel};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::verdict::{Diagnosis, Verdict};
-use measurements::{Feasible, MeasurementSet};
+use measurements::{Condition, Feasible, MeasurementSet};
 use validation::benchmark::trial::baseline;
 
 use crate::laboratory::Laboratory;
 use crate::world::{Effect, Setting};
+
+/// Amplitudes, of which some are seen and not told from their twins.
+const STRENGTHS: [f64; 6] = [4.0, 3.0, 2.0, 1.5, 1.2, 0.9];
 
 /// One sphere straight down at six speeds, and what is hidden.
 fn vertical(effect: Effect, amplitude: f64) -> Laboratory {
@@ -22,16 +25,15 @@ fn vertical(effect: Effect, amplitude: f64) -> Laboratory {
     }
 }
 
-/// The diagnosis of `set` with recommendations, and the whole grid.
-fn next(set: &MeasurementSet) -> (Diagnosis, Vec<Recommendation>) {
+/// The diagnosis of `set`, and what could be measured next.
+fn next(set: &MeasurementSet) -> (Diagnosis, Option<Next>) {
     let model = baseline().expect("the shipped model loads");
     let observed = Observed::of(set);
     let forward = ResistiveForward::new(&model, set, &observed.layouts()).expect("it has spheres");
     let bench = Bench { set, observed: &observed, forward: &forward };
     let mut diagnosis = diagnose(&bench, DEFAULT_SEED).expect("spheres stop");
-    recommend(&bench, &model, &mut diagnosis);
-    let grid = judged(&bench, &model, &diagnosis);
-    (diagnosis, grid)
+    let next = recommend(&bench, &model, &mut diagnosis);
+    (diagnosis, next)
 }
 
 /// A set, changed, in which `effect` is strong enough to be seen and too weak to be told from its twins.
@@ -39,7 +41,7 @@ fn left_open(
     effect: Effect,
     changed: impl Fn(&MeasurementSet) -> MeasurementSet,
 ) -> MeasurementSet {
-    let sets = [4.0, 3.0, 2.0, 1.5, 1.2, 0.9].map(|q| changed(&vertical(effect, q).measure(1)));
+    let sets = STRENGTHS.map(|q| changed(&vertical(effect, q).measure(1)));
     let verdicts = sets.each_ref().map(|set| next(set).0);
     let is_open = |found: &Diagnosis| {
         let is_seen = matches!(found.verdict, Verdict::NotSeparable | Verdict::BelowNoise);
@@ -56,24 +58,34 @@ fn left_open(
 fn what_one_sphere_straight_down_does_not_separate_another_mass_or_angle_does() {
     for effect in [Effect::Buoyancy, Effect::Yield] {
         let set = left_open(effect, MeasurementSet::clone);
-        let (diagnosis, grid) = next(&set);
-        assert!(grid.len() > 20, "{}", grid.len());
-        let best = &grid[0].condition;
+        let (diagnosis, next) = next(&set);
+        let next = next.expect("it is open");
+        assert!(next.feasible.len() > 20, "{}", next.feasible.len());
+        let best = &next.best[0].condition;
         let measured = &set.conditions[0];
         let other_mass = (best.mass - measured.mass).abs() > 0.0;
         assert!(other_mass || best.angle_deg < 90.0, "{best:?}");
-        // Half of the grid lacks what the best has, by the claim above.
-        let median = grid[grid.len() / 2].expected_delta;
-        assert!(grid[0].expected_delta > median, "{} {median}", grid[0].expected_delta);
-        for one in &grid[0].separates {
+        let told: Vec<f64> = next.best.iter().map(|one| one.expected_bits).collect();
+        assert!(told.windows(2).all(|two| two[1] > two[0]), "each adds to the others: {told:?}");
+        assert!(told.iter().all(|bits| *bits <= next.open_bits), "{told:?} of {}", next.open_bits);
+        // The first is the best alone.
+        let alone = next.feasible.iter().map(|one| one.expected_bits);
+        assert!(alone.fold(0.0, f64::max) <= told[0]);
+        // One more drop straight down with the same body tells less.
+        let like_before = |one: &&Recommendation| {
+            let Condition { angle_deg, mass, .. } = one.condition;
+            angle_deg >= 90.0 && (mass - measured.mass).abs() == 0.0
+        };
+        let same = next.feasible.iter().filter(like_before).map(|one| one.expected_bits);
+        let same = same.fold(0.0, f64::max);
+        assert!(same < 0.8 * told[0], "{same} {}", told[0]);
+        for one in &next.best[0].separates {
             assert!(diagnosis.ranking.iter().any(|effect| effect.id == *one), "{one}");
         }
         let json = &diagnosis.next;
-        assert_eq!(json.len(), 3);
+        assert_eq!(json.len(), next.best.len());
         assert_eq!(json[0]["mass_kg"], best.mass);
-        let p = json[0]["probability_separated"].as_f64().expect("a probability");
-        // Half a chance where as much is expected as is needed, whichever way it differs.
-        assert_eq!(p > 0.5, grid[0].expected_delta > 9.2, "{p} {}", grid[0].expected_delta);
+        assert!(json[0]["open_bits"].as_f64() >= json[0]["expected_bits"].as_f64());
     }
 }
 
@@ -86,8 +98,87 @@ fn equal_input_gives_equal_bytes_within_the_limits_of_the_set() {
     });
     let (first, second) = (next(&set), next(&set));
     assert_eq!(first.0.to_json().expect("JSON"), second.0.to_json().expect("JSON"));
-    assert!(!first.1.is_empty());
-    for one in &first.1 {
+    let next = first.1.expect("it is open");
+    assert!(!next.feasible.is_empty());
+    for one in &next.feasible {
         assert_eq!((one.condition.angle_deg, one.condition.mass), (75.0, 0.05));
     }
+}
+
+#[test]
+fn where_only_what_was_measured_is_feasible_nothing_is_recommended_that_tells_nothing() {
+    let feasible = Feasible {
+        angle_deg: vec![90.0],
+        mass: vec![0.0667],
+        speed: Some([2.0, 2.1]),
+        ..Feasible::default()
+    };
+    let set = left_open(Effect::Buoyancy, |set| MeasurementSet {
+        feasible: feasible.clone(),
+        ..set.clone()
+    });
+    let next = next(&set).1.expect("it is open");
+    let told = next.best.last().map_or(0.0, |one| one.expected_bits);
+    assert!(told < 0.3 * next.open_bits, "{told} of {}", next.open_bits);
+}
+
+/// What the first six conditions of `set` expect of the others.
+fn expected_of_the_rest(set: &MeasurementSet) -> Sequel {
+    let part = |is_early: bool| {
+        let mut part = set.clone();
+        part.runs.retain(|run| (run.condition < 6) == is_early);
+        part
+    };
+    let (early, late) = (part(true), part(false));
+    let model = baseline().expect("the shipped model loads");
+    let [observed, new] = [&early, &late].map(Observed::of);
+    let forward = |set, observed: &Observed| {
+        ResistiveForward::new(&model, set, &observed.layouts()).expect("it has spheres")
+    };
+    let (before, after) = (forward(&early, &observed), forward(&late, &new));
+    let bench = Bench { set: &early, observed: &observed, forward: &before };
+    let diagnosis = diagnose(&bench, DEFAULT_SEED).expect("spheres stop");
+    sequel(&bench, &diagnosis, (&new, &after)).expect("spheres stop").expect("it predicts")
+}
+
+#[test]
+fn new_runs_come_as_what_is_there_expects_and_it_stays_the_likeliest() {
+    let effect = Effect::Buoyancy;
+    let set = left_open(effect, MeasurementSet::clone);
+    let amplitude = |q: &f64| vertical(effect, *q).measure(1) == set;
+    let q = STRENGTHS.into_iter().find(amplitude).expect("it is one of these");
+    let mut laboratory = vertical(effect, q);
+    let like = laboratory.settings[0];
+    let best = next(&set).1.expect("it is open").best;
+    laboratory.settings.extend(best.iter().map(|one| {
+        let Condition { speed, angle_deg: angle, mass, .. } = one.condition;
+        Setting { speed, angle, mass, ..like }
+    }));
+    let sequel = expected_of_the_rest(&laboratory.measure(1));
+    let truth = sequel.hypotheses.iter().find(|one| one.id == effect.id()).expect("it is open");
+    let most = sequel.hypotheses.iter().map(|one| one.after).fold(0.0, f64::max);
+    assert!((truth.after - most).abs() == 0.0, "{sequel:?}");
+    assert!(truth.chi2_per_number < 2.0, "{sequel:?}");
+    assert_eq!(sequel.came.len(), best.len());
+    for came in &sequel.came {
+        let of_truth = came.expected.iter().find(|one| one.id == effect.id()).expect("it is there");
+        let off = (came.measured - of_truth.value) / of_truth.se;
+        assert!(off.abs() < 3.0, "{came:?}");
+    }
+}
+
+#[test]
+fn new_runs_that_nothing_expected_are_told_by_their_chi2() {
+    let mut laboratory = Laboratory { hidden: Vec::new(), ..vertical(Effect::Buoyancy, 0.0) };
+    let like = laboratory.settings[0];
+    laboratory.settings.push(Setting { speed: 2.0, angle: 60.0, ..like });
+    let mut set = laboratory.measure(1);
+    let as_expected = expected_of_the_rest(&set);
+    let [alone] = as_expected.hypotheses.as_slice() else { panic!("{as_expected:?}") };
+    assert_eq!(alone.id, "no effect");
+    assert!(alone.chi2_per_number < 2.0, "{alone:?}");
+    // Another body than is stated.
+    set.conditions[6].mass *= 2.0;
+    let other = expected_of_the_rest(&set);
+    assert!(other.hypotheses[0].chi2_per_number > 5.0, "{other:?}");
 }

@@ -1,0 +1,147 @@
+//! `plunge diagnose SET --after OLD_DIAGNOSIS.json`: what was expected of new runs, and what came.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+use comfy_table::Cell;
+use configs::printable;
+use diagnosis::bench::Bench;
+use diagnosis::diagnose::diagnose;
+use diagnosis::next::{Came, Sequel, sequel};
+use diagnosis::observed::Observed;
+use measurements::{MeasurementSet, Run};
+use serde::Deserialize;
+
+use crate::output::CommandError;
+use crate::text::{lines, table};
+use crate::workbench::{Candidate, Flags, Measured, failed};
+
+/// What is read of an earlier diagnosis.
+#[derive(Deserialize)]
+struct Earlier {
+    /// Names of the runs that it rests on, by condition.
+    measured: BTreeMap<String, Vec<String>>,
+}
+
+/// The runs of `measured` that the diagnosis in `path` does not rest on, held against what `model` expected of them when
+/// it knew only the others; `None` if no effect can say what they would be.
+///
+/// # Errors
+/// If the file is no diagnosis, the set lacks a run that it rests on or has no other, or a model fails.
+pub(crate) fn held_against(
+    path: &Path,
+    measured: &Measured,
+    model: &Candidate,
+    flags: &Flags,
+) -> Result<Option<Sequel>, CommandError> {
+    let (earlier, later) = parted(path, &measured.set)?;
+    let (observed, new) = (Observed::of(&earlier), Observed::of(&later));
+    let forward = model.forward_of(&earlier, &observed)?;
+    let before = model.forward_of(&later, &new)?;
+    let bench = Bench { set: &earlier, observed: &observed, forward: &forward };
+    let diagnosis = diagnose(&bench, flags.seed).map_err(|error| failed(error, &model.name))?;
+    sequel(&bench, &diagnosis, (&new, &before)).map_err(|error| failed(error.into(), &model.name))
+}
+
+/// The set with the runs that the diagnosis in `path` rests on, and with all others.
+fn parted(
+    path: &Path,
+    set: &MeasurementSet,
+) -> Result<(MeasurementSet, MeasurementSet), CommandError> {
+    let shown = printable(&path.display().to_string());
+    let bad = |why: String| CommandError::BadInput(format!("error: --after {shown}: {why}\n"));
+    let text = fs::read_to_string(path).map_err(|error| bad(error.to_string()))?;
+    let earlier: Earlier = serde_json::from_str(&text).map_err(|error| {
+        bad(format!(
+            "this is not the diagnosis.json of `plunge diagnose`, which lists the runs that it rests on: {error}"
+        ))
+    })?;
+    let known: BTreeSet<(&str, &str)> = earlier
+        .measured
+        .iter()
+        .flat_map(|(id, runs)| runs.iter().map(|run| (id.as_str(), run.as_str())))
+        .collect();
+    let key = |run: &Run| {
+        let Run { condition, name, .. } = run;
+        (set.conditions[*condition].id.clone(), name.clone())
+    };
+    let here: BTreeSet<(String, String)> = set.runs.iter().map(key).collect();
+    let is_here =
+        |(id, name): &&(&str, &str)| here.contains(&((*id).to_owned(), (*name).to_owned()));
+    if let Some((id, name)) = known.iter().find(|one| !is_here(one)) {
+        return Err(bad(format!(
+            "it rests on run `{}` of condition `{}`, which the set has not: keep the earlier runs in the set and put \
+             the new ones beside them",
+            printable(name),
+            printable(id)
+        )));
+    }
+    let with = |is_known: bool| {
+        let mut part = set.clone();
+        part.runs.retain(|run| {
+            let (id, name) = key(run);
+            known.contains(&(id.as_str(), name.as_str())) == is_known
+        });
+        part
+    };
+    let later = with(false);
+    if later.runs.is_empty() {
+        return Err(
+            bad("it rests on every run of the set: add the new runs to the set".to_owned()),
+        );
+    }
+    Ok((with(true), later))
+}
+
+/// `sequel` as `plunge diagnose` prints it.
+pub(crate) fn as_text(sequel: &Sequel) -> String {
+    let mut head: Vec<String> = ["condition", "runs", "measured"].map(str::to_owned).into();
+    head.extend(sequel.hypotheses.iter().map(|one| format!("with {}", one.id)));
+    let head: Vec<&str> = head.iter().map(String::as_str).collect();
+    let mut came = table(&head);
+    for one in &sequel.came {
+        let (unit, scale) = unit(one);
+        let at = one.at.map_or(String::new(), |at| format!(" at {:.1} ms", 1e3 * at));
+        let mut row = vec![
+            one.condition.clone(),
+            one.runs.to_string(),
+            format!("{:.2} {unit}{at}", scale * one.measured),
+        ];
+        let expected = one.expected.iter();
+        row.extend(expected.map(|one| format!("{:.2} ± {:.2}", scale * one.value, scale * one.se)));
+        came.add_row(row.into_iter().map(Cell::new));
+    }
+    let mut shares =
+        table(&["hypothesis", "probability before", "after", "chi2 per number of the new runs"]);
+    for one in &sequel.hypotheses {
+        shares.add_row(
+            [
+                one.id.clone(),
+                format!("{:.3}", one.before),
+                format!("{:.3}", one.after),
+                format!("{:.2}", one.chi2_per_number),
+            ]
+            .map(Cell::new),
+        );
+    }
+    let told = match sequel.hypotheses.len() {
+        1 => String::new(),
+        _ => format!("They tell {:.2} bit of which it is.\n", sequel.told_bits),
+    };
+    format!(
+        "\nNEW RUNS  measured, and as expected from the earlier ones:\n{}\n{}{told}",
+        lines(&came),
+        lines(&shares)
+    )
+}
+
+/// Unit of the number that is shown of `one`, and how many of it are in one SI unit.
+fn unit(one: &Came) -> (&'static str, f64) {
+    match one.quantity {
+        "stop_time_s" => ("ms", 1e3),
+        "force_N" => ("N", 1.0),
+        "acceleration_m_s2" => ("m/s²", 1.0),
+        _ => ("mm", 1e3),
+    }
+}
