@@ -2,7 +2,6 @@
 
 use nalgebra::{DMatrix, DVector, RowDVector, SymmetricEigen};
 
-use super::prospect::Expectation;
 use crate::bench::Bench;
 use crate::fit::value_mut;
 use crate::forward::{Forward, PredictError, SEPARATE};
@@ -36,6 +35,17 @@ pub(super) struct Placed {
     /// Standard deviation of what nothing in the set depended on; zero for the rest.
     own: Vec<f64>,
     unknowns: usize,
+}
+
+/// What one hypothesis expects of one condition, in units of the noise of its mean, freed of correlation.
+#[derive(Clone, Debug)]
+pub(super) struct Expectation {
+    /// The mean.
+    pub(super) mean: DVector<f64>,
+    /// What the fit leaves open, a column for each unknown of the fit.
+    pub(super) shared: DMatrix<f64>,
+    /// The same for unknowns that the fit has not.
+    pub(super) own: DMatrix<f64>,
 }
 
 impl Hypothesis {
@@ -122,7 +132,7 @@ impl Placed {
         let mut shared = DMatrix::zeros(mean.len(), self.unknowns);
         let mut own = Vec::new();
         for (at, (row, &alone)) in self.shared.iter().zip(&self.own).enumerate() {
-            let error = row.norm().hypot(alone);
+            let error = libm::hypot(row.norm(), alone);
             if error == 0.0 {
                 continue;
             }

@@ -7,7 +7,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{Expectation, Hypothesis};
 use crate::forward::Forward;
 use crate::noise::{Noise, log_determinant};
 use crate::observed::ObservedCondition;
@@ -17,17 +17,6 @@ use crate::weights::Weight;
 
 /// Draws of each hypothesis.
 const DRAWS: usize = 100;
-
-/// What one hypothesis expects of one condition, in units of the noise of its mean, freed of correlation.
-#[derive(Clone, Debug)]
-pub(super) struct Expectation {
-    /// The mean.
-    pub(super) mean: DVector<f64>,
-    /// What the fit leaves open, a column for each unknown of the fit.
-    pub(super) shared: DMatrix<f64>,
-    /// The same for unknowns that the fit has not.
-    pub(super) own: DMatrix<f64>,
-}
 
 /// What all hypotheses expect of one condition.
 #[derive(Clone, Debug)]

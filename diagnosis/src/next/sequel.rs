@@ -3,8 +3,8 @@
 use nalgebra::DVector;
 use serde::Serialize;
 
-use super::hypothesis::Hypothesis;
-use super::prospect::{Expectation, Prospect, entropy, posterior};
+use super::hypothesis::{Expectation, Hypothesis};
+use super::prospect::{Prospect, entropy, posterior};
 use super::{hypotheses, probabilities};
 use crate::bench::Bench;
 use crate::forward::{Forward, PredictError};
