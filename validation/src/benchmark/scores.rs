@@ -312,11 +312,14 @@ fn amplitudes(rows: &mut Vec<Score>, singles: &[Answered<'_>]) {
     }
 }
 
+/// A choice of further conditions, and whether the truth stands alone with them.
+type Arm = (&'static str, fn(&Resolved) -> bool);
+
 fn next(rows: &mut Vec<Score>, extended: &[Answered<'_>]) {
     let unseparated: Vec<Resolved> =
         extended.iter().filter_map(|(_, answer)| answer.resolved).collect();
     let label = |what: &str| format!("several effects left (8 %), two more conditions: {what}");
-    let arms: [(&str, fn(&Resolved) -> bool); 3] = [
+    let arms: [Arm; 3] = [
         ("recommended", |one| one.recommended),
         ("of largest spread", |one| one.spread),
         ("drawn", |one| one.drawn),
