@@ -44,7 +44,8 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::{CommandFactory, Parser, Subcommand};
-use output::CommandResult;
+use configs::engine::parallel::with_threads;
+use output::{CommandError, CommandResult};
 
 pub use configs::engine::grains::Grain;
 pub use host::{Host, Progress};
@@ -158,7 +159,7 @@ pub fn main() -> ExitCode {
 /// What the program would say in its place, with its exit status.
 pub fn call(host: &Arc<Host>, words: &[OsString]) -> Result<String, Failure> {
     let command: Cli = understood("plunge", words)?;
-    host.during(|| command.command.run())?;
+    within(host, || command.command.run())?;
     Ok(host.take_printed())
 }
 
@@ -174,7 +175,7 @@ pub fn run_many(
     variants: &[Vec<String>],
 ) -> Result<Vec<serde_json::Value>, Failure> {
     let Words { args } = understood::<Words<run::Args>>("plunge run", words)?;
-    Ok(host.during(|| run::many(&args, variants))?)
+    within(host, || run::many(&args, variants))
 }
 
 /// `plunge bed` with `words`: what it prints, and the grains at rest.
@@ -183,8 +184,17 @@ pub fn run_many(
 /// As [`call`].
 pub fn bed(host: &Arc<Host>, words: &[OsString]) -> Result<(String, Vec<Grain>), Failure> {
     let Words { args } = understood::<Words<bed::Args>>("plunge bed", words)?;
-    let bed = host.during(|| bed::prepared(&args))?;
+    let bed = within(host, || bed::prepared(&args))?;
     Ok((host.take_printed(), bed.grains))
+}
+
+/// Does `work` for `host`, on a pool of its own: a process that was forked has lost the threads of the shared one.
+fn within<R: Send>(
+    host: &Arc<Host>,
+    work: impl FnOnce() -> Result<R, CommandError> + Send,
+) -> Result<R, Failure> {
+    let done = with_threads(0, || host.during(work)).map_err(anyhow::Error::new);
+    Ok(done.map_err(CommandError::from).flatten()?)
 }
 
 /// Arguments of one command, without its name.

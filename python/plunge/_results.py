@@ -102,13 +102,19 @@ def read_log(path: Union[str, os.PathLike[str]]) -> Log:
     return Log(bodies, energy, log["metadata"], log["complete"])
 
 
+def remove(folder: str, owner: int) -> None:
+    """Removes a folder, unless this is a fork of the process that made it."""
+    if os.getpid() == owner:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
 class Out:
     """A folder for results: one that was asked for, or one that goes away with the last result in it."""
 
     def __init__(self, asked: Union[str, os.PathLike[str], None]) -> None:
         if asked is None:
             held = tempfile.mkdtemp(prefix="plunge-")
-            weakref.finalize(self, shutil.rmtree, held, ignore_errors=True)
+            weakref.finalize(self, remove, held, os.getpid())
             asked = os.path.join(held, "out")
         self.path = Path(asked)
 

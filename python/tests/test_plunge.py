@@ -4,6 +4,7 @@ import csv
 import gc
 import json
 import math
+import multiprocessing
 import os
 import re
 import signal
@@ -258,6 +259,25 @@ def test_temporary_results_go_away_and_others_stay():
     gc.collect()
     assert folders[0].exists() and not folders[1].exists()
     assert log.body.depth.max() > 0.01
+
+
+def deepest(speed):
+    return plunge.run("two-term-vector", impact={"speed": f"{speed} m/s"}).depth.max()
+
+
+def verdict(tables):
+    return plunge.diagnose(tables)["verdict"]
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_forked_processes_can_call_and_leave_the_results_of_their_parent():
+    tables, run = plunge.new("s1-tables-vertical"), plunge.run("two-term-vector")
+    here = [deepest(1), deepest(2), verdict(tables)]
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        there = [*pool.map(deepest, [1, 2]), pool.apply_async(verdict, (tables,)).get(timeout=60)]
+        pool.apply(gc.collect)
+    assert there == here
+    assert run.folder.exists()
 
 
 def test_notes_are_warnings_and_point_at_the_call():
