@@ -35,11 +35,11 @@ fn of_lammps(args: &Args, folder: &Path) -> CommandResult {
             "{log} is there already; --force replaces it"
         )));
     }
+    signals::will_be_asked_for();
     let around = if is_log(out) { out.parent() } else { Some(out) };
     if let Some(around) = around.filter(|around| !around.as_os_str().is_empty()) {
         make(around)?;
     }
-    signals::will_be_asked_for();
     let imported = import(folder, &files.log, &signals::is_asked_to_stop).map_err(failed)?;
     match (args.json, args.quiet) {
         (true, _) => output::json_to_stdout(&json!({

@@ -6,9 +6,8 @@
 //! afterwards is what a kill would leave.
 
 use std::io::{self, IsTerminal as _};
-use std::sync::Arc;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::thread;
 use std::time::Duration;
 
@@ -29,8 +28,12 @@ const SAVING: Duration = Duration::from_secs(10);
 /// The signal that asked to stop; 0 for none.
 static SIGNAL: OnceLock<Arc<AtomicUsize>> = OnceLock::new();
 
-/// Whether the command has ever asked.
+/// Whether the command has ever asked. It changes under [`TURN`] alone.
 static IS_POLLED: AtomicBool = AtomicBool::new(false);
+
+/// Held by what decides who ends the command: itself once it asks, else a thread that keeps it to the end, so
+/// that the command begins nothing that it would have to take away.
+static TURN: Mutex<()> = Mutex::new(());
 
 /// Whether it has asked since there was a signal.
 static HAS_HEARD: AtomicBool = AtomicBool::new(false);
@@ -69,7 +72,10 @@ pub(crate) fn listen(consequence: &'static str) -> anyhow::Result<()> {
 
 /// From now on the command asks, and takes what it has begun away when it ends.
 pub(crate) fn will_be_asked_for() {
-    IS_POLLED.store(true, Ordering::Relaxed);
+    if !IS_POLLED.load(Ordering::Relaxed) {
+        let _turn = TURN.lock();
+        IS_POLLED.store(true, Ordering::Relaxed);
+    }
 }
 
 /// Whether a signal has asked to stop, or the host.
@@ -100,7 +106,9 @@ fn status(number: i32) -> i32 {
 
 /// Ends the program, after the time in which the command can end by itself.
 fn end(number: i32, consequence: &str) {
+    let turn = TURN.lock();
     if IS_POLLED.load(Ordering::Relaxed) {
+        drop(turn);
         thread::sleep(PATIENCE);
         if HAS_HEARD.load(Ordering::Relaxed) {
             thread::sleep(SAVING - PATIENCE);
