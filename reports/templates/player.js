@@ -171,6 +171,8 @@
   };
 
   const draw = () => {
+    // On paper, and while the page is laid out anew, the canvas may have no width.
+    if (canvas.clientWidth < 200) return;
     const view = data.views[look.selectedIndex], box = axes(view), { places } = view.scenes[frame];
     pen.clearRect(0, 0, canvas.clientWidth, canvas.clientHeight);
     pen.save();

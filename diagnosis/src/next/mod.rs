@@ -2,7 +2,7 @@
 //!
 //! The hypotheses are the effects that cannot be told apart and the two that follow them, each with its
 //! likelihood. A condition is worth the information that its runs are expected to give about which of them holds
-//! ([`prospect`]). The conditions of a recommendation are chosen one after the other, each with those
+//! (`prospect`). The conditions of a recommendation are chosen one after the other, each with those
 //! before it, so the second tells what the first leaves open.
 
 mod designs;
