@@ -9,7 +9,7 @@ use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use crate::forward::{Bound, Forward, ParameterKind, PredictError};
+use crate::forward::{Bound, Forward, ParameterKind, PredictError, Prior};
 use crate::observed::Observed;
 use crate::sensitivity::Point;
 use crate::weights::Weight;
@@ -29,6 +29,13 @@ const STEP: f64 = 1e-3;
 
 /// Share of the standard deviation of a prior around zero, likewise: above what rounding does to differences.
 const OF_PRIOR: f64 = 0.05;
+
+/// How often unknowns that ended at a bound are let go where the fit would leave it again.
+const RELEASES: usize = 2;
+
+/// Standard deviations of its prior beyond which an error of the apparatus is strained: a search that takes it there
+/// makes up for what the model lacks.
+const STRAINED: f64 = 4.0;
 
 /// An unknown that moves the prediction by less than this share of what the others do is idle.
 const IDLE: f64 = 1e-6;
@@ -119,6 +126,35 @@ impl Data<'_> {
         self.fit_but(start, &scales, free)
     }
 
+    /// The same in two stages from where parameters start: first with the apparatus as it is stated, then with its
+    /// errors. The effects begin with the amplitudes of `effects`, held to their formulas.
+    ///
+    /// From a start that is far off, a search in one stage ends where errors of the apparatus make up for a law.
+    ///
+    /// # Errors
+    /// If the model cannot be integrated at the start or at the end.
+    pub(crate) fn fit_in_stages(&self, effects: &[(usize, f64)]) -> Result<Fit, PredictError> {
+        let mut start = Point::start(self.forward);
+        start.effects = effects.to_vec();
+        let scales = self.scales(&start);
+        let forms = self.forms(&start);
+        let is_apparatus = |at: usize| {
+            let parameter = self.forward.parameters().get(at);
+            parameter.is_some_and(|one| one.kind == ParameterKind::Apparatus)
+        };
+        let held = forms.iter().enumerate().map(|(at, &form)| form || is_apparatus(at)).collect();
+        let first = self.search(&start, &scales, held)?.0;
+        self.fit_but(&first, &scales, forms)
+    }
+
+    /// Whether an error of the apparatus is far beyond what is known of it at `point`.
+    pub(crate) fn is_strained(&self, point: &Point) -> bool {
+        self.forward.parameters().iter().zip(&point.parameters).any(|(parameter, value)| {
+            let far = |prior: Prior| (value - prior.mean).abs() > STRAINED * prior.sigma;
+            parameter.kind == ParameterKind::Apparatus && parameter.prior.is_some_and(far)
+        })
+    }
+
     /// Fits the parameters and the amplitudes of the effects of `start` as their formulas have them: a fall of χ² by one
     /// amplitude is not that by several numbers of its form.
     ///
@@ -169,8 +205,42 @@ impl Data<'_> {
         &self,
         start: &Point,
         scales: &[Scale],
-        mut held: Vec<bool>,
+        held: Vec<bool>,
     ) -> Result<Fit, PredictError> {
+        let (mut point, mut at_end) = self.search(start, scales, held.clone())?;
+        for _ in 0..RELEASES {
+            let at_bound: Vec<usize> =
+                (0..held.len()).filter(|&at| at_end[at] && !held[at]).collect();
+            let residual = self.residual(&point)?;
+            let downhill = self.derivative(&point, scales, &at_bound)?.tr_mul(&residual);
+            let mut released = point.clone();
+            let mut again = at_end.clone();
+            for (&at, downhill) in at_bound.iter().zip(downhill.iter()) {
+                let inward = scales[at].inward(value(&point, at));
+                if inward * downhill > 0.0 {
+                    *value_mut(&mut released, at) += inward;
+                    again[at] = false;
+                }
+            }
+            if again == at_end {
+                break;
+            }
+            let Ok(moved) = self.search(&released, scales, again) else { break };
+            if self.residual(&moved.0)?.norm_squared() >= residual.norm_squared() {
+                break;
+            }
+            (point, at_end) = moved;
+        }
+        self.result(point, scales, &at_end)
+    }
+
+    /// Searches what is not `held` from `start`; gives the best and what is held there, since it is at a bound.
+    fn search(
+        &self,
+        start: &Point,
+        scales: &[Scale],
+        mut held: Vec<bool>,
+    ) -> Result<(Point, Vec<bool>), PredictError> {
         self.residual(start)?;
         let mut point = start.clone();
         while held.contains(&false) {
@@ -194,7 +264,7 @@ impl Data<'_> {
                 break;
             }
         }
-        self.result(point, scales, &held)
+        Ok((point, held))
     }
 
     /// Whitened measured less predicted at `point`, condition after condition; then parameters with a prior likewise.
@@ -349,6 +419,12 @@ impl Scale {
     /// By how much an unknown of this value is moved in earnest, to weigh derivatives by.
     fn reach(&self, value: f64) -> f64 {
         if self.logarithmic { value } else { self.step / STEP }
+    }
+
+    /// A step from the bound `value` into the range.
+    fn inward(&self, value: f64) -> f64 {
+        let step = self.physical_step(value).abs();
+        if value - self.min < self.max - value { step } else { -step }
     }
 
     fn unknown_step(&self) -> f64 {

@@ -2,6 +2,7 @@
 
 use crate::bench::{Bench, Fitted};
 use crate::chord::extend;
+use crate::fit::Fit;
 use crate::forward::PredictError;
 use crate::marginal::Marginals;
 use crate::noise::NoiseSource;
@@ -23,8 +24,8 @@ pub(crate) struct Score {
     pub(crate) point: Point,
     /// Standard error of its amplitude, enlarged as the fall of χ² is reduced; none at a bound.
     pub(crate) standard_error: Option<f64>,
-    /// Fall of χ², or of twice the negative logarithm of a likelihood, over the variance that the repeats show along the signature of the best effect, where
-    /// that is larger than one.
+    /// Fall of χ², or of twice the negative logarithm of a likelihood, over the variance that the repeats show along the
+    /// signature of the best effect, where that is larger than one.
     pub(crate) delta: f64,
     /// Amplitude in standard errors.
     strength: f64,
@@ -36,6 +37,13 @@ impl Score {
     /// Index of the candidate.
     pub(crate) fn candidate(&self) -> usize {
         self.signature.candidate
+    }
+
+    /// Takes the place of `fit`, where χ² is `before` without the effect.
+    fn take(&mut self, before: f64, fit: Fit) {
+        self.delta = (before - fit.chi2).max(0.0);
+        self.standard_error = fit.standard_error(fit.covariance.nrows() - 1);
+        self.point = fit.point;
     }
 
     /// Fitted amplitude.
@@ -62,6 +70,11 @@ impl Ranking {
         let (signatures, failed) = signatures(bench, fitted, candidates);
         let mut scores: Vec<Score> =
             signatures.into_iter().map(|signature| refit(bench, fitted, signature)).collect();
+        if bench.data(&fitted.weights).is_strained(&fitted.fit.point) {
+            for score in &mut scores {
+                start_over(bench, fitted, score);
+            }
+        }
         for row in best_first(&scores).into_iter().take(POLISHED) {
             if scores[row].delta > 0.0 {
                 polish(bench, fitted, &mut scores[row]);
@@ -226,9 +239,17 @@ fn refit(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Score {
 /// The same with derivatives of its own, from there, if the model can be integrated around it.
 fn polish(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) {
     if let Ok(fit) = bench.data(&fitted.weights).fit_as_listed(&score.point) {
-        score.delta = (fitted.fit.chi2 - fit.chi2).max(0.0);
-        score.standard_error = fit.standard_error(fit.covariance.nrows() - 1);
-        score.point = fit.point;
+        score.take(fitted.fit.chi2, fit);
+    }
+}
+
+/// The same from where parameters start, if that explains more: around a fit that strains the apparatus, derivatives
+/// say little of what an effect would do.
+fn start_over(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) {
+    let data = bench.data(&fitted.weights);
+    let Ok(fit) = data.fit_in_stages(&[(score.candidate(), 0.0)]) else { return };
+    if fitted.fit.chi2 - fit.chi2 > score.delta {
+        score.take(fitted.fit.chi2, fit);
     }
 }
 

@@ -5,5 +5,6 @@ mod diagnosis;
 mod laboratory;
 mod next;
 mod noise;
+mod strained;
 mod where_it_fails;
 mod world;
