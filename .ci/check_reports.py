@@ -4,12 +4,15 @@ usage: check_reports.py CHROMIUM SCREENSHOTS REPORT...
 
 A report asks nothing of any network and leaves no error in the console; its figures have a size and
 something drawn in them; pointing at a value shows it; it turns dark where the reader wants that, and
-prints. A picture of each is left in the folder SCREENSHOTS, to be looked at.
+prints. On a telephone and on a desk, in light and dark, axe finds no barrier, nothing is wider than the
+window, and no text is smaller than 11 pixels. A picture of each is left in the folder SCREENSHOTS, to be
+looked at.
 """
 
 import sys
 from pathlib import Path
 
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import sync_playwright
 
 # A figure without curves still has a frame, ticks and labels: fewer shapes than these are none. A path that moves
@@ -18,6 +21,17 @@ FEWEST_SHAPES = 12
 
 # A figure of nothing but rectangles has bars on its background: a single one compares nothing.
 FEWEST_BARS = 2
+
+# Widths of a telephone and of a desk (px).
+WIDTHS = [420, 1400]
+
+# Text as it is drawn, its size in a figure that is scaled included; rounding hides nothing that a reader sees.
+SMALL = """() => [...document.querySelectorAll("body *")].filter((element) => {
+  const own = [...element.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim());
+  const { width, height } = element.getBoundingClientRect();
+  const drawn = element.getScreenCTM?.(), scale = drawn ? Math.hypot(drawn.a, drawn.b) : 1;
+  return own && width && height && scale * parseFloat(getComputedStyle(element).fontSize) < 10.99;
+}).map((element) => element.textContent.trim())"""
 
 FIGURES = """() => [...document.querySelectorAll("figure svg")].map((svg) => {
   const box = svg.getBoundingClientRect();
@@ -36,7 +50,7 @@ def require(condition, what):
         raise AssertionError(what)
 
 
-def check(browser, report, screenshots):
+def check(browser, report):
     faults, requests = [], []
     page = browser.new_page(viewport={"width": 1100, "height": 900}, color_scheme="light")
     page.on("console", lambda m: faults.append(m.text) if m.type in ("error", "warning") else None)
@@ -67,12 +81,10 @@ def check(browser, report, screenshots):
     page.mouse.move(2, 2)
     require(tip.is_hidden(), "the tip stays")
 
-    page.screenshot(path=str(screenshots / f"{report.parent.name}.png"), full_page=True)
     background = "getComputedStyle(document.body).backgroundColor"
     light = page.evaluate(background)
     page.emulate_media(color_scheme="dark")
     require(page.evaluate(background) != light, "it does not turn dark")
-    page.screenshot(path=str(screenshots / f"{report.parent.name}-dark.png"), full_page=True)
     page.emulate_media(media="print", color_scheme="dark")
     require(page.evaluate(background) == "rgb(255, 255, 255)", "paper is not white")
     require(len(page.pdf()) > 10_000, "nothing is printed")
@@ -81,6 +93,21 @@ def check(browser, report, screenshots):
     require(requests == [report.resolve().as_uri()], f"it asked for {requests[1:]}")
     page.close()
     return len(figures), len(said)
+
+
+def look(browser, report, width, scheme, screenshots):
+    page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)
+    page.goto(report.resolve().as_uri())
+    where = f"at {width} pixels, {scheme}"
+    wide = page.evaluate("document.documentElement.scrollWidth")
+    require(wide <= width, f"{where}: the page is {wide} pixels wide")
+    small = page.evaluate(SMALL)
+    require(not small, f"{where}: too small to read: {small[:3]}")
+    found = Axe().run(page).response["violations"]
+    barriers = [f"{one['id']}: {one['nodes'][0]['html'][:120]}" for one in found]
+    require(not barriers, f"{where}: {barriers}")
+    page.screenshot(path=str(screenshots / f"{report.parent.name}-{width}-{scheme}.png"), full_page=True)
+    page.close()
 
 
 def main():
@@ -92,7 +119,10 @@ def main():
         browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
         for report in map(Path, reports):
             try:
-                figures, values = check(browser, report, screenshots)
+                figures, values = check(browser, report)
+                for width in WIDTHS:
+                    for scheme in ["light", "dark"]:
+                        look(browser, report, width, scheme, screenshots)
             except AssertionError as fault:
                 sys.exit(f"{report}: {fault}")
             print(f"{report}: {figures} figures, {values} values")
