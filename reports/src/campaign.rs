@@ -1,7 +1,8 @@
 //! The report of a campaign: what its points came to, over what was varied.
 
+use crate::axes;
 use plots::legend::{self, Sign};
-use plots::{Area, Drawn, GREY, Hover, PictureError, colour, letters, short, svg};
+use plots::{Area, Drawn, Hover, PictureError, colour, short, svg};
 use plotters::prelude::*;
 use runner::campaign::{Counts, Headline, Outcome, Point, Results, Values, Varied, varied};
 
@@ -198,23 +199,8 @@ impl Drawing<'_> {
             let pad = if high > low { (high - low) / 12.0 } else { high.abs().max(1.0) / 12.0 };
             low - pad..high + pad
         };
-        let mut chart = ChartBuilder::on(area)
-            .margin(8)
-            .x_label_area_size(36)
-            .y_label_area_size(56)
-            .build_cartesian_2d(range(|(_, x, _)| x), range(|(_, _, y)| y))?;
-        chart
-            .configure_mesh()
-            .x_labels(4)
-            .y_labels(6)
-            .x_label_formatter(&|x| short(*x))
-            .y_label_formatter(&|y| short(*y))
-            .x_desc(across.title.as_str())
-            .y_desc(self.response.title)
-            .axis_desc_style(letters())
-            .light_line_style(WHITE)
-            .bold_line_style(GREY)
-            .draw()?;
+        let over = [range(|(_, x, _)| x), range(|(_, _, y)| y)];
+        let mut chart = axes::chart(area, over, 4, [&across.title, self.response.title])?;
         for (point, x, y) in points() {
             let model = self.models.iter().position(|model| *model == point.model).unwrap_or(0);
             chart.draw_series([Circle::new((x, y), 3, colour(model).filled())])?;

@@ -1,7 +1,7 @@
 //! The report of a list of runs: how depth and stopping time go with speed and angle.
 
 use plots::legend::{self, Sign};
-use plots::{Area, Drawn, GREY, Hover, PictureError, colour, letters, short, svg};
+use plots::{Area, Drawn, Hover, PictureError, colour, short, svg};
 use plotters::prelude::*;
 use runner::run::{Group, ListSummary, Scatter};
 
@@ -163,21 +163,8 @@ impl Quantity {
         let right = groups.iter().map(axes.across).fold(1e-9, f64::max);
         let top =
             groups.iter().filter_map(value).fold(1e-9, |top: f64, (mean, sd)| top.max(mean + sd));
-        let mut chart = ChartBuilder::on(area)
-            .margin(8)
-            .x_label_area_size(36)
-            .y_label_area_size(56)
-            .build_cartesian_2d(0.0..1.05 * right, 0.0..1.1 * top)?;
-        chart
-            .configure_mesh()
-            .x_labels(6)
-            .y_labels(6)
-            .x_desc(axes.title)
-            .y_desc(self.title)
-            .axis_desc_style(letters())
-            .light_line_style(WHITE)
-            .bold_line_style(GREY)
-            .draw()?;
+        let over = [0.0..1.05 * right, 0.0..1.1 * top];
+        let mut chart = crate::axes::chart(area, over, 6, [axes.title, self.title])?;
         for (at, line) in lines.iter().enumerate() {
             let own = groups.iter().filter(|group| (axes.line)(group).to_bits() == line.to_bits());
             let mut points: Vec<(f64, f64, f64, usize)> = own

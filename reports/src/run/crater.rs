@@ -1,8 +1,9 @@
 //! The surface that an impact has left, over the one that it met.
 
+use crate::axes;
 use exchange::frames::CraterPoint;
 use plots::legend::{self, Sign};
-use plots::{Area, Drawn, Hover, PictureError, colour, letters, svg};
+use plots::{Area, Drawn, Hover, PictureError, colour, svg};
 use plotters::prelude::*;
 
 /// Size of the figure without its legend (pixels).
@@ -46,24 +47,8 @@ fn draw(area: &Area<'_>, surfaces: &[Vec<(f64, f64)>; 2], planar: bool) -> Drawn
     let [high, low] = span(|point| point.1);
     let pad = (0.1 * (low - high)).max(1.0);
     let deep = (low + pad)..(high - pad);
-    let mut chart = ChartBuilder::on(area)
-        .margin(8)
-        .x_label_area_size(36)
-        .y_label_area_size(56)
-        .build_cartesian_2d(left..right, deep.clone())?;
-    chart
-        .configure_mesh()
-        .x_labels(6)
-        .y_labels(6)
-        .x_label_formatter(&|value| plots::short(*value))
-        .y_label_formatter(&|value| plots::short(*value))
-        .label_style(letters())
-        .x_desc(if planar { "x from the axis (mm)" } else { "distance from the axis (mm)" })
-        .y_desc("depth (mm)")
-        .axis_desc_style(letters())
-        .light_line_style(WHITE)
-        .bold_line_style(plots::GREY)
-        .draw()?;
+    let across = if planar { "x from the axis (mm)" } else { "distance from the axis (mm)" };
+    let mut chart = axes::chart(area, [left..right, deep.clone()], 6, [across, "depth (mm)"])?;
     let [before, after] = surfaces;
     chart.draw_series(DashedLineSeries::new(
         before.iter().copied(),

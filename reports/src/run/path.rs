@@ -1,7 +1,8 @@
 //! Depth, velocity, force and acceleration over time.
 
+use crate::axes;
 use plots::legend::{self, Sign};
-use plots::{Area, Drawn, Hover, PictureError, colour, letters, svg};
+use plots::{Area, Drawn, Hover, PictureError, colour, svg};
 use plotters::prelude::*;
 use runner::run::Summary;
 
@@ -188,24 +189,7 @@ impl Panel {
         let pad = 0.06 * (high - low);
         let (low, high) = (if low < 0.0 { low - pad } else { low }, high + pad);
         let up = if self.downward { high..low } else { low..high };
-        let mut chart = ChartBuilder::on(area)
-            .margin(8)
-            .x_label_area_size(36)
-            .y_label_area_size(56)
-            .build_cartesian_2d(0.0..last, up)?;
-        chart
-            .configure_mesh()
-            .x_labels(6)
-            .y_labels(6)
-            .x_label_formatter(&|value| plots::short(*value))
-            .y_label_formatter(&|value| plots::short(*value))
-            .label_style(letters())
-            .x_desc("time (ms)")
-            .y_desc(self.axis)
-            .axis_desc_style(letters())
-            .light_line_style(WHITE)
-            .bold_line_style(plots::GREY)
-            .draw()?;
+        let mut chart = axes::chart(area, [0.0..last, up], 6, ["time (ms)", self.axis])?;
         let lower = self.band.iter().map(|[time, low, _]| (*time, *low));
         let upper = self.band.iter().rev().map(|[time, _, high]| (*time, *high));
         let outline: Vec<(f64, f64)> = lower.chain(upper).collect();
