@@ -149,12 +149,7 @@ impl Bench<'_> {
             each.map(|(&c, sensitivity)| self.weight(start, c, sensitivity, noise)).collect()
         };
         let mut weights = weigh(&noise)?;
-        let data = self.data(&weights);
-        // Where nothing was fitted yet, the apparatus waits until the model is near.
-        let mut fit = match *start == Point::start(self.forward) {
-            true => data.fit_in_stages(&[])?,
-            false => data.fit(start)?,
-        };
+        let mut fit = self.data(&weights).fit(start)?;
         let Some(sigma) = self.between_sigma(&noise) else {
             return Ok(Fitted { fit, weights, noise });
         };

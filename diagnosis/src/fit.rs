@@ -30,9 +30,6 @@ const STEP: f64 = 1e-3;
 /// Share of the standard deviation of a prior around zero, likewise: above what rounding does to differences.
 const OF_PRIOR: f64 = 0.05;
 
-/// How often unknowns that ended at a bound are let go where the fit would leave it again.
-const RELEASES: usize = 2;
-
 /// Standard deviations of its prior beyond which an error of the apparatus is strained: a search that takes it there
 /// makes up for what the model lacks.
 const STRAINED: f64 = 4.0;
@@ -207,30 +204,7 @@ impl Data<'_> {
         scales: &[Scale],
         held: Vec<bool>,
     ) -> Result<Fit, PredictError> {
-        let (mut point, mut at_end) = self.search(start, scales, held.clone())?;
-        for _ in 0..RELEASES {
-            let at_bound: Vec<usize> =
-                (0..held.len()).filter(|&at| at_end[at] && !held[at]).collect();
-            let residual = self.residual(&point)?;
-            let downhill = self.derivative(&point, scales, &at_bound)?.tr_mul(&residual);
-            let mut released = point.clone();
-            let mut again = at_end.clone();
-            for (&at, downhill) in at_bound.iter().zip(downhill.iter()) {
-                let inward = scales[at].inward(value(&point, at));
-                if inward * downhill > 0.0 {
-                    *value_mut(&mut released, at) += inward;
-                    again[at] = false;
-                }
-            }
-            if again == at_end {
-                break;
-            }
-            let Ok(moved) = self.search(&released, scales, again) else { break };
-            if self.residual(&moved.0)?.norm_squared() >= residual.norm_squared() {
-                break;
-            }
-            (point, at_end) = moved;
-        }
+        let (point, at_end) = self.search(start, scales, held)?;
         self.result(point, scales, &at_end)
     }
 
@@ -419,12 +393,6 @@ impl Scale {
     /// By how much an unknown of this value is moved in earnest, to weigh derivatives by.
     fn reach(&self, value: f64) -> f64 {
         if self.logarithmic { value } else { self.step / STEP }
-    }
-
-    /// A step from the bound `value` into the range.
-    fn inward(&self, value: f64) -> f64 {
-        let step = self.physical_step(value).abs();
-        if value - self.min < self.max - value { step } else { -step }
     }
 
     fn unknown_step(&self) -> f64 {

@@ -26,7 +26,7 @@ const REPEATS: usize = 4;
 /// Numbers of one stream lie closer together than this.
 const STREAM: u64 = 1 << 52;
 
-/// Whether the truth stands alone after [`ADDED`] more conditions.
+/// Whether the truth stands alone after `ADDED` more conditions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Resolved {
     /// The recommended ones.
