@@ -25,7 +25,7 @@ FEWEST_BARS = 2
 # Widths of a telephone and of a desk (px).
 WIDTHS = [420, 1400]
 
-# Text as it is drawn, its size in a figure that is scaled included; rounding hides nothing that a reader sees.
+# Text that is drawn smaller than 11 pixels, in figures that are scaled too; a hundredth is for rounding.
 SMALL = """() => [...document.querySelectorAll("body *")].filter((element) => {
   const own = [...element.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim());
   const { width, height } = element.getBoundingClientRect();

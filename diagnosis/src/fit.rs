@@ -123,27 +123,6 @@ impl Data<'_> {
         self.fit_but(start, &scales, free)
     }
 
-    /// The same in two stages from where parameters start: first with the apparatus as it is stated, then with its
-    /// errors. The effects begin with the amplitudes of `effects`, held to their formulas.
-    ///
-    /// From a start that is far off, a search in one stage ends where errors of the apparatus make up for a law.
-    ///
-    /// # Errors
-    /// If the model cannot be integrated at the start or at the end.
-    pub(crate) fn fit_in_stages(&self, effects: &[(usize, f64)]) -> Result<Fit, PredictError> {
-        let mut start = Point::start(self.forward);
-        start.effects = effects.to_vec();
-        let scales = self.scales(&start);
-        let forms = self.forms(&start);
-        let is_apparatus = |at: usize| {
-            let parameter = self.forward.parameters().get(at);
-            parameter.is_some_and(|one| one.kind == ParameterKind::Apparatus)
-        };
-        let held = forms.iter().enumerate().map(|(at, &form)| form || is_apparatus(at)).collect();
-        let first = self.search(&start, &scales, held)?.0;
-        self.fit_but(&first, &scales, forms)
-    }
-
     /// Whether an error of the apparatus is far beyond what is known of it at `point`.
     pub(crate) fn is_strained(&self, point: &Point) -> bool {
         self.forward.parameters().iter().zip(&point.parameters).any(|(parameter, value)| {
@@ -159,6 +138,25 @@ impl Data<'_> {
     /// If the model cannot be integrated at the start or at the end.
     pub(crate) fn fit_as_listed(&self, start: &Point) -> Result<Fit, PredictError> {
         self.fit_but(start, &self.scales(start), self.forms(start))
+    }
+
+    /// Fits `candidate` as listed from where parameters start, without what another fit has found: first with the
+    /// apparatus as it is stated, then with its errors. A search in one stage from so far off may end where errors of
+    /// the apparatus make up for a law.
+    ///
+    /// # Errors
+    /// If the model cannot be integrated at the start or at the end.
+    pub(crate) fn fit_as_listed_from_start(&self, candidate: usize) -> Result<Fit, PredictError> {
+        let start = Point { effects: vec![(candidate, 0.0)], ..Point::start(self.forward) };
+        let scales = self.scales(&start);
+        let forms = self.forms(&start);
+        let is_apparatus = |at: usize| {
+            let parameter = self.forward.parameters().get(at);
+            parameter.is_some_and(|one| one.kind == ParameterKind::Apparatus)
+        };
+        let held = forms.iter().enumerate().map(|(at, &form)| form || is_apparatus(at)).collect();
+        let (first, _) = self.search(&start, &scales, held)?;
+        self.fit_but(&first, &scales, forms)
     }
 
     /// What a fit as listed would be that ends at `point`.

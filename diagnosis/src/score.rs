@@ -247,7 +247,7 @@ fn polish(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) {
 /// say little of what an effect would do.
 fn start_over(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) {
     let data = bench.data(&fitted.weights);
-    let Ok(fit) = data.fit_in_stages(&[(score.candidate(), 0.0)]) else { return };
+    let Ok(fit) = data.fit_as_listed_from_start(score.candidate()) else { return };
     if fitted.fit.chi2 - fit.chi2 > score.delta {
         score.take(fitted.fit.chi2, fit);
     }

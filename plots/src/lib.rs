@@ -3,6 +3,7 @@
 //! [`svg`] renders what is drawn on a [`Canvas`]; a [`Hover`] is a place that shows its value under the pointer, and
 //! [`legend`] explains signs and colours. A [`sheet`] is a picture of many grains.
 
+pub mod axes;
 mod canvas;
 pub mod legend;
 pub mod sheet;

@@ -1,6 +1,6 @@
 //! The report of a campaign: what its points came to, over what was varied.
 
-use crate::axes;
+use plots::axes;
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, Hover, PictureError, colour, short, svg};
 use plotters::prelude::*;

@@ -6,7 +6,6 @@
 //!
 //! What a page consists of is in `page.rs`, what it looks like in `templates/`.
 
-mod axes;
 mod campaign;
 mod claim;
 mod comparison;

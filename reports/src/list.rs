@@ -164,7 +164,7 @@ impl Quantity {
         let top =
             groups.iter().filter_map(value).fold(1e-9, |top: f64, (mean, sd)| top.max(mean + sd));
         let over = [0.0..1.05 * right, 0.0..1.1 * top];
-        let mut chart = crate::axes::chart(area, over, 6, [axes.title, self.title])?;
+        let mut chart = plots::axes::chart(area, over, 6, [axes.title, self.title])?;
         for (at, line) in lines.iter().enumerate() {
             let own = groups.iter().filter(|group| (axes.line)(group).to_bits() == line.to_bits());
             let mut points: Vec<(f64, f64, f64, usize)> = own

@@ -2,14 +2,9 @@
 
 use std::ops::Range;
 
-use plots::{Area, Canvas, GREY};
-use plotters::chart::ChartContext;
-use plotters::coord::types::RangedCoordf64;
+pub(super) use plots::axes::Chart;
+use plots::{Area, GREY};
 use plotters::prelude::*;
-
-/// A chart of two numbers.
-pub(super) type Chart<'a, 'b> =
-    ChartContext<'a, Canvas<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// A chart in `area` over `x` and `y`, with a grid and the names `names` of its axes; no name for an empty one.
 pub(super) fn framed<'a, 'b>(

@@ -1,7 +1,7 @@
 //! The surface that an impact has left, over the one that it met.
 
-use crate::axes;
 use exchange::frames::CraterPoint;
+use plots::axes;
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, Hover, PictureError, colour, svg};
 use plotters::prelude::*;

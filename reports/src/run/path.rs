@@ -1,6 +1,6 @@
 //! Depth, velocity, force and acceleration over time.
 
-use crate::axes;
+use plots::axes;
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, Hover, PictureError, colour, svg};
 use plotters::prelude::*;

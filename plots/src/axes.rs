@@ -2,16 +2,20 @@
 
 use std::ops::Range;
 
-use plots::{Area, Canvas, GREY, letters, short};
 use plotters::chart::ChartContext;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
+use crate::{Area, Canvas, GREY, letters, short};
+
 /// A chart of two numbers.
-type Chart<'a, 'b> = ChartContext<'a, Canvas<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+pub type Chart<'a, 'b> = ChartContext<'a, Canvas<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// A chart that fills `area`, over the ranges `x` and `y`, with a grid, about `labels` numbers along x, and `names`.
-pub(crate) fn chart<'a, 'b>(
+///
+/// # Errors
+/// What drawing comes to.
+pub fn chart<'a, 'b>(
     area: &'a Area<'b>,
     [x, y]: [Range<f64>; 2],
     labels: usize,
