@@ -151,10 +151,13 @@ pub(crate) fn from_diagnosis(object: &Value, effects: &[&str]) -> Result<Additio
         .map(|name| {
             let entry = amplitudes.iter().find(|entry| entry["id"] == *name);
             match entry.and_then(|entry| entry["q"].as_f64()) {
-                Some(q) => Ok(AddedEffect {
-                    name: (*name).to_owned(),
-                    values: vec![("q".to_owned(), format!("{q}"))],
-                }),
+                Some(q) => {
+                    let form = entry.and_then(|entry| entry["form"].as_object());
+                    let form = form.into_iter().flatten();
+                    let form = form.map(|(key, value)| (key.clone(), value.to_string()));
+                    let values = std::iter::once(("q".to_owned(), format!("{q}"))).chain(form);
+                    Ok(AddedEffect { name: (*name).to_owned(), values: values.collect() })
+                }
                 None => {
                     let known = ranking.iter().filter_map(|entry| entry["id"].as_str());
                     let hint = nearest(name, known)

@@ -25,7 +25,7 @@ pub(crate) fn of(path: &Path) -> Result<Vec<OwnInModel>, CommandError> {
     let Some(resistive) = loaded.model.resistive() else { return Ok(Vec::new()) };
     let parts = resistive.medium.effects.iter().filter_map(|choice| match &choice.effect {
         Effect::Own(own) => Some(OwnInModel { effect: Arc::clone(own), q: Some(choice.q) }),
-        Effect::Listed(_) => None,
+        Effect::Listed(..) => None,
     });
     let candidates = resistive.medium.candidates.iter();
     let candidates = candidates.map(|own| OwnInModel { effect: Arc::clone(own), q: None });

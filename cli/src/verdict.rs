@@ -139,6 +139,11 @@ fn ranking(diagnosis: &Diagnosis) -> String {
         };
         text.push_str(&format!(" {what}: {} ({})\n", effect.id, effect.note));
     }
+    for effect in ranked().filter(|effect| !effect.form.is_empty() && effect.delta > Some(0.0)) {
+        let form = effect.form.iter().map(|(key, value)| format!("{key} = {value}"));
+        let form = form.collect::<Vec<_>>().join(", ");
+        text.push_str(&format!(" in another form: {} with {form}\n", effect.id));
+    }
     for effect in ranked().filter(|effect| effect.unusual && effect.delta > Some(0.0)) {
         let (q, [least, most]) = (effect.q.unwrap_or(0.0), effect.usual_range.unwrap_or_default());
         let id = &effect.id;

@@ -323,7 +323,8 @@ impl Judge<'_> {
                 let candidate = &bench.forward.candidates()[index];
                 let (at_bound, unusual) = (candidate.bound_at(q), candidate.is_unusual(q, se));
                 let interval_95 = candidate.interval_95(q, se);
-                Amplitude { id: self.name(index), q, se, at_bound, interval_95, unusual }
+                let form = candidate.form.iter().copied().collect();
+                Amplitude { id: self.name(index), form, q, se, at_bound, interval_95, unusual }
             })
             .collect();
         let held_out = match held_out {

@@ -183,11 +183,16 @@ pub struct Prior {
     pub sigma: f64,
 }
 
+/// What an effect takes beside its amplitude where that is not as listed, by key (SI).
+pub type Form = Vec<(&'static str, f64)>;
+
 /// An effect that could be added to a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// kebab-case.
+    /// kebab-case; that of an effect in several forms is the same for all.
     pub id: String,
+    /// Its form: empty for the one that is listed, which comes before the others.
+    pub form: Form,
     /// Unit of the amplitude; 1 where it has none.
     pub unit: String,
     /// Least allowed amplitude.

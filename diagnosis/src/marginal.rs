@@ -436,6 +436,7 @@ mod tests {
                 step: 1e-3,
                 not_testable: None,
                 separable_from: String::new(),
+                form: Vec::new(),
                 unresolved: Vec::new(),
             };
             let ways = DMatrix::from_row_slice(2, 2, &[1e-3, 2e-5, 1e-3, -2e-5]);

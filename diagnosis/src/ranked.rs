@@ -1,11 +1,13 @@
 //! The ranking as a diagnosis shows it: every effect, and why some have no place.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Map, Value, json};
 
 use crate::bench::Bench;
 use crate::forward::{Candidate, Forward, ParameterKind};
 use crate::rounding::rounded;
-use crate::score::Ranking;
+use crate::score::{Ranking, Score};
 use crate::sensitivity::Point;
 use crate::verdict::{RankedEffect, Status};
 
@@ -33,6 +35,7 @@ pub(crate) fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<Ranked
             let at_bound = candidate.bound_at(q);
             RankedEffect {
                 id: candidate.id.clone(),
+                form: candidate.form.iter().copied().collect(),
                 q: Some(q),
                 se: se.filter(|_| at_bound.is_none()),
                 at_bound,
@@ -51,11 +54,16 @@ pub(crate) fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<Ranked
         })
         .collect();
     let not_ranked = (0..candidates.len())
-        .filter(|index| scores.iter().all(|score| score.candidate() != *index))
+        .filter(|&index| {
+            let Candidate { id, form, .. } = &candidates[index];
+            let is_it = |score: &Score| candidates[score.candidate()].id == *id;
+            form.is_empty() && !scores.iter().any(is_it)
+        })
         .map(|index| {
             let (status, note) = why_not(&candidates[index], ranking, index);
             RankedEffect {
                 id: candidates[index].id.clone(),
+                form: BTreeMap::new(),
                 q: None,
                 se: None,
                 at_bound: None,

@@ -10,8 +10,11 @@ use crate::sensitivity::Point;
 use crate::signature::{Signature, collinearity, signature, variance_along};
 use crate::significance::{NullScores, leads_again};
 
-/// How many of the best are refitted with derivatives of their own.
+/// How many of the best, with their forms, are refitted with derivatives of their own.
 const POLISHED: usize = 3;
+
+/// Fall of χ² by which another form of an effect has to be better than the one that is listed: odds of 10 to 1.
+const OTHER_FORM: f64 = 4.6;
 
 /// Twins whose signatures have at least this cosine are one force under these conditions.
 const SAME: f64 = 0.999;
@@ -75,10 +78,16 @@ impl Ranking {
                 start_over(bench, fitted, score);
             }
         }
-        for row in best_first(&scores).into_iter().take(POLISHED) {
-            if scores[row].delta > 0.0 {
-                polish(bench, fitted, &mut scores[row]);
+        let id = |score: &Score| &bench.forward.candidates()[score.candidate()].id;
+        let mut leaders = Vec::new();
+        for row in best_first(&scores) {
+            if !leaders.contains(&id(&scores[row])) {
+                leaders.push(id(&scores[row]));
             }
+            if leaders.len() > POLISHED || scores[row].delta <= 0.0 {
+                break;
+            }
+            polish(bench, fitted, &mut scores[row]);
         }
         let mut ranking = Self::ranked(bench, fitted, scores, failed, seed);
         for (score, &row) in ranking.scores.iter_mut().zip(&ranking.rows) {
@@ -143,6 +152,7 @@ impl Ranking {
             score.standard_error = score.standard_error.map(|se| se * scale.sqrt());
             score.strength = score.amplitude().abs() * score.signature.norm / scale.sqrt();
         }
+        let rows = one_form_each(bench, &scores, &rows);
         let mut scores: Vec<Option<Score>> = scores.into_iter().map(Some).collect();
         let scores: Vec<Score> = rows.iter().filter_map(|&row| scores[row].take()).collect();
         let p = scores.first().map_or(1.0, |best| null.family_wise_p(best.delta));
@@ -251,6 +261,26 @@ fn start_over(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) {
     if fitted.fit.chi2 - fit.chi2 > score.delta {
         score.take(fitted.fit.chi2, fit);
     }
+}
+
+/// Those of `rows`, best first, that are the form of their effect: the one that explains most, in its place; the one
+/// that is listed unless another explains more by [`OTHER_FORM`].
+fn one_form_each(bench: &Bench<'_>, scores: &[Score], rows: &[usize]) -> Vec<usize> {
+    let candidate = |row: usize| &bench.forward.candidates()[scores[row].candidate()];
+    let mut kept: Vec<usize> = Vec::new();
+    for &row in rows {
+        match kept.iter_mut().find(|&&mut other| candidate(other).id == candidate(row).id) {
+            None => kept.push(row),
+            Some(better) => {
+                let behind = scores[*better].delta - scores[row].delta;
+                if candidate(row).form.is_empty() && behind < OTHER_FORM {
+                    *better = row;
+                }
+            }
+        }
+    }
+    kept.sort_by(|&a, &b| scores[b].delta.total_cmp(&scores[a].delta));
+    kept
 }
 
 fn best_first(scores: &[Score]) -> Vec<usize> {

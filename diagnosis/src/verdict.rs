@@ -153,6 +153,9 @@ pub struct Diagnosis {
 pub struct RankedEffect {
     /// kebab-case.
     pub id: String,
+    /// What it takes beside its amplitude where that is not as listed (SI): the form that the data ask for.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub form: BTreeMap<&'static str, f64>,
     /// Fitted amplitude.
     #[serde(serialize_with = "six_digits_or_null")]
     pub q: Option<f64>,
@@ -196,6 +199,9 @@ pub struct RankedEffect {
 pub struct Amplitude {
     /// kebab-case.
     pub id: String,
+    /// As in [`RankedEffect::form`].
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub form: BTreeMap<&'static str, f64>,
     /// Amplitude.
     #[serde(serialize_with = "six_digits")]
     pub q: f64,

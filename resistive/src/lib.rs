@@ -131,19 +131,21 @@ pub struct Load {
     pub couple: f64,
     /// Mass of the medium that moves with the part (kg).
     pub added_mass: f64,
-    /// Rate at which that mass is set in motion (kg/s): the force is −rate·velocity.
+    /// Rate at which that mass grows (kg/s).
+    pub growth: f64,
+    /// The part of it that is set in motion by the part (kg/s): the force is −rate·velocity.
     pub recruitment: f64,
 }
 
 impl Load {
     /// Whether every number of it is finite.
     pub(crate) fn is_finite(&self) -> bool {
-        let Self { dynamic, friction, grip, couple, added_mass, recruitment, .. } = self;
+        let Self { dynamic, friction, grip, couple, added_mass, growth, recruitment, .. } = self;
         let grips = grip.iter().flat_map(|grip| [grip.positive, grip.negative]);
         dynamic
             .iter()
             .chain(friction.iter())
-            .chain([couple, added_mass, recruitment])
+            .chain([couple, added_mass, growth, recruitment])
             .copied()
             .chain(grips)
             .all(f64::is_finite)
@@ -177,7 +179,7 @@ pub enum Flow {
     Static,
     /// Kinetic energy of [`Load::added_mass`], held now.
     AddedMass,
-    /// What is lost in setting it in motion: half of the work against [`Load::recruitment`].
+    /// What is lost in setting it in motion: the work against [`Load::recruitment`], less what [`Load::growth`] holds.
     Recruitment,
 }
 

@@ -275,10 +275,11 @@ fn powers(part: &Part, motion: &Motion, before: &Load, after: &Load) -> [f64; 3]
         }
     }
     let recruitment = after.recruitment - before.recruitment;
+    let held = 0.5 * (after.growth - before.growth);
     [
         -dynamic.dot(&velocity) - couple * part.spin,
         sliding,
-        0.5 * recruitment * velocity.norm_squared(),
+        (recruitment - held) * velocity.norm_squared(),
     ]
 }
 

@@ -305,6 +305,7 @@ impl Screened {
             step: STEP * self.switch.screen,
             not_testable: self.not_testable.clone(),
             separable_from: self.switch.separable_from.to_owned(),
+            form: Vec::new(),
             unresolved: Vec::new(),
         }
     }

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, RowDVector, SymmetricEigen};
 
 use crate::bench::Bench;
 use crate::fit::value_mut;
-use crate::forward::{Forward, PredictError, SEPARATE};
+use crate::forward::{Form, Forward, PredictError, SEPARATE};
 use crate::sensitivity::Point;
 use crate::weights::Weight;
 
@@ -16,8 +16,8 @@ const AS_IT_IS: &str = "no effect";
 
 /// The model with one effect or as it is, fitted, in the terms of the model that it was fitted with.
 pub(super) struct Hypothesis {
-    /// Of the effect; none for the model as it is.
-    effect: Option<String>,
+    /// The effect and its form; none for the model as it is.
+    effect: Option<(String, Form)>,
     /// By how much its χ² exceeds that of the best.
     behind: f64,
     /// Parameters with their names and values.
@@ -57,7 +57,10 @@ impl Hypothesis {
     ) -> Result<Self, PredictError> {
         let fit = bench.data(weights).fit_as_listed_within_forms(point)?;
         let added = fit.point.effects.last();
-        let name = |&(index, _): &(usize, f64)| bench.forward.candidates()[index].id.clone();
+        let name = |&(index, _): &(usize, f64)| {
+            let candidate = &bench.forward.candidates()[index];
+            (candidate.id.clone(), candidate.form.clone())
+        };
         let names = bench.forward.parameters().iter().map(|parameter| parameter.name.clone());
         Ok(Self {
             effect: added.map(name),
@@ -70,7 +73,7 @@ impl Hypothesis {
 
     /// The id of the effect, or that there is none.
     pub(super) fn name(&self) -> &str {
-        self.effect.as_deref().unwrap_or(AS_IT_IS)
+        self.effect.as_ref().map_or(AS_IT_IS, |(id, _)| id)
     }
 
     /// Whether it explains about as much as the best.
@@ -86,9 +89,12 @@ impl Hypothesis {
     /// The same before `forward`, a model that may have other free parameters: what nothing in the set
     /// depended on is known no better than to its own size. `None` if it has no such effect.
     pub(super) fn before(&self, forward: &dyn Forward) -> Option<Placed> {
-        let of = |id: &str| forward.candidates().iter().position(|one| one.id == id);
+        let mut candidates = forward.candidates().iter();
         let effects = match (&self.effect, self.amplitude) {
-            (Some(id), Some(amplitude)) => vec![(of(id)?, amplitude)],
+            (Some((id, form)), Some(amplitude)) => {
+                let index = candidates.position(|one| one.id == *id && one.form == *form)?;
+                vec![(index, amplitude)]
+            }
             _ => Vec::new(),
         };
         let unknowns = self.root.nrows();

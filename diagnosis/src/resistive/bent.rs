@@ -35,10 +35,13 @@ impl Bent {
         load.couple = scale(before.couple, load.couple);
         let moving = load.added_mass - before.added_mass;
         load.added_mass = scale(before.added_mass, load.added_mass);
+        load.growth = scale(before.growth, load.growth);
         load.recruitment = scale(before.recruitment, load.recruitment);
-        // A mass that is larger deeper comes in on the way down.
+        // A mass that is larger deeper comes in on the way down, from rest.
         let growth = self.by.growth(at.depth / self.reach, motion.speed.abs() / self.speed);
-        load.recruitment += moving * growth / self.reach * -motion.velocity.z;
+        let more = moving * growth / self.reach * -motion.velocity.z;
+        load.growth += more;
+        load.recruitment += more;
     }
 }
 

@@ -35,6 +35,7 @@ fn candidate(effect: &Effect, set: &MeasurementSet) -> Candidate {
     let from = |twin: Twin| format!("from {}", twin.describe());
     Candidate {
         id: effect.name().to_owned(),
+        form: effect.form(),
         unit: effect.unit(),
         min: spec.allowed.min,
         max: spec.allowed.max,

@@ -77,6 +77,7 @@ fn candidate(effect: &Effect) -> Candidate {
     let range = effect.amplitude().allowed;
     Candidate {
         id: effect.name().to_owned(),
+        form: effect.form(),
         unit: effect.unit(),
         min: range.min,
         max: range.max,

@@ -73,6 +73,10 @@ impl ResistiveForward {
         let is_present =
             |name: &str| medium.effects.iter().any(|choice| choice.effect.name() == name);
         let listed = RESISTANCE_LAWS.iter().filter_map(|entry| Effect::listed(entry.name));
+        let listed = listed.flat_map(|effect| {
+            let others = effect.other_forms();
+            std::iter::once(effect).chain(others)
+        });
         let own = medium.candidates.iter().map(|own| Effect::Own(Arc::clone(own)));
         let is_scattering = |key: &str| {
             let (whole, node) = (format!("resistance.{key}"), format!("resistance.{key}@"));

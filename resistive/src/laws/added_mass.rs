@@ -2,20 +2,22 @@
 
 use crate::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::Range;
+use engine::params::{ParamSpec, Range};
 
 use super::facts::{Facts, Kind, Needs, Twin};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
-/// (m + m_a) a = … − dm_a/dt v,  m_a = q ρ V(z)   (kg)
+/// (m + m_a) a = … − r dm_a/dt v,  m_a = q ρ V(z)   (kg)
 ///
-/// Grains come in at rest: their kinetic energy is held, as much again is lost in setting them in
-/// motion.
+/// With r = 1 grains come in at rest and the body gives them their momentum: their kinetic energy is held, as much
+/// again is lost in setting them in motion. With r = 1/2 nothing is lost, as in a fluid without viscosity; with less
+/// the medium brings momentum of its own.
 ///
-/// Source: added-mass foot model of Aguilar & Goldman, Nature Phys. 12, 278 (2016), with the immersed
-/// volume in place of its cone.
+/// Sources: added-mass foot model of Aguilar & Goldman, Nature Phys. 12, 278 (2016), with the immersed volume in place
+/// of its cone; Lamb, Hydrodynamics (1932), §137, for r = 1/2.
 struct AddedMass {
     q: f64,
+    recruitment: f64,
 }
 
 const ACCOUNTS: &[Account] = &[
@@ -42,17 +44,27 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         ],
     }),
     summary: "Grains that move with the intruder and add to its inertia.",
-    formula: "(m + q rho V) dv/dt = ... - q rho dV/dt v",
+    formula: "(m + q rho V) dv/dt = ... - r q rho dV/dt v",
     signature: "lower deceleration, longer and deeper path; a jerk at entry",
     source: "Aguilar & Goldman, Nature Phys. 12, 278 (2016)",
-    params: &[amplitude(
-        Range::closed(0.0, 50.0),
-        Range::closed(0.0, 5.0),
-        "moving grains in units of the displaced bed",
-    )],
+    params: &[
+        amplitude(
+            Range::closed(0.0, 50.0),
+            Range::closed(0.0, 5.0),
+            "moving grains in units of the displaced bed",
+        ),
+        ParamSpec::number(
+            "recruitment",
+            "share r of the momentum of new grains that the body gives: 1 from rest, 0.5 without loss",
+        )
+        .or(1.0)
+        .allowed(Range::closed(0.0, 1.0))
+        .plausible(Range::closed(0.0, 1.0)),
+    ],
+    forms: &[&[("recruitment", 0.5)], &[("recruitment", 0.0)]],
     variables: &[],
     accounts: ACCOUNTS,
-    build: |given| Box::new(AddedMass { q: given.get("q") }),
+    build: |given| Box::new(AddedMass { q: given.get("q"), recruitment: given.get("recruitment") }),
 };
 
 impl ResistanceLaw for AddedMass {
@@ -63,7 +75,8 @@ impl ResistanceLaw for AddedMass {
     fn act(&self, at: &Immersion, _: &Motion, bed: &Surroundings, load: &mut Load) {
         let density = self.q * bed.bulk_density;
         load.added_mass += density * at.volume;
-        load.recruitment += density * at.volume_rate;
+        load.growth += density * at.volume_rate;
+        load.recruitment += self.recruitment * density * at.volume_rate;
     }
 }
 
@@ -76,7 +89,7 @@ mod tests {
     fn mass_is_recruited_as_fast_as_the_volume_grows() {
         let bed = surroundings();
         let (mut here, mut deeper) = (Load::default(), Load::default());
-        let law = AddedMass { q: 2.0 };
+        let law = AddedMass { q: 2.0, recruitment: 1.0 };
         let at = SPHERE.at(0.01);
         let at = Immersion { volume_rate: 3.0 * at.section, ..at };
         law.act(&at, &sinking(3.0), &bed, &mut here);

@@ -43,6 +43,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(0.0, 5.0),
         "drag coefficient in air",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(AirDrag { q: given.get("q") }),

@@ -36,6 +36,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(-0.8, 2.0),
         "relative excess of the horizontal drag",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(AnisotropicDrag { q: given.get("q") }),

@@ -39,6 +39,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(-0.8, 2.0),
         "relative excess of the horizontal friction",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(AnisotropicFriction { q: given.get("q") }),

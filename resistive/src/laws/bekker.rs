@@ -42,6 +42,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
             .allowed(Range { min: 0.0, max: 5.0, includes_min: false })
             .usual(0.3, 2.5),
     ],
+    forms: &[],
     variables: &["density", "angle"],
     accounts: ACCOUNTS,
     build: |given| {

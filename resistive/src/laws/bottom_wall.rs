@@ -41,6 +41,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(0.0, 50.0),
         "resistance at the bottom in units of rho g A D",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(BottomWall { q: given.get("q") }),

@@ -43,6 +43,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(0.0, 50.0),
         "force in units of the weight of the displaced bed",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(Buoyancy { q: given.get("q") }),

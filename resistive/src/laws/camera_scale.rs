@@ -35,6 +35,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(-0.05, 0.05),
         "relative error of every length that is read",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(CameraScale { q: given.get("q") }),

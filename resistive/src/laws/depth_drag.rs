@@ -38,6 +38,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(-0.3, 3.0),
         "relative change of the drag per diameter of depth",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(DepthDrag { q: given.get("q") }),

@@ -32,6 +32,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(-0.8, 1.0),
         "exponent of depth less one",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(DepthExponent { q: given.get("q") }),

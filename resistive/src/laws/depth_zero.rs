@@ -35,6 +35,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(-2.0, 2.0),
         "offset of every depth that is read, in millimetres",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(DepthZero { q: given.get("q") }),

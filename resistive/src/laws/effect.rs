@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::ResistanceLaw;
-use engine::params::{ParamSpec, ParamTable};
+use engine::params::{Default, ParamSpec, ParamTable};
 
 use super::coefficients::Coefficients;
 use super::expression::OwnEffect;
@@ -15,8 +15,8 @@ use super::{RESISTANCE_LAWS, find_resistance};
 /// Something added to a force law, with one amplitude `q` that is 0 when it is absent.
 #[derive(Clone)]
 pub enum Effect {
-    /// One of [`RESISTANCE_LAWS`].
-    Listed(&'static ResistanceEntry),
+    /// One of [`RESISTANCE_LAWS`], with what it takes beside its amplitude (SI).
+    Listed(&'static ResistanceEntry, ParamTable),
     /// One that a model file defines.
     Own(Arc<OwnEffect>),
 }
@@ -26,14 +26,48 @@ impl Effect {
     #[must_use]
     pub fn listed(name: &str) -> Option<Self> {
         let entry = find_resistance(name)?;
-        matches!(entry.role, Role::Effect(_)).then_some(Self::Listed(entry))
+        matches!(entry.role, Role::Effect(_)).then(|| Self::with(entry, &[]))
+    }
+
+    /// The effect of `entry` with `values` in place of its defaults.
+    fn with(entry: &'static ResistanceEntry, values: &[(&'static str, f64)]) -> Self {
+        let mut given = ParamTable::new();
+        for spec in &entry.params[1..] {
+            if let Default::Value(value) = spec.default {
+                given.set(spec.key, value);
+            }
+        }
+        values.iter().for_each(|&(key, value)| given.set(key, value));
+        Self::Listed(entry, given)
+    }
+
+    /// The other forms of it that its entry names.
+    #[must_use]
+    pub fn other_forms(&self) -> Vec<Self> {
+        match self {
+            Self::Listed(entry, _) => {
+                entry.forms.iter().map(|values| Self::with(entry, values)).collect()
+            }
+            Self::Own(_) => Vec::new(),
+        }
+    }
+
+    /// What it takes beside its amplitude and differs from the defaults (SI): nothing for the form that is listed.
+    #[must_use]
+    pub fn form(&self) -> Vec<(&'static str, f64)> {
+        let Self::Listed(entry, given) = self else { return Vec::new() };
+        let is_default = |key: &str, value: f64| {
+            let spec = entry.params.iter().find(|spec| spec.key == key);
+            spec.is_some_and(|spec| spec.default == Default::Value(value))
+        };
+        given.iter().filter(|&(key, value)| key != "q" && !is_default(key, value)).collect()
     }
 
     /// Its name: in a ranking, in the names of files, in `effect.NAME.q`.
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
-            Self::Listed(entry) => entry.name,
+            Self::Listed(entry, _) => entry.name,
             Self::Own(own) => own.id(),
         }
     }
@@ -42,7 +76,7 @@ impl Effect {
     #[must_use]
     pub fn amplitude(&self) -> &ParamSpec {
         match self {
-            Self::Listed(entry) => &entry.params[0],
+            Self::Listed(entry, _) => &entry.params[0],
             Self::Own(own) => own.amplitude(),
         }
     }
@@ -51,7 +85,7 @@ impl Effect {
     #[must_use]
     pub fn unit(&self) -> String {
         match self {
-            Self::Listed(ResistanceEntry { role: Role::Effect(facts), .. }) => {
+            Self::Listed(ResistanceEntry { role: Role::Effect(facts), .. }, _) => {
                 facts.unit.to_owned()
             }
             _ => Some(self.amplitude().dimension.si_unit())
@@ -64,10 +98,10 @@ impl Effect {
     #[must_use]
     pub fn visible(&self) -> Vec<Needs> {
         match self {
-            Self::Listed(ResistanceEntry { role: Role::Effect(facts), .. }) => {
+            Self::Listed(ResistanceEntry { role: Role::Effect(facts), .. }, _) => {
                 facts.visible.to_vec()
             }
-            Self::Listed(_) => Vec::new(),
+            Self::Listed(..) => Vec::new(),
             Self::Own(own) => own.visible(),
         }
     }
@@ -76,8 +110,8 @@ impl Effect {
     #[must_use]
     pub fn build(&self, q: f64, angle: f64) -> Box<dyn ResistanceLaw> {
         match self {
-            Self::Listed(entry) => {
-                let mut numbers = ParamTable::new();
+            Self::Listed(entry, given) => {
+                let mut numbers = given.clone();
                 numbers.set("q", q);
                 (entry.build)(&Coefficients::new(numbers))
             }
@@ -96,7 +130,7 @@ impl Effect {
 impl PartialEq for Effect {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::Listed(a), Self::Listed(b)) => a.name == b.name,
+            (Self::Listed(a, own), Self::Listed(b, other)) => a.name == b.name && own == other,
             (Self::Own(a), Self::Own(b)) => a == b,
             _ => false,
         }

@@ -31,6 +31,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(0.0, 1.0),
         "share of the frontal area that is loaded only when it is immersed",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(ImmersedArea { q: given.get("q") }),

@@ -36,6 +36,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(0.0, 5.0),
         "intruder diameter over saturation depth lambda",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(Janssen { q: given.get("q") }),

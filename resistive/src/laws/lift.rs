@@ -38,6 +38,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(-0.5, 1.0),
         "lift coefficient on the frontal area",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(Lift { q: given.get("q") }),

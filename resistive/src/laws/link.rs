@@ -116,6 +116,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
             "share of the end's area that drags",
         ),
     ],
+    forms: &[],
     variables: &["density", "angle"],
     accounts: ACCOUNTS,
     build: |given| {

@@ -37,6 +37,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(-2.0, 2.0),
         "force in units of rho A R omega v",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(Magnus { q: given.get("q") }),

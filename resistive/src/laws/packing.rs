@@ -40,6 +40,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(-5.0, 20.0),
         "relative change of the friction per unit of packing fraction",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(Packing { q: given.get("q") }),

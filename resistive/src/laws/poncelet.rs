@@ -41,6 +41,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         )
         .usual(1e-2, 1e3),
     ],
+    forms: &[],
     variables: &["density", "angle", "depth"],
     accounts: ACCOUNTS,
     build: |given| {

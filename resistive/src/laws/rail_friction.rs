@@ -40,6 +40,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(0.0, 10.0),
         "friction in newtons",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(RailFriction { q: given.get("q") }),

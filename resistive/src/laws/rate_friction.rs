@@ -31,6 +31,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(-0.2, 2.0),
         "relative change of the friction at the speed sqrt(g D)",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(RateFriction { q: given.get("q") }),

@@ -23,6 +23,8 @@ pub struct ResistanceEntry {
     pub source: &'static str,
     /// The parameters it takes.
     pub params: &'static [ParamSpec],
+    /// Other forms of an effect, which a diagnosis tries beside the one of the defaults: what they set beside the amplitude.
+    pub forms: &'static [&'static [(&'static str, f64)]],
     /// What an expression in place of a parameter may depend on.
     pub variables: &'static [&'static str],
     /// The accounts it books energy to.

@@ -38,6 +38,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(0.0, 10.0),
         "force in units of rho g A z (R omega/sqrt(g D))",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(SpinFriction { q: given.get("q") }),

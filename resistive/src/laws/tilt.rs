@@ -45,6 +45,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(-0.05, 0.05),
         "angle by which gravity leans towards +x, in radians",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(Tilt { q: given.get("q") }),

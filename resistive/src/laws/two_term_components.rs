@@ -45,6 +45,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         coefficient("drag_z", Dimension::MASS_PER_LENGTH, DRAG, "vertical drag alpha_y"),
         coefficient("friction_z", Dimension::STIFFNESS, FRICTION, "vertical friction f_y"),
     ],
+    forms: &[],
     variables: &["density", "angle"],
     accounts: ACCOUNTS,
     build: |given| {

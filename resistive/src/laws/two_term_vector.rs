@@ -31,6 +31,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         ParamSpec::number("friction", "friction coefficient C_f on the frontal area")
             .usual(1.0, 100.0),
     ],
+    forms: &[],
     variables: &["density", "angle"],
     accounts: ACCOUNTS,
     build: |given| {

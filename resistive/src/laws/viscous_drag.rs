@@ -38,6 +38,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         Range::closed(0.0, 10.0),
         "drag in units of rho A sqrt(g D) v",
     )],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(ViscousDrag { q: given.get("q") }),

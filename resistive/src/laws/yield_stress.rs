@@ -3,18 +3,24 @@
 use crate::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use engine::ledger::{Channel, ChannelKind};
 use engine::math::Vec3;
-use engine::params::Range;
+use engine::params::{ParamSpec, Range};
 
 use super::facts::{Facts, Kind, Needs, Twin};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
-/// F = −q ρ g A D v̂ in the bed   (N)
+/// F = −q ρ g A D (D/D₀)^(n − 1) v̂ in the bed, D₀ = 25 mm   (N)
 ///
-/// Source: constant term of the resistance law; a bearing factor 5 to 9 times a cohesion c (Pa) gives
-/// q = N_c c/(ρ g D).
+/// With n = 0 it is a stress that is the same for every body: a bearing factor N_c of 5 to 9 times a cohesion c (Pa) gives
+/// q = N_c c/(ρ g D₀).
+///
+/// Source: constant term of the resistance law, with n = 1; Terzaghi, Theoretical Soil Mechanics (1943), §46, for N_c c.
 struct YieldStress {
     q: f64,
+    size_exponent: f64,
 }
+
+/// D₀ (m).
+const REFERENCE: f64 = 0.025;
 
 const ACCOUNTS: &[Account] = &[Account {
     channel: Channel { name: "yield-stress", kind: ChannelKind::Dissipated },
@@ -34,17 +40,29 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         }],
     }),
     summary: "A constant resistance in the bed, against the motion: cohesion.",
-    formula: "F = -q rho g A D v/|v|",
+    formula: "F = -q rho g A D (D/25 mm)^(n - 1) v/|v|",
     signature: "largest at low speed: the intruder stops sooner and less deep, hardly at high speed",
     source: "constant term of the resistance law; bearing factor times cohesion",
-    params: &[amplitude(
-        Range::closed(0.0, 200.0),
-        Range::closed(0.0, 50.0),
-        "resistance in units of rho g A D",
-    )],
+    params: &[
+        amplitude(
+            Range::closed(0.0, 200.0),
+            Range::closed(0.0, 50.0),
+            "resistance in units of rho g A D",
+        ),
+        ParamSpec::number(
+            "size_exponent",
+            "power n of the diameter in the stress: 0 for a cohesion, 1 for a weight of grains",
+        )
+        .or(1.0)
+        .allowed(Range::closed(0.0, 2.0))
+        .plausible(Range::closed(0.0, 1.0)),
+    ],
+    forms: &[&[("size_exponent", 0.0)]],
     variables: &[],
     accounts: ACCOUNTS,
-    build: |given| Box::new(YieldStress { q: given.get("q") }),
+    build: |given| {
+        Box::new(YieldStress { q: given.get("q"), size_exponent: given.get("size_exponent") })
+    },
 };
 
 impl ResistanceLaw for YieldStress {
@@ -54,7 +72,8 @@ impl ResistanceLaw for YieldStress {
 
     fn act(&self, at: &Immersion, _: &Motion, bed: &Surroundings, load: &mut Load) {
         let weight = bed.bulk_density * bed.gravity * at.loaded_area * at.diameter;
-        load.friction += Vec3::new(1.0, 0.0, 1.0) * (self.q * weight);
+        let size = libm::pow(at.diameter / REFERENCE, self.size_exponent - 1.0);
+        load.friction += Vec3::new(1.0, 0.0, 1.0) * (self.q * weight * size);
     }
 }
 

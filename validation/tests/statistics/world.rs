@@ -249,6 +249,7 @@ impl TwoTerm {
                 step,
                 not_testable: None,
                 separable_from: "from others by more runs".into(),
+                form: Vec::new(),
                 unresolved: Vec::new(),
             }
         };

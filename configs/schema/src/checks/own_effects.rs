@@ -19,7 +19,7 @@ pub(super) fn check(resistive: &ResistiveModel<'_>, common: &Common<'_>) {
     let medium = resistive.medium;
     let own = medium.effects.iter().filter_map(|choice| match &choice.effect {
         Effect::Own(own) => Some(own),
-        Effect::Listed(_) => None,
+        Effect::Listed(..) => None,
     });
     for effect in own.chain(&medium.candidates) {
         let conditions = resistive.model.conditions();

@@ -206,7 +206,7 @@ fn effect(table: &TableReader<'_>, space: Space, places: &mut Places) -> Option<
     }
     let (entry, span) = entry(table, Slot::Effect)?;
     let params = table.params(entry.params)?;
-    Some(EffectChoice { effect: Effect::Listed(entry), q: params.get("q"), span })
+    Some(EffectChoice { q: params.get("q"), effect: Effect::Listed(entry, params), span })
 }
 
 /// The effects that a diagnosis tries beside those of the table.
