@@ -97,4 +97,21 @@ mod tests {
         let rate = (deeper.added_mass - here.added_mass) / 1e-7;
         assert!((here.recruitment / rate - 1.0).abs() < 1e-4);
     }
+
+    #[test]
+    fn of_the_momentum_of_new_grains_the_body_gives_its_share() {
+        let bed = surroundings();
+        let at = SPHERE.at(0.01);
+        let at = Immersion { volume_rate: 3.0 * at.section, ..at };
+        let load = |recruitment| {
+            let mut load = Load::default();
+            AddedMass { q: 2.0, recruitment }.act(&at, &sinking(3.0), &bed, &mut load);
+            load
+        };
+        let [all, half, none] = [1.0, 0.5, 0.0].map(load);
+        assert!((half.recruitment / all.recruitment - 0.5).abs() < 1e-12);
+        assert!(none.recruitment.abs() < 1e-300);
+        assert!((all.growth / all.recruitment - 1.0).abs() < 1e-12);
+        assert!((none.growth / all.growth - 1.0).abs() < 1e-12);
+    }
 }

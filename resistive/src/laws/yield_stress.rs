@@ -86,10 +86,36 @@ mod tests {
     fn the_limit_does_not_depend_on_depth_or_speed() {
         let bed = surroundings();
         let (mut here, mut there) = (Load::default(), Load::default());
-        YieldStress { q: 2.0 }.act(&SPHERE.at(0.01), &sinking(1.0), &bed, &mut here);
-        YieldStress { q: 2.0 }.act(&SPHERE.at(0.02), &sinking(3.0), &bed, &mut there);
+        YieldStress { q: 2.0, size_exponent: 1.0 }.act(
+            &SPHERE.at(0.01),
+            &sinking(1.0),
+            &bed,
+            &mut here,
+        );
+        YieldStress { q: 2.0, size_exponent: 1.0 }.act(
+            &SPHERE.at(0.02),
+            &sinking(3.0),
+            &bed,
+            &mut there,
+        );
         let limit = 2.0 * bed.bulk_density * bed.gravity * SPHERE.frontal_area() * 0.0254;
         assert!((here.friction.z - limit).abs() < 1e-12);
         assert_eq!(here, there);
+    }
+
+    #[test]
+    fn a_cohesion_is_the_same_stress_for_every_body() {
+        let bed = surroundings();
+        let small = SPHERE.at(0.01);
+        let large = Immersion { diameter: 3.0 * small.diameter, ..small };
+        let stress = |at: &Immersion, size_exponent| {
+            let mut load = Load::default();
+            YieldStress { q: 2.0, size_exponent }.act(at, &sinking(1.0), &bed, &mut load);
+            load.friction.z / at.loaded_area
+        };
+        assert!((stress(&large, 0.0) / stress(&small, 0.0) - 1.0).abs() < 1e-12);
+        assert!((stress(&large, 1.0) / stress(&small, 1.0) - 3.0).abs() < 1e-12);
+        let cohesion = 2.0 * bed.bulk_density * bed.gravity * REFERENCE;
+        assert!((stress(&small, 0.0) / cohesion - 1.0).abs() < 1e-12);
     }
 }

@@ -34,6 +34,7 @@ pub(crate) const ENTRY: ResistanceEntry = ResistanceEntry {
     params: &[ParamSpec::number("q", "drag in units of rho A v^2 z/D")
         .allowed(Range::closed(0.0, 5.0))
         .usual(0.0, 5.0)],
+    forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(LateDrag { q: given.get("q") }),

@@ -1,12 +1,11 @@
 //! Own effects against those of the table, and what is refused.
 
 use crate::{Load, ResistanceLaw, Space};
-use engine::params::ParamTable;
 
 use std::sync::Arc;
 
+use super::super::Effect;
 use super::super::testing::{SPHERE, sinking, surroundings};
-use super::super::{Coefficients, Effect, find_resistance};
 use super::*;
 
 fn parameter(name: &str, dimension: Dimension, value: Option<f64>) -> OwnParameter {
@@ -46,10 +45,7 @@ fn the_formula_of_a_listed_effect_is_that_effect() {
         ("buoyancy", "q * rho * g * V", Direction::Up),
         ("yield-stress", "q * rho * g * A * D", Direction::Friction),
     ] {
-        let entry = find_resistance(name).expect("a listed effect");
-        let mut numbers = ParamTable::new();
-        numbers.set("q", 0.7);
-        let listed = (entry.build)(&Coefficients::new(numbers));
+        let listed = Effect::listed(name).expect("a listed effect").build(0.7, 1.0);
         let own = own(force, direction).build(0.7, 1.0);
         for (depth, speed) in [(0.003, 2.0), (0.02, 0.5), (0.04, 1e-3)] {
             let (listed, own) = (load(&*listed, depth, speed), load(&*own, depth, speed));
