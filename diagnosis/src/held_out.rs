@@ -139,6 +139,9 @@ pub const WITHIN: f64 = 1.3;
 /// Share of the information on a combination of parameters that has to be left without a condition.
 const ALONE: f64 = 1e-8;
 
+/// A Gauss-Newton step that leaves so many times more of a condition than the fit to all is taken for one too far.
+const FAR: f64 = 2.0;
+
 /// Number of resamples of the conditions, and the least number of conditions to resample.
 const CHOICES: usize = 1000;
 const FEWEST: usize = 3;
@@ -383,7 +386,7 @@ impl Predicted {
     }
 
     /// Every condition that was fitted to, by one Gauss-Newton step without it from the fit of
-    /// `fitted`, under the noise of `noisy`; none where one alone fixes a parameter.
+    /// `fitted`, under the noise of `noisy`, or by a fit where that step goes far; none where one alone fixes a parameter.
     fn left_out(
         bench: &Bench<'_>,
         noisy: &Fitted,
@@ -405,12 +408,40 @@ impl Predicted {
                 continue;
             };
             let step = others.solve(&(&pull - slope.tr_mul(&own)));
-            let residual = own - &slope * step;
+            let stepped = &own - &slope * step;
+            let residual = match stepped.norm() > FAR * own.norm() {
+                true => refitted_without(bench, noisy, fitted, condition).unwrap_or(stepped),
+                false => stepped,
+            };
             let log_density = density(&residual, &(&slope * others.solve(&slope.transpose())));
             predicted.push(Ok(Self { error: weight.colour(&residual), log_density }));
         }
         Ok(predicted)
     }
+}
+
+/// What is left of `condition`, whitened, by a fit to all others from that of `fitted`.
+fn refitted_without(
+    bench: &Bench<'_>,
+    noisy: &Fitted,
+    fitted: &Fitted,
+    condition: usize,
+) -> Option<DVector<f64>> {
+    let (mut conditions, mut weights) = (Vec::new(), Vec::new());
+    let mut own = None;
+    for (&other, weight) in bench.observed.fit.iter().zip(&noisy.weights) {
+        if other == condition {
+            own = Some(weight);
+        } else {
+            conditions.push(other);
+            weights.push(weight.clone());
+        }
+    }
+    let others = Data { conditions: &conditions, weights: &weights, ..bench.data(&noisy.weights) };
+    let point = others.fit(&fitted.fit.point).ok()?.point;
+    let weight = own?;
+    let predicted = weight.predict(&point, bench.forward, condition).ok()?;
+    Some(weight.whiten(&(&bench.observed.conditions[condition].mean - predicted)))
 }
 
 /// The factor of the information `others` on the parameters, if it fixes every combination that `all` fixes: differences
