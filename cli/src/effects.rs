@@ -41,6 +41,8 @@ struct Described {
     signature: &'static str,
     source: &'static str,
     params: &'static [ParamSpec],
+    /// The values of other parameters that a diagnosis tries.
+    forms: &'static [&'static [(&'static str, f64)]],
     channels: Vec<Channel>,
     /// What an expression in place of a parameter may depend on.
     variables: &'static [&'static str],
@@ -111,6 +113,7 @@ impl From<&LawEntry> for Described {
             signature: law.signature,
             source: law.source,
             params: law.params,
+            forms: &[],
             channels: law.channels.to_vec(),
             variables: &[],
             shows_with: Vec::new(),
@@ -132,6 +135,7 @@ impl From<&GrainForceEntry> for Described {
             signature: force.signature,
             source: force.source,
             params: force.params,
+            forms: &[],
             channels: vec![Channel { name: force.name, kind: ChannelKind::Dissipated }],
             variables: &[],
             shows_with: Vec::new(),
@@ -162,6 +166,7 @@ impl From<&ResistanceEntry> for Described {
             signature: law.signature,
             source: law.source,
             params: law.params,
+            forms: law.forms,
             channels: law.accounts.iter().map(|account| account.channel).collect(),
             variables: law.variables,
             shows_with: visible.iter().map(|need| need.describe()).collect(),
@@ -272,6 +277,11 @@ fn as_text(law: &Described) -> String {
         line(name, &format!("from {}", twin.describe()));
     }
     line("diagnosis", &law.on_beds.text());
+    for (index, form) in law.forms.iter().enumerate() {
+        let values: Vec<String> =
+            form.iter().map(|(key, value)| format!("{key} = {value}")).collect();
+        line(if index == 0 { "forms" } else { "" }, &format!("also with {}", values.join(", ")));
+    }
     text.push_str("\nparameters\n");
     let width = law.params.iter().map(|spec| spec.key.len()).max().unwrap_or(0) + 2;
     for spec in law.params {
@@ -331,6 +341,10 @@ fn as_json(law: &Described) -> Value {
         })).collect::<Vec<_>>(),
     });
     object["diagnosis_of_beds"] = law.on_beds.json();
+    if !law.forms.is_empty() {
+        let form = |values: &&[(&str, f64)]| -> Value { values.iter().copied().collect() };
+        object["forms"] = law.forms.iter().map(form).collect();
+    }
     if !law.variables.is_empty() {
         object["variables"] = json!(law.variables);
     }
