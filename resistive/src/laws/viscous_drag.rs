@@ -2,18 +2,24 @@
 
 use crate::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use engine::ledger::{Channel, ChannelKind};
-use engine::params::Range;
+use engine::params::{ParamSpec, Range};
 
 use super::facts::{Facts, Kind, Needs, Twin};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
-/// F = −q ρ A V_s v, V_s = √(g D)   (N)
+/// F = −q ρ A √(g D) (D/D₀)^(n − 1/2) v in the bed, D₀ = 25 mm   (N)
 ///
-/// Source: linear band between quasi-static and quadratic drag, Froude 1 to 5, in published simulations;
-/// amplitudes are scaled so that q is a pure number.
+/// With n = −1 it is the drag of a viscous fluid, which grows with the diameter: 3π η D v gives q = 12 η/(ρ √(g D₀) D₀).
+///
+/// Source: linear band between quasi-static and quadratic drag, Froude 1 to 5, in published simulations, with n = 1/2;
+/// Stokes, Trans. Cambridge Phil. Soc. 9, 8 (1851), for 3π η D v.
 struct ViscousDrag {
     q: f64,
+    size_exponent: f64,
 }
+
+/// D₀ (m).
+const REFERENCE: f64 = 0.025;
 
 const ACCOUNTS: &[Account] = &[Account {
     channel: Channel { name: "viscous-drag", kind: ChannelKind::Dissipated },
@@ -30,18 +36,29 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         separable_from: &[Twin { effect: "yield-stress", any_of: &[Needs::Speeds] }],
     }),
     summary: "A drag in proportion to the speed.",
-    formula: "F = -q rho A sqrt(g D) v",
+    formula: "F = -q rho A sqrt(g D) (D/25 mm)^(n - 1/2) v",
     signature: "depth falls by the same fraction at all speeds, stopping time hardly moves, soft landing",
     source: "term of the resistance law between the quasi-static and the quadratic regime",
-    params: &[amplitude(
-        Range::closed(0.0, 200.0),
-        Range::closed(0.0, 10.0),
-        "drag in units of rho A sqrt(g D) v",
-    )],
-    forms: &[],
+    params: &[
+        amplitude(
+            Range::closed(0.0, 200.0),
+            Range::closed(0.0, 10.0),
+            "drag in units of rho A sqrt(g D) v",
+        ),
+        ParamSpec::number(
+            "size_exponent",
+            "power n of the diameter in the drag over the area: 1/2 for grains, -1 for a viscous fluid",
+        )
+        .or(0.5)
+        .allowed(Range::closed(-2.0, 2.0))
+        .plausible(Range::closed(-1.0, 0.5)),
+    ],
+    forms: &[&[("size_exponent", -1.0)]],
     variables: &[],
     accounts: ACCOUNTS,
-    build: |given| Box::new(ViscousDrag { q: given.get("q") }),
+    build: |given| {
+        Box::new(ViscousDrag { q: given.get("q"), size_exponent: given.get("size_exponent") })
+    },
 };
 
 impl ResistanceLaw for ViscousDrag {
@@ -50,7 +67,8 @@ impl ResistanceLaw for ViscousDrag {
     }
 
     fn act(&self, at: &Immersion, motion: &Motion, bed: &Surroundings, load: &mut Load) {
-        let scale = (bed.gravity * at.diameter).sqrt();
+        let size = libm::pow(at.diameter / REFERENCE, self.size_exponent - 0.5);
+        let scale = (bed.gravity * at.diameter).sqrt() * size;
         load.dynamic -= motion.velocity * (self.q * bed.bulk_density * at.loaded_area * scale);
     }
 }
@@ -60,15 +78,33 @@ mod tests {
     use super::super::testing::{SPHERE, sinking, surroundings};
     use super::*;
 
+    const GRAINS: ViscousDrag = ViscousDrag { q: 0.5, size_exponent: 0.5 };
+
     #[test]
     fn the_force_is_linear_in_the_speed() {
         let bed = surroundings();
         let (mut slow, mut fast) = (Load::default(), Load::default());
-        ViscousDrag { q: 0.5 }.act(&SPHERE.at(0.02), &sinking(1.0), &bed, &mut slow);
-        ViscousDrag { q: 0.5 }.act(&SPHERE.at(0.02), &sinking(3.0), &bed, &mut fast);
+        GRAINS.act(&SPHERE.at(0.02), &sinking(1.0), &bed, &mut slow);
+        GRAINS.act(&SPHERE.at(0.02), &sinking(3.0), &bed, &mut fast);
         let scale = (9.8_f64 * 0.0254).sqrt();
         let expected = 0.5 * bed.bulk_density * SPHERE.frontal_area() * scale;
         assert!((slow.dynamic.z - expected).abs() < 1e-12);
         assert!((fast.dynamic.z - 3.0 * expected).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_viscous_fluid_drags_in_proportion_to_the_diameter() {
+        let bed = surroundings();
+        let viscosity = 0.8;
+        let scale = bed.bulk_density * (bed.gravity * REFERENCE).sqrt() * REFERENCE;
+        let stokes = ViscousDrag { q: 12.0 * viscosity / scale, size_exponent: -1.0 };
+        for diameter in [0.01, 0.03] {
+            let area = std::f64::consts::PI * diameter * diameter / 4.0;
+            let sphere = Immersion { diameter, loaded_area: area, ..SPHERE.at(0.02) };
+            let mut load = Load::default();
+            stokes.act(&sphere, &sinking(2.0), &bed, &mut load);
+            let expected = 3.0 * std::f64::consts::PI * viscosity * diameter * 2.0;
+            assert!((load.dynamic.z - expected).abs() < 1e-12 * expected);
+        }
     }
 }
