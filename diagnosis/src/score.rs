@@ -60,8 +60,6 @@ pub(crate) struct Ranking {
     pub(crate) scores: Vec<Score>,
     /// Probability that the best falls so far by chance.
     pub(crate) p: f64,
-    /// Places in `scores` by rows of the null scores.
-    rows: Vec<usize>,
     null: NullScores,
     /// Candidates with which the model cannot be integrated, and why.
     pub(crate) failed: Vec<(usize, PredictError)>,
@@ -89,11 +87,7 @@ impl Ranking {
             }
             polish(bench, fitted, &mut scores[row]);
         }
-        let mut ranking = Self::ranked(bench, fitted, scores, failed, seed);
-        for (score, &row) in ranking.scores.iter_mut().zip(&ranking.rows) {
-            score.ranked_first = ranking.null.ranked_first(row, score.strength);
-        }
-        ranking
+        Self::ranked(bench, fitted, scores, failed, seed)
     }
 
     /// Of the `marginals` of candidates, which have weights of their own; those of `fitted` say how alike the
@@ -153,16 +147,21 @@ impl Ranking {
             score.strength = score.amplitude().abs() * score.signature.norm / scale.sqrt();
         }
         let rows = one_form_each(bench, &scores, &rows);
+        let effect = |row: usize| &bench.forward.candidates()[scores[row].candidate()].id;
+        let first = rows.iter().map(|&row| {
+            null.ranked_first(row, scores[row].strength, |other| effect(other) == effect(row))
+        });
+        let first: Vec<f64> = first.collect();
+        rows.iter().zip(first).for_each(|(&row, first)| scores[row].ranked_first = first);
         let mut scores: Vec<Option<Score>> = scores.into_iter().map(Some).collect();
         let scores: Vec<Score> = rows.iter().filter_map(|&row| scores[row].take()).collect();
         let p = scores.first().map_or(1.0, |best| null.family_wise_p(best.delta));
-        Self { scores, p, rows, null, failed }
+        Self { scores, p, null, failed }
     }
 
     /// Takes the best out, since the model cannot be integrated around its fit.
     pub(crate) fn give_up_first(&mut self, why: PredictError) {
         let first = self.scores.remove(0);
-        self.rows.remove(0);
         self.failed.push((first.candidate(), why));
         self.p = self.scores.first().map_or(1.0, |best| self.null.family_wise_p(best.delta));
     }

@@ -43,12 +43,17 @@ impl NullScores {
     }
 
     /// Probability that effect `index` has the largest score if it is there at `strength` standard
-    /// errors.
-    pub(crate) fn ranked_first(&self, index: usize, strength: f64) -> f64 {
+    /// errors, itself or in another form (`is_form`).
+    pub(crate) fn ranked_first(
+        &self,
+        index: usize,
+        strength: f64,
+        is_form: impl Fn(usize) -> bool,
+    ) -> f64 {
         let wins = |draw: &&Vec<f64>| {
-            let size = |k: usize| (draw[k] + strength * self.collinearity[(index, k)]).abs();
-            let own = size(index);
-            (0..draw.len()).all(|k| k == index || size(k) < own)
+            let size = |&k: &usize| (draw[k] + strength * self.collinearity[(index, k)]).abs();
+            let largest = (0..draw.len()).max_by(|j, k| size(j).total_cmp(&size(k)));
+            largest.is_some_and(&is_form)
         };
         self.draws.iter().filter(wins).count() as f64 / DRAWS as f64
     }
@@ -111,9 +116,16 @@ mod tests {
     }
 
     #[test]
+    fn an_effect_wins_in_any_of_its_forms() {
+        let twins = pair(1.0);
+        assert!((twins.ranked_first(0, 5.0, |k| k == 0) - 0.5).abs() < 0.03);
+        assert!((twins.ranked_first(0, 5.0, |_| true) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
     fn drawn_and_computed_chances_of_winning_agree() {
         for (cosine, strength) in [(0.0, 2.0), (0.9, 5.0), (-0.8, 3.0)] {
-            let drawn = pair(cosine).ranked_first(0, strength);
+            let drawn = pair(cosine).ranked_first(0, strength, |k| k == 0);
             let computed = beats(cosine, strength);
             // Three standard errors of 10⁴ draws at a half.
             assert!((drawn - computed).abs() < 0.015, "{cosine}: {drawn} {computed}");
