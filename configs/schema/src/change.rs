@@ -48,6 +48,8 @@ pub enum Change {
         /// Below the horizontal (rad).
         angle_rad: f64,
     },
+    /// How deep a drive pushes the intruder (m), in a model with `[intrusion]`.
+    PushedTo(f64),
     /// The spin in the x–z plane (rad/s), counter-clockwise.
     Spin(f64),
     /// Where the centre of the intruder starts (m).
@@ -121,6 +123,7 @@ impl Change {
                 put(start, "speed", number(*speed));
                 put(start, "angle", number(*angle_rad));
             }
+            Self::PushedTo(depth) => put(INTRUSION, "depth", number(*depth)),
             Self::Spin(value) => put(start, "spin", number(*value)),
             Self::X(value) => put(start, "x", number(*value)),
         }

@@ -64,6 +64,11 @@ pub static SHIPPED: &[Shipped] = &[
         text: include_str!("../../cone-3d.toml"),
     },
     Shipped {
+        name: "plate-3d",
+        summary: "A round plate pushed slowly into 18 000 spheres.",
+        text: include_str!("../../plate-3d.toml"),
+    },
+    Shipped {
         name: "two-link-2d",
         summary: "A chain of two links, tips first, into 20 000 discs.",
         text: include_str!("../../two-link-2d.toml"),

@@ -186,6 +186,7 @@ mod tests {
             interval: 1e-3,
             depth: vec![0.0],
             range: vec![0.0],
+            force: Vec::new(),
             stopping_time: None,
             slow_time: None,
             deepest: 1e-3 * depth_mm,

@@ -34,6 +34,9 @@ pub fn observables(
     if layout.along_x {
         numbers.extend(frames.iter().map(|(_, range)| *range));
     }
+    if let Some(curve) = &layout.curve {
+        numbers.extend(curve.at.iter().map(|&depth| record.force_at(depth)));
+    }
     let stop = match set.stop {
         StopDefinition::ComponentZero => record.stopping_time,
         StopDefinition::SpeedFivePercent => record.slow_time,
@@ -54,6 +57,7 @@ pub fn observables(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::observable::{Curve, Observable};
     use crate::test_sets::{condition, set};
     use measurements::Kind;
 
@@ -62,6 +66,7 @@ mod tests {
             interval: 0.01,
             depth: vec![0.0, 0.01, 0.018],
             range: vec![0.0, 0.005, 0.006],
+            force: vec![0.0, 2.0, 3.0],
             stopping_time: Some(0.019),
             slow_time: Some(0.017),
             deepest: 0.0181,
@@ -87,6 +92,17 @@ mod tests {
         assert!(close(at(&record, 1.0, &condition, 9.81), (0.018, 0.006)));
         let flight = at(&record, -0.1, &condition, 9.81);
         assert!((flight.0 + 0.1 - 0.04905).abs() < 1e-15 && flight.1.abs() < 1e-16, "{flight:?}");
+    }
+
+    #[test]
+    fn forces_are_linear_between_depths_nothing_above_the_bed_and_the_last_below() {
+        let curve = Curve { observable: Observable::Force, at: vec![-0.001, 0.005, 0.014, 0.1] };
+        let layout = Layout { curve: Some(curve), ..Layout::default() };
+        let set = set(Kind::ForceDepth, vec![condition(0.05, 90.0)], Vec::new());
+        let found = observables(&record(), &layout, &set.conditions[0], &set);
+        // Quotients of a few rounded decimals.
+        let expected = DVector::from_vec(vec![0.0, 1.0, 2.5, 3.0]);
+        assert!((&found - expected).amax() < 1e-14, "{found}");
     }
 
     #[test]

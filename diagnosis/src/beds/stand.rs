@@ -5,7 +5,7 @@ use std::sync::Arc;
 use configs::{Change, ConfigError, GrainMedium, GrainModel, Medium, Model};
 use engine::bed::random;
 use engine::grains::Space;
-use measurements::{Condition, Geometry, MeasurementSet};
+use measurements::{Condition, Geometry, Kind, MeasurementSet};
 use rand::RngExt;
 use runner::beds::Job;
 use thiserror::Error;
@@ -36,13 +36,40 @@ pub enum StandError {
         /// Name of the model.
         model: String,
     },
-    /// Forces over depth, which beds do not answer.
-    #[error(
-        "`{model}` is a bed of grains; forces and accelerations are compared with resistive models alone"
-    )]
-    Curves {
+    /// Accelerations, which beds do not answer.
+    #[error("`{model}` is a bed of grains; accelerations are compared with resistive models alone")]
+    Accelerations {
         /// Name of the model.
         model: String,
+    },
+    /// Pushes before a model of impacts, or the other way round.
+    #[error("the set holds {set_holds}, and `{model}` has [{table}]; it needs [{wanted}]")]
+    Start {
+        /// Name of the model.
+        model: String,
+        /// What the set measured.
+        set_holds: &'static str,
+        /// The table of the model.
+        table: &'static str,
+        /// The one that it needs.
+        wanted: &'static str,
+    },
+    /// A run that ends before its push.
+    #[error(
+        "condition {condition}: a push of {depth} m takes {wanted:.3} s, and `{model}` runs for {duration} s; write a longer \
+         [run] duration, or a faster [intrusion] speed"
+    )]
+    Short {
+        /// Id of the condition.
+        condition: String,
+        /// How deep it goes (m).
+        depth: f64,
+        /// How long that takes (s).
+        wanted: f64,
+        /// Name of the model.
+        model: String,
+        /// How long it runs (s).
+        duration: f64,
     },
     /// Discs before a set in space, or the other way round.
     #[error("`{model}` is a bed in {model_space}, and the set is one in {set_space}")]
@@ -84,6 +111,8 @@ pub struct Stand<'a> {
     x_range: (f64, f64),
     /// Expected length of the impact of every condition (s).
     expected: Vec<f64>,
+    /// How deep every condition is pushed (m), where it is.
+    depths: Vec<Option<f64>>,
 }
 
 impl<'a> Stand<'a> {
@@ -95,8 +124,17 @@ impl<'a> Stand<'a> {
         let Medium::Grains(medium) = &model.medium else {
             return Err(StandError::NoGrains { model: model.run.name.clone() });
         };
-        if set.kind.curve().is_some() {
-            return Err(StandError::Curves { model: model.run.name.clone() });
+        let (set_holds, wanted) = match set.kind {
+            Kind::Acceleration => {
+                return Err(StandError::Accelerations { model: model.run.name.clone() });
+            }
+            Kind::ForceDepth => ("pushes", "intrusion"),
+            Kind::Trajectory | Kind::Scalar => ("impacts", "impact"),
+        };
+        let table = model.impact.table();
+        if table != wanted {
+            let model = model.run.name.clone();
+            return Err(StandError::Start { model, set_holds, table, wanted });
         }
         let of_set = match set.bed.geometry {
             Geometry::Planar => Space::Planar,
@@ -111,14 +149,39 @@ impl<'a> Stand<'a> {
         let widest = set.conditions.iter().map(|one| one.diameter).fold(0.0, f64::max);
         let x_range = medium.start.x_range;
         let n_places = ((x_range.1 - x_range.0) / (APART * widest)).floor() as usize;
-        Ok(Self {
+        let mut stand = Self {
             model,
             medium,
             set,
             n_places: (1 + n_places).min(MOST_PLACES),
             x_range,
-            expected: (0..set.conditions.len()).map(|at| expected(model, set, at)).collect(),
-        })
+            expected: Vec::new(),
+            depths: (0..set.conditions.len()).map(|at| depth_of_push(set, at)).collect(),
+        };
+        stand.expected = (0..set.conditions.len()).map(|at| stand.expected(at)).collect();
+        let duration = model.run.duration;
+        let pushes = stand.depths.iter().zip(&stand.expected).zip(&set.conditions);
+        for ((depth, &wanted), condition) in pushes {
+            if let Some(depth) = depth.filter(|_| wanted > duration) {
+                let (condition, model) = (condition.id.clone(), model.run.name.clone());
+                return Err(StandError::Short { condition, depth, wanted, model, duration });
+            }
+        }
+        Ok(stand)
+    }
+
+    /// The speed of the push under `condition` (m/s): the one of the model where that is faster. Grains forget a slow
+    /// speed, and a push of minutes would take days.
+    fn speed_of_push(&self, condition: &Condition) -> f64 {
+        condition.speed.max(self.model.impact.speed)
+    }
+
+    /// How long the impact or the push of condition `at` is expected to take (s).
+    fn expected(&self, at: usize) -> f64 {
+        let Some(depth) = self.depths[at] else { return expected(self.model, self.set, at) };
+        let condition = &self.set.conditions[at];
+        let sinking = self.speed_of_push(condition) * libm::sin(condition.angle_deg.to_radians());
+        depth / sinking
     }
 
     /// The model, as what it is.
@@ -167,7 +230,12 @@ impl<'a> Stand<'a> {
         let mut during = before.clone();
         during.extend(variation.during.iter().cloned());
         let of_condition = &self.set.conditions[condition];
-        during.extend(changes_of(of_condition));
+        during.extend(changes_of(of_condition, self.model));
+        if let Some(depth) = self.depths[condition] {
+            let angle_rad = of_condition.angle_deg.to_radians();
+            during.push(Change::Velocity { speed: self.speed_of_push(of_condition), angle_rad });
+            during.push(Change::PushedTo(depth));
+        }
         during.push(Change::X(self.x(draw)));
         let with = |changes: &[Change]| {
             self.grains()
@@ -222,27 +290,37 @@ impl<'a> Stand<'a> {
 }
 
 /// What of a model the condition decides.
-fn changes_of(condition: &Condition) -> Vec<Change> {
+fn changes_of(condition: &Condition, model: &Model) -> Vec<Change> {
     let Condition { speed, angle_deg, .. } = *condition;
     let sizes = [
         ("diameter", Some(condition.diameter)),
         ("length", condition.length),
         ("height", condition.height),
-        ("shaft_diameter", condition.shaft_diameter),
+        // The wall above the body stands for its rod: both keep grains off its top, and neither is felt.
+        ("shaft_diameter", condition.shaft_diameter.filter(|_| !model.intruder.recessive_wall)),
         ("apex_angle", condition.apex_deg.map(f64::to_radians)),
         ("link_angle", condition.link_angle_deg.map(f64::to_radians)),
     ];
     let sizes = sizes.into_iter().filter_map(|(key, size)| Some((key, size?))).collect();
     let shape = condition.shape.clone();
+    // A push may leave the mass out: the drive carries the body.
+    let mass = if condition.mass > 0.0 { condition.mass } else { model.intruder.mass };
     let mut changes = vec![
         Change::Velocity { speed, angle_rad: angle_deg.to_radians() },
-        Change::Intruder { shape, sizes, mass: condition.mass },
+        Change::Intruder { shape, sizes, mass },
     ];
     if condition.spin != 0.0 {
         // The set counts rolling forward, the model counter-clockwise.
         changes.push(Change::Spin(-condition.spin));
     }
     changes
+}
+
+/// How deep (m) the pushes of condition `condition` of `set` are to go: as deep as one was measured.
+fn depth_of_push(set: &MeasurementSet, condition: usize) -> Option<f64> {
+    let runs = set.runs.iter().filter(|run| run.condition == condition);
+    let deepest = runs.flat_map(|run| &run.samples).map(|sample| sample.at).fold(0.0, f64::max);
+    (set.kind == Kind::ForceDepth && deepest > 0.0).then_some(deepest)
 }
 
 /// How long the impact of condition `condition` is expected to take (s).

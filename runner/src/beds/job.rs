@@ -18,7 +18,7 @@ use crate::run::{Control, bed_key, prepare, result_key};
 const WAIT: Duration = Duration::from_millis(50);
 
 /// Counts the changes of what is kept of an impact.
-const KEPT: u32 = 1;
+const KEPT: u32 = 2;
 
 /// One impact: a model of grains, with the speed, the angle and the place of its `[impact]`.
 #[derive(Clone, Debug)]
@@ -81,7 +81,8 @@ impl Job {
         let configs::Impact { speed, angle_rad, .. } = self.model.impact;
         let condition = Condition { speed, angle_rad, position_index: 0, x: StartX::At(x) };
         let mut simulation = grains.simulation(&bed.resting, &condition)?;
-        let mut recorder = Recorder::new(&simulation);
+        let is_pushed = self.model.impact.pushed_to.is_some();
+        let mut recorder = Recorder::new(&simulation, is_pushed);
         recorder.observe(&simulation);
         while !simulation.is_over() {
             simulation.advance()?;

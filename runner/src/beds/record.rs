@@ -18,6 +18,9 @@ pub struct Record {
     pub depth: Vec<f64>,
     /// Horizontal distance along the motion (m), likewise.
     pub range: Vec<f64>,
+    /// Force of the grains against the velocity of an intruder that a drive pushes (N), the mean since the sample before;
+    /// empty where the intruder moves freely.
+    pub force: Vec<f64>,
     /// Later of the first zeros of the velocity components (s), if the intruder stopped.
     pub stopping_time: Option<f64>,
     /// When the speed first fell below 5 % of the impact speed (s), if it did.
@@ -49,14 +52,18 @@ pub(super) struct Recorder {
     start: f64,
     depth: Vec<f64>,
     range: Vec<f64>,
+    /// What a push has met, by sample (N).
+    force: Vec<f64>,
+    /// Sum of the forces since the last sample (N), and how many they are, where a drive pushes.
+    since: Option<(f64, u32)>,
     /// Speed at the step before (m/s).
     before: f64,
     slow: Option<f64>,
 }
 
 impl Recorder {
-    /// Of an impact that has not moved yet.
-    pub(super) fn new(simulation: &Simulation) -> Self {
+    /// Of an impact that has not moved yet, or of a push.
+    pub(super) fn new(simulation: &Simulation, is_pushed: bool) -> Self {
         let body = &simulation.intruder().bodies()[0];
         let speed = body.velocity.norm();
         let every = (SAMPLE / simulation.clock().dt).round().max(1.0) as u64;
@@ -66,6 +73,8 @@ impl Recorder {
             start: body.position.x,
             depth: Vec::new(),
             range: Vec::new(),
+            force: Vec::new(),
+            since: is_pushed.then_some((0.0, 0)),
             before: speed,
             slow: None,
         }
@@ -81,9 +90,16 @@ impl Recorder {
             self.slow = Some(clock.time() - (1.0 - share) * clock.dt);
         }
         self.before = now;
+        if let Some((sum, n)) = &mut self.since {
+            *sum -= body.contact.force.dot(&body.velocity) / now;
+            *n += 1;
+        }
         if clock.step.is_multiple_of(self.every) {
             self.depth.push(simulation.surface() - body.lowest());
             self.range.push(body.position.x - self.start);
+            if let Some((sum, n)) = &mut self.since {
+                self.force.push(std::mem::take(sum) / f64::from(std::mem::take(n)));
+            }
         }
     }
 
@@ -96,6 +112,7 @@ impl Recorder {
             interval: self.every as f64 * clock.dt,
             depth: self.depth,
             range: self.range,
+            force: self.force,
             stopping_time: stopping.stopping_time(),
             slow_time: self.slow,
             deepest: stopping.depth(),
@@ -124,6 +141,22 @@ impl Record {
         let share = place - at as f64;
         let between = |of: &[f64]| of[at] + share * (of[at + 1] - of[at]);
         (between(&self.depth), between(&self.range))
+    }
+
+    /// Force (N) that a push meets `depth` (m) deep: linear between samples, nothing above the first, the last below all.
+    #[must_use]
+    pub fn force_at(&self, depth: f64) -> f64 {
+        // A push sinks at one speed, so that depths rise.
+        let after = self.depth.partition_point(|&one| one < depth);
+        match (after.checked_sub(1), self.depth.get(after)) {
+            (None, _) => 0.0,
+            (Some(before), None) => self.force.get(before).copied().unwrap_or(0.0),
+            (Some(before), Some(below)) => {
+                let above = self.depth[before];
+                let share = (depth - above) / (below - above);
+                self.force[before] + share * (self.force[after] - self.force[before])
+            }
+        }
     }
 
     /// Depth and range (m) at `times` (s) since first contact.

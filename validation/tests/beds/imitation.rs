@@ -101,6 +101,7 @@ impl Imitation {
         Record {
             interval: EVERY as f64 * STEP,
             range: vec![0.0; depth.len()],
+            force: Vec::new(),
             depth,
             stopping_time: Some(end),
             slow_time: slow,

@@ -15,6 +15,7 @@ pub(crate) fn record(interval: f64, range: Vec<f64>, depth: Vec<f64>) -> Record 
         deepest: depth.iter().copied().fold(0.0, f64::max),
         reached: range.last().copied().unwrap_or(0.0),
         range,
+        force: Vec::new(),
         depth,
         end,
         impact_energy: 0.0,

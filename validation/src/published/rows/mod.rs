@@ -17,6 +17,7 @@ mod e11_course;
 mod e12_vertical_force;
 mod e13_hemisphere;
 mod e14_chain_forces;
+mod e15_intrusion;
 
 /// Every row, in the order of its number.
 pub static ROWS: &[&Row] = &[
@@ -34,6 +35,7 @@ pub static ROWS: &[&Row] = &[
     &e12_vertical_force::ROW,
     &e13_hemisphere::ROW,
     &e14_chain_forces::ROW,
+    &e15_intrusion::ROW,
 ];
 
 #[cfg(test)]
