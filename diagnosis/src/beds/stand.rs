@@ -170,17 +170,20 @@ impl<'a> Stand<'a> {
         Ok(stand)
     }
 
-    /// The speed of the push under `condition` (m/s): the one of the model where that is faster. Grains forget a slow
-    /// speed, and a push of minutes would take days.
-    fn speed_of_push(&self, condition: &Condition) -> f64 {
-        condition.speed.max(self.model.impact.speed)
+    /// The speed of the body under `condition` (m/s); of a push, the one of the model where that is faster. Grains forget
+    /// a slow speed, and a push of minutes would take days.
+    fn speed(&self, condition: &Condition) -> f64 {
+        match self.set.kind {
+            Kind::ForceDepth => condition.speed.max(self.model.impact.speed),
+            _ => condition.speed,
+        }
     }
 
     /// How long the impact or the push of condition `at` is expected to take (s).
     fn expected(&self, at: usize) -> f64 {
         let Some(depth) = self.depths[at] else { return expected(self.model, self.set, at) };
         let condition = &self.set.conditions[at];
-        let sinking = self.speed_of_push(condition) * libm::sin(condition.angle_deg.to_radians());
+        let sinking = self.speed(condition) * libm::sin(condition.angle_deg.to_radians());
         depth / sinking
     }
 
@@ -230,12 +233,8 @@ impl<'a> Stand<'a> {
         let mut during = before.clone();
         during.extend(variation.during.iter().cloned());
         let of_condition = &self.set.conditions[condition];
-        during.extend(changes_of(of_condition, self.model));
-        if let Some(depth) = self.depths[condition] {
-            let angle_rad = of_condition.angle_deg.to_radians();
-            during.push(Change::Velocity { speed: self.speed_of_push(of_condition), angle_rad });
-            during.push(Change::PushedTo(depth));
-        }
+        during.extend(self.changes_of(of_condition));
+        during.extend(self.depths[condition].map(Change::PushedTo));
         during.push(Change::X(self.x(draw)));
         let with = |changes: &[Change]| {
             self.grains()
@@ -279,6 +278,32 @@ impl<'a> Stand<'a> {
         Ok(self.grains().with(&changes)?.resolved_toml().to_owned())
     }
 
+    /// What of a model the condition decides.
+    fn changes_of(&self, condition: &Condition) -> Vec<Change> {
+        let model = self.model;
+        let (speed, angle_rad) = (self.speed(condition), condition.angle_deg.to_radians());
+        let sizes = [
+            ("diameter", Some(condition.diameter)),
+            ("length", condition.length),
+            ("height", condition.height),
+            // The wall above the body stands for its rod: both keep grains off its top, and neither is felt.
+            ("shaft_diameter", condition.shaft_diameter.filter(|_| !model.intruder.recessive_wall)),
+            ("apex_angle", condition.apex_deg.map(f64::to_radians)),
+            ("link_angle", condition.link_angle_deg.map(f64::to_radians)),
+        ];
+        let sizes = sizes.into_iter().filter_map(|(key, size)| Some((key, size?))).collect();
+        let shape = condition.shape.clone();
+        // A push may leave the mass out: the drive carries the body.
+        let mass = if condition.mass > 0.0 { condition.mass } else { model.intruder.mass };
+        let mut changes =
+            vec![Change::Velocity { speed, angle_rad }, Change::Intruder { shape, sizes, mass }];
+        if condition.spin != 0.0 {
+            // The set counts rolling forward, the model counter-clockwise.
+            changes.push(Change::Spin(-condition.spin));
+        }
+        changes
+    }
+
     /// Where the intruder lands (m): somewhere in its part of the range, drawn with the seed.
     fn x(&self, draw: Draw) -> f64 {
         let (from, to) = self.x_range;
@@ -287,33 +312,6 @@ impl<'a> Stand<'a> {
         let share = (draw.place as f64 + 0.25 + 0.5 * u) / self.n_places as f64;
         from + share * (to - from)
     }
-}
-
-/// What of a model the condition decides.
-fn changes_of(condition: &Condition, model: &Model) -> Vec<Change> {
-    let Condition { speed, angle_deg, .. } = *condition;
-    let sizes = [
-        ("diameter", Some(condition.diameter)),
-        ("length", condition.length),
-        ("height", condition.height),
-        // The wall above the body stands for its rod: both keep grains off its top, and neither is felt.
-        ("shaft_diameter", condition.shaft_diameter.filter(|_| !model.intruder.recessive_wall)),
-        ("apex_angle", condition.apex_deg.map(f64::to_radians)),
-        ("link_angle", condition.link_angle_deg.map(f64::to_radians)),
-    ];
-    let sizes = sizes.into_iter().filter_map(|(key, size)| Some((key, size?))).collect();
-    let shape = condition.shape.clone();
-    // A push may leave the mass out: the drive carries the body.
-    let mass = if condition.mass > 0.0 { condition.mass } else { model.intruder.mass };
-    let mut changes = vec![
-        Change::Velocity { speed, angle_rad: angle_deg.to_radians() },
-        Change::Intruder { shape, sizes, mass },
-    ];
-    if condition.spin != 0.0 {
-        // The set counts rolling forward, the model counter-clockwise.
-        changes.push(Change::Spin(-condition.spin));
-    }
-    changes
 }
 
 /// How deep (m) the pushes of condition `condition` of `set` are to go: as deep as one was measured.

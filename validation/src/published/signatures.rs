@@ -62,8 +62,8 @@ const fn signature(
 
 const NO_AIR: Answer = Answer::None(Verdict::NotModelled, "plunge has no air flow between grains");
 const NO_WATER: Answer = Answer::None(Verdict::NotModelled, "plunge has no saturated grains");
-const NO_DRIVE: Answer =
-    Answer::None(Verdict::NotModelled, "plunge drives no intruder at a set speed");
+const NO_LIFT: Answer =
+    Answer::None(Verdict::NotModelled, "plunge drives an intruder at a constant speed alone");
 const NO_WHEELS: Answer = Answer::None(Verdict::NotModelled, "plunge has no wheels");
 const NO_NUMBERS: Answer =
     Answer::None(Verdict::NotPublished, "its coefficients are not published");
@@ -185,7 +185,7 @@ static SIGNATURES: &[Signature] = &[
         "intruder at constant speed",
         "no depth dependence before a crossover time",
         "Roth et al. 2019",
-        NO_DRIVE,
+        NOT_RUN,
     ),
     signature(
         "disc into discs, fast",
@@ -209,7 +209,7 @@ static SIGNATURES: &[Signature] = &[
         "convex intruder, slow",
         "force not linear in depth, then linear",
         "Kang et al. 2018",
-        NO_DRIVE,
+        NOT_RUN,
     ),
     signature(
         "marble grazing sand",
@@ -230,7 +230,7 @@ static SIGNATURES: &[Signature] = &[
         E10,
     ),
     signature("wheel, fast", "v² drag alone sinks the wrong way", "Agarwal et al. 2021", NO_WHEELS),
-    signature("lifted plate", "drag grows with acceleration", "Athani & Rognon 2019", NO_DRIVE),
+    signature("lifted plate", "drag grows with acceleration", "Athani & Rognon 2019", NO_LIFT),
     signature(
         "penetrometer on a beach",
         "drop height linear in depth squared",
