@@ -32,6 +32,9 @@ pub mod defaults {
 const NAMED: f64 = 4.0;
 const WORTH_IT: f64 = 2.0;
 
+/// Standard deviations of what is known of a shared parameter beyond which it explains nothing by itself.
+const STRAINED: f64 = 3.0;
+
 /// Beds of one preparation that are looked at.
 const BEDS: usize = 3;
 
@@ -383,19 +386,53 @@ fn words(changes: &[Change]) -> String {
     changes.iter().map(word).collect::<Vec<_>>().join(", ")
 }
 
-/// The differences and what the fit finds of the packing as one list, named where they are beyond their errors.
+/// Whether `value` is farther from what is known beforehand than one may expect.
+pub(super) fn is_far(prior: Prior, value: f64) -> bool {
+    (value - prior.mean).abs() > STRAINED * prior.sigma
+}
+
+/// The differences and what the fit finds of the packing as one list, named where they are beyond their errors. A packing
+/// that contradicts what is known of it beforehand is not: then something else acts like it.
 pub(super) fn listed(
     preparation: &Preparation,
     mut fitted: Vec<ApparatusError>,
 ) -> Vec<ApparatusError> {
     for one in &mut fitted {
+        let is_possible = preparation.packing.is_none_or(|prior| !is_far(prior, one.value));
         one.value += preparation.moved;
         // Unlike an error of the apparatus, another bed is named however small the difference.
-        one.named = one.se.is_some_and(|se| Known { value: one.value, se }.is_beyond(NAMED));
+        let is_other = one.se.is_some_and(|se| Known { value: one.value, se }.is_beyond(NAMED));
+        one.named = is_possible && is_other;
     }
     let others = preparation.differences.iter();
     let others = others.filter(|one| fitted.iter().all(|other| other.id != one.id)).cloned();
     let others: Vec<ApparatusError> = others.collect();
     fitted.extend(others);
     fitted
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_packing_that_the_set_rules_out_is_not_named() {
+        // Five standard errors from that of the model, in a bed that is weighed and in one that is not.
+        let fitted = || Known { value: 0.0086, se: 0.0016 }.named("packing", "1");
+        for (sigma, is_named) in [(0.0025, false), (defaults::PACKING, true)] {
+            let packing = Some(Prior { mean: 0.0, sigma });
+            let preparation = Preparation { packing, ..Preparation::default() };
+            let [one] = &listed(&preparation, vec![fitted()])[..] else { panic!("one of one") };
+            assert_eq!(one.named, is_named, "{sigma}");
+        }
+        // Where the model was prepared to another packing, that counts into the difference and not against it.
+        let preparation = Preparation {
+            packing: Some(Prior { mean: 0.0, sigma: 0.0025 }),
+            moved: 0.02,
+            ..Preparation::default()
+        };
+        let still = Known { value: 0.001, se: 0.0016 }.named("packing", "1");
+        let [one] = &listed(&preparation, vec![still])[..] else { panic!("one of one") };
+        assert!(one.named && (one.value - 0.021).abs() < 1e-12);
+    }
 }

@@ -13,7 +13,7 @@ use super::found::{BedDiagnosis, change_at};
 use super::line_search::{Against, LineSearch};
 use super::observables::observables;
 use super::plan::{LEADERS, Plan, SEARCHES, SIDE_DRAWS};
-use super::preparation::{Known, Preparation, at_level, listed};
+use super::preparation::{Known, Preparation, at_level, is_far, listed};
 use super::response::Response;
 use super::screening::screened;
 use super::shared::{Column, Shared};
@@ -43,9 +43,6 @@ const LEAST_DIFFERENCE: f64 = 0.002;
 
 /// Farthest that a packing fraction is searched from what is known of it.
 const MOST_PACKING: f64 = 0.2;
-
-/// Standard deviations of what is known of a shared parameter beyond which it explains nothing by itself.
-const STRAINED: f64 = 3.0;
 
 /// Draws of a comparison.
 pub const COMPARED: usize = 6;
@@ -215,6 +212,9 @@ impl Work<'_> {
         );
         if is_nothing && diagnosis.preparation.iter().any(|one| one.named) {
             diagnosis.verdict = Verdict::ExplainedByPreparation;
+        } else if diagnosis.verdict == Verdict::ExplainedByPreparation {
+            // Only a bed that the set rules out would explain what no effect is large enough for.
+            diagnosis.verdict = Verdict::BelowNoise;
         }
         diagnosis.warnings.splice(0..0, preparation.sentences.iter().cloned());
         let changes = preparation.changes;
@@ -531,7 +531,7 @@ pub fn unaffordable(plan: &Plan) -> Diagnosis {
 fn is_strained(forward: &BedForward, fit: &Fit) -> bool {
     let each = Forward::parameters(forward).iter().zip(&fit.point.parameters);
     let mut known = each.filter_map(|(one, value)| one.prior.map(|prior| (prior, value)));
-    known.any(|(prior, value)| (value - prior.mean).abs() > STRAINED * prior.sigma)
+    known.any(|(prior, value)| is_far(prior, *value))
 }
 
 /// Whether a verdict names effects.

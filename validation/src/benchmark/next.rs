@@ -1,5 +1,6 @@
-//! Sets that leave several effects, measured further: under recommended conditions, under those of which the effects
-//! expect most different things, and under conditions drawn from the same grid.
+//! Sets that leave several effects, told apart neither by what is named nor by what is below the noise, measured further:
+//! under recommended conditions, under those of which the effects expect most different things, and under conditions
+//! drawn from the same grid.
 
 use configs::Model;
 use diagnosis::bench::{Bench, DEFAULT_SEED};
@@ -46,7 +47,7 @@ enum Choice {
 }
 
 impl Resolved {
-    /// Measures `set` further in the world of `plan`; none if it leaves not several effects.
+    /// Measures `set` further in the world of `plan`; none if nothing is recommended, because it leaves one effect or none.
     ///
     /// # Errors
     /// If a diagnosis fails, or a sphere does not stop.
@@ -56,10 +57,7 @@ impl Resolved {
         set: &MeasurementSet,
         model: &Model,
     ) -> Result<Option<Self>, String> {
-        let (first, next) = look(set, model)?;
-        let Some(next) = next.filter(|_| first.verdict == Verdict::NotSeparable) else {
-            return Ok(None);
-        };
+        let (_, Some(next)) = look(set, model)? else { return Ok(None) };
         let further = |choice: Choice| -> Result<bool, String> {
             let mut chance = Chance::new(plan.seed + STREAM * (1 + choice as u64));
             let mut set = set.clone();

@@ -80,7 +80,7 @@ pub enum Row {
     Repeats,
     /// Nothing, listed effects and one outside the list, before apparatus that is not as its file says.
     Apparatus,
-    /// Sets that leave several effects, with one and two more conditions.
+    /// Sets that leave several effects, with two more conditions.
     Next,
     /// Nothing, listed effects and strong ones outside the list, in beds that scatter little.
     Beyond,
@@ -273,8 +273,8 @@ impl Size {
             }
             Row::Next => {
                 let designs = [Design::vertical(), Design::one_intruder()];
-                // Two in five of these leave several effects: forty sets to be extended.
-                let draws = 0..self.share(5);
+                // One in three of these leaves several effects: eighty sets to be extended.
+                let draws = 0..self.share(13);
                 // Every set is a world of its own, whichever design it is seen through.
                 draws
                     .flat_map(|draw| designs.iter().enumerate().map(move |two| (draw, two)))
@@ -421,7 +421,7 @@ mod tests {
     #[test]
     fn sets_to_be_extended_are_drawn_only_where_they_are_asked_for() {
         let size = Size { draws: 3, rows: vec![Row::Next] };
-        assert_eq!(size.plans(Seeds::Development).len(), 100);
+        assert_eq!(size.plans(Seeds::Development).len(), 260);
         let tables = Size::full().plans(Seeds::Development);
         assert!(tables.iter().all(|plan| plan.row != Row::Next));
     }

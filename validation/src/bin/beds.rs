@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fs;
 use std::io::Write;
 use std::num::NonZero;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use diagnosis::beds::Wish;
@@ -13,17 +13,20 @@ use lexopt::Parser;
 use lexopt::prelude::{Long, Short, ValueExt};
 use runner::beds::Place;
 use runner::{Elsewhere, Unattended};
-use validation::benchmark::beds::{Case, Outcome, all, prepared, quick, table};
+use validation::benchmark::beds::{Case, Outcome, all, by_lammps, prepared, quick, table};
 use validation::command::{conclude, on};
+use validation::speed::lammps::Lammps;
 
 const HELP: &str = "\
 How often the diagnosis of a bed of grains names what is hidden in it.
 
-Usage: cargo xtask bench beds [--quick | --prepared] [--draws N] [--minutes N] [--threads N] [--on WHERE]
+Usage: cargo xtask bench beds [--quick | --prepared | --lammps] [--draws N] [--minutes N] [--threads N] [--on WHERE]
                              [--cache DIR] [--out FILE]
 
   --quick      small beds: every preparation with nothing hidden, two listed effects, one that is not listed
   --prepared   small beds, prepared in seven ways, weighed or not, with nothing hidden and with two effects
+  --lammps     small beds that LAMMPS rains and hits, with nothing, two effects, and one that is not listed;
+               it is installed below target/peers, unless PLUNGE_LAMMPS names an lmp
   --draws N    draws of every case (2)
   --minutes N  impacts of one diagnosis at most, as estimated (as long as the largest plan takes)
   --threads N  impacts at a time (one per core)
@@ -64,6 +67,7 @@ fn parse(mut parser: Parser) -> Result<Option<Wanted>, lexopt::Error> {
         match argument {
             Long("quick") => list = |_| quick(),
             Long("prepared") => list = prepared,
+            Long("lammps") => list = by_lammps,
             Long("draws") => draws = parser.value()?.parse()?,
             Long("minutes") => minutes = parser.value()?.parse()?,
             Long("threads") => wanted.threads = Some(parser.value()?.parse()?),
@@ -89,13 +93,17 @@ fn bench(wanted: &Wanted, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error
     let text = fs::read_to_string(&wanted.out).unwrap_or_default();
     let mut known: Vec<Outcome> =
         text.lines().map(serde_json::from_str).collect::<Result<_, _>>()?;
+    let is_by_lammps = wanted.cases.iter().any(|case| case.is_by_lammps);
+    let lammps =
+        is_by_lammps.then(|| Lammps::find_or_install(Path::new("target/peers"))).transpose()?;
+    let by = lammps.as_ref().map(|lammps| (lammps, Path::new("target/bench/worlds")));
     let mut outcomes = Vec::with_capacity(wanted.cases.len());
     for case in &wanted.cases {
         let same = |one: &&Outcome| one.hidden == case.name() && one.seed == case.seed;
         let outcome = match known.iter().find(same) {
             Some(outcome) => outcome.clone(),
             None => {
-                let outcome = case.run(&place, &wanted.wish)?;
+                let outcome = case.run(&place, &wanted.wish, by)?;
                 known.push(outcome.clone());
                 keep(&wanted.out, &known)?;
                 outcome
@@ -112,7 +120,7 @@ fn bench(wanted: &Wanted, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error
 }
 
 /// Writes the outcomes so far, whole or not at all.
-fn keep(path: &std::path::Path, outcomes: &[Outcome]) -> Result<(), Box<dyn Error>> {
+fn keep(path: &Path, outcomes: &[Outcome]) -> Result<(), Box<dyn Error>> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder)?;
     }

@@ -104,6 +104,16 @@ impl Lammps {
         self.mpirun.is_some()
     }
 
+    /// Has it read `input` in `folder`, to the end.
+    ///
+    /// # Errors
+    /// If LAMMPS fails.
+    pub fn read(&self, folder: &Path, input: &str) -> Result<(), SpeedError> {
+        let mut command = Command::new(&self.program);
+        command.current_dir(folder).env("OMP_NUM_THREADS", "1");
+        said(command.args(["-in", input, "-log", "none"])).map(drop)
+    }
+
     /// Steps the deck in `folder`.
     ///
     /// # Errors

@@ -11,7 +11,7 @@ fn outcome(hidden: Hidden, runs: f64) -> Outcome {
     let impacts = Imitation { beds: 0.05, runs, fades: false };
     // Of a bed that is not weighed, another packing could explain much of what rolling resistance does.
     let case = Case { is_weighed: true, ..Case::alike(hidden, 0) };
-    case.run(&impacts, &Wish::default()).unwrap()
+    case.run(&impacts, &Wish::default(), None).unwrap()
 }
 
 #[test]
@@ -36,7 +36,7 @@ fn what_has_impacts_on_fresh_beds_miss_by_more_than_without_it_is_not_named() {
     let impacts = Imitation { beds: 0.05, runs: 0.02, fades: true };
     let hidden = Hidden::Switch("rolling-resistance", 0.2);
     let case = Case { is_weighed: true, ..Case::alike(hidden, 0) };
-    let one = case.run(&impacts, &Wish::default()).unwrap();
+    let one = case.run(&impacts, &Wish::default(), None).unwrap();
     assert!(one.first, "{one:?}");
     assert_eq!((one.verdict.as_str(), one.named.len()), ("none-of-the-candidates", 0), "{one:?}");
 }
@@ -46,7 +46,7 @@ fn a_budget_that_pays_for_nothing_is_said_to_be_too_small() {
     let impacts = Imitation { beds: 0.05, runs: 0.02, fades: false };
     let wish = Wish { budget: Some(1e-3), ..Wish::default() };
     let case = Case::alike(Hidden::Nothing, 0);
-    let one = case.run(&impacts, &wish).unwrap();
+    let one = case.run(&impacts, &wish, None).unwrap();
     assert_eq!((one.verdict.as_str(), one.impacts), ("cannot-tell", 0));
 }
 
@@ -56,7 +56,7 @@ fn another_preparation_is_named_as_one_and_no_physics_is() {
     // Friction of 0.66 or 0.09 instead of 0.3 makes beds of the imitation looser by 0.024, or denser by 0.014.
     for (prepared, expected) in [(Prepared::Rough, -0.024), (Prepared::Smooth, 0.014)] {
         let case = Case { prepared, is_weighed: true, ..Case::alike(Hidden::Nothing, 0) };
-        let one = case.run(&impacts, &Wish::default()).unwrap();
+        let one = case.run(&impacts, &Wish::default(), None).unwrap();
         assert_eq!(
             (one.verdict.as_str(), one.named.len()),
             ("explained-by-preparation", 0),
@@ -65,7 +65,7 @@ fn another_preparation_is_named_as_one_and_no_physics_is() {
         let (by, se, is_named) = one.packing.expect("it is a parameter");
         assert!(is_named && (by - expected).abs() < 3.0 * se, "{one:?}");
         let case = Case { is_weighed: false, ..case };
-        let one = case.run(&impacts, &Wish::default()).unwrap();
+        let one = case.run(&impacts, &Wish::default(), None).unwrap();
         assert!(one.named.is_empty(), "{one:?}");
     }
 }
@@ -74,7 +74,7 @@ fn another_preparation_is_named_as_one_and_no_physics_is() {
 fn a_bed_that_is_weighed_is_said_to_be_heavier_and_nothing_else() {
     let impacts = Imitation { beds: 0.05, runs: 0.02, fades: false };
     let case = Case { is_weighed: true, ..Case::alike(Hidden::Unlisted, 0) };
-    let one = case.run(&impacts, &Wish::default()).unwrap();
+    let one = case.run(&impacts, &Wish::default(), None).unwrap();
     assert_eq!((one.verdict.as_str(), one.named.len()), ("explained-by-preparation", 0), "{one:?}");
     assert!(one.hint.contains("heavier than that of the model by"), "{one:?}");
 }

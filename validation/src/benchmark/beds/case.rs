@@ -1,33 +1,28 @@
-//! What is hidden in a bed, and what a diagnosis made of it.
+//! Beds in which something is hidden, and what a diagnosis made of them.
 
-use configs::{BedSource, Change, Material};
-use diagnosis::beds::{
-    BedError, Plan, SWITCHES, Stand, Variation, Wish, diagnose_bed, unaffordable,
-};
+use std::path::Path;
+
+use diagnosis::beds::{BaselineError, BedError, Plan, Stand, Wish, diagnose_bed, unaffordable};
 use diagnosis::observed::Observed;
 use diagnosis::verdict::{Diagnosis, Verdict};
+use measurements::MeasurementSet;
 use runner::beds::Impacts;
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
+use super::hidden::Hidden;
+use super::lammps::{LEVEL, World};
 use super::prepared::Prepared;
-use super::world::{campaign, measure, model, small, weighed};
+use super::world::{campaign, measure, model, small, stated, weighed};
+use crate::speed::SpeedError;
+use crate::speed::lammps::Lammps;
 
-/// Runs of every condition.
+/// Runs of every condition, in worlds of plunge and of LAMMPS.
 const REPEATS: usize = 10;
+const FEW: usize = 5;
 
-/// Factor on the mass of every grain: an effect that no switch has.
-const HEAVIER: f64 = 1.4;
-
-/// What is hidden.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Hidden {
-    /// Nothing.
-    Nothing,
-    /// A switch at an amplitude.
-    Switch(&'static str, f64),
-    /// Heavier grains, which no candidate is.
-    Unlisted,
-}
+/// Beds of LAMMPS that are weighed.
+const WEIGHED: usize = 3;
 
 /// One bed to be diagnosed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,8 +35,24 @@ pub struct Case {
     pub is_weighed: bool,
     /// Whether it is one of the small beds.
     pub is_small: bool,
+    /// Whether LAMMPS rains and hits it.
+    pub is_by_lammps: bool,
     /// Which draw of beds, camera and resampling.
     pub seed: u64,
+}
+
+/// Why a case ends without an outcome.
+#[derive(Debug, Error)]
+pub enum CaseError {
+    /// Impacts cannot be run, or say nothing.
+    #[error(transparent)]
+    Bed(#[from] BedError),
+    /// LAMMPS fails, or is not there.
+    #[error(transparent)]
+    Lammps(#[from] SpeedError),
+    /// A world that the inputs for LAMMPS do not have.
+    #[error("{0}: there is no such world of LAMMPS")]
+    NoWorld(String),
 }
 
 /// What came of it.
@@ -124,6 +135,32 @@ pub fn prepared(draws: u64) -> Vec<Case> {
     cases
 }
 
+/// Small beds that LAMMPS rains in every way that it can, of which the set says how they lie or does not, with nothing
+/// hidden, with two effects, and with one that is not listed; `draws` of each.
+#[must_use]
+pub fn by_lammps(draws: u64) -> Vec<Case> {
+    let hidden = [
+        Hidden::Nothing,
+        Hidden::Switch("rolling-resistance", 0.25),
+        Hidden::Switch("grain-friction", 1.5),
+        Hidden::Unlisted,
+    ];
+    let mut cases = Vec::new();
+    for (row, hidden) in hidden.into_iter().enumerate() {
+        for draw in 0..draws {
+            let ways = Prepared::ALL.into_iter().filter(|one| *one != Prepared::Tapped);
+            for (at, prepared) in ways.enumerate() {
+                for is_weighed in [false, true] {
+                    let seed = 20_000 + 1000 * row as u64 + 100 * at as u64 + draw;
+                    let case = Case::small(hidden, seed);
+                    cases.push(Case { prepared, is_weighed, is_by_lammps: true, ..case });
+                }
+            }
+        }
+    }
+    cases
+}
+
 /// Five switches at two strengths, nothing, and what is not listed; `draws` of each.
 #[must_use]
 pub fn all(draws: u64) -> Vec<Case> {
@@ -151,65 +188,12 @@ pub fn all(draws: u64) -> Vec<Case> {
     each.flat_map(|(at, &hidden)| seeds(at).map(move |seed| Case::alike(hidden, seed))).collect()
 }
 
-impl Hidden {
-    /// What it is called.
-    #[must_use]
-    pub fn name(self) -> String {
-        match self {
-            Self::Nothing => "nothing".to_owned(),
-            Self::Switch(id, q) => format!("{id} {q}"),
-            Self::Unlisted => format!("grains of {HEAVIER} times the mass"),
-        }
-    }
-
-    /// Whether a verdict that names these effects is right, and whether what it names is wrong. Neither is an answer that
-    /// names nothing where something listed is hidden.
-    fn scored(self, verdict: Verdict, named: &[String]) -> [bool; 2] {
-        let is_in = match self {
-            Self::Switch(id, _) => named.iter().any(|one| one == id) && verdict != Verdict::Pair,
-            Self::Nothing | Self::Unlisted => false,
-        };
-        let right = match self {
-            Self::Switch(..) => is_in && named.len() <= 3,
-            Self::Nothing => matches!(
-                verdict,
-                Verdict::NothingDetected
-                    | Verdict::ExplainedByApparatus
-                    | Verdict::ExplainedByPreparation
-                    | Verdict::BelowNoise
-            ),
-            Self::Unlisted => named.is_empty() && verdict != Verdict::CannotTell,
-        };
-        [right, !named.is_empty() && !is_in]
-    }
-
-    fn variation(self, stand: &Stand<'_>) -> Variation {
-        match self {
-            Self::Nothing => Variation::default(),
-            Self::Switch(id, q) => {
-                let switch = SWITCHES.iter().find(|switch| switch.id == id);
-                switch.map_or_else(Variation::default, |one| one.change(stand.grains(), q))
-            }
-            Self::Unlisted => {
-                let BedSource::Settle(settle) = &stand.grains().medium.bed.source else {
-                    return Variation::default();
-                };
-                let mut grains = settle.grains.clone();
-                for (kind, grams) in grains.iter_mut().zip([0.049, 0.073]) {
-                    kind.material = Material::Mass(grams * HEAVIER / 1e3);
-                }
-                Variation::before(Change::Grains(grains))
-            }
-        }
-    }
-}
-
 impl Case {
     /// A bed of nine hundred discs, prepared as that of the model.
     #[must_use]
     pub fn alike(hidden: Hidden, seed: u64) -> Self {
         let prepared = Prepared::Alike;
-        Self { hidden, prepared, is_weighed: false, is_small: false, seed }
+        Self { hidden, prepared, is_weighed: false, is_small: false, is_by_lammps: false, seed }
     }
 
     /// A small bed, prepared as that of the model.
@@ -226,27 +210,35 @@ impl Case {
             let said = if self.is_weighed { "weighed" } else { "not weighed" };
             name.push_str(&format!("; {}, {said}", self.prepared.name()));
         }
+        if self.is_by_lammps {
+            name.push_str("; by LAMMPS");
+        }
         name
     }
 
-    /// Measures and diagnoses it, with impacts as `wish` says.
+    /// Measures and diagnoses it, with impacts as `wish` says; `lammps` runs its inputs in a folder of its own.
     ///
     /// # Errors
     /// If the impacts cannot be run.
-    pub fn run(&self, place: &dyn Impacts, wish: &Wish) -> Result<Outcome, BedError> {
+    pub fn run(
+        &self,
+        place: &dyn Impacts,
+        wish: &Wish,
+        lammps: Option<(&Lammps, &Path)>,
+    ) -> Result<Outcome, CaseError> {
         let start = std::time::Instant::now();
         let first = 1 + 1000 * self.seed;
         let model = if self.is_small { small(first) } else { model(first) };
-        let model = model.map_err(diagnosis::beds::BaselineError::from)?;
+        let model = model.map_err(|why| BedError::from(BaselineError::from(why)))?;
         let empty = campaign(&model);
-        let world = Stand::new(&model, &empty)?;
-        let variation = self.prepared.variation(world.grains()).and(self.hidden.variation(&world));
-        let mut set = measure(&world, &variation, (REPEATS, self.seed), place)?;
-        if self.is_weighed {
-            set.bed = weighed(&world, &variation, self.seed, place)?;
-        }
+        let world = Stand::new(&model, &empty).map_err(BedError::from)?;
+        let set = match lammps.filter(|_| self.is_by_lammps) {
+            Some(lammps) => self.measured_by(lammps, &world)?,
+            None if self.is_by_lammps => return Err(CaseError::NoWorld(self.name())),
+            None => self.measured(&world, place)?,
+        };
         let observed = Observed::of(&set);
-        let stand = Stand::new(&model, &set)?;
+        let stand = Stand::new(&model, &set).map_err(BedError::from)?;
         let plan = Plan::new(&stand, &observed, place, wish)?;
         let (diagnosis, impacts) = match plan.fits() {
             false => (unaffordable(&plan), 0),
@@ -256,6 +248,30 @@ impl Case {
             }
         };
         Ok(self.judged(&diagnosis, impacts, start.elapsed().as_secs_f64()))
+    }
+
+    fn measured(&self, world: &Stand<'_>, place: &dyn Impacts) -> Result<MeasurementSet, BedError> {
+        let variation = self.prepared.variation(world.grains()).and(self.hidden.variation(world));
+        let mut set = measure(world, &variation, (REPEATS, self.seed), place)?;
+        if self.is_weighed {
+            set.bed = weighed(world, &variation, self.seed, place)?;
+        }
+        Ok(set)
+    }
+
+    fn measured_by(
+        &self,
+        (lammps, folder): (&Lammps, &Path),
+        stand: &Stand<'_>,
+    ) -> Result<MeasurementSet, CaseError> {
+        let world = World::of(stand.grains(), self.hidden, self.prepared)
+            .ok_or_else(|| CaseError::NoWorld(self.name()))?;
+        let (mut set, lies) = world.measure(lammps, stand.set, (FEW, self.seed), folder)?;
+        set.instrument.level_sigma = Some(LEVEL);
+        if self.is_weighed {
+            set.bed = stated(&lies[..WEIGHED.min(lies.len())], set.bed, self.seed);
+        }
+        Ok(set)
     }
 
     fn judged(&self, diagnosis: &Diagnosis, impacts: usize, seconds: f64) -> Outcome {
@@ -296,33 +312,5 @@ impl Case {
             impacts,
             seconds,
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn wrong_pairs_and_sets_are_wrong_and_the_unlisted_is_blamed_on_nothing() {
-        let scored = |hidden: Hidden, verdict, named: &[&str]| {
-            let named: Vec<String> = named.iter().map(|&id| id.to_owned()).collect();
-            hidden.scored(verdict, &named)
-        };
-        let (right, neither, wrong) = ([true, false], [false, false], [false, true]);
-        let packing = Hidden::Switch("packing", 1.0);
-        assert_eq!(scored(packing, Verdict::Supported, &["packing"]), right);
-        assert_eq!(scored(packing, Verdict::NotSeparable, &["side-wall", "packing"]), right);
-        assert_eq!(scored(packing, Verdict::NotSeparable, &["a", "b", "c", "packing"]), neither);
-        assert_eq!(scored(packing, Verdict::NotSeparable, &["side-wall", "pore-air"]), wrong);
-        assert_eq!(scored(packing, Verdict::Pair, &["side-wall", "packing"]), wrong);
-        assert_eq!(scored(packing, Verdict::Supported, &["side-wall"]), wrong);
-        assert_eq!(scored(packing, Verdict::NoneOfTheCandidates, &[]), neither);
-        assert_eq!(scored(Hidden::Nothing, Verdict::NothingDetected, &[]), right);
-        assert_eq!(scored(Hidden::Nothing, Verdict::CannotTell, &[]), neither);
-        assert_eq!(scored(Hidden::Nothing, Verdict::NotSeparable, &["a", "b"]), wrong);
-        assert_eq!(scored(Hidden::Unlisted, Verdict::NoneOfTheCandidates, &[]), right);
-        assert_eq!(scored(Hidden::Unlisted, Verdict::Pair, &["a", "b"]), wrong);
-        assert_eq!(scored(Hidden::Unlisted, Verdict::NotSeparable, &["a", "b"]), wrong);
     }
 }

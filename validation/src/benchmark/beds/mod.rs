@@ -2,11 +2,14 @@
 //! on seeds of their own and diagnosed like anything else.
 
 mod case;
+mod hidden;
+mod lammps;
 mod prepared;
 mod table;
 mod world;
 
-pub use case::{Case, Hidden, Outcome, all, prepared, quick};
+pub use case::{Case, CaseError, Outcome, all, by_lammps, prepared, quick};
+pub use hidden::Hidden;
 pub use prepared::Prepared;
 pub use table::table;
 pub use world::{campaign, measure, model, small};

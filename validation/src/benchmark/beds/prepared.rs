@@ -24,18 +24,18 @@ pub enum Prepared {
 }
 
 /// Factors on the preparation friction, and on the damping.
-const ROUGH: f64 = 2.2;
-const SMOOTH: f64 = 0.3;
-const DAMPED: f64 = 3.0;
+pub(super) const ROUGH: f64 = 2.2;
+pub(super) const SMOOTH: f64 = 0.3;
+pub(super) const DAMPED: f64 = 3.0;
 
 /// Rolling friction while it settles.
-const UNROLLING: f64 = 0.12;
+pub(super) const UNROLLING: f64 = 0.12;
 
 /// Packing fraction that taps are to reach: that of the beds of the model is 0.83.
 const TAPPED: f64 = 0.845;
 
 /// Half of the width of the spread of diameters, relative.
-const SPREAD: f64 = 0.15;
+pub(super) const SPREAD: f64 = 0.15;
 
 impl Prepared {
     /// Every one.

@@ -23,7 +23,7 @@ const PACKING_SIGMA: f64 = 0.003;
 const DENSITY_SIGMA: f64 = 0.01;
 
 /// Seeds of the beds that are measured: none of a diagnosis.
-const SEEDS: usize = 1_000_000;
+pub(super) const SEEDS: usize = 1_000_000;
 
 /// Frames of the camera per second (1/s).
 const RATE: f64 = 500.0;
@@ -141,7 +141,7 @@ pub fn measure(
     for (number, record) in records.iter().enumerate() {
         let condition = number / repeats;
         if let Some(record) = record {
-            let seen = seen(record, (condition, stand.set), (number, seed));
+            let seen = seen(record, (condition, stand.set), (number, seed), Errors::default());
             set.runs.push(seen);
         }
     }
@@ -160,6 +160,11 @@ pub(super) fn weighed(
 ) -> Result<Bed, BedError> {
     let draws = stand.draws(SEEDS * (1 + seed as usize), 3, 1);
     let lies = place.lies(&stand.jobs(&[0], &draws, hidden)?)?;
+    Ok(stated(&lies, stand.set.bed, seed))
+}
+
+/// What one would say of `bed` who looks at beds that lie so, with errors of his own.
+pub(super) fn stated(lies: &[Lie], bed: Bed, seed: u64) -> Bed {
     let mean =
         |number: fn(&Lie) -> f64| lies.iter().map(number).sum::<f64>() / lies.len().max(1) as f64;
     let mut random = random(seed, "weighing");
@@ -171,22 +176,35 @@ pub(super) fn weighed(
         bulk_density_sigma: Some(DENSITY_SIGMA * density),
         ..StatedBed::default()
     };
-    Ok(Bed { bulk_density: Some(density), stated, ..stand.set.bed })
+    Bed { bulk_density: Some(density), stated, ..bed }
+}
+
+/// What a laboratory is wrong about.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Errors {
+    /// Depth (m) of what a set calls the surface.
+    pub(super) level: f64,
+    /// Time (s) of what a run calls first contact.
+    pub(super) clock: f64,
 }
 
 /// A run as a camera sees it.
-fn seen(
+pub(super) fn seen(
     record: &Record,
     (condition, set): (usize, &MeasurementSet),
     (number, seed): (usize, u64),
+    errors: Errors,
 ) -> Run {
     let mut random = random(seed, &format!("camera {number}"));
     let end = record.stopping_time.unwrap_or(record.end);
     let frames = FLIGHT + (end * RATE).ceil() as usize + STILL;
     let times: Vec<f64> = (0..frames).map(|frame| (frame as f64 - FLIGHT as f64) / RATE).collect();
     let of_set = &set.conditions[condition];
-    let path = times.iter().map(|&time| at(record, time, of_set, set.bed.gravity));
-    let deepest = record.deepest + CAMERA * normal(&mut random);
+    let path = times.iter().map(|&time| {
+        let (z, x) = at(record, time + errors.clock, of_set, set.bed.gravity);
+        (z - errors.level, x)
+    });
+    let deepest = record.deepest - errors.level + CAMERA * normal(&mut random);
     let seen = times.iter().zip(path).map(|(&t, (z, x))| Frame {
         t,
         z: z + CAMERA * normal(&mut random),
@@ -208,7 +226,7 @@ fn seen(
 }
 
 /// A normal number, as in [`diagnosis::random`], from random numbers of the world's own.
-fn normal(random: &mut impl Rng) -> f64 {
+pub(super) fn normal(random: &mut impl Rng) -> f64 {
     use rand::RngExt;
     let radius = (-2.0 * libm::log(1.0 - random.random::<f64>())).sqrt();
     radius * libm::cos(std::f64::consts::TAU * random.random::<f64>())

@@ -1,0 +1,100 @@
+//! What is hidden in a bed.
+
+use configs::{BedSource, Change, Material};
+use diagnosis::beds::{SWITCHES, Stand, Variation};
+use diagnosis::verdict::Verdict;
+
+/// Factor on the mass of every grain: an effect that no switch has.
+pub(super) const HEAVIER: f64 = 1.4;
+
+/// What is hidden.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Hidden {
+    /// Nothing.
+    Nothing,
+    /// A switch at an amplitude.
+    Switch(&'static str, f64),
+    /// Heavier grains, which no candidate is.
+    Unlisted,
+}
+
+impl Hidden {
+    /// What it is called.
+    #[must_use]
+    pub fn name(self) -> String {
+        match self {
+            Self::Nothing => "nothing".to_owned(),
+            Self::Switch(id, q) => format!("{id} {q}"),
+            Self::Unlisted => format!("grains of {HEAVIER} times the mass"),
+        }
+    }
+
+    /// Whether a verdict that names these effects is right, and whether what it names is wrong. Neither is an answer that
+    /// names nothing where something listed is hidden.
+    pub(super) fn scored(self, verdict: Verdict, named: &[String]) -> [bool; 2] {
+        let is_in = match self {
+            Self::Switch(id, _) => named.iter().any(|one| one == id) && verdict != Verdict::Pair,
+            Self::Nothing | Self::Unlisted => false,
+        };
+        let right = match self {
+            Self::Switch(..) => is_in && named.len() <= 3,
+            Self::Nothing => matches!(
+                verdict,
+                Verdict::NothingDetected
+                    | Verdict::ExplainedByApparatus
+                    | Verdict::ExplainedByPreparation
+                    | Verdict::BelowNoise
+            ),
+            Self::Unlisted => named.is_empty() && verdict != Verdict::CannotTell,
+        };
+        [right, !named.is_empty() && !is_in]
+    }
+
+    pub(super) fn variation(self, stand: &Stand<'_>) -> Variation {
+        match self {
+            Self::Nothing => Variation::default(),
+            Self::Switch(id, q) => {
+                let switch = SWITCHES.iter().find(|switch| switch.id == id);
+                switch.map_or_else(Variation::default, |one| one.change(stand.grains(), q))
+            }
+            Self::Unlisted => {
+                let BedSource::Settle(settle) = &stand.grains().medium.bed.source else {
+                    return Variation::default();
+                };
+                let mut grains = settle.grains.clone();
+                for (kind, grams) in grains.iter_mut().zip([0.049, 0.073]) {
+                    kind.material = Material::Mass(grams * HEAVIER / 1e3);
+                }
+                Variation::before(Change::Grains(grains))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrong_pairs_and_sets_are_wrong_and_the_unlisted_is_blamed_on_nothing() {
+        let scored = |hidden: Hidden, verdict, named: &[&str]| {
+            let named: Vec<String> = named.iter().map(|&id| id.to_owned()).collect();
+            hidden.scored(verdict, &named)
+        };
+        let (right, neither, wrong) = ([true, false], [false, false], [false, true]);
+        let packing = Hidden::Switch("packing", 1.0);
+        assert_eq!(scored(packing, Verdict::Supported, &["packing"]), right);
+        assert_eq!(scored(packing, Verdict::NotSeparable, &["side-wall", "packing"]), right);
+        assert_eq!(scored(packing, Verdict::NotSeparable, &["a", "b", "c", "packing"]), neither);
+        assert_eq!(scored(packing, Verdict::NotSeparable, &["side-wall", "pore-air"]), wrong);
+        assert_eq!(scored(packing, Verdict::Pair, &["side-wall", "packing"]), wrong);
+        assert_eq!(scored(packing, Verdict::Supported, &["side-wall"]), wrong);
+        assert_eq!(scored(packing, Verdict::NoneOfTheCandidates, &[]), neither);
+        assert_eq!(scored(Hidden::Nothing, Verdict::NothingDetected, &[]), right);
+        assert_eq!(scored(Hidden::Nothing, Verdict::CannotTell, &[]), neither);
+        assert_eq!(scored(Hidden::Nothing, Verdict::NotSeparable, &["a", "b"]), wrong);
+        assert_eq!(scored(Hidden::Unlisted, Verdict::NoneOfTheCandidates, &[]), right);
+        assert_eq!(scored(Hidden::Unlisted, Verdict::Pair, &["a", "b"]), wrong);
+        assert_eq!(scored(Hidden::Unlisted, Verdict::NotSeparable, &["a", "b"]), wrong);
+    }
+}
