@@ -238,6 +238,12 @@ impl HeldOut {
         Some(self.before? >= CLEAR * self.noise_floor?)
     }
 
+    /// Whether it is missed by that much with what is proposed, too; `None` where that is not known.
+    #[must_use]
+    pub fn leaves_more_than_noise(&self) -> Option<bool> {
+        Some(self.after? >= CLEAR * self.noise_floor?)
+    }
+
     /// Whether what is proposed takes at least a quarter of the error away, in most choices of the conditions too;
     /// `None` where no error is known.
     #[must_use]

@@ -11,6 +11,7 @@ mod design;
 mod emulator;
 mod error;
 mod found;
+mod leaders;
 mod line_search;
 mod located;
 mod modes;

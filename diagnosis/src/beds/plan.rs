@@ -20,6 +20,9 @@ pub(super) const LEADERS: usize = 2;
 /// How often leaders are searched at most: those that lead once the first are better known, too.
 pub(super) const SEARCHES: usize = 2;
 
+/// Most effects beside the leader that are confirmed on fresh beds.
+pub(super) const RIVALS: usize = 3;
+
 /// Draws of a looser and of a denser bed, per condition.
 pub(super) const SIDE_DRAWS: usize = 3;
 
@@ -277,7 +280,7 @@ impl Plan {
             later("held out, unchanged", confirm, beds_of(confirm_draws, confirming)),
             stage("screening, if anything is missing", &screened)?,
             later("line search, at most", lines, 0),
-            later("confirmation of a name", confirm, 0),
+            later("confirmation of names, at most", (1 + RIVALS) * confirm, 0),
         ])
     }
 

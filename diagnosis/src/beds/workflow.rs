@@ -10,9 +10,10 @@ use super::confirmation::Confirmation;
 use super::emulator::{BedForward, Screened};
 use super::error::BedError;
 use super::found::{BedDiagnosis, change_at};
+use super::leaders::{is_beaten, is_named, is_settled, leaders};
 use super::line_search::{Against, LineSearch};
 use super::observables::observables;
-use super::plan::{LEADERS, Plan, SEARCHES, SIDE_DRAWS};
+use super::plan::{Plan, RIVALS, SEARCHES, SIDE_DRAWS};
 use super::preparation::{Known, Preparation, at_level, is_far, listed};
 use super::response::Response;
 use super::screening::screened;
@@ -189,6 +190,10 @@ impl Work<'_> {
         let confirmation =
             self.confirm(&forward, &diagnosis, (&draws.confirm, &plain), measured)?;
         let mut diagnosis = self.held_against(diagnosis, &forward, confirmation.as_ref())?;
+        if let Some(leader) = &confirmation {
+            let fresh = (leader, &draws.confirm[..], &plain[..]);
+            self.narrow(&mut diagnosis, &forward, fresh, measured)?;
+        }
         self.weigh(&mut diagnosis, confirmation.as_ref());
         let confirmation = confirmation.filter(|_| !diagnosis.amplitudes.is_empty());
         Ok(self.done(diagnosis, forward, confirmation, correlation))
@@ -402,16 +407,66 @@ impl Work<'_> {
         if !is_named(diagnosis.verdict) || self.plan.confirm.is_empty() {
             return Ok(None);
         }
-        let alone = proposed.fit.without_effects();
+        self.on_fresh_beds(forward, [&baseline.fit, &proposed.fit], (draws, plain), measured)
+    }
+
+    /// What fresh beds say of the model as it is and of the one with effects, in these two fits.
+    fn on_fresh_beds(
+        &mut self,
+        forward: &BedForward,
+        [baseline, proposed]: [&Fit; 2],
+        (draws, plain): (&[Vec<Draw>], &[Option<Record>]),
+        measured: &Observed,
+    ) -> Result<Option<Confirmation>, BedError> {
+        let alone = proposed.without_effects();
         // What no preparation and no apparatus can be expected to do is no explanation of the model as it is.
-        let before = if is_strained(forward, &baseline.fit) { &alone } else { &baseline.fit };
-        let fits = [before, &proposed.fit];
+        let before = if is_strained(forward, baseline) { &alone } else { baseline };
         let conditions = self.plan.confirm.clone();
-        let change = change_at(self.stand, forward, &fits[1].point);
+        let change = change_at(self.stand, forward, &proposed.point);
         let Ok(jobs) = self.stand.jobs(&conditions, draws, &change) else { return Ok(None) };
         let with = self.run(&jobs)?;
         let runs = (conditions.as_slice(), [plain, &with[..]]);
-        Ok(Some(Confirmation::of(self.stand, measured, (forward, fits), runs)?))
+        Ok(Some(Confirmation::of(self.stand, measured, (forward, [before, proposed]), runs)?))
+    }
+
+    /// Takes out of what `diagnosis` does not tell apart what the fresh beds on which the leader was confirmed tell from it.
+    fn narrow(
+        &mut self,
+        diagnosis: &mut Diagnosis,
+        forward: &BedForward,
+        (leader, draws, plain): (&Confirmation, &[Vec<Draw>], &[Option<Record>]),
+        measured: &Observed,
+    ) -> Result<(), BedError> {
+        let (Some(proposed), Some(baseline)) = (&diagnosis.proposed, &diagnosis.baseline) else {
+            return Ok(());
+        };
+        if diagnosis.verdict != Verdict::NotSeparable {
+            return Ok(());
+        }
+        let mut beaten = Vec::new();
+        let rivals = diagnosis.leaders.iter().filter(|id| !diagnosis.effects.contains(id));
+        for id in rivals.take(RIVALS) {
+            let ranked = diagnosis.ranking.iter().find(|effect| effect.id == *id);
+            let Some(point) = ranked.and_then(|effect| effect.point.as_ref()) else { continue };
+            let bench = Bench { set: self.stand.set, observed: &self.observed, forward };
+            let Ok(fitted) = bench.fit_once(point, &proposed.noise) else { continue };
+            let fits = [&baseline.fit, &fitted.fit];
+            let fresh = self.on_fresh_beds(forward, fits, (draws, plain), measured)?;
+            if fresh.is_some_and(|fresh| is_beaten(&fresh.held_out, &leader.held_out)) {
+                beaten.push(id.clone());
+            }
+        }
+        diagnosis.leaders.retain(|id| !beaten.contains(id));
+        diagnosis.not_separable.retain(|id| !beaten.contains(id));
+        if diagnosis.not_separable.len() == 1 {
+            diagnosis.verdict = Verdict::Supported;
+            diagnosis.not_separable.clear();
+        }
+        for effect in diagnosis.ranking.iter_mut().filter(|effect| beaten.contains(&effect.id)) {
+            effect.note =
+                "on fresh beds it misses held-out conditions by more than noise".to_owned();
+        }
+        Ok(())
     }
 
     /// The diagnosis where fresh impacts of the model as it is, `plain`, already say that no effect could be named, or
@@ -532,36 +587,4 @@ fn is_strained(forward: &BedForward, fit: &Fit) -> bool {
     let each = Forward::parameters(forward).iter().zip(&fit.point.parameters);
     let mut known = each.filter_map(|(one, value)| one.prior.map(|prior| (prior, value)));
     known.any(|(prior, value)| is_far(prior, *value))
-}
-
-/// Whether a verdict names effects.
-fn is_named(verdict: Verdict) -> bool {
-    matches!(verdict, Verdict::Supported | Verdict::NotSeparable | Verdict::Pair)
-}
-
-/// Whether one effect is ahead of all others.
-fn is_settled(diagnosis: &Diagnosis) -> bool {
-    is_named(diagnosis.verdict) && diagnosis.leaders.len() == 1
-}
-
-/// The switches to be searched that were not yet, with the guess of each: the first two of the first few, whatever
-/// of the apparatus leads them, and of what cannot be told from the leader. A screening sees an effect beside all
-/// others, so who is behind may be so for want of a search. None where nothing is named.
-fn leaders(diagnosis: &Diagnosis, forward: &BedForward, searched: &[usize]) -> Vec<(usize, f64)> {
-    if matches!(diagnosis.verdict, Verdict::NothingDetected | Verdict::CannotTell) {
-        return Vec::new();
-    }
-    let candidates = Forward::candidates(forward);
-    let switches = diagnosis.ranking.iter().filter_map(|effect| {
-        let index = candidates.iter().position(|one| one.id == effect.id)?;
-        Some((forward.switch(index)?, effect.q?, diagnosis.leaders.contains(&effect.id)))
-    });
-    switches
-        .enumerate()
-        .filter(|(rank, (at, _, leads))| {
-            (*rank < SEARCHES * LEADERS || *leads) && !searched.contains(at)
-        })
-        .map(|(_, (at, guess, _))| (at, guess))
-        .take(LEADERS)
-        .collect()
 }

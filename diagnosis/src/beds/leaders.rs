@@ -1,0 +1,82 @@
+//! Which effects are worth impacts of their own, and which of those that explain the same stand fresh beds.
+
+use super::emulator::BedForward;
+use super::plan::{LEADERS, SEARCHES};
+use crate::forward::Forward;
+use crate::held_out::HeldOut;
+use crate::verdict::{Diagnosis, Verdict};
+
+/// Whether a verdict names effects.
+pub(super) fn is_named(verdict: Verdict) -> bool {
+    matches!(verdict, Verdict::Supported | Verdict::NotSeparable | Verdict::Pair)
+}
+
+/// Whether one effect is ahead of all others.
+pub(super) fn is_settled(diagnosis: &Diagnosis) -> bool {
+    is_named(diagnosis.verdict) && diagnosis.leaders.len() == 1
+}
+
+/// The switches to be searched that were not yet, with the guess of each: the first two of the first few, whatever
+/// of the apparatus leads them, and of what cannot be told from the leader. A screening sees an effect beside all
+/// others, so who is behind may be so for want of a search. None where nothing is named.
+pub(super) fn leaders(
+    diagnosis: &Diagnosis,
+    forward: &BedForward,
+    searched: &[usize],
+) -> Vec<(usize, f64)> {
+    if matches!(diagnosis.verdict, Verdict::NothingDetected | Verdict::CannotTell) {
+        return Vec::new();
+    }
+    let candidates = Forward::candidates(forward);
+    let switches = diagnosis.ranking.iter().filter_map(|effect| {
+        let index = candidates.iter().position(|one| one.id == effect.id)?;
+        Some((forward.switch(index)?, effect.q?, diagnosis.leaders.contains(&effect.id)))
+    });
+    switches
+        .enumerate()
+        .filter(|(rank, (at, _, leads))| {
+            (*rank < SEARCHES * LEADERS || *leads) && !searched.contains(at)
+        })
+        .map(|(_, (at, guess, _))| (at, guess))
+        .take(LEADERS)
+        .collect()
+}
+
+/// Whether fresh beds tell `rival` from `leader`, which explains as much of what was fitted to: with it, held-out
+/// conditions are missed by what would call for a name, or hardly less than without it, and with the leader they are not.
+pub(super) fn is_beaten(rival: &HeldOut, leader: &HeldOut) -> bool {
+    let holds = |one: &HeldOut| {
+        one.leaves_more_than_noise() == Some(false) && one.is_nearer() == Some(true)
+    };
+    let fails = rival.leaves_more_than_noise() == Some(true) || rival.is_nearer() == Some(false);
+    holds(leader) && fails
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::held_out::{LeftOut, Unit};
+
+    fn with(after: f64) -> HeldOut {
+        HeldOut {
+            before: Some(2.9),
+            after: Some(after),
+            noise_floor: Some(1.0),
+            explained: None,
+            unit: Unit::Position,
+            conditions: LeftOut::Holdout,
+            conditions_judged: 2,
+            not_predicted: Vec::new(),
+            ratio_at_most: None,
+            log_density_gain: 1.0,
+        }
+    }
+
+    #[test]
+    fn a_rival_is_beaten_by_a_leader_within_the_noise_that_it_is_not_within() {
+        assert!(is_beaten(&with(1.6), &with(1.0)));
+        assert!(!is_beaten(&with(1.4), &with(0.8)), "both are within the noise");
+        assert!(!is_beaten(&with(2.5), &with(1.6)), "the leader misses too");
+        assert!(!is_beaten(&HeldOut { after: None, ..with(1.0) }, &with(1.0)), "nothing is known");
+    }
+}
