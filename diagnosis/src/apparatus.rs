@@ -26,6 +26,8 @@ pub mod defaults {
     pub const TILT_DEG: f64 = 1.0;
     /// Resistance of one session against the others, relative.
     pub const SESSION: f64 = 0.05;
+    /// Resistance of one of several beds against the others, relative, beside what its density and gravity do.
+    pub const BED: f64 = 0.3;
 }
 
 /// The range of each parameter, in standard deviations of its prior.
@@ -48,6 +50,7 @@ enum Fault {
     Tilt,
     Mass { body: usize },
     Session { session: usize, coefficient: usize },
+    Bed { bed: usize, coefficient: usize },
 }
 
 /// The shared errors of one measurement set.
@@ -59,6 +62,8 @@ pub(crate) struct Apparatus {
     bodies: Vec<usize>,
     /// Share of the runs of each condition in each session.
     sessions: Vec<Vec<f64>>,
+    /// The bed of each condition, of several.
+    beds: Vec<Option<usize>>,
     coefficients: usize,
 }
 
@@ -82,7 +87,7 @@ impl Apparatus {
             }
         }
         let level = instrument.level_sigma.unwrap_or(0.0);
-        let grain = 0.5 * set.bed.grain_diameter.unwrap_or(0.0);
+        let grain = 0.5 * set.coarsest_grains();
         let zero = or(instrument.zero_sigma, defaults::ZERO.max(grain).max(level));
         all.add(Fault::Zero, "depth-zero", "m", zero);
         let speed = or(instrument.speed_bias_sigma_rel, defaults::SPEED);
@@ -98,6 +103,7 @@ impl Apparatus {
             all.add_bodies(set, or(instrument.mass_sigma_rel, defaults::MASS));
         }
         all.add_sessions(set, coefficients, or(instrument.session_sigma_rel, defaults::SESSION));
+        all.add_beds(set, coefficients);
         all
     }
 
@@ -166,6 +172,20 @@ impl Apparatus {
         }
     }
 
+    /// Coefficients are shared by beds, but for a term of each: grains of another shape or surface resist otherwise.
+    fn add_beds(&mut self, set: &MeasurementSet, coefficients: &[&str]) {
+        self.beds = set.conditions.iter().map(|condition| condition.bed).collect();
+        if set.beds.len() < 2 || set.beds.len() > MOST {
+            return;
+        }
+        for (bed, named) in set.beds.iter().enumerate() {
+            for (coefficient, key) in coefficients.iter().enumerate() {
+                let name = format!("bed ({}, {key})", named.name);
+                self.add(Fault::Bed { bed, coefficient }, name, "1", defaults::BED);
+            }
+        }
+    }
+
     /// The parameters; [`Apparatus::added_to`] takes their values in this order.
     pub(crate) fn parameters(&self) -> &[Parameter] {
         &self.parameters
@@ -189,6 +209,12 @@ impl Apparatus {
                     let share = self.sessions.get(condition).map_or(0.0, |all| all[session]);
                     all.coefficients.resize(self.coefficients, 0.0);
                     all.coefficients[coefficient] += share * value;
+                }
+                Fault::Bed { bed, coefficient } => {
+                    if self.beds.get(condition) == Some(&Some(bed)) {
+                        all.coefficients.resize(self.coefficients, 0.0);
+                        all.coefficients[coefficient] += value;
+                    }
                 }
             }
         }
@@ -220,7 +246,11 @@ fn bodies(set: &MeasurementSet) -> (Vec<&Condition>, Vec<usize>) {
 
 /// Which shared errors of `set` are too many to be fitted, in sentences.
 pub(crate) fn too_many(set: &MeasurementSet) -> Vec<String> {
-    let counts = [(sessions(set).len(), "sessions"), (bodies(set).0.len(), "bodies")];
+    let counts = [
+        (sessions(set).len(), "sessions"),
+        (bodies(set).0.len(), "bodies"),
+        (set.beds.len(), "beds"),
+    ];
     let sentence = |&(count, what): &(usize, &str)| {
         (count > MOST)
             .then(|| format!("{count} {what}: their own errors are fitted for up to {MOST}"))
@@ -283,7 +313,7 @@ fn is_same_body(one: &Condition, other: &Condition) -> bool {
 mod tests {
     use super::*;
     use crate::test_sets::{condition, scalar_run, set};
-    use measurements::Run;
+    use measurements::{NamedBed, Run};
 
     fn before(change: impl Fn(&mut MeasurementSet)) -> (MeasurementSet, Apparatus) {
         let conditions = vec![condition(1.0, 90.0), condition(2.0, 60.0)];
@@ -343,6 +373,28 @@ mod tests {
         // Half of the runs of the first condition, and all of the second, are of session b.
         let of_b = [0, 1].map(|c| alone("session (b, friction)", c).coefficients[1]);
         assert!(are(of_b, [0.005, 0.01]));
+    }
+
+    #[test]
+    fn one_of_several_beds_resists_otherwise_in_its_own_conditions() {
+        let (set, apparatus) = before(|set| {
+            let named = |name: &str| NamedBed { name: name.to_owned(), bed: set.bed };
+            set.beds = vec![named("sand"), named("beads")];
+            (set.conditions[0].bed, set.conditions[1].bed) = (Some(0), Some(1));
+        });
+        let name = "bed (beads, friction)";
+        assert_eq!(sigma(&apparatus, name), Some(defaults::BED));
+        let at = apparatus.parameters().iter().position(|one| one.name == name);
+        let mut values = vec![0.0; apparatus.parameters().len()];
+        values[at.expect("it is looked for")] = 0.2;
+        let of = |c: usize| apparatus.added_to(&Scatter::default(), c, &values).coefficients;
+        assert_eq!(of(0).iter().sum::<f64>().to_bits(), 0.0_f64.to_bits());
+        assert_eq!(of(1), [0.0, 0.2]);
+        assert!(too_many(&set).is_empty());
+        let (_, one) = before(|set| {
+            set.beds = vec![NamedBed { name: "sand".to_owned(), bed: set.bed }];
+        });
+        assert!(sigma(&one, "bed (sand, friction)").is_none());
     }
 
     #[test]

@@ -87,6 +87,8 @@ mod tests {
             id: _,
             role: _,
             shape: _,
+            // Which of several beds it is says nothing of before and after.
+            bed: _,
             speed,
             angle_deg,
             diameter,

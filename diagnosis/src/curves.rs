@@ -72,7 +72,7 @@ impl CommonCurve {
             let is_seen = values.iter().all(|run| run[*at].abs() < WITHIN * range);
             is_seen && grid[*at].abs() > BESIDE * step
         };
-        let known = (condition.speed, set.bed.gravity);
+        let known = (condition.speed, set.bed_of(condition).gravity);
         let stop = BEFORE_STOP * stopped(&grid, &mean, known);
         let (before, after): (Vec<usize>, Vec<usize>) = (0..grid.len())
             .filter(is_kept)

@@ -51,7 +51,7 @@ pub fn lack_of_fit(
         return Ok(at_least(fitted.fit.chi2, freedom));
     }
     let reach = observed.fit.iter().fold(0.0_f64, |r, &c| r.max(observed.conditions[c].reach));
-    let grain = bench.set.bed.grain_diameter.unwrap_or(0.0);
+    let grain = bench.set.coarsest_grains();
     let (least, most) = NODES;
     let nodes = ((reach / SPACING.max(GRAINS * grain)).ceil() as usize + 1).clamp(least, most);
 

@@ -416,7 +416,11 @@ pub(crate) fn reach(
     condition: &Condition,
 ) -> f64 {
     if let (Kind::Acceleration, Some(curve)) = (set.kind, &layout.curve) {
-        return curves::way(&curve.at, mean.as_slice(), (condition.speed, set.bed.gravity));
+        return curves::way(
+            &curve.at,
+            mean.as_slice(),
+            (condition.speed, set.bed_of(condition).gravity),
+        );
     }
     let kinds = layout.kinds();
     let depths = kinds.iter().zip(mean.iter());
@@ -441,7 +445,7 @@ pub(crate) fn reading(
     let position = position_error(&set.instrument);
     // A stop is seen to a frame; without a rate, to the time in which the intruder, at the speed that
     // counts as stopped, moves by the error of a reading.
-    let own_speed = (set.bed.gravity * condition.diameter).sqrt();
+    let own_speed = (set.bed_of(condition).gravity * condition.diameter).sqrt();
     let time =
         set.instrument.rate.map_or(position / (STOPPED * condition.speed.max(own_speed)), |rate| {
             1.0 / (rate * 12.0_f64.sqrt())

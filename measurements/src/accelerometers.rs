@@ -70,10 +70,11 @@ fn check_signs(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut 
         );
         return;
     }
+    let gravity = set.all_beds().map(|bed| bed.gravity).fold(0.0, f64::max);
     let before = || set.runs.iter().flat_map(|run| &run.samples).filter(|one| one.at < 0.0);
     let n = before().count();
     let mean = before().map(|one| one.value).sum::<f64>() / n.max(1) as f64;
-    if n > 0 && mean.abs() > FALLING * set.bed.gravity {
+    if n > 0 && mean.abs() > FALLING * gravity {
         findings.report(
             Diagnostic::error(format!(
                 "the readings before contact are {mean:.2} m/s^2, and those of a body in free fall are 0"
@@ -90,13 +91,13 @@ fn check_signs(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut 
 /// Names a unit with which bodies would be slowed down by far more than their speed.
 fn check_units(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contradiction> {
     let ratio = |run: &Run| {
-        let condition = &set.conditions[run.condition];
+        let (condition, gravity) = (&set.conditions[run.condition], set.gravity_of(run));
         let pairs = run.samples.windows(2).filter(|pair| pair[0].at >= 0.0);
         let change = pairs.map(|pair| {
             let felt = 0.5 * (pair[0].value + pair[1].value);
-            (pair[1].at - pair[0].at) * (felt - set.bed.gravity)
+            (pair[1].at - pair[0].at) * (felt - gravity)
         });
-        let possible = condition.speed + (set.bed.gravity * condition.diameter).sqrt();
+        let possible = condition.speed + (gravity * condition.diameter).sqrt();
         change.sum::<f64>() / possible
     };
     let mut ratios: Vec<(f64, usize)> =

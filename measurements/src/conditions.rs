@@ -3,6 +3,7 @@
 use configs::reader::{Found, TableReader};
 use configs::{Diagnostic, Span, shorten};
 
+use super::beds::Beds;
 use super::optional::optional;
 use super::unstated::Unstated;
 use super::{Condition, Kind, Role, keys};
@@ -34,13 +35,14 @@ const SHAPES: [(&str, &[&str]); 7] = [
 pub(super) fn read(
     tables: Vec<TableReader<'_>>,
     kind: Option<Kind>,
+    beds: &Beds<'_>,
     unstated: &mut Unstated,
 ) -> (Vec<Condition>, Vec<ConditionPlaces>) {
     let (mut conditions, mut places) = (Vec::<Condition>::new(), Vec::<ConditionPlaces>::new());
     let mut absent = Absent::default();
     for table in tables {
         let reader = table.reader;
-        let Some((condition, place)) = condition(table, kind, &mut absent) else {
+        let Some((condition, place)) = condition(table, (kind, beds), &mut absent) else {
             continue;
         };
         if let Some(first) = conditions.iter().position(|other| other.id == condition.id) {
@@ -60,7 +62,7 @@ pub(super) fn read(
 
 fn condition(
     table: TableReader<'_>,
-    kind: Option<Kind>,
+    (kind, beds): (Option<Kind>, &Beds<'_>),
     absent: &mut Absent,
 ) -> Option<(Condition, ConditionPlaces)> {
     let id = table.text("id", None, "c01", "the name of the condition");
@@ -83,6 +85,7 @@ fn condition(
         false => table.number(&keys::MASS).map(|found| found.value),
     };
     let spin = table.number(&keys::SPIN);
+    let bed = beds.named_by(&table);
     let [packing, bed_depth, length, height, shaft, apex, link_angle] = [
         &keys::PACKING,
         &keys::BED_DEPTH,
@@ -126,6 +129,7 @@ fn condition(
         spin: spin?.value,
         packing,
         bed_depth,
+        bed,
         length,
         height,
         shaft_diameter: shaft,

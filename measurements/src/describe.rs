@@ -1,6 +1,6 @@
 //! A set in a few lines of plain text.
 
-use super::{Condition, Geometry, Kind, Loaded, MeasurementSet, Role, Run};
+use super::{Bed, Condition, Geometry, Kind, Loaded, MeasurementSet, Role, Run};
 
 impl Loaded {
     /// [`MeasurementSet::describe`] with the columns that were understood.
@@ -30,7 +30,12 @@ impl MeasurementSet {
             "{}: {kind}, {conditions} conditions ({holdout} held out), {runs} runs\n",
             self.id
         );
-        text.push_str(&self.describe_bed());
+        if self.beds.is_empty() {
+            text.push_str(&describe_bed("", &self.bed));
+        }
+        for named in &self.beds {
+            text.push_str(&describe_bed(&format!("{}: ", named.name), &named.bed));
+        }
         if let Some(baseline) = &self.baseline {
             text.push_str(&format!("baseline {baseline}\n"));
         }
@@ -47,18 +52,6 @@ impl MeasurementSet {
             text.push_str(&format!("note: {note}\n"));
         }
         text
-    }
-
-    fn describe_bed(&self) -> String {
-        let (name, unit) = match self.bed.geometry {
-            Geometry::Planar => ("planar", "kg/m^2"),
-            Geometry::Spatial => ("three-dimensional", "kg/m^3"),
-        };
-        let mut parts = vec![format!("{name} bed")];
-        parts.extend(self.bed.bulk_density.map(|density| format!("{density} {unit}")));
-        parts.extend(self.bed.grain_diameter.map(|diameter| format!("grains of {diameter} m")));
-        parts.push(format!("gravity {} m/s^2", self.bed.gravity));
-        format!("{}\n", parts.join(", "))
     }
 
     fn rows(&self) -> Vec<Vec<String>> {
@@ -124,4 +117,17 @@ fn aligned(rows: &[Vec<String>]) -> String {
         text.push('\n');
     }
     text
+}
+
+/// What `bed` is, in a line that begins with `name`.
+fn describe_bed(name: &str, bed: &Bed) -> String {
+    let (kind, unit) = match bed.geometry {
+        Geometry::Planar => ("planar", "kg/m^2"),
+        Geometry::Spatial => ("three-dimensional", "kg/m^3"),
+    };
+    let mut parts = vec![format!("{name}{kind} bed")];
+    parts.extend(bed.bulk_density.map(|density| format!("{density} {unit}")));
+    parts.extend(bed.grain_diameter.map(|diameter| format!("grains of {diameter} m")));
+    parts.push(format!("gravity {} m/s^2", bed.gravity));
+    format!("{}\n", parts.join(", "))
 }

@@ -5,19 +5,20 @@ use configs::reader::{Answer, TableReader};
 use configs::{Diagnostic, Span, limits};
 use engine::params::ParamSpec;
 
+use super::beds::Beds;
 use super::bodies;
 use super::columns::{ColumnNames, TRAJECTORIES};
 use super::conditions::{self, ConditionPlaces};
 use super::curve::Curve;
 use super::dialect::{Decimal, Delimiter};
 use super::keys;
-use super::optional::optional;
+use super::optional::{optional, optional_choice};
 use super::priors;
 use super::table::Format;
 use super::unstated::Unstated;
 use super::{
-    Bed, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, StatedBed,
-    StatedError, StopDefinition,
+    Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, StatedError,
+    StopDefinition,
 };
 
 /// What `measurement.toml` says.
@@ -76,7 +77,7 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
     let stated = stated(root.table("noise", None), curve, &mut unstated);
     let feasible = Feasible::read(root.table("feasible", None));
     let priors = priors::read(&root);
-    let bed_table = root.table("bed", None);
+    let beds = Beds::of(&root);
     let model = root.table("model", None);
     let baseline = optional_text(&model, "baseline", "two-term-vector", "the model to start from");
     model.finish();
@@ -87,10 +88,10 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
                 .help("one table per setting of the experiment, in double brackets"),
         );
     }
-    let (conditions, places) = conditions::read(tables, kind, &mut unstated);
+    let (conditions, places) = conditions::read(tables, kind, &beds, &mut unstated);
     let is_disc = |shape: &str| shape == "disc";
     let planar = conditions.iter().any(|condition| is_disc(&condition.shape));
-    let bed = bed(bed_table, planar, &mut unstated);
+    let (bed, beds) = beds.read(planar, &mut unstated);
     if bed.geometry == Geometry::Spatial {
         bodies::check(root.reader, &conditions, &places);
     }
@@ -108,6 +109,7 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
         kind: head.kind,
         instrument,
         bed,
+        beds,
         baseline,
         stated,
         stop: head.stop,
@@ -265,48 +267,6 @@ fn stated(table: TableReader<'_>, curve: Option<&Curve>, unstated: &mut Unstated
     stated
 }
 
-fn bed(table: TableReader<'_>, planar: bool, unstated: &mut Unstated) -> Bed {
-    let geometry =
-        match optional_choice(&table, "geometry", &["3d", "2d"], "grains of space or of a plane") {
-            Some("2d") => Geometry::Planar,
-            Some(_) => Geometry::Spatial,
-            None => {
-                let word = if planar { "2d" } else { "3d" };
-                unstated.assume(format!("bed.geometry = \"{word}\""));
-                if planar { Geometry::Planar } else { Geometry::Spatial }
-            }
-        };
-    let density = match geometry {
-        Geometry::Planar => optional(&table, &keys::AREA_DENSITY),
-        Geometry::Spatial => optional(&table, &keys::BULK_DENSITY),
-    };
-    let gravity = table.number(&keys::GRAVITY).map_or(9.81, |found| {
-        if found.span.is_none() {
-            unstated.assume(format!("bed.gravity = {:?}", found.value));
-        }
-        found.value
-    });
-    let grain_diameter = optional(&table, &keys::GRAIN_DIAMETER);
-    unstated.absent_if(density.is_none(), "bed.bulk_density");
-    unstated.absent_if(grain_diameter.is_none(), "bed.grain_diameter");
-    let density_sigma = match geometry {
-        Geometry::Planar => optional(&table, &keys::AREA_DENSITY_SIGMA),
-        Geometry::Spatial => optional(&table, &keys::BULK_DENSITY_SIGMA),
-    };
-    let stated = StatedBed {
-        packing_fraction: optional(&table, &keys::PACKING_FRACTION),
-        packing_fraction_sigma: optional(&table, &keys::PACKING_FRACTION_SIGMA),
-        surface_height: optional(&table, &keys::SURFACE_HEIGHT),
-        surface_height_sigma: optional(&table, &keys::SURFACE_HEIGHT_SIGMA),
-        bulk_density_sigma: density_sigma,
-        grain_diameter_sigma: optional(&table, &keys::GRAIN_DIAMETER_SIGMA),
-        coordination: optional(&table, &keys::COORDINATION),
-        coordination_sigma: optional(&table, &keys::COORDINATION_SIGMA),
-    };
-    table.finish();
-    Bed { geometry, bulk_density: density, gravity, grain_diameter, stated }
-}
-
 fn files(table: TableReader<'_>, kind: Option<Kind>) -> Option<Files> {
     table.header()?;
     let name = |key, meaning| {
@@ -381,13 +341,4 @@ fn optional_text(
 ) -> Option<String> {
     let found = table.has(key).then(|| table.text(key, None, example, meaning));
     found.flatten().map(|found| found.value)
-}
-
-fn optional_choice(
-    table: &TableReader<'_>,
-    key: &'static str,
-    known: &[&'static str],
-    meaning: &str,
-) -> Option<&'static str> {
-    table.has(key).then(|| table.choice(key, known, &[], meaning)).flatten()
 }

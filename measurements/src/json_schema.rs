@@ -97,5 +97,9 @@ fn probes() -> Vec<String> {
             ));
         }
     }
+    texts.push(
+        "[[bed]]\nname = 'a'\n[[bed]]\nname = 'b'\n[[condition]]\nid = 'a'\nbed = 'a'\nshape = 'sphere'\n"
+            .to_owned(),
+    );
     texts
 }

@@ -13,6 +13,7 @@
 mod acceleration;
 mod accelerometers;
 mod agreement;
+mod beds;
 mod bodies;
 mod cells;
 mod checks;
@@ -92,8 +93,10 @@ pub struct MeasurementSet {
     pub kind: Kind,
     /// What is known of the instrument.
     pub instrument: Instrument,
-    /// What the intruder fell into.
+    /// What the intruder fell into; of several beds the first.
     pub bed: Bed,
+    /// The beds of a set of several; empty in a set of one.
+    pub beds: Vec<NamedBed>,
     /// The model that the set starts from: a shipped name, or a path beside the set.
     pub baseline: Option<String>,
     /// Stated relative errors, for where there are no repeats.
@@ -114,6 +117,33 @@ pub struct MeasurementSet {
     pub keep: Vec<String>,
     /// What the reader assumed or left aside, in sentences for the report.
     pub notes: Vec<String>,
+}
+
+impl MeasurementSet {
+    /// The bed of `condition`.
+    #[must_use]
+    pub fn bed_of(&self, condition: &Condition) -> &Bed {
+        let named = condition.bed.and_then(|at| self.beds.get(at));
+        named.map_or(&self.bed, |named| &named.bed)
+    }
+
+    /// Gravity (m/s²) in the bed that `run` was made in.
+    #[must_use]
+    pub fn gravity_of(&self, run: &Run) -> f64 {
+        self.bed_of(&self.conditions[run.condition]).gravity
+    }
+
+    /// Mean diameter (m) of the coarsest grains that are stated; 0 where none is.
+    #[must_use]
+    pub fn coarsest_grains(&self) -> f64 {
+        self.all_beds().filter_map(|bed| bed.grain_diameter).fold(0.0, f64::max)
+    }
+
+    /// The one bed, or all of several.
+    pub fn all_beds(&self) -> impl Iterator<Item = &Bed> {
+        let one = self.beds.is_empty().then_some(&self.bed);
+        one.into_iter().chain(self.beds.iter().map(|named| &named.bed))
+    }
 }
 
 /// What was measured.
@@ -204,6 +234,15 @@ pub struct Bed {
     pub stated: StatedBed,
 }
 
+/// One of several beds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedBed {
+    /// By which conditions name it.
+    pub name: String,
+    /// What it is.
+    pub bed: Bed,
+}
+
 /// What a set states of its bed, and how well: a model of grains is held against it, and prepared to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StatedBed {
@@ -286,6 +325,8 @@ pub struct Condition {
     pub packing: Option<f64>,
     /// Depth of the bed (m).
     pub bed_depth: Option<f64>,
+    /// Index of its bed in [`MeasurementSet::beds`]; none in a set of one bed.
+    pub bed: Option<usize>,
     /// Length of a link (m).
     pub length: Option<f64>,
     /// Height of a cylinder or cone (m).

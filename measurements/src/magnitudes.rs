@@ -76,7 +76,7 @@ fn at_most(set: &MeasurementSet, run: &Run) -> Option<f64> {
     let condition = &set.conditions[run.condition];
     let stated = condition.speed * libm::sin(condition.angle_deg.to_radians());
     let measured = greatest_velocity(&run.frames, position(set, run))?;
-    let gained = set.bed.gravity * condition.diameter;
+    let gained = set.bed_of(condition).gravity * condition.diameter;
     let possible = (stated * stated + gained).sqrt();
     let before = run.frames.iter().filter(|frame| frame.t < 0.0).count();
     let ratio = if measured > possible { measured / possible } else { measured / stated };
@@ -110,17 +110,18 @@ fn check_speeds(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Cont
 
 /// Names depths, ranges and stopping times that no impact at these speeds has.
 fn check_ways(set: &MeasurementSet, places: &[ConditionPlaces]) -> Vec<Contradiction> {
-    let gravity = set.bed.gravity;
-    if gravity <= 0.0 {
+    if set.all_beds().any(|bed| bed.gravity <= 0.0) {
         return Vec::new();
     }
     // A fall from as high as the speed needs, and a few diameters of resistance.
     let fall = |condition: &Condition| {
+        let gravity = set.bed_of(condition).gravity;
         condition.speed.powi(2) / (2.0 * gravity) + 5.0 * condition.diameter
     };
     let depth = |condition: &Condition| condition.bed_depth.unwrap_or_else(|| fall(condition));
     let range = |condition: &Condition| 2.0 * fall(condition);
     let time = |condition: &Condition| {
+        let gravity = set.bed_of(condition).gravity;
         condition.speed / gravity + 10.0 * (condition.diameter / gravity).sqrt()
     };
     let deepest = |run: &Run| farthest(run, run.final_z, |frame| frame.z);

@@ -132,12 +132,13 @@ fn check_units(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contr
         let message = format!("the depths go to {ratio:.0} diameters");
         return Some(named(message, "are they in mm or cm?", set.runs[run].condition));
     }
-    if set.bed.geometry == Geometry::Planar || set.bed.gravity <= 0.0 {
+    if set.bed.geometry == Geometry::Planar || set.all_beds().any(|bed| bed.gravity <= 0.0) {
         return None;
     }
-    let weight = set.bed.bulk_density.unwrap_or(DENSITY) * set.bed.gravity;
     let (ratio, run) = middle(set, |run| {
         let Sample { at, value, .. } = deepest(run)?;
+        let bed = set.bed_of(&set.conditions[run.condition]);
+        let weight = bed.bulk_density.unwrap_or(DENSITY) * bed.gravity;
         let face = PI / 4.0 * diameter(set, run).powi(2);
         Some(value / (face * weight * at))
     })?;

@@ -61,7 +61,7 @@ impl Kind {
 
 /// Refuses what no laboratory has; the first number of each run, condition or table is told.
 pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
-    if set.bed.gravity == 0.0 {
+    if set.all_beds().any(|bed| bed.gravity == 0.0) {
         let message =
             "[bed]: without gravity a bed has no weight, and no friction that grows with depth";
         let help =
@@ -97,12 +97,8 @@ fn first_refused(mut numbers: impl Iterator<Item = Number>) -> Option<Number> {
 }
 
 fn of_set(set: &MeasurementSet) -> impl Iterator<Item = Number> {
-    let (bed, instrument, stated) = (&set.bed, &set.instrument, &set.stated);
+    let (instrument, stated) = (&set.instrument, &set.stated);
     let numbers = [
-        (&GRAVITY, Some(bed.gravity)),
-        (&DENSITY, bed.bulk_density),
-        (&GRAIN, bed.grain_diameter),
-        (&SIZE, bed.stated.surface_height),
         (&RATE, instrument.rate),
         (&READING_ERROR, instrument.position_sigma),
         (&FORCE, instrument.force_sigma),
@@ -117,7 +113,15 @@ fn of_set(set: &MeasurementSet) -> impl Iterator<Item = Number> {
         (&SHARE, stated.final_z),
         (&SHARE, stated.final_x),
     ];
-    numbers.into_iter().filter_map(|(kind, value)| Some((kind, value?)))
+    let of_beds = set.all_beds().flat_map(|bed| {
+        [
+            (&GRAVITY, Some(bed.gravity)),
+            (&DENSITY, bed.bulk_density),
+            (&GRAIN, bed.grain_diameter),
+            (&SIZE, bed.stated.surface_height),
+        ]
+    });
+    of_beds.chain(numbers).filter_map(|(kind, value)| Some((kind, value?)))
 }
 
 fn of_condition(condition: &Condition) -> impl Iterator<Item = Number> {

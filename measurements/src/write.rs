@@ -11,8 +11,8 @@ use thiserror::Error;
 
 use super::curve::Curve;
 use super::{
-    Condition, Feasible, FinalDefinition, Geometry, Kind, MeasurementSet, ParameterPrior, Role,
-    Run, StopDefinition,
+    Bed, Condition, Feasible, FinalDefinition, Geometry, Kind, MeasurementSet, ParameterPrior,
+    Role, Run, StopDefinition,
 };
 
 /// Why a set cannot be written.
@@ -104,24 +104,14 @@ impl MeasurementSet {
         file.number("mass_sigma_rel", self.instrument.mass_sigma_rel);
         file.number("tilt_sigma_deg", self.instrument.tilt_sigma_deg);
         file.number("session_sigma_rel", self.instrument.session_sigma_rel);
-        file.table("[bed]");
-        let planar = self.bed.geometry == Geometry::Planar;
-        file.word("geometry", if planar { "2d" } else { "3d" });
-        file.number("bulk_density", self.bed.bulk_density);
-        file.number("gravity", Some(self.bed.gravity));
-        file.number("grain_diameter", self.bed.grain_diameter);
-        let stated = &self.bed.stated;
-        for (key, value) in [
-            ("packing_fraction", stated.packing_fraction),
-            ("packing_fraction_sigma", stated.packing_fraction_sigma),
-            ("surface_height", stated.surface_height),
-            ("surface_height_sigma", stated.surface_height_sigma),
-            ("bulk_density_sigma", stated.bulk_density_sigma),
-            ("grain_diameter_sigma", stated.grain_diameter_sigma),
-            ("coordination", stated.coordination),
-            ("coordination_sigma", stated.coordination_sigma),
-        ] {
-            file.number(key, value);
+        if self.beds.is_empty() {
+            file.table("[bed]");
+            file.bed(&self.bed);
+        }
+        for named in &self.beds {
+            file.table("[[bed]]");
+            file.text("name", Some(&named.name));
+            file.bed(&named.bed);
         }
         file.table("[model]");
         file.text("baseline", self.baseline.as_deref());
@@ -147,7 +137,8 @@ impl MeasurementSet {
         file.word("delimiter", ",");
         file.word("decimal", ".");
         for condition in &self.conditions {
-            file.condition(condition, self.kind);
+            let bed = condition.bed.map(|at| self.beds[at].name.as_str());
+            file.condition(condition, bed, self.kind);
         }
         file.0
     }
@@ -273,7 +264,28 @@ impl Toml {
         }
     }
 
-    fn condition(&mut self, condition: &Condition, kind: Kind) {
+    fn bed(&mut self, bed: &Bed) {
+        self.word("geometry", if bed.geometry == Geometry::Planar { "2d" } else { "3d" });
+        self.number("bulk_density", bed.bulk_density);
+        self.number("gravity", Some(bed.gravity));
+        self.number("grain_diameter", bed.grain_diameter);
+        let stated = &bed.stated;
+        for (key, value) in [
+            ("packing_fraction", stated.packing_fraction),
+            ("packing_fraction_sigma", stated.packing_fraction_sigma),
+            ("surface_height", stated.surface_height),
+            ("surface_height_sigma", stated.surface_height_sigma),
+            ("bulk_density_sigma", stated.bulk_density_sigma),
+            ("grain_diameter_sigma", stated.grain_diameter_sigma),
+            ("coordination", stated.coordination),
+            ("coordination_sigma", stated.coordination_sigma),
+        ] {
+            self.number(key, value);
+        }
+    }
+
+    /// `bed` is the name of its bed, in a set of several.
+    fn condition(&mut self, condition: &Condition, bed: Option<&str>, kind: Kind) {
         self.table("[[condition]]");
         self.word("id", &condition.id);
         self.word(
@@ -290,6 +302,7 @@ impl Toml {
         let is_stated = kind != Kind::ForceDepth || condition.mass > 0.0;
         self.number("mass", Some(condition.mass).filter(|_| is_stated));
         self.number("spin", Some(condition.spin));
+        self.text("bed", bed);
         self.number("packing", condition.packing);
         self.number("bed_depth", condition.bed_depth);
         self.number("length", condition.length);

@@ -138,7 +138,7 @@ impl Zeros {
     /// Reads them from the frames of `set`.
     #[must_use]
     pub fn of(set: &MeasurementSet) -> Self {
-        if set.kind != Kind::Trajectory || set.bed.gravity <= 0.0 {
+        if set.kind != Kind::Trajectory || set.all_beds().any(|bed| bed.gravity <= 0.0) {
             return Self::default();
         }
         let level = set.instrument.level_sigma.unwrap_or(LEVEL);
@@ -162,7 +162,7 @@ impl Zeros {
 fn contacts(set: &MeasurementSet, level: f64, zero: f64) -> Vec<RunContact> {
     let read = |(run, of): (usize, &Run)| {
         let condition = &set.conditions[of.condition];
-        let known = (set.bed.gravity, position(set, of));
+        let known = (set.gravity_of(of), position(set, of));
         let contact = contact::read(of, condition, known, zero)?;
         let is_off = clock_is_off(&contact) || depth_is_off(&contact, level);
         Some(RunContact { run, contact, is_off })

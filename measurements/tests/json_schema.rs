@@ -88,7 +88,7 @@ fn every_key_that_a_set_can_have_is_in_the_schema() {
             let keys = name.split('.').filter(|key| !key.is_empty());
             let table = keys.fold(&schema, |table, key| {
                 let found = &table["properties"][key];
-                found.get("items").unwrap_or(found)
+                found.get("items").or_else(|| found.get("else")).unwrap_or(found)
             });
             let is_there = table["properties"].get(question.key).is_some();
             assert!(is_there, "{}: [{name}] {}", path.display(), question.key);

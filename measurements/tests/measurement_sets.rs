@@ -170,6 +170,35 @@ fn what_the_frames_and_the_names_of_files_say_may_be_left_out() {
 }
 
 #[test]
+fn every_condition_of_a_set_of_two_beds_has_its_own_and_reads_back() {
+    let good = Path::new("tests/data/good/scalars");
+    let text = fs::read_to_string(good.join("measurement.toml")).expect("a good set");
+    let (bed, two) = (
+        "[bed]\n",
+        "[[bed]]\nname = \"Mars\"\nbulk_density = \"1.2 g/cc\"\ngravity = 3.71\n[[bed]]\nname = \"Earth\"\n",
+    );
+    let text = text.replace(bed, two);
+    let text = text.replace("id = \"c01\"\n", "id = \"c01\"\nbed = \"Earth\"\n");
+    let text = text.replace("id = \"c02\"\n", "id = \"c02\"\nbed = \"Mars\"\n");
+    let [folder, again] = [(); 2].map(|()| tempfile::tempdir().expect("a folder for the test"));
+    fs::write(folder.path().join("measurement.toml"), text).expect("a writable folder");
+    fs::copy(good.join("runs.csv"), folder.path().join("runs.csv")).expect("a writable folder");
+    let set = MeasurementSet::load(folder.path()).unwrap_or_else(|error| panic!("{error}")).set;
+    let of = |at: usize| {
+        let bed = set.bed_of(&set.conditions[at]);
+        (bed.bulk_density, bed.gravity, bed.grain_diameter)
+    };
+    assert_eq!(of(0), (Some(1480.0), 9.81, Some(8e-4)));
+    assert_eq!(of(1), (Some(1200.0), 3.71, None));
+    assert_eq!(set.bed.gravity.to_bits(), 3.71_f64.to_bits(), "the first of the list");
+    let described = set.describe();
+    assert!(described.contains("Mars: three-dimensional bed, 1200 kg/m^3"), "{described}");
+    set.write(again.path()).expect("a writable folder");
+    let read = MeasurementSet::load(again.path()).unwrap_or_else(|error| panic!("{error}")).set;
+    assert_eq!(read, set);
+}
+
+#[test]
 fn the_template_of_the_documentation_loads_without_a_warning() {
     let page = fs::read_to_string("../docs/measurement-sets.md").expect("the page of the format");
     let blocks: Vec<&str> = page.split("```").skip(1).step_by(2).collect();

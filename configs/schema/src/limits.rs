@@ -16,6 +16,9 @@ pub const GRAIN_KINDS: usize = 1000;
 pub const GRAINS_OF_A_KIND: u64 = 1_000_000_000_000_000;
 /// Most impact conditions of one model.
 pub const CONDITIONS: usize = 10_000;
+
+/// Most `[[bed]]` tables of a measurement set.
+pub const BEDS: usize = 100;
 /// Most memory (byte) that the size of a container may ask for; that of the machine refuses far less.
 pub const CONTAINER_BYTES: f64 = 1e13;
 /// Most steps of one run: what the log can number.

@@ -36,6 +36,16 @@ pub enum StandError {
         /// Name of the model.
         model: String,
     },
+    /// Several beds, of which a model is one.
+    #[error(
+        "the set has {beds} beds, and `{model}` is one; make a set of the conditions of each, with a model of each"
+    )]
+    SeveralBeds {
+        /// Name of the model.
+        model: String,
+        /// How many.
+        beds: usize,
+    },
     /// Accelerations, which beds do not answer.
     #[error("`{model}` is a bed of grains; accelerations are compared with resistive models alone")]
     Accelerations {
@@ -124,6 +134,10 @@ impl<'a> Stand<'a> {
         let Medium::Grains(medium) = &model.medium else {
             return Err(StandError::NoGrains { model: model.run.name.clone() });
         };
+        if set.beds.len() > 1 {
+            let (model, beds) = (model.run.name.clone(), set.beds.len());
+            return Err(StandError::SeveralBeds { model, beds });
+        }
         let (set_holds, wanted) = match set.kind {
             Kind::Acceleration => {
                 return Err(StandError::Accelerations { model: model.run.name.clone() });
@@ -331,4 +345,28 @@ fn expected(model: &Model, set: &MeasurementSet, condition: usize) -> f64 {
     let longest = last.fold(0.0, f64::max);
     let known = if longest > 0.0 { longest + BEHIND } else { EXPECTED * model.run.duration };
     known.min(model.run.duration)
+}
+
+#[cfg(test)]
+mod tests {
+    use configs::{LoadOptions, ModelSource, find_shipped};
+    use measurements::NamedBed;
+
+    use super::*;
+    use crate::test_sets::{condition, set};
+
+    #[test]
+    fn a_model_of_one_bed_takes_no_set_of_two() {
+        let shipped = ModelSource::Shipped(find_shipped("vertical-2d").unwrap());
+        let model = Model::load(shipped, &LoadOptions::default()).unwrap().model;
+        let mut set = set(Kind::Scalar, vec![condition(1.0, 90.0)], Vec::new());
+        set.bed.geometry = Geometry::Planar;
+        let named = |name: &str| NamedBed { name: name.to_owned(), bed: set.bed };
+        let [one, other] = ["loose", "dense"].map(named);
+        set.beds = vec![one];
+        assert!(Stand::new(&model, &set).is_ok());
+        set.beds.push(other);
+        let refused = Stand::new(&model, &set).err();
+        assert!(matches!(refused, Some(StandError::SeveralBeds { beds: 2, .. })), "{refused:?}");
+    }
 }

@@ -207,8 +207,10 @@ impl Refitted {
     /// Its force on `grid`, that of the mean body where its size counts.
     pub(super) fn field(&self, bench: &Bench<'_>, grid: &Grid) -> Field {
         let fit = &bench.observed.fit;
-        let total: f64 = fit.iter().map(|&at| bench.set.conditions[at].diameter).sum();
-        let (diameter, gravity) = (total / fit.len().max(1) as f64, bench.set.bed.gravity);
+        let conditions = || fit.iter().map(|&at| &bench.set.conditions[at]);
+        let n = fit.len().max(1) as f64;
+        let diameter = conditions().map(|one| one.diameter).sum::<f64>() / n;
+        let gravity = conditions().map(|one| bench.set.bed_of(one).gravity).sum::<f64>() / n;
         let states: Vec<State> = (0..grid.len())
             .map(|node| grid.node(node))
             .map(|[depth, speed, angle]| State { depth, speed, angle, diameter, gravity })

@@ -153,10 +153,10 @@ pub fn missing_force(
 
 /// What the bodies go through.
 fn states(bench: &Bench<'_>, passages: &[Vec<Moment>]) -> Vec<State> {
-    let gravity = bench.set.bed.gravity;
     let each = bench.observed.fit.iter().zip(passages);
     each.flat_map(|(&condition, moments)| {
         let body = &bench.set.conditions[condition];
+        let gravity = bench.set.bed_of(body).gravity;
         let (angle, diameter) = (body.angle_deg.to_radians(), body.diameter);
         moments.iter().map(move |one| {
             let (depth, speed) = (one.depth, one.speed);

@@ -204,7 +204,7 @@ fn columns(
 
 fn states(bench: &Bench<'_>, grid: &Grid, condition: usize) -> Vec<State> {
     let body = &bench.set.conditions[condition];
-    let (diameter, gravity) = (body.diameter, bench.set.bed.gravity);
+    let (diameter, gravity) = (body.diameter, bench.set.bed_of(body).gravity);
     let nodes = (0..grid.len()).map(|node| grid.node(node));
     nodes.map(|[depth, speed, angle]| State { depth, speed, angle, diameter, gravity }).collect()
 }

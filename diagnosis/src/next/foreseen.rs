@@ -70,6 +70,7 @@ fn alone(set: &MeasurementSet, condition: Condition) -> MeasurementSet {
         notes: Vec::new(),
         feasible: set.feasible.clone(),
         priors: set.priors.clone(),
+        beds: set.beds.clone(),
         ..*set
     }
 }

@@ -59,7 +59,7 @@ fn paths(set: &MeasurementSet) -> Result<String, PictureError> {
         let panels = charts.split_evenly((rows, COLUMNS));
         for (at, (condition, panel)) in set.conditions.iter().zip(&panels).take(n).enumerate() {
             let own: Vec<&Run> = set.runs.iter().filter(|run| run.condition == at).collect();
-            draw_paths(panel, condition, set.bed.gravity, &own)?;
+            draw_paths(panel, condition, set.bed_of(condition).gravity, &own)?;
         }
         legend::draw(&below, &signs)
     })

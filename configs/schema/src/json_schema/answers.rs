@@ -83,6 +83,7 @@ impl Writer {
             // The object is written by who knows its keys.
             Answer::Table => json!({ "type": "object" }),
             Answer::Tables => json!({ "type": "array" }),
+            Answer::TableOrTables => json!({ "type": ["object", "array"] }),
             Answer::Defined(name) => json!({ "$ref": format!("#/definitions/{name}") }),
         }
     }
@@ -205,7 +206,9 @@ fn number(allowed: Range) -> Value {
 /// The leaves without the plain tables that a definition says more of.
 fn without_plain_tables(mut leaves: Vec<Leaf>) -> Vec<Leaf> {
     if leaves.iter().any(|leaf| matches!(leaf.answer, Answer::Defined(_))) {
-        leaves.retain(|leaf| !matches!(leaf.answer, Answer::Table | Answer::Tables));
+        leaves.retain(|leaf| {
+            !matches!(leaf.answer, Answer::Table | Answer::Tables | Answer::TableOrTables)
+        });
     }
     leaves
 }

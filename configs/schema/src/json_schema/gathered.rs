@@ -91,7 +91,8 @@ impl Gathered {
         for (at, (table, key)) in self.format.of_file.iter().enumerate() {
             for word in self.words(|situation| situation.of_file[at].as_ref()) {
                 if let Some(then) = self.difference("", Where::OfFile(at, word)) {
-                    let holds = is(key, word);
+                    let mut holds = is(key, word);
+                    holds["type"] = json!("object");
                     let condition = json!({ "properties": { *table: holds }, "required": [table] });
                     conditions.push(json!({ "if": condition, "then": then }));
                 }
@@ -170,6 +171,12 @@ impl Gathered {
             Some(Answer::Tables) => {
                 json!({ "type": "array", "items": self.object(&below(table, key)) })
             }
+            Some(Answer::TableOrTables) => {
+                let one = self.object(&below(table, key));
+                let list = json!({ "items": one });
+                // An editor then says what is wrong with a key, and not that neither of two fits.
+                json!({ "if": { "type": "array" }, "then": list, "else": one })
+            }
             Some(_) => self.object(&below(table, key)),
             None => self.writer().value(leaves),
         }
@@ -235,6 +242,11 @@ impl Gathered {
                 let items = self.difference(&below(table, key), within)?;
                 Some(json!({ "items": items }))
             }
+            Some(Answer::TableOrTables) => {
+                let one = self.difference(&below(table, key), within)?;
+                let is_list = json!({ "type": "array" });
+                Some(json!({ "if": is_list, "then": { "items": one }, "else": one }))
+            }
             Some(_) => self.difference(&below(table, key), within),
             None => {
                 let mut here = here.to_vec();
@@ -251,7 +263,9 @@ fn tables_of(leaves: &[Leaf]) -> Option<&Answer> {
     let mut answers = leaves.iter().map(|leaf| &leaf.answer);
     match answers.clone().any(|answer| matches!(answer, Answer::Defined(_))) {
         true => None,
-        false => answers.find(|answer| matches!(answer, Answer::Table | Answer::Tables)),
+        false => answers.find(|answer| {
+            matches!(answer, Answer::Table | Answer::Tables | Answer::TableOrTables)
+        }),
     }
 }
 

@@ -229,6 +229,21 @@ impl<'a> TableReader<'a> {
     #[must_use]
     pub fn tables(&self, key: &'static str, at_most: usize) -> Vec<TableReader<'a>> {
         self.asks(key, "", || Answer::Tables);
+        self.list(key, at_most)
+    }
+
+    /// A table below this one, or the elements of an array of such tables.
+    #[must_use]
+    pub fn table_or_tables(&self, key: &'static str, at_most: usize) -> Vec<TableReader<'a>> {
+        self.asks(key, "", || Answer::TableOrTables);
+        match self.entry(key).map(|entry| &entry.node.value) {
+            Some(Value::Array(_)) => self.list(key, at_most),
+            _ => vec![self.below(key, None)],
+        }
+    }
+
+    /// The elements of an array of tables without a note of it.
+    fn list(&self, key: &'static str, at_most: usize) -> Vec<TableReader<'a>> {
         let name = self.child(key);
         let Some(entry) = self.entry(key) else {
             return Vec::new();

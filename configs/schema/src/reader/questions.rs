@@ -37,6 +37,8 @@ pub enum Answer {
     Table,
     /// A list of such tables.
     Tables,
+    /// Such a table, or a list of them.
+    TableOrTables,
     /// What the schema defines by this name.
     Defined(&'static str),
 }
