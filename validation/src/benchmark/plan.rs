@@ -10,6 +10,9 @@ pub const STRENGTHS: [f64; 3] = [0.03, 0.06, 0.12];
 /// Strength of the rows that vary something else.
 const MIDDLE: f64 = 0.08;
 
+/// The first seed of a release table, drawn at random for each.
+const RELEASE: u64 = (1 << 60) + 0x079c_2a10_3e48;
+
 /// Strength of each effect of a pair.
 const OF_PAIR: f64 = 0.09;
 
@@ -339,7 +342,7 @@ impl Drawer {
             .fold(self.row as u64 + 1, |number, index| 1000 * number + index as u64);
         let stream = match self.seeds {
             Seeds::Development => 0,
-            Seeds::Release => 1 << 60,
+            Seeds::Release => RELEASE,
         };
         Plan {
             row: self.row,

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use configs::Model;
 use diagnosis::beds::{BaselineError, BedError, Plan, Stand, Wish, diagnose_bed, unaffordable};
 use diagnosis::observed::Observed;
 use diagnosis::verdict::{Diagnosis, Verdict};
@@ -227,16 +228,7 @@ impl Case {
         lammps: Option<(&Lammps, &Path)>,
     ) -> Result<Outcome, CaseError> {
         let start = std::time::Instant::now();
-        let first = 1 + 1000 * self.seed;
-        let model = if self.is_small { small(first) } else { model(first) };
-        let model = model.map_err(|why| BedError::from(BaselineError::from(why)))?;
-        let empty = campaign(&model);
-        let world = Stand::new(&model, &empty).map_err(BedError::from)?;
-        let set = match lammps.filter(|_| self.is_by_lammps) {
-            Some(lammps) => self.measured_by(lammps, &world)?,
-            None if self.is_by_lammps => return Err(CaseError::NoWorld(self.name())),
-            None => self.measured(&world, place)?,
-        };
+        let (model, set) = self.measured(place, lammps)?;
         let observed = Observed::of(&set);
         let stand = Stand::new(&model, &set).map_err(BedError::from)?;
         let plan = Plan::new(&stand, &observed, place, wish)?;
@@ -250,7 +242,33 @@ impl Case {
         Ok(self.judged(&diagnosis, impacts, start.elapsed().as_secs_f64()))
     }
 
-    fn measured(&self, world: &Stand<'_>, place: &dyn Impacts) -> Result<MeasurementSet, BedError> {
+    /// The model of the analyst, and what is measured.
+    ///
+    /// # Errors
+    /// If the impacts cannot be run.
+    pub fn measured(
+        &self,
+        place: &dyn Impacts,
+        lammps: Option<(&Lammps, &Path)>,
+    ) -> Result<(Model, MeasurementSet), CaseError> {
+        let first = 1 + 1000 * self.seed;
+        let model = if self.is_small { small(first) } else { model(first) };
+        let model = model.map_err(|why| BedError::from(BaselineError::from(why)))?;
+        let empty = campaign(&model);
+        let stand = Stand::new(&model, &empty).map_err(BedError::from)?;
+        let set = match lammps.filter(|_| self.is_by_lammps) {
+            Some(lammps) => self.of_lammps(lammps, &stand)?,
+            None if self.is_by_lammps => return Err(CaseError::NoWorld(self.name())),
+            None => self.of_plunge(&stand, place)?,
+        };
+        Ok((model, set))
+    }
+
+    fn of_plunge(
+        &self,
+        world: &Stand<'_>,
+        place: &dyn Impacts,
+    ) -> Result<MeasurementSet, BedError> {
         let variation = self.prepared.variation(world.grains()).and(self.hidden.variation(world));
         let mut set = measure(world, &variation, (REPEATS, self.seed), place)?;
         if self.is_weighed {
@@ -259,7 +277,7 @@ impl Case {
         Ok(set)
     }
 
-    fn measured_by(
+    fn of_lammps(
         &self,
         (lammps, folder): (&Lammps, &Path),
         stand: &Stand<'_>,
