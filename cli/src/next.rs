@@ -32,7 +32,8 @@ pub(crate) fn as_text(next: &Next) -> String {
         "mass (kg)",
         "spin (rad/s)",
         "packing",
-        "bed (m)",
+        "bed",
+        "depth of bed (m)",
         "told (bit)",
         "separates most",
     ];
@@ -49,6 +50,7 @@ pub(crate) fn as_text(next: &Next) -> String {
                 digits(condition.mass, 3),
                 digits(condition.spin, 3),
                 or_dash(condition.packing),
+                one.bed.clone().unwrap_or_else(|| "-".to_owned()),
                 or_dash(condition.bed_depth),
                 format!("{:.2}", one.expected_bits),
                 one.separates.join(", "),

@@ -48,7 +48,9 @@ pub(crate) fn listen(consequence: &'static str) -> anyhow::Result<()> {
         .into_iter()
         .filter(|number| ignored >> (number - 1) & 1 == 0)
         .collect();
-    for &number in &heeded {
+    // First, so that a signal which any handler catches reaches the thread, however early it comes.
+    let mut signals = Signals::new(&heeded).context("cannot listen for signals")?;
+    for number in heeded {
         // In this order: the flag that the first sets is what the second finds.
         flag::register_conditional_shutdown(number, status(number), Arc::clone(&asked))
             .and_then(|_| flag::register(number, Arc::clone(&asked)))
@@ -57,9 +59,11 @@ pub(crate) fn listen(consequence: &'static str) -> anyhow::Result<()> {
             })
             .context("cannot listen for signals")?;
     }
-    let mut signals = Signals::new(heeded).context("cannot listen for signals")?;
     let wait = move || {
         if let Some(number) = signals.forever().next() {
+            // One that came before the flags were registered has not set it. `asked` stays its handler's alone:
+            // set from here, it might end the program in the handler of this very signal.
+            signal.store(number.unsigned_abs() as usize, Ordering::Relaxed);
             end(number, consequence);
         }
     };

@@ -48,9 +48,14 @@ enum Fault {
     Speed,
     Scale,
     Tilt,
-    Mass { body: usize },
-    Session { session: usize, coefficient: usize },
-    Bed { bed: usize, coefficient: usize },
+    Mass {
+        body: usize,
+    },
+    /// One coefficient, of a group of runs: those of a session, or of a bed.
+    Group {
+        group: usize,
+        coefficient: usize,
+    },
 }
 
 /// The shared errors of one measurement set.
@@ -60,10 +65,8 @@ pub(crate) struct Apparatus {
     parameters: Vec<Parameter>,
     /// Which body falls, by condition.
     bodies: Vec<usize>,
-    /// Share of the runs of each condition in each session.
-    sessions: Vec<Vec<f64>>,
-    /// The bed of each condition, of several.
-    beds: Vec<Option<usize>>,
+    /// By group of runs: its share of the runs of each condition.
+    groups: Vec<Vec<f64>>,
     coefficients: usize,
 }
 
@@ -147,43 +150,50 @@ impl Apparatus {
         }
     }
 
+    /// A change of each coefficient for a group of runs (what it is, and its name), which `shares` of each condition are in.
+    fn add_group(
+        &mut self,
+        (what, name): (&str, &str),
+        shares: Vec<f64>,
+        coefficients: &[&str],
+        sigma: f64,
+    ) {
+        let group = self.groups.len();
+        self.groups.push(shares);
+        for (coefficient, key) in coefficients.iter().enumerate() {
+            let fault = Fault::Group { group, coefficient };
+            self.add(fault, format!("{what} ({name}, {key})"), "1", sigma);
+        }
+    }
+
     fn add_sessions(&mut self, set: &MeasurementSet, coefficients: &[&str], sigma: f64) {
         let names = sessions(set);
         if names.len() < 2 || names.len() > MOST {
             return;
         }
-        self.sessions = vec![vec![0.0; names.len()]; set.conditions.len()];
         let mut counts = vec![0.0; set.conditions.len()];
         for run in &set.runs {
             counts[run.condition] += 1.0;
-            let session = run.session.as_deref().and_then(|name| names.binary_search(&name).ok());
-            if let Some(session) = session {
-                self.sessions[run.condition][session] += 1.0;
-            }
         }
-        for (shares, count) in self.sessions.iter_mut().zip(&counts) {
-            shares.iter_mut().for_each(|share| *share /= f64::max(*count, 1.0));
-        }
-        for (session, name) in names.iter().enumerate() {
-            for (coefficient, key) in coefficients.iter().enumerate() {
-                let fault = Fault::Session { session, coefficient };
-                self.add(fault, format!("session ({name}, {key})"), "1", sigma);
+        for name in names {
+            let mut shares = vec![0.0; set.conditions.len()];
+            for run in set.runs.iter().filter(|run| run.session.as_deref() == Some(name)) {
+                shares[run.condition] += 1.0 / counts[run.condition];
             }
+            self.add_group(("session", name), shares, coefficients, sigma);
         }
     }
 
     /// Coefficients are those of the first bed; each other one has a term of its own beside them, because grains of another
     /// shape or surface resist otherwise.
     fn add_beds(&mut self, set: &MeasurementSet, coefficients: &[&str]) {
-        self.beds = set.conditions.iter().map(|condition| condition.bed).collect();
         if set.beds.len() > MOST {
             return;
         }
         for (bed, named) in set.beds.iter().enumerate().skip(1) {
-            for (coefficient, key) in coefficients.iter().enumerate() {
-                let name = format!("bed ({}, {key})", named.name);
-                self.add(Fault::Bed { bed, coefficient }, name, "1", defaults::BED);
-            }
+            let is_in = |one: &Condition| f64::from(u8::from(one.bed == Some(bed)));
+            let shares = set.conditions.iter().map(is_in).collect();
+            self.add_group(("bed", &named.name), shares, coefficients, defaults::BED);
         }
     }
 
@@ -206,15 +216,11 @@ impl Apparatus {
                     all.mass += value;
                 }
                 Fault::Mass { .. } => (),
-                Fault::Session { session, coefficient } => {
-                    let share = self.sessions.get(condition).map_or(0.0, |all| all[session]);
-                    all.coefficients.resize(self.coefficients, 0.0);
-                    all.coefficients[coefficient] += share * value;
-                }
-                Fault::Bed { bed, coefficient } => {
-                    if self.beds.get(condition) == Some(&Some(bed)) {
+                Fault::Group { group, coefficient } => {
+                    let share = self.groups[group][condition];
+                    if share > 0.0 {
                         all.coefficients.resize(self.coefficients, 0.0);
-                        all.coefficients[coefficient] += value;
+                        all.coefficients[coefficient] += share * value;
                     }
                 }
             }

@@ -87,7 +87,7 @@ mod tests {
             id: _,
             role: _,
             shape: _,
-            // Which of several beds it is says nothing of before and after.
+            // A bed is a name, which no trend follows.
             bed: _,
             speed,
             angle_deg,

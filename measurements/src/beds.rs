@@ -35,7 +35,12 @@ impl<'a> Beds<'a> {
             let name = table.text("name", None, "dry sand", "the name of the bed");
             let span = name.as_ref().and_then(|name| name.span);
             let name = name.map(|name| name.value.trim().to_owned()).unwrap_or_default();
-            if !name.is_empty() && names.contains(&name) {
+            if span.is_some() && name.is_empty() {
+                let message = "the name of a bed is empty";
+                let help = "conditions and reports name a bed by it, as in name = \"dry sand\"";
+                let error = Diagnostic::error(message).at(span, "a word at least").help(help);
+                root.reader.report(error);
+            } else if !name.is_empty() && names.contains(&name) {
                 let message = format!("the bed `{}` is listed twice", shorten(&name));
                 root.reader.report(Diagnostic::error(message).at(span, "again here"));
             }

@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -197,8 +198,13 @@ pub(crate) fn assert_same_run(a: &Path, b: &Path) {
 
 /// Sends the signal of that name to a program.
 pub(crate) fn signal(child: &Child, name: &str) {
-    let kill = format!("kill -s {name} {}", child.id());
-    assert!(Command::new("sh").args(["-c", &kill]).status().expect("a shell").success());
+    let signal = match name {
+        "TERM" => Signal::TERM,
+        "INT" => Signal::INT,
+        "HUP" => Signal::HUP,
+        other => panic!("no test sends {other}"),
+    };
+    kill_process(Pid::from_child(child), signal).expect("it takes signals");
 }
 
 /// Ends `run` by `signals` once `file` is there, and asserts that it obeys within 2 s. On a busy

@@ -1,4 +1,4 @@
-//! Which effects are worth impacts of their own, and which of those that explain the same stand fresh beds.
+//! Which effects get impacts of their own, and which of those that explain the same are confirmed on fresh beds.
 
 use super::emulator::BedForward;
 use super::plan::{LEADERS, SEARCHES};
@@ -16,9 +16,9 @@ pub(super) fn is_settled(diagnosis: &Diagnosis) -> bool {
     is_named(diagnosis.verdict) && diagnosis.leaders.len() == 1
 }
 
-/// The switches to be searched that were not yet, with the guess of each: the first two of the first few, whatever
-/// of the apparatus leads them, and of what cannot be told from the leader. A screening sees an effect beside all
-/// others, so who is behind may be so for want of a search. None where nothing is named.
+/// The switches to search next, each with its guess: those of the first few effects of the ranking, apparatus
+/// counted among the few, and those of every leader. A screening varies all effects at once, so an effect may rank low only
+/// because it was not searched. None where nothing is named.
 pub(super) fn leaders(
     diagnosis: &Diagnosis,
     forward: &BedForward,

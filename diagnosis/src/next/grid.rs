@@ -40,12 +40,24 @@ pub(super) fn feasible(set: &MeasurementSet) -> Vec<Condition> {
     let spins = either(&limits.spin, spins);
     let packings = unknown_or(either(&limits.packing, distinct(|one| one.packing)));
     let depths = unknown_or(either(&limits.bed_depth, distinct(|one| one.bed_depth)));
-    let sizes =
-        [depths.len(), packings.len(), spins.len(), bodies.len(), angles.len(), speeds.len()];
+    // Of one bed a condition need not say which it is.
+    let beds = match set.beds.len() {
+        0 | 1 => vec![None],
+        n => (0..n).map(Some).collect(),
+    };
+    let sizes = [
+        beds.len(),
+        depths.len(),
+        packings.len(),
+        spins.len(),
+        bodies.len(),
+        angles.len(),
+        speeds.len(),
+    ];
     chosen(sizes.iter().product())
         .enumerate()
         .map(|(number, place)| {
-            let [depth, packing, spin, body, angle, speed] = digits(place, sizes);
+            let [bed, depth, packing, spin, body, angle, speed] = digits(place, sizes);
             Condition {
                 id: format!("next-{}", number + 1),
                 speed: speeds[speed],
@@ -53,6 +65,7 @@ pub(super) fn feasible(set: &MeasurementSet) -> Vec<Condition> {
                 spin: spins[spin],
                 packing: packings[packing],
                 bed_depth: depths[depth],
+                bed: beds[bed],
                 ..bodies[body].clone()
             }
         })
@@ -133,7 +146,7 @@ fn sorted(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::test_sets::{condition, set};
-    use measurements::{Feasible, Kind};
+    use measurements::{Feasible, Kind, NamedBed};
 
     fn measured() -> MeasurementSet {
         let conditions = [(1.0, 90.0), (2.0, 60.0), (3.0, 35.0)];
@@ -151,6 +164,21 @@ mod tests {
         assert_eq!(of(|one| one.angle_deg), [35.0, 60.0, 90.0]);
         assert_eq!(of(|one| one.mass), [0.5 * 0.0667, 0.0667]);
         assert!(grid.iter().all(|one| one.spin == 0.0 && one.packing.is_none()));
+    }
+
+    #[test]
+    fn every_body_is_tried_in_every_bed_of_several() {
+        let mut set = measured();
+        for name in ["loose", "dense"] {
+            set.beds.push(NamedBed { name: name.to_owned(), bed: set.bed });
+        }
+        for (condition, bed) in set.conditions.iter_mut().zip([0, 1, 1]) {
+            condition.bed = Some(bed);
+        }
+        let grid = feasible(&set);
+        // As many as of one bed, in each.
+        let of = |bed| grid.iter().filter(|one| one.bed == Some(bed)).count();
+        assert_eq!([of(0), of(1)], [24, 24]);
     }
 
     #[test]

@@ -44,6 +44,8 @@ const TELLING: f64 = 0.05;
 pub struct Recommendation {
     /// The condition.
     pub condition: Condition,
+    /// The name of its bed, in a set of several.
+    pub bed: Option<String>,
     /// Runs of it.
     pub repeats: usize,
     /// What it is expected to tell, together with those before it in a recommendation (bits).
@@ -74,6 +76,7 @@ impl Recommendation {
             "spin_rad_per_s": rounded(condition.spin),
             "packing": condition.packing.map(rounded),
             "bed_depth_m": condition.bed_depth.map(rounded),
+            "bed": self.bed,
             "repeats": self.repeats,
             "expected_bits": rounded(self.expected_bits),
             "open_bits": rounded(open_bits),
@@ -127,8 +130,16 @@ pub fn recommend(
             let (expected_delta, [k, l]) = most_apart(&prospect, &hypotheses)?;
             let separates = [k, l].map(|at| hypotheses[at].name().to_owned());
             let condition = foreseen.condition().clone();
-            let alone =
-                Recommendation { condition, repeats, expected_bits, separates, expected_delta };
+            let bed = condition.bed.and_then(|at| bench.set.beds.get(at));
+            let bed = bed.map(|named| named.name.clone());
+            let alone = Recommendation {
+                condition,
+                bed,
+                repeats,
+                expected_bits,
+                separates,
+                expected_delta,
+            };
             Some(Feasible { alone, prospect })
         })
         .collect();

@@ -232,7 +232,8 @@ impl Prepared {
         layout: &Layout,
     ) -> Result<Self, ForwardError> {
         let condition = &set.conditions[index];
-        let (space, name) = match set.bed_of(condition).geometry {
+        let bed = set.bed_of(condition);
+        let (space, name) = match bed.geometry {
             Geometry::Planar => (Space::Planar, "2d"),
             Geometry::Spatial => (Space::Spatial, "3d"),
         };
@@ -253,8 +254,8 @@ impl Prepared {
         }
         let angle = condition.angle_deg.to_radians();
         let bed = Surroundings {
-            bulk_density: set.bed_of(condition).bulk_density.unwrap_or(medium.bulk_density),
-            gravity: set.bed_of(condition).gravity,
+            bulk_density: bed.bulk_density.unwrap_or(medium.bulk_density),
+            gravity: bed.gravity,
             packing: condition.packing.or(medium.packing),
             bed_depth: condition.bed_depth.or(medium.bed_depth),
         };

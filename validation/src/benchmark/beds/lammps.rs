@@ -1,7 +1,7 @@
-//! Beds that LAMMPS rains and hits: grains, contacts, rolling, steps and surfaces are those of another code.
+//! Beds and impacts that LAMMPS simulates: grains, contact law, rolling, time step and surface are those of another code.
 //!
-//! A run is one input. Grains fall through air from random places, the air is taken away, and once they rest an intruder
-//! that touches the highest of them is let go. What is written of it becomes a run of the set.
+//! A run is one LAMMPS input. It drops grains through air from random places and removes the air. Once the grains rest, it
+//! releases an intruder that touches the highest grain. The path of the intruder becomes a run of the set.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -24,10 +24,10 @@ use crate::speed::lammps::Lammps;
 /// Speed (m/s) at which the mean grain falls through the air.
 const FALL: f64 = 0.5;
 
-/// Height of the rain in that of the grains without pores.
+/// Height of the region that grains fall from, over the height of the grains without pores.
 const RAIN: f64 = 4.0;
 
-/// Time (s) that the rain takes at that speed, and longest time until grains rest.
+/// Time (s) for which grains fall at that speed, and longest time after it until they rest.
 const RAINING: f64 = 1.5;
 const RESTING: f64 = 3.0;
 
@@ -37,17 +37,17 @@ const AT_REST: f64 = 1e-8;
 /// Share of their diameters that grains may overlap where they begin to fall.
 const OVERLAP: f64 = 0.1;
 
-/// Stiffness of the rolling spring in that of the normal one, and its damping (kg/s).
+/// Stiffness of the rolling spring over that of the normal spring, and its damping (kg/s).
 const ROLLING: (f64, f64) = (0.5, 0.02);
 
-/// Places at which the surface is looked at, over the width.
+/// Places over the width at which the height of the surface is taken.
 const COLUMNS: usize = 2400;
 
 /// Steps between two lines of the path.
 const EVERY: usize = 2;
 
-/// Standard deviation of the depth that a set calls zero (m), and half of the width of what its clock calls zero (s): half
-/// a frame at 500 a second.
+/// Standard deviation of the zero of depth of a set (m), and largest error of the zero of its clock (s): half a frame at
+/// 500 a second.
 pub(super) const LEVEL: f64 = 2e-4;
 const CLOCK: f64 = 1e-3;
 
