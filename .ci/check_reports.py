@@ -45,6 +45,23 @@ FIGURES = """() => [...document.querySelectorAll("figure svg")].map((svg) => {
 })"""
 
 
+# The greatest speed of the velocity field in the frames of a view, as the player says it, and that of the body (m/s).
+FIELD = """([look]) => {
+  const part = (name) => document.querySelector("#player [name=" + name + "]");
+  const set = (name, key, value, event) => { part(name)[key] = value; part(name).dispatchEvent(new Event(event)); };
+  set("look", "selectedIndex", look, "change");
+  set("flow", "checked", true, "change");
+  const speeds = [];
+  for (let frame = 0; frame <= Number(part("time").max); frame++) {
+    set("time", "value", frame, "input");
+    speeds.push(Number(/move at up to ([0-9.]+) m/.exec(document.querySelector("#player output").textContent)?.[1]));
+  }
+  set("flow", "checked", false, "change");
+  const { speed } = JSON.parse(document.getElementById("scenes").textContent);
+  return { grains: Math.max(...speeds), body: Math.max(...speed) };
+}"""
+
+
 def require(condition, what):
     if not condition:
         raise AssertionError(what)
@@ -80,6 +97,12 @@ def check(browser, report):
     require(tip.is_visible() and tip.inner_text().strip() in said, "the tip says no value")
     page.mouse.move(2, 2)
     require(tip.is_hidden(), "the tip stays")
+
+    for view in range(page.locator("#player [name=look] option").count()):
+        greatest = page.evaluate(FIELD, [view])
+        # Next to the body, grains move about as fast as it does.
+        share = greatest["grains"] / greatest["body"]
+        require(0.02 < share < 2, f"view {view}: a velocity field of grains and a body of {greatest}")
 
     background = "getComputedStyle(document.body).backgroundColor"
     light = page.evaluate(background)

@@ -4,7 +4,7 @@
   const data = JSON.parse(document.getElementById("scenes").textContent);
   const canvas = root.querySelector("canvas"), pen = canvas.getContext("2d");
   const part = (name) => root.querySelector("[name=" + name + "]");
-  const [play, slider, colour, look, whole, arrow] = ["play", "time", "colour", "look", "whole", "arrow"].map(part);
+  const [play, slider, colour, look, whole, arrow, flow] = ["play", "time", "colour", "look", "whole", "arrow", "flow"].map(part);
   const said = root.querySelector("output"), frames = data.times.length;
   let frame = 0, playing = false, began = 0;
 
@@ -115,9 +115,7 @@
     const { places: [u, v], values } = view.scenes[frame], value = values[colour.selectedIndex];
     const levels = data.colours.length - 1, largest = (view.largest * box.scale) / 255;
     const disc = (i) => {
-      const x = view.whole[0][0] + (u[i] - view.beyond) * view.step;
-      const y = view.whole[1][0] + (v[i] - view.beyond) * view.step;
-      const [px, py] = box.at(x, y), radius = view.radius[i] * largest * (view.sorted ? 1 : 0.95);
+      const [px, py] = box.at(...millimetres(view, [u, v], i)), radius = view.radius[i] * largest * (view.sorted ? 1 : 0.95);
       pen.moveTo(px + radius, py);
       pen.arc(px, py, radius, 0, 2 * Math.PI);
     };
@@ -144,13 +142,52 @@
     });
   };
 
+  const millimetres = (view, [u, v], i) =>
+    [view.whole[0][0] + (u[i] - view.beyond) * view.step, view.whole[1][0] + (v[i] - view.beyond) * view.step];
+
+  // Mean velocity of the grains of each square cell (m/s, as mm/ms): central differences of the stored places. A cell
+  // of fewer than two grains has none.
+  const field = (view, box) => {
+    const before = Math.max(frame - 1, 0), after = Math.min(frame + 1, frames - 1);
+    const time = data.times[after] - data.times[before], side = Math.max(4 * view.largest, 22 / box.scale);
+    const [now, from, to] = [frame, before, after].map((f) => view.scenes[f].places), cells = new Map();
+    for (let i = 0; i < view.n && time > 0; i++) {
+      if ([now, from, to].some(([u]) => u[i] === 65535)) continue;
+      const [x, y] = millimetres(view, now, i), [x0, y0] = millimetres(view, from, i), [x1, y1] = millimetres(view, to, i);
+      if (x < box.u[0] || x > box.u[1] || y < box.v[0] || y > box.v[1]) continue;
+      const [column, row] = [Math.floor(x / side), Math.floor(y / side)], key = column + " " + row;
+      const cell = cells.get(key) ?? { at: [(column + 0.5) * side, (row + 0.5) * side], n: 0, sum: [0, 0] };
+      cell.n += 1;
+      cell.sum[0] += (x1 - x0) / time;
+      cell.sum[1] += (y1 - y0) / time;
+      cells.set(key, cell);
+    }
+    const means = [...cells.values()].filter(({ n }) => n > 1);
+    return { side, means: means.map(({ at, n, sum }) => ({ at, velocity: sum.map((part) => part / n) })) };
+  };
+
+  // The root of a speed, as in the colours: the slow flow far from the body would not be seen.
+  const drawField = ({ side, means }, box) => {
+    const fastest = Math.max(0, ...means.map(({ velocity }) => Math.hypot(...velocity)));
+    for (const { at, velocity: [vx, vy] } of means) {
+      const speed = Math.hypot(vx, vy), length = 0.95 * side * box.scale * Math.sqrt(speed / data.quantities[0].top);
+      const [px, py] = box.at(...at), [dx, dy] = [(length * vx) / speed, (-length * vy) / speed];
+      drawArrow([px - dx / 2, py - dy / 2], [dx, dy], 1.5);
+    }
+    return fastest;
+  };
+
   const drawForce = ([x, y, fx, fy], box) => {
-    const longest = 0.24 * (box.bottom - box.above), [px, py] = box.at(x, y);
-    const dx = (longest * fx) / data.most, dy = (-longest * fy) / data.most, length = Math.hypot(dx, dy);
+    const longest = 0.24 * (box.bottom - box.above);
+    drawArrow(box.at(x, y), [(longest * fx) / data.most, (-longest * fy) / data.most], 2.5);
+  };
+
+  const drawArrow = ([px, py], [dx, dy], thick) => {
+    const length = Math.hypot(dx, dy);
     if (!(length > 3)) return;
-    const head = Math.min(9, 0.6 * length), ex = dx / length, ey = dy / length;
+    const head = Math.min(3.6 * thick, 0.6 * length), ex = dx / length, ey = dy / length;
     const nx = px + dx - head * ex, ny = py + dy - head * ey;
-    for (const [style, width] of [["#ffffff", 5], ["#000000", 2.5]]) {
+    for (const [style, width] of [["#ffffff", 2 * thick], ["#000000", thick]]) {
       pen.beginPath();
       pen.moveTo(px, py);
       pen.lineTo(nx, ny);
@@ -206,13 +243,15 @@
       path.slice(0, view.frames[frame] + 1).forEach(([x, y], k) => pen[k ? "lineTo" : "moveTo"](...box.at(x, y)));
       pen.stroke();
     }
+    const flows = flow.checked ? field(view, box) : null, fastest = flows && drawField(flows, box);
     if (arrow.checked) view.forces[frame].forEach((force) => drawForce(force, box));
     pen.restore();
     drawAxes(view, box);
     drawBar(box);
     const forces = view.forces[frame].map(([, , x, y]) => Math.hypot(x, y).toFixed(2) + " N");
     said.textContent = data.times[frame].toFixed(1) + " ms: depth " + data.depth[frame].toFixed(1) + " mm, speed "
-      + data.speed[frame].toFixed(2) + " m/s" + (forces.length ? ", force of the bed " + forces.join(" and ") : "");
+      + data.speed[frame].toFixed(2) + " m/s" + (forces.length ? ", force of the bed " + forces.join(" and ") : "")
+      + (flows ? "; grains move at up to " + fastest.toFixed(3) + " m/s (means over " + flows.side.toFixed(1) + " mm)" : "");
     slider.value = frame;
   };
 
@@ -236,7 +275,7 @@
     requestAnimationFrame(step);
   });
   slider.addEventListener("input", () => { playing = false; play.textContent = "Play"; show(Number(slider.value)); });
-  for (const input of [colour, look, whole, arrow]) input.addEventListener("change", draw);
+  for (const input of [colour, look, whole, arrow, flow]) input.addEventListener("change", draw);
 
   slider.max = frames - 1;
   for (const view of data.views) look.add(new Option(view.name));

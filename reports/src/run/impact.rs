@@ -109,7 +109,8 @@ fn words(impact: &Impact, player: &Player) -> String {
     };
     format!(
         "The impact in {frames}. Colours go by the root of the quantity, so that slow motion is told from \
-         rest.{cut}{shown}"
+         rest; so do the arrows of the velocity field, which is the mean velocity of the grains of each cell between \
+         neighbouring frames.{cut}{shown}"
     )
 }
 
