@@ -196,7 +196,7 @@ fn size(text: &str) -> Result<(u32, u32), CommandError> {
 
 /// What the logs of `run` tell.
 fn impact(run: &Path) -> Result<Impact, CommandError> {
-    let files = RunFiles::of(run);
+    let files = RunFiles::so_far(run);
     let bad = |error: SceneError| match error {
         SceneError::Read(error @ ReadError::Damaged { .. }) => CommandError::Failed(error.into()),
         error => CommandError::bad_input(error),

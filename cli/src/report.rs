@@ -1,5 +1,6 @@
 //! `plunge report`, and the reports that other commands leave beside their results.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use exchange::run_files::{RunFiles, is_log};
@@ -15,7 +16,7 @@ use crate::workbench::write_whole;
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// The folder of a run, of a list of runs, of a campaign, of a comparison, of a diagnosis or of a
-    /// validation. Or the log of a run.
+    /// validation. Or the log of a run. A run that goes on has a page of its own, as far as it has come.
     folder: PathBuf,
     /// Print one JSON object to stdout.
     #[arg(long)]
@@ -27,8 +28,9 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> CommandResult {
     let page = reports::of_folder(&args.folder).map_err(CommandError::bad_input)?;
-    let file = match is_log(&args.folder) {
-        true => RunFiles::of(&args.folder).report,
+    let files = RunFiles::so_far(&args.folder);
+    let file = match is_log(&args.folder) || files.report.parent() == Some(&args.folder) {
+        true => files.report,
         false => args.folder.join(FILE),
     };
     write_whole(&file, &page)?;
@@ -42,6 +44,8 @@ pub(crate) fn run(args: &Args) -> CommandResult {
 /// Leaves the report of the run `summary` in its `folder`, unless it has one, and gives the course of
 /// the run if its log can be read. A report that cannot be made is told, and fails nothing.
 pub(crate) fn of_run(folder: &Path, summary: &Summary, quiet: bool) -> Option<Course> {
+    // What was made of it on the way says less than its page.
+    drop(fs::remove_file(RunFiles::of(folder).partial().report));
     let course = match Course::read(folder) {
         Ok(course) => course,
         Err(error) => {

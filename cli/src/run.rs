@@ -17,6 +17,7 @@ use crate::control::Terminal;
 use crate::output::{self, CommandError, CommandResult};
 use crate::report;
 use crate::table_file;
+use crate::view::Live;
 
 /// Width of a curve in the text (characters).
 const SPARKLINE: usize = 40;
@@ -26,6 +27,9 @@ const SPARKLINE: usize = 40;
 pub(crate) struct Args {
     /// A model file, or the name of a shipped model.
     model: PathBuf,
+    /// Show the page of the run to a browser on this machine while it goes on; PORT is 8792 unless stated.
+    #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = true, default_missing_value = "8792")]
+    live: Option<u16>,
     #[command(flatten)]
     common: Common,
 }
@@ -37,6 +41,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let model = &loaded.model;
     common.refuse_too_large(model)?;
     let places = places(common, model);
+    let live = args.live.map(|port| Live::start(port, &places.out)).transpose()?;
     let mut terminal = Terminal::new(common.quiet);
     let outcome =
         common.on_threads(|| runner::run::run(model, &loaded.original, &places, &mut terminal))?;
@@ -44,10 +49,12 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     match outcome.map_err(CommandError::from)? {
         Outcome::One(summary) => {
             let course = report::of_run(&places.out, &summary, common.quiet);
+            live.iter().for_each(Live::end);
             show(common.json, &*summary, || one_as_text(&summary, course.as_ref(), &places.out))
         }
         Outcome::List(summary) => {
             report::of_list(&places.out, &summary, common.quiet);
+            live.iter().for_each(Live::end);
             show(common.json, &*summary, || list_as_text(&summary, &places.out))
         }
         Outcome::Interrupted => Err(terminal.interrupted(RESUMES)),
@@ -58,7 +65,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
 /// thread, into the folders `001`, `002` … of `--out`. No model is run before all have been read. Gives the
 /// summaries; reports are left to `plunge report`.
 pub(crate) fn many(args: &Args, variants: &[Vec<String>]) -> Result<Vec<Value>, CommandError> {
-    let Args { model, common } = args;
+    let Args { model, common, .. } = args;
     table_file::refuse(model)?;
     let number = workers(common.threads);
     let mut loaded = Vec::with_capacity(variants.len());

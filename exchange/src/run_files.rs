@@ -10,6 +10,9 @@ const SUMMARY: &str = "summary.json";
 /// The name of a report in the folder of a run.
 const REPORT: &str = "report.html";
 
+/// What the name of a file ends with while its run goes on.
+const PARTIAL: &str = ".partial";
+
 /// Where the files of a run are, whether or not they are there.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RunFiles {
@@ -52,6 +55,39 @@ impl RunFiles {
         }
     }
 
+    /// Likewise of a run that may not have ended. A log that is still written has another name; then the report
+    /// has one too, so that it does not stand in the place of that of the whole run.
+    #[must_use]
+    pub fn so_far(run: &Path) -> Self {
+        let whole = Self::of(run);
+        let partial = whole.partial();
+        let of = |whole: PathBuf, partial: PathBuf| {
+            if !whole.is_file() && partial.is_file() { partial } else { whole }
+        };
+        let log = of(whole.log.clone(), partial.log);
+        let report = if log == whole.log { whole.report } else { partial.report };
+        let grains = of(whole.grains, partial.grains);
+        Self { log, grains, report, summary: whole.summary }
+    }
+
+    /// The names of its files while it goes on; it has no summary then.
+    #[must_use]
+    pub fn partial(&self) -> Self {
+        let of = |path: &Path| {
+            let mut name = path.as_os_str().to_owned();
+            name.push(PARTIAL);
+            PathBuf::from(name)
+        };
+        let report = self.report.with_extension("partial.html");
+        Self { log: of(&self.log), grains: of(&self.grains), summary: self.summary.clone(), report }
+    }
+
+    /// Whether a run is there that goes on, or was cut: a log that is still written, and no whole one.
+    #[must_use]
+    pub fn go_on(&self) -> bool {
+        !self.log.is_file() && self.partial().log.is_file()
+    }
+
     /// Whether a finished run is there: its log and its summary.
     #[must_use]
     pub fn are_there(&self) -> bool {
@@ -79,5 +115,22 @@ mod tests {
         assert_eq!(of_log.grains, Path::new("lmp.grains.mcap"));
         assert_eq!(of_log.summary, Path::new("lmp.summary.json"));
         assert_eq!(of_log.report, Path::new("lmp.report.html"));
+    }
+
+    #[test]
+    fn a_run_that_goes_on_is_read_by_the_names_its_logs_have_until_it_ends() -> std::io::Result<()>
+    {
+        let here = tempfile::tempdir()?;
+        let whole = RunFiles::of(here.path());
+        assert_eq!(RunFiles::so_far(here.path()), whole);
+        std::fs::write(here.path().join("run.mcap.partial"), "")?;
+        assert!(whole.go_on());
+        let so_far = RunFiles::so_far(here.path());
+        assert_eq!(so_far.log, here.path().join("run.mcap.partial"));
+        assert_eq!(so_far.report, here.path().join("report.partial.html"));
+        std::fs::write(here.path().join("run.mcap"), "")?;
+        assert!(!whole.go_on());
+        assert_eq!(RunFiles::so_far(here.path()), whole);
+        Ok(())
     }
 }

@@ -97,7 +97,7 @@ pub enum ReportError {
 /// The results of a comparison, diagnosis or validation, by the names of their files.
 pub type Texts = BTreeMap<String, String>;
 
-/// The page of what `folder` holds: a finished run, a list of them, a campaign, however far it has come,
+/// The page of what `folder` holds: a run, however far it has come, a list of runs, a campaign, however far it has come,
 /// a comparison, a diagnosis or a validation. A run may also be named by its log.
 ///
 /// # Errors
@@ -117,6 +117,12 @@ pub fn of_folder(folder: &Path) -> Result<String, ReportError> {
                 run::page(&summary, &course, &seen)
             }
         };
+    }
+    if RunFiles::of(folder).go_on() {
+        let course = run::Course::read(folder)?;
+        let seen = run::Seen::so_far(folder, &course);
+        let name = folder.file_stem().unwrap_or(folder.as_os_str()).to_string_lossy();
+        return run::page_so_far(&name, &course, &seen);
     }
     if is_log(folder) {
         return Err(ReportError::NoSummary { log: folder.to_owned(), summary });

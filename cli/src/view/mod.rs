@@ -1,15 +1,19 @@
-//! `plunge view`: hands a log to viewers that run in a browser.
+//! `plunge view`: hands a log to viewers that run in a browser, and shows the page of a run while it goes on.
 
+mod live;
 mod request;
 mod server;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::thread;
 
 use exchange::run_files::RunFiles;
 use serde_json::json;
 
 use crate::output::{self, CommandError, CommandResult};
-use server::{Served, Server};
+use live::{LivePage, PAGE};
+use server::{Content, Served, Server};
 
 /// The names under which logs are served, whatever their files are called.
 const RUN: &str = "/run.mcap";
@@ -18,7 +22,7 @@ const GRAINS: &str = "/grains.mcap";
 /// Arguments of `plunge view`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// The log of a run, or the folder of one.
+    /// The log of a run, or the folder of one, which may go on.
     run: PathBuf,
     /// The port on this machine; 0 takes one that is free.
     #[arg(long, default_value_t = 8791)]
@@ -33,36 +37,81 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> CommandResult {
     let files = served(&args.run)?;
-    let server = Server::start(args.port, files.clone()).map_err(|why| {
-        CommandError::bad_input(format!("cannot listen on port {}: {why}; --port", args.port))
-    })?;
+    let server = start(args.port, &args.run, files.clone())?;
     let urls: Vec<String> =
         files.iter().map(|file| format!("http://{}{}", server.address(), file.name)).collect();
     if args.json {
-        output::json_to_stdout(&json!({ "port": server.address().port(), "urls": urls }))?;
+        output::json_to_stdout(
+            &json!({ "port": server.address().port(), "urls": urls, "page": page(&server) }),
+        )?;
     } else if !args.quiet {
-        output::to_stdout(&as_text(&args.run, &files, &urls))?;
+        output::to_stdout(&as_text(&args.run, &files, &urls, &page(&server)))?;
     }
     server.serve()
 }
 
+/// Shows the page of a run to a browser while the run goes on.
+pub(crate) struct Live {
+    content: Arc<Content>,
+}
+
+impl Live {
+    /// Of the run that is written to `out`; says where.
+    pub(crate) fn start(port: u16, out: &Path) -> Result<Self, CommandError> {
+        let server = start(port, out, Vec::new())?;
+        output::to_stderr(&format!("live: {}\n", page(&server)));
+        let content = server.content();
+        let serve = move || server.serve();
+        let thread = thread::Builder::new().name("live".to_owned()).spawn(serve);
+        thread.map_err(|error| CommandError::Failed(error.into()))?;
+        Ok(Self { content })
+    }
+
+    /// Lets a browser that follows the run have its last page.
+    pub(crate) fn end(&self) {
+        self.content.page.let_it_end();
+    }
+}
+
+fn start(port: u16, run: &Path, files: Vec<Served>) -> Result<Server, CommandError> {
+    let content = Arc::new(Content { files, page: LivePage::of(run) });
+    Server::start(port, content).map_err(|why| {
+        CommandError::bad_input(format!("cannot listen on port {port}: {why}; choose another"))
+    })
+}
+
+fn page(server: &Server) -> String {
+    format!("http://{}{PAGE}", server.address())
+}
+
 /// The logs of `run` that are there.
 fn served(run: &Path) -> Result<Vec<Served>, CommandError> {
-    let files = RunFiles::of(run);
+    let files = RunFiles::so_far(run);
     if !files.log.is_file() {
         return Err(CommandError::bad_input(format!("{} is not there", files.log.display())));
+    }
+    if RunFiles::of(run).go_on() {
+        return Ok(Vec::new()); // a log has its index, which viewers read first, when it is whole
     }
     let grains = Some((GRAINS, files.grains)).filter(|(_, path)| path.is_file());
     let all = std::iter::once((RUN, files.log)).chain(grains);
     Ok(all.map(|(name, path)| Served { name, path }).collect())
 }
 
-fn as_text(run: &Path, files: &[Served], urls: &[String]) -> String {
+fn as_text(run: &Path, files: &[Served], urls: &[String], page: &str) -> String {
     let mut text = "Served on this machine until Ctrl-C:\n\n".to_owned();
+    text.push_str(&format!("  {page}  its page, anew as it goes on\n"));
     for (file, url) in files.iter().zip(urls) {
         text.push_str(&format!("  {url}  {}\n", file.path.display()));
     }
-    let (run, url) = (run.display(), &urls[0]);
+    let run = run.display();
+    let Some((first, url)) = files.first().zip(urls.first()) else {
+        text.push_str(&format!(
+            "\nThe run has not ended; its logs are served to viewers when it has. For those of now:\n\n  \
+             plunge recover {run}/run.mcap.partial now.mcap\n"
+        ));
+        return text;
+    };
     text.push_str(&format!(
         "\n  Foxglove     https://app.foxglove.dev/?ds=remote-file&ds.url={url}\n  \
          Lichtblick   the address of its web build, then ?ds=remote-file&ds.url={url}\n\
@@ -71,7 +120,7 @@ fn as_text(run: &Path, files: &[Served], urls: &[String]) -> String {
          PlotJuggler  File > Load\n  \
          Python       python examples/read_log.py {log}\n\
          \ndocs/output-files.md has what each of them needs.\n",
-        log = files[0].path.display()
+        log = first.path.display()
     ));
     text
 }

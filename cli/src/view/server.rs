@@ -17,6 +17,7 @@ use std::time::{Duration, Instant};
 
 use http_range_header::parse_range_header;
 
+use super::live::{EVERY, LivePage, PAGE, Page};
 use super::request::{self, Method, Refusal, Request};
 
 /// Connections at a time: a browser asks for up to six.
@@ -53,31 +54,47 @@ pub(super) struct Served {
     pub(super) path: PathBuf,
 }
 
-/// A server of files.
+/// What is served: files, and the page of a run.
+#[derive(Debug)]
+pub(super) struct Content {
+    pub(super) files: Vec<Served>,
+    pub(super) page: LivePage,
+}
+
+/// A server of files and a page.
 pub(super) struct Server {
     listener: TcpListener,
     address: SocketAddr,
-    files: Arc<[Served]>,
+    content: Arc<Content>,
 }
 
 /// An answer: its status, its headers beyond those of every answer, and its body with its length.
 struct Answer {
     status: u16,
     headers: Vec<(&'static str, String)>,
-    body: Option<io::Take<File>>,
+    body: Option<Body>,
     length: u64,
+}
+
+enum Body {
+    Part(io::Take<File>),
+    Page(Arc<str>),
 }
 
 impl Server {
     /// Listens on `port` of the loopback address, or on a free one if that is 0.
-    pub(super) fn start(port: u16, files: Vec<Served>) -> io::Result<Self> {
+    pub(super) fn start(port: u16, content: Arc<Content>) -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         let address = listener.local_addr()?;
-        Ok(Self { listener, address, files: files.into() })
+        Ok(Self { listener, address, content })
     }
 
     pub(super) fn address(&self) -> SocketAddr {
         self.address
+    }
+
+    pub(super) fn content(&self) -> Arc<Content> {
+        Arc::clone(&self.content)
     }
 
     /// Answers for ever: a signal ends the program.
@@ -94,10 +111,10 @@ impl Server {
                 let _ = send(&stream, Answer::empty(503), Method::Get);
                 continue;
             }
-            let (files, place) = (Arc::clone(&self.files), Arc::clone(&open));
+            let (content, place) = (Arc::clone(&self.content), Arc::clone(&open));
             let talk = move || {
                 // Whoever has gone away needs no answer.
-                let _ = talk(&stream, &files);
+                let _ = talk(&stream, &content);
                 drop(place);
             };
             // Without room for a thread the connection is closed.
@@ -106,11 +123,11 @@ impl Server {
     }
 }
 
-/// Reads the request of `stream`, and answers it with one of `files`.
-fn talk(stream: &TcpStream, files: &[Served]) -> io::Result<()> {
+/// Reads the request of `stream`, and answers it with what is in `content`.
+fn talk(stream: &TcpStream, content: &Content) -> io::Result<()> {
     stream.set_write_timeout(Some(TIME_TO_READ))?;
     let (answer, method) = match request::read(stream) {
-        Ok(request) => (answer(&request, files), request.method),
+        Ok(request) => (answer(&request, content), request.method),
         Err(Refusal::Status(status)) => (Answer::empty(status), Method::Get),
         Err(Refusal::Silence) => return Ok(()),
     };
@@ -132,17 +149,32 @@ fn hear_out(mut stream: &TcpStream) -> io::Result<()> {
     Ok(())
 }
 
-fn answer(request: &Request, files: &[Served]) -> Answer {
+fn answer(request: &Request, content: &Content) -> Answer {
     if request.method == Method::Options {
         let headers = ALLOWED.map(|(name, value)| (name, value.to_owned()));
         return Answer { headers: headers.into(), ..Answer::empty(204) };
     }
-    match files.iter().find(|file| file.name == request.path) {
+    if request.path == PAGE {
+        return page(&content.page);
+    }
+    match content.files.iter().find(|file| file.name == request.path) {
         Some(file) => {
             part_of(file, request.range.as_deref()).unwrap_or_else(|_| Answer::empty(500))
         }
         None => Answer::empty(404),
     }
+}
+
+fn page(page: &LivePage) -> Answer {
+    let Page { html, is_last } = page.now();
+    let mut headers = vec![
+        ("Content-Type", "text/html; charset=utf-8".to_owned()),
+        ("Cache-Control", "no-store".to_owned()),
+    ];
+    if !is_last {
+        headers.push(("Refresh", EVERY.as_secs().to_string()));
+    }
+    Answer { status: 200, headers, length: html.len() as u64, body: Some(Body::Page(html)) }
 }
 
 /// The part of `file` that `range` asks for; all of it without one, and for several at once.
@@ -166,7 +198,7 @@ fn part_of(file: &Served, range: Option<&str>) -> io::Result<Answer> {
         headers.push(("Content-Range", format!("bytes {first}-{last}/{whole}")));
     }
     opened.seek(SeekFrom::Start(start))?;
-    Ok(Answer { status, headers, body: Some(opened.take(length)), length })
+    Ok(Answer { status, headers, body: Some(Body::Part(opened.take(length))), length })
 }
 
 /// Sends `answer`; to a client that asks for the head alone, that alone.
@@ -181,7 +213,8 @@ fn send(mut stream: &TcpStream, answer: Answer, method: Method) -> io::Result<()
     head.push_str("\r\n");
     stream.write_all(head.as_bytes())?;
     match body.filter(|_| method == Method::Get) {
-        Some(mut body) => io::copy(&mut body, &mut stream).map(drop),
+        Some(Body::Part(mut part)) => io::copy(&mut part, &mut stream).map(drop),
+        Some(Body::Page(html)) => stream.write_all(html.as_bytes()),
         None => Ok(()),
     }
 }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use crate::common::folder;
+use crate::common::{Call, folder};
 
 /// A server that is told to end when this goes.
 struct View {
@@ -40,8 +40,19 @@ impl View {
         }
         let told: Value = serde_json::from_str(&text).expect("an object");
         let port = told["port"].as_u64().and_then(|port| u16::try_from(port).ok()).expect("a port");
-        assert_eq!(told["urls"][0], format!("http://127.0.0.1:{port}/run.mcap"));
+        if run.is_file() || run.join("run.mcap").is_file() {
+            assert_eq!(told["urls"][0], format!("http://127.0.0.1:{port}/run.mcap"));
+        }
+        assert_eq!(told["page"], format!("http://127.0.0.1:{port}/"));
         Self { child, port }
+    }
+
+    /// Asks for the page, and gives its text and whether a browser is to ask again.
+    fn page(&self) -> (String, bool) {
+        let answer = self.ask("GET", "/", "");
+        assert_eq!(answer.status, 200);
+        let again = answer.head.lines().any(|line| line.starts_with("refresh: "));
+        (String::from_utf8(answer.body).expect("text"), again)
     }
 
     fn ask(&self, method: &str, path: &str, headers: &str) -> Answer {
@@ -71,6 +82,11 @@ impl View {
         let head = String::from_utf8_lossy(&whole[..end]).to_ascii_lowercase();
         let status = head.split(' ').nth(1).and_then(|word| word.parse().ok()).expect("a status");
         Answer { status, head, body: whole[end + 4..].to_vec() }
+    }
+
+    /// Waits for the end of a live run.
+    fn ended(mut self) -> ExitStatus {
+        self.child.wait().expect("it ends")
     }
 
     /// Ends it as a system does that shuts down; Ctrl-C may be ignored where tests run in the background.
@@ -135,7 +151,7 @@ fn what_is_not_there_is_refused_and_a_head_has_no_body() {
     let beyond = view.ask("GET", "/run.mcap", "Range: bytes=100000-\r\n");
     assert_eq!((beyond.status, beyond.body.len()), (416, 0));
     assert!(beyond.head.contains("content-range: bytes */100000"), "{}", beyond.head);
-    for path in ["/grains.mcap", "/", "/../run.mcap", "/summary.json"] {
+    for path in ["/grains.mcap", "/report.html", "/../run.mcap", "/summary.json"] {
         assert_eq!(view.ask("GET", path, "").status, 404, "{path}");
     }
     assert_eq!(view.ask("POST", "/run.mcap", "Content-Length: 0\r\n").status, 405);
@@ -143,6 +159,73 @@ fn what_is_not_there_is_refused_and_a_head_has_no_body() {
     let may = view.ask("OPTIONS", "/run.mcap", asked);
     assert_eq!(may.status, 204);
     assert!(may.head.contains("access-control-allow-headers: range"), "{}", may.head);
+}
+
+/// Makes the run in `folder` one that goes on: its logs have no index and no end.
+fn go_on(folder: &Path) {
+    for name in ["run.mcap", "grains.mcap"] {
+        let path = folder.join(name);
+        let bytes = fs::read(&path).expect("a log");
+        fs::write(folder.join(format!("{name}.partial")), &bytes[..bytes.len() - 64])
+            .expect("a log");
+        fs::remove_file(path).expect("a log");
+    }
+    fs::remove_file(folder.join("summary.json")).expect("a summary");
+    fs::remove_file(folder.join("report.html")).expect("a report");
+}
+
+#[test]
+fn a_run_that_goes_on_is_shown_reported_exported_and_filmed_as_far_as_it_has_come() {
+    let here = folder();
+    let run = here.path().join("run");
+    Call::run(&run).done();
+    let whole = View::of(&run);
+    let (page, again) = whole.page();
+    assert!(page.contains("stopping time") && !again, "{page}");
+
+    go_on(&run);
+    let view = View::of(&run);
+    let (page, again) = view.page();
+    assert!(page.contains("time so far") && page.contains("id=\"player\"") && again, "{page}");
+    assert_eq!(view.ask("GET", "/run.mcap", "").status, 404);
+
+    let call = |words: &[&str]| Call::new(words).arg(&run);
+    call(&["report", "--quiet"]).done();
+    assert!(run.join("report.partial.html").is_file() && !run.join("report.html").exists());
+    let tables = here.path().join("tables");
+    call(&["export", "--quiet", "--to", "csv"]).arg("--out").arg(&tables).done();
+    assert!(fs::read_dir(&tables).expect("tables").count() > 1);
+    let film = here.path().join("film.gif");
+    call(&["movie", "--quiet"]).arg("--out").arg(&film).done();
+    assert!(film.is_file());
+
+    Call::run(&run).arg("--force").done();
+    assert!(!run.join("report.partial.html").exists());
+}
+
+#[test]
+fn a_live_run_has_a_page_from_its_start_and_hands_over_its_last() {
+    let here = folder();
+    let mut child = Call::run(here.path()).args(["--force", "--live=0"]).start();
+    let mut line = String::new();
+    let stderr = child.stderr.take().expect("a pipe");
+    BufReader::new(stderr).read_line(&mut line).expect("text");
+    let port =
+        line.trim().rsplit(':').next().and_then(|end| end.trim_end_matches('/').parse().ok());
+    let view = View { child, port: port.expect(&line) };
+    // It waits for who has asked once.
+    let start = Instant::now();
+    loop {
+        let (page, again) = view.page();
+        assert!(page.contains("<h1>"), "{page}");
+        if !again {
+            assert!(page.contains("stopping time"), "{page}");
+            break;
+        }
+        assert!(start.elapsed() < Duration::from_secs(60), "no last page");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert!(view.ended().success());
 }
 
 #[cfg(unix)]

@@ -96,7 +96,7 @@ pub fn export(
         Format::Csv | Format::Parquet => false,
         Format::Vtp | Format::LammpsDump | Format::ExtendedXyz => true,
     };
-    let files = RunFiles::of(run);
+    let files = RunFiles::so_far(run);
     let (log, path) = match of_grains {
         true => (GRAIN_LOG, files.grains),
         false => (RUN_LOG, files.log),

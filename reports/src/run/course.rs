@@ -31,13 +31,22 @@ impl Course {
     /// # Errors
     /// If its log cannot be read.
     pub fn read(run: &Path) -> Result<Self, ReadError> {
-        let log = read_run(&RunFiles::of(run).log, Keep::All)?;
+        let log = read_run(&RunFiles::so_far(run).log, Keep::All)?;
         Ok(Self {
             bodies: log.bodies.iter().map(thinned).collect(),
             energy: log.energy.as_ref().map(thinned_budget),
             forces: Forces::of(&log.loads),
             complete: log.complete,
         })
+    }
+
+    /// How far the log goes (s); `None` if no body moves yet.
+    pub(super) fn end(&self) -> Option<f64> {
+        self.bodies
+            .iter()
+            .filter_map(|body| body.states.last())
+            .map(|state| state.time)
+            .reduce(f64::max)
     }
 
     /// The state of the first body at the sample nearest to `time` (s).

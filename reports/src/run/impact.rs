@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use exchange::run_files::RunFiles;
 use runner::run::Summary;
 
 use super::player::Player;
@@ -33,7 +34,25 @@ impl Seen {
         if summary.bed.is_none() {
             return Self::Nothing;
         }
+        Self::from_read(Impact::read(run, course.forces.clone()))
+    }
+
+    /// What there is to see of `run`, which has not ended.
+    #[must_use]
+    pub fn so_far(run: &Path, course: &Course) -> Self {
+        if !RunFiles::so_far(run).grains.is_file() {
+            return Self::Nothing;
+        }
         match Impact::read(run, course.forces.clone()) {
+            Err(SceneError::Empty { .. }) => {
+                Self::Not("No frame of grains is written yet.".to_owned())
+            }
+            read => Self::from_read(read),
+        }
+    }
+
+    fn from_read(read: Result<Impact, SceneError>) -> Self {
+        match read {
             Ok(impact) => Self::Impact(Box::new(impact)),
             // Where the run is, is no part of its page.
             Err(SceneError::NotRecorded { .. }) => Self::Not(NOT_RECORDED.to_owned()),

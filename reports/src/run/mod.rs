@@ -47,6 +47,40 @@ pub fn page(summary: &Summary, course: &Course, seen: &Seen) -> Result<String, R
     page.html()
 }
 
+/// The page of the run called `name` that has not ended: as far as `course` and `seen` go.
+///
+/// # Errors
+/// If a figure cannot be drawn, or the log of grains cannot be read again.
+pub fn page_so_far(name: &str, course: &Course, seen: &Seen) -> Result<String, ReportError> {
+    let panels = path::pictures(course, None)?;
+    let panels: Vec<_> = panels.iter().map(|(svg, caption)| panel(svg, caption)).collect();
+    let motion = (!panels.is_empty()).then_some(Part::Panels(panels));
+    let budget = energy::Budget::of(course);
+    let energy = budget.map(|budget| Ok(figure(&energy::picture(&budget)?, budget.caption())));
+    let sections = [
+        Section::new("Impact", impact::parts(seen, course)?),
+        Section::new("Motion and force", motion.into_iter().collect()),
+        Section::new("Energy", energy.into_iter().collect::<Result<_, ReportError>>()?),
+    ];
+    let at_end = course.end().and_then(|time| Some((time, course.first_at(time)?)));
+    let headline = at_end.map_or(Vec::new(), |(time, state)| {
+        vec![
+            Number::new("time so far", format!("{:.1} ms", 1e3 * time), "since contact"),
+            Number::new("depth", format!("{:.2} mm", 1e3 * state.depth), ""),
+            Number::new("speed", format!("{:.3} m/s", state.velocity.norm()), ""),
+        ]
+    });
+    let page = Page {
+        title: name.to_owned(),
+        kind: "run so far",
+        lead: "This run has not ended: the page goes as far as its logs do.".to_owned(),
+        headline,
+        sections: sections.into_iter().flatten().collect(),
+        origin: Vec::new(),
+    };
+    page.html()
+}
+
 /// Where a page is from.
 pub(crate) fn origin(version: &str, model_hash: &str) -> Vec<(&'static str, String)> {
     vec![("plunge", version.to_owned()), ("model", model_hash.to_owned())]
@@ -90,7 +124,7 @@ fn headline(summary: &Summary) -> Vec<Number> {
 }
 
 fn motion(summary: &Summary, course: &Course, seen: &Seen) -> Result<Vec<Part>, ReportError> {
-    let mut panels = path::pictures(course, summary)?;
+    let mut panels = path::pictures(course, summary.stop.stopping_time_s)?;
     panels.extend(impact::crater(seen)?);
     let panels = panels.iter().map(|(svg, caption)| panel(svg, caption));
     let mut parts = vec![Part::Panels(panels.collect())];

@@ -4,7 +4,6 @@ use plots::axes;
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, Hover, PictureError, colour, svg};
 use plotters::prelude::*;
-use runner::run::Summary;
 
 use super::Course;
 use super::thin::places;
@@ -36,14 +35,14 @@ struct Panel {
     downward: bool,
 }
 
-/// Figures of `course` over time, each with what it shows: depth, velocity, force and acceleration. The stop is as
-/// `summary` has it.
+/// Figures of `course` over time, each with what it shows: depth, velocity, force and acceleration. `stop` is
+/// the stopping time (s), if there is one.
 pub(super) fn pictures(
     course: &Course,
-    summary: &Summary,
+    stop: Option<f64>,
 ) -> Result<Vec<(String, String)>, PictureError> {
     let moves_along = course.bodies.iter().any(moves_along);
-    let stop = summary.stop.stopping_time_s.map(|stop| 1e3 * stop);
+    let stop = stop.map(|stop| 1e3 * stop);
     let force = force(course, moves_along);
     let grey = !force.band.is_empty();
     let panels = [

@@ -81,7 +81,7 @@ impl Impact {
     /// # Errors
     /// If it has no log of grains, or that cannot be read.
     pub fn read(run: &Path, forces: Forces) -> Result<Self, SceneError> {
-        let log = RunFiles::of(run).grains;
+        let log = RunFiles::so_far(run).grains;
         if !log.is_file() {
             return Err(SceneError::NotRecorded { path: log });
         }

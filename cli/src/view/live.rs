@@ -1,0 +1,121 @@
+//! The page of a run while it goes on.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use exchange::run_files::RunFiles;
+
+/// Its name on the server.
+pub(super) const PAGE: &str = "/";
+
+/// How often a browser asks for the page anew.
+pub(super) const EVERY: Duration = Duration::from_secs(5);
+
+/// The page of a run as it stands now, made when somebody asks for it and the logs have grown.
+#[derive(Debug)]
+pub(super) struct LivePage {
+    /// The folder of a run or of a list of runs, or a log.
+    run: PathBuf,
+    state: Mutex<State>,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    made: Option<(Stand, Page)>,
+    /// When somebody asked last.
+    asked: Option<Instant>,
+}
+
+/// A page, and whether it is that of a run that has ended.
+#[derive(Clone, Debug)]
+pub(super) struct Page {
+    pub(super) html: Arc<str>,
+    pub(super) is_last: bool,
+}
+
+/// What a page is made of: the folder, and how long its logs are (bytes).
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Stand {
+    run: PathBuf,
+    lengths: [u64; 2],
+    has_ended: bool,
+}
+
+impl LivePage {
+    pub(super) fn of(run: &Path) -> Self {
+        Self { run: run.to_owned(), state: Mutex::default() }
+    }
+
+    /// The page; one that says so while there is nothing to see.
+    pub(super) fn now(&self) -> Page {
+        // One at a time: they would be the same, and cost memory.
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        state.asked = Some(Instant::now());
+        let stand = Stand::of(&self.run);
+        if let Some((_, page)) = state.made.as_ref().filter(|(of, _)| *of == stand) {
+            return page.clone();
+        }
+        // A log may get its last name in this moment; then the next request finds it.
+        match reports::of_folder(&stand.run) {
+            Ok(html) => {
+                let page = Page { html: html.into(), is_last: stand.has_ended };
+                state.made = Some((stand, page.clone()));
+                page
+            }
+            Err(why) => Page { html: no_page_yet(&why.to_string()).into(), is_last: false },
+        }
+    }
+
+    /// Waits until a browser that follows the run has its last page, at most for two of its turns.
+    pub(super) fn let_it_end(&self) {
+        let start = Instant::now();
+        while start.elapsed() < 2 * EVERY {
+            let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+            let follows = state.asked.is_some_and(|asked| asked.elapsed() < 2 * EVERY);
+            let has_last = state.made.as_ref().is_some_and(|(_, page)| page.is_last);
+            drop(state);
+            if !follows || has_last || crate::signals::is_asked_to_stop() {
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+}
+
+impl Stand {
+    fn of(run: &Path) -> Self {
+        let has_ended = RunFiles::of(run).summary.is_file();
+        let run = if has_ended { run.to_owned() } else { going_on(run) };
+        let files = RunFiles::so_far(&run);
+        let length = |path: &Path| fs::metadata(path).map_or(0, |file| file.len());
+        Self { lengths: [length(&files.log), length(&files.grains)], run, has_ended }
+    }
+}
+
+/// The run of a list that goes on, if `run` is the folder of one.
+fn going_on(run: &Path) -> PathBuf {
+    let members = fs::read_dir(run).into_iter().flatten().flatten().map(|entry| entry.path());
+    let going_on = members.filter(|member| member.is_dir() && RunFiles::of(member).go_on());
+    going_on.max().unwrap_or_else(|| run.to_owned())
+}
+
+fn no_page_yet(why: &str) -> String {
+    let why: String = why
+        .chars()
+        .map(|letter| match letter {
+            '&' => "&amp;".to_owned(),
+            '<' => "&lt;".to_owned(),
+            other => other.to_string(),
+        })
+        .collect();
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width\">\n\
+         <meta name=\"color-scheme\" content=\"light dark\">\n<title>No page yet</title>\n\
+         <main><h1>No page yet</h1>\n<p>A run has no log before its bed has settled. This page asks again every {} s.</p>\n\
+         <p>{why}</p></main>\n</html>\n",
+        EVERY.as_secs()
+    )
+}
