@@ -156,7 +156,7 @@ impl Control for Terminal {
     fn progress(&mut self, progress: &Progress) {
         match *progress {
             Progress::Settling { step, time, restlessness } => {
-                self.show(BarOf::Settling, "{spinner} bed settling, {msg}, {elapsed}");
+                self.show(BarOf::Settling, "{spinner} settling, {msg}, {elapsed}");
                 let left = self.decay.left(restlessness, Instant::now());
                 let left = left.filter(|left| left.as_secs() > 0).map_or(String::new(), |left| {
                     format!(", at least {:#} left", HumanDuration(left))
