@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use configs::engine::units::{Dimension, parse};
 use exchange::read::{Keep, ReadError, read_run};
 use exchange::run_files::RunFiles;
-use reports::movie::{Film, FilmFormat, MovieError, find_ffmpeg, size_for, write_png};
+use reports::movie::{Beside, Film, FilmFormat, MovieError, find_ffmpeg, size_for, write_png};
 use reports::scene::{Forces, Impact, Look, Quantity, Scene, SceneError, View};
 use runner::run::Summary;
 use serde_json::json;
@@ -54,6 +54,15 @@ pub(crate) struct Args {
     /// Frames shown in a second; without it, so that the film lasts about 6 s.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100))]
     per_second: Option<u32>,
+    /// A clip of the measured impact to show on the right of an .mp4, at the same pace and with contact at the same moment.
+    #[arg(long, value_name = "CLIP", conflicts_with = "at")]
+    beside: Option<PathBuf>,
+    /// When the body touches the bed in the clip, as it plays, such as 350ms; at its start without it.
+    #[arg(long, value_name = "TIME", requires = "beside")]
+    beside_contact: Option<String>,
+    /// How many frames the camera took in a second, such as 1000Hz; without it the clip is taken to play at the pace of the impact.
+    #[arg(long, value_name = "RATE", requires = "beside")]
+    beside_rate: Option<String>,
     /// Single pictures at these times, such as 5ms,20ms; contact, greatest and rest are times too.
     #[arg(long, value_name = "TIMES", value_delimiter = ',')]
     at: Vec<String>,
@@ -100,6 +109,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     };
     let slice = args.slice.as_deref().map(|text| quantity(text, "--slice", Dimension::LENGTH));
     let size = args.size.as_deref().map(size).transpose()?;
+    let beside = beside(args, kind)?;
     signals::will_be_asked_for();
     let impact = impact(&args.run)?;
     let look = match args.from {
@@ -134,7 +144,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     refuse_to_replace(args, &args.out)?;
     let stop: exchange::Stop<'_> = &signals::is_asked_to_stop;
     whole(&args.out, |path| match &ffmpeg {
-        Some(ffmpeg) => ffmpeg.write(&film, path, stop),
+        Some(ffmpeg) => ffmpeg.write(&film, beside.as_ref(), path, stop),
         None => {
             let format = if kind == Kind::Gif { FilmFormat::Gif } else { FilmFormat::Png };
             let mut file = BufWriter::new(File::create(path)?);
@@ -171,6 +181,27 @@ fn kind(args: &Args) -> Result<Kind, CommandError> {
             args.out.display()
         ))),
     }
+}
+
+/// The clip beside the film.
+fn beside(args: &Args, kind: Kind) -> Result<Option<Beside>, CommandError> {
+    let Some(clip) = &args.beside else { return Ok(None) };
+    if kind != Kind::Mp4 {
+        return Err(CommandError::bad_input(
+            "a clip stands beside an .mp4 alone; name the film so",
+        ));
+    }
+    if !clip.is_file() {
+        return Err(CommandError::bad_input(format!("--beside {}: no such file", clip.display())));
+    }
+    let contact = args.beside_contact.as_deref();
+    let contact = contact.map(|text| quantity(text, "--beside-contact", Dimension::TIME));
+    let rate = args.beside_rate.as_deref();
+    let rate = rate.map(|text| quantity(text, "--beside-rate", Dimension::RATE)).transpose()?;
+    if rate.is_some_and(|rate| rate <= 0.0 || !rate.is_finite()) {
+        return Err(CommandError::bad_input("--beside-rate: a camera takes some frames a second"));
+    }
+    Ok(Some(Beside { clip: clip.clone(), contact: contact.transpose()?.unwrap_or(0.0), rate }))
 }
 
 fn no_ffmpeg() -> CommandError {

@@ -17,7 +17,7 @@ use thiserror::Error;
 
 use crate::scene::{Extent, Impact, Quantity, Scene, SceneError, View, height_for, sheet};
 
-pub use mp4::{Ffmpeg, find_ffmpeg};
+pub use mp4::{Beside, Ffmpeg, find_ffmpeg};
 
 /// Why there is no film.
 #[derive(Debug, Error)]

@@ -2,8 +2,10 @@
 
 use std::fs;
 use std::io::Read as _;
+use std::ops::ControlFlow;
 use std::path::Path;
 
+use exchange::frames::each_frame;
 use flate2::read::ZlibDecoder;
 
 use crate::common::{Call, folder, names, program};
@@ -174,4 +176,44 @@ fn an_mp4_is_made_by_ffmpeg_and_without_it_the_message_offers_a_gif() {
     let message = call().after(&path(programs.path())).fails(1);
     assert!(message.contains("no such codec"), "{message}");
     assert!(!file.exists() && !names(out.path()).iter().any(|name| name.contains("partial")));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_clip_beside_a_film_is_at_its_pace_and_touches_when_it_does() {
+    let (out, programs) = (folder(), folder());
+    run(out.path());
+    let (file, clip) = (out.path().join("a.mp4"), out.path().join("clip.mp4"));
+    let told = out.path().join("told");
+    let tells = format!(
+        "#!/bin/sh\nprintf '%s\\n' \"$@\" > {}\nfor last; do :; done\ncat > \"$last\"\n",
+        told.display()
+    );
+    program(&programs.path().join("ffmpeg"), &tells);
+    let path = format!("PATH={}:/usr/bin:/bin; export PATH", programs.path().display());
+    let options = ["--frames", "3", "--size", "64x64", "--per-second", "10", "--beside"];
+    let call = |to: &Path, more: &[&str]| {
+        movie(out.path(), to, &options).arg(&clip).args(more).arg("--force").after(&path)
+    };
+    assert!(call(&file, &[]).fails(2).contains("no such file"));
+    fs::write(&clip, "pictures").expect("a clip");
+    assert!(call(&out.path().join("a.gif"), &[]).fails(2).contains(".mp4"));
+    assert!(call(&file, &["--beside-rate", "0 Hz"]).fails(2).contains("some frames a second"));
+    assert!(call(&file, &["--beside-contact", "3 m"]).fails(2).contains("--beside-contact 3 m"));
+    call(&file, &["--beside-contact", "350 ms", "--beside-rate", "1 kHz"]).done();
+    let told = fs::read_to_string(&told).expect("what it was told");
+    assert!(told.lines().any(|word| word == format!("file:{}", clip.display())), "{told}");
+    // Three pictures at ten a second take 0.2 s from the first to the last frame of the log, which begins at contact.
+    let mut times = Vec::new();
+    let log = out.path().join("grains.mcap");
+    each_frame(&log, |frame| {
+        times.push(frame.time);
+        ControlFlow::Continue(())
+    })
+    .expect("a log");
+    let slower = 0.2 / (times[times.len() - 1] - times[0]);
+    let after = told.split("setpts=((T-0.35)*FR/1000*").nth(1).expect(&told);
+    let (factor, _) = after.split_once("+0)/TB,fps=fps=10:start_time=0").expect(&told);
+    let factor: f64 = factor.parse().expect("a number");
+    assert!((factor / slower - 1.0).abs() < 1e-9, "{factor} {slower}");
 }
