@@ -26,6 +26,8 @@ struct State {
     made: Option<(Stand, Page)>,
     /// When somebody asked last.
     asked: Option<Instant>,
+    /// Whether somebody has the page of the run that has ended.
+    is_handed_over: bool,
 }
 
 /// A page, and whether it is that of a run that has ended.
@@ -68,15 +70,20 @@ impl LivePage {
         }
     }
 
+    /// Says that a client has read the last page.
+    pub(super) fn hand_over(&self) {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner).is_handed_over = true;
+    }
+
     /// Waits until a browser that follows the run has its last page, at most for two of its turns.
     pub(super) fn let_it_end(&self) {
         let start = Instant::now();
         while start.elapsed() < 2 * EVERY {
             let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
             let follows = state.asked.is_some_and(|asked| asked.elapsed() < 2 * EVERY);
-            let has_last = state.made.as_ref().is_some_and(|(_, page)| page.is_last);
+            let is_handed_over = state.is_handed_over;
             drop(state);
-            if !follows || has_last || crate::signals::is_asked_to_stop() {
+            if !follows || is_handed_over || crate::signals::is_asked_to_stop() {
                 return;
             }
             std::thread::sleep(Duration::from_millis(50));

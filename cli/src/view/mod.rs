@@ -84,16 +84,15 @@ fn page(server: &Server) -> String {
     format!("http://{}{PAGE}", server.address())
 }
 
-/// The logs of `run` that are there.
+/// The logs of `run`. Those of one that goes on are served when it has ended: viewers read the index first, which
+/// stands at the end of a log.
 fn served(run: &Path) -> Result<Vec<Served>, CommandError> {
-    let files = RunFiles::so_far(run);
-    if !files.log.is_file() {
+    let files = RunFiles::of(run);
+    if !RunFiles::so_far(run).log.is_file() {
         return Err(CommandError::bad_input(format!("{} is not there", files.log.display())));
     }
-    if RunFiles::of(run).go_on() {
-        return Ok(Vec::new()); // a log has its index, which viewers read first, when it is whole
-    }
-    let grains = Some((GRAINS, files.grains)).filter(|(_, path)| path.is_file());
+    let has_grains = RunFiles::so_far(run).grains.is_file();
+    let grains = Some((GRAINS, files.grains)).filter(|_| has_grains);
     let all = std::iter::once((RUN, files.log)).chain(grains);
     Ok(all.map(|(name, path)| Served { name, path }).collect())
 }
@@ -105,13 +104,15 @@ fn as_text(run: &Path, files: &[Served], urls: &[String], page: &str) -> String 
         text.push_str(&format!("  {url}  {}\n", file.path.display()));
     }
     let run = run.display();
-    let Some((first, url)) = files.first().zip(urls.first()) else {
+    let Some((first, url)) = files.first().zip(urls.first()) else { return text };
+    if !first.path.is_file() {
+        let partial = RunFiles::of(&first.path).partial().log;
         text.push_str(&format!(
-            "\nThe run has not ended; its logs are served to viewers when it has. For those of now:\n\n  \
-             plunge recover {run}/run.mcap.partial now.mcap\n"
+            "\nThe run has not ended; its logs are there when it has. What viewers can read now:\n\n  \
+             plunge recover {} now.mcap\n",
+            partial.display()
         ));
-        return text;
-    };
+    }
     text.push_str(&format!(
         "\n  Foxglove     https://app.foxglove.dev/?ds=remote-file&ds.url={url}\n  \
          Lichtblick   the address of its web build, then ?ds=remote-file&ds.url={url}\n\

@@ -78,7 +78,7 @@ struct Answer {
 
 enum Body {
     Part(io::Take<File>),
-    Page(Arc<str>),
+    Page(Page),
 }
 
 impl Server {
@@ -131,9 +131,15 @@ fn talk(stream: &TcpStream, content: &Content) -> io::Result<()> {
         Err(Refusal::Status(status)) => (Answer::empty(status), Method::Get),
         Err(Refusal::Silence) => return Ok(()),
     };
+    let is_last = method == Method::Get
+        && matches!(answer.body, Some(Body::Page(Page { is_last: true, .. })));
     send(stream, answer, method)?;
     stream.shutdown(Shutdown::Write)?;
-    hear_out(stream)
+    let heard = hear_out(stream);
+    if is_last {
+        content.page.hand_over();
+    }
+    heard
 }
 
 /// Reads what a client still sends, within bounds.
@@ -159,22 +165,26 @@ fn answer(request: &Request, content: &Content) -> Answer {
     }
     match content.files.iter().find(|file| file.name == request.path) {
         Some(file) => {
-            part_of(file, request.range.as_deref()).unwrap_or_else(|_| Answer::empty(500))
+            part_of(file, request.range.as_deref()).unwrap_or_else(|error| match error.kind() {
+                // That of a run that has not ended.
+                io::ErrorKind::NotFound => Answer::empty(404),
+                _ => Answer::empty(500),
+            })
         }
         None => Answer::empty(404),
     }
 }
 
 fn page(page: &LivePage) -> Answer {
-    let Page { html, is_last } = page.now();
+    let page = page.now();
     let mut headers = vec![
         ("Content-Type", "text/html; charset=utf-8".to_owned()),
         ("Cache-Control", "no-store".to_owned()),
     ];
-    if !is_last {
+    if !page.is_last {
         headers.push(("Refresh", EVERY.as_secs().to_string()));
     }
-    Answer { status: 200, headers, length: html.len() as u64, body: Some(Body::Page(html)) }
+    Answer { status: 200, headers, length: page.html.len() as u64, body: Some(Body::Page(page)) }
 }
 
 /// The part of `file` that `range` asks for; all of it without one, and for several at once.
@@ -214,7 +224,7 @@ fn send(mut stream: &TcpStream, answer: Answer, method: Method) -> io::Result<()
     stream.write_all(head.as_bytes())?;
     match body.filter(|_| method == Method::Get) {
         Some(Body::Part(mut part)) => io::copy(&mut part, &mut stream).map(drop),
-        Some(Body::Page(html)) => stream.write_all(html.as_bytes()),
+        Some(Body::Page(page)) => stream.write_all(page.html.as_bytes()),
         None => Ok(()),
     }
 }

@@ -202,6 +202,7 @@ pub(crate) fn signal(child: &Child, name: &str) {
         "TERM" => Signal::TERM,
         "INT" => Signal::INT,
         "HUP" => Signal::HUP,
+        "KILL" => Signal::KILL,
         other => panic!("no test sends {other}"),
     };
     kill_process(Pid::from_child(child), signal).expect("it takes signals");

@@ -4,7 +4,7 @@
 //! γ = γ_0 (1 − d/L). Along a chain of wave speed c, an amplitude decays as exp(−∫γ dx/(2c)) one way,
 //! so of the energy of a short wave that goes in and comes back exp(−γ_0 L/c) is left; with
 //! γ_0 = 6 c/L, that is e⁻⁶ (0.25 %). A larger γ_0 makes the layer itself a mirror, and a wave that is
-//! long against L feels the wall behind it: `docs/boundaries.md` has the measured shares. The linear
+//! long against L feels the wall behind it: `docs/beds.md` has the measured shares. The linear
 //! profile returns less than a quadratic one of the same integral.
 
 use super::{Base, Bottom, Container, Sides};

@@ -129,7 +129,7 @@ pub struct BedSummary {
     pub packing_fraction_inside: Option<f64>,
     pub height_m: f64,
     pub coordination: f64,
-    /// How deep the bed should be for its floor not to be felt, see `docs/boundaries.md`.
+    /// How deep the bed should be for its floor not to be felt, see `docs/beds.md`.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub required_depth_m: Option<f64>,
     pub cache: String,
