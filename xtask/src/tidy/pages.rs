@@ -95,8 +95,8 @@ mod tests {
         files.push(file("README.md", &"line\n".repeat(121)));
         files.push(file("ARCHITECTURE.md", &"line\n".repeat(151)));
         let [pages, words, readme, architecture] = [
-            "docs/ has 16 pages, the limit is 14",
-            "the pages of docs/ have 16015 words, the limit is 16000; this one has 16000",
+            "docs/ has 15 pages, the limit is 14",
+            "the pages of docs/ have 16014 words, the limit is 16000; this one has 16000",
             "README.md has 121 lines, the limit is 120",
             "ARCHITECTURE.md has 151 lines, the limit is 150",
         ]
