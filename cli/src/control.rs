@@ -156,6 +156,9 @@ impl Control for Terminal {
     fn progress(&mut self, progress: &Progress) {
         match *progress {
             Progress::Settling { step, time, restlessness } => {
+                if self.bar_of != Some(BarOf::Settling) {
+                    self.decay = Decay::default();
+                }
                 self.show(BarOf::Settling, "{spinner} settling, {msg}, {elapsed}");
                 let left = self.decay.left(restlessness, Instant::now());
                 let left = left.filter(|left| left.as_secs() > 0).map_or(String::new(), |left| {

@@ -1,9 +1,8 @@
 //! `plunge report`, and the reports that other commands leave beside their results.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use exchange::run_files::{RunFiles, is_log};
+use exchange::run_files::RunFiles;
 use reports::run::{Course, Seen};
 use reports::{FILE, ReportError};
 use runner::run::{ListSummary, Summary};
@@ -28,11 +27,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> CommandResult {
     let page = reports::of_folder(&args.folder).map_err(CommandError::bad_input)?;
-    let files = RunFiles::so_far(&args.folder);
-    let file = match is_log(&args.folder) || files.report.parent() == Some(&args.folder) {
-        true => files.report,
-        false => args.folder.join(FILE),
-    };
+    let file = RunFiles::so_far(&args.folder).report;
     write_whole(&file, &page)?;
     match (args.json, args.quiet) {
         (true, _) => output::json_to_stdout(&json!({ "report": file.display().to_string() })),
@@ -44,8 +39,6 @@ pub(crate) fn run(args: &Args) -> CommandResult {
 /// Leaves the report of the run `summary` in its `folder`, unless it has one, and gives the course of
 /// the run if its log can be read. A report that cannot be made is told, and fails nothing.
 pub(crate) fn of_run(folder: &Path, summary: &Summary, quiet: bool) -> Option<Course> {
-    // What was made of it on the way says less than its page.
-    drop(fs::remove_file(RunFiles::of(folder).partial().report));
     let course = match Course::read(folder) {
         Ok(course) => course,
         Err(error) => {

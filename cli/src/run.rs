@@ -41,24 +41,24 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let model = &loaded.model;
     common.refuse_too_large(model)?;
     let places = places(common, model);
-    let live = args.live.map(|port| Live::start(port, &places.out)).transpose()?;
+    let live = args.live.map(|port| Live::start(port, &places.out, common.quiet)).transpose()?;
     let mut terminal = Terminal::new(common.quiet);
     let outcome =
         common.on_threads(|| runner::run::run(model, &loaded.original, &places, &mut terminal))?;
     terminal.clear();
-    match outcome.map_err(CommandError::from)? {
+    let shown = match outcome.map_err(CommandError::from)? {
         Outcome::One(summary) => {
             let course = report::of_run(&places.out, &summary, common.quiet);
-            live.iter().for_each(Live::end);
             show(common.json, &*summary, || one_as_text(&summary, course.as_ref(), &places.out))
         }
         Outcome::List(summary) => {
             report::of_list(&places.out, &summary, common.quiet);
-            live.iter().for_each(Live::end);
             show(common.json, &*summary, || list_as_text(&summary, &places.out))
         }
-        Outcome::Interrupted => Err(terminal.interrupted(RESUMES)),
-    }
+        Outcome::Interrupted => return Err(terminal.interrupted(RESUMES)),
+    };
+    live.iter().for_each(Live::end);
+    shown
 }
 
 /// Runs the model once with each of `variants`, further values of `--set`: `--threads` at a time, each on one

@@ -82,9 +82,9 @@ impl RunFiles {
         Self { log: of(&self.log), grains: of(&self.grains), summary: self.summary.clone(), report }
     }
 
-    /// Whether a run is there that goes on, or was cut: a log that is still written, and no whole one.
+    /// Whether the run goes on or was killed: there is a log without an end, and no whole one.
     #[must_use]
-    pub fn go_on(&self) -> bool {
+    pub fn are_unfinished(&self) -> bool {
         !self.log.is_file() && self.partial().log.is_file()
     }
 
@@ -124,12 +124,12 @@ mod tests {
         let whole = RunFiles::of(here.path());
         assert_eq!(RunFiles::so_far(here.path()), whole);
         std::fs::write(here.path().join("run.mcap.partial"), "")?;
-        assert!(whole.go_on());
+        assert!(whole.are_unfinished());
         let so_far = RunFiles::so_far(here.path());
         assert_eq!(so_far.log, here.path().join("run.mcap.partial"));
         assert_eq!(so_far.report, here.path().join("report.partial.html"));
         std::fs::write(here.path().join("run.mcap"), "")?;
-        assert!(!whole.go_on());
+        assert!(!whole.are_unfinished());
         assert_eq!(RunFiles::so_far(here.path()), whole);
         Ok(())
     }

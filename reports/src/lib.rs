@@ -118,7 +118,7 @@ pub fn of_folder(folder: &Path) -> Result<String, ReportError> {
             }
         };
     }
-    if RunFiles::of(folder).go_on() {
+    if RunFiles::of(folder).are_unfinished() {
         let course = run::Course::read(folder)?;
         let seen = run::Seen::so_far(folder, &course);
         let name = folder.file_stem().unwrap_or(folder.as_os_str()).to_string_lossy();

@@ -66,7 +66,10 @@ impl LivePage {
                 state.made = Some((stand, page.clone()));
                 page
             }
-            Err(why) => Page { html: no_page_yet(&why.to_string()).into(), is_last: false },
+            Err(why) => {
+                let html = reports::run::page_of_none(&why, EVERY).unwrap_or_default();
+                Page { html: html.into(), is_last: false }
+            }
         }
     }
 
@@ -104,25 +107,7 @@ impl Stand {
 /// The run of a list that goes on, if `run` is the folder of one.
 fn going_on(run: &Path) -> PathBuf {
     let members = fs::read_dir(run).into_iter().flatten().flatten().map(|entry| entry.path());
-    let going_on = members.filter(|member| member.is_dir() && RunFiles::of(member).go_on());
+    let going_on =
+        members.filter(|member| member.is_dir() && RunFiles::of(member).are_unfinished());
     going_on.max().unwrap_or_else(|| run.to_owned())
-}
-
-fn no_page_yet(why: &str) -> String {
-    let why: String = why
-        .chars()
-        .map(|letter| match letter {
-            '&' => "&amp;".to_owned(),
-            '<' => "&lt;".to_owned(),
-            other => other.to_string(),
-        })
-        .collect();
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width\">\n\
-         <meta name=\"color-scheme\" content=\"light dark\">\n<title>No page yet</title>\n\
-         <main><h1>No page yet</h1>\n<p>A run has no log before its bed has settled. This page asks again every {} s.</p>\n\
-         <p>{why}</p></main>\n</html>\n",
-        EVERY.as_secs()
-    )
 }

@@ -56,10 +56,12 @@ pub(crate) struct Live {
 }
 
 impl Live {
-    /// Of the run that is written to `out`; says where.
-    pub(crate) fn start(port: u16, out: &Path) -> Result<Self, CommandError> {
+    /// Of the run that is written to `out`; says where, unless it is to be `quiet`.
+    pub(crate) fn start(port: u16, out: &Path, quiet: bool) -> Result<Self, CommandError> {
         let server = start(port, out, Vec::new())?;
-        output::to_stderr(&format!("live: {}\n", page(&server)));
+        if !quiet {
+            output::to_stderr(&format!("live: {}\n", page(&server)));
+        }
         let content = server.content();
         let serve = move || server.serve();
         let thread = thread::Builder::new().name("live".to_owned()).spawn(serve);
@@ -87,12 +89,11 @@ fn page(server: &Server) -> String {
 /// The logs of `run`. Those of one that goes on are served when it has ended: viewers read the index first, which
 /// stands at the end of a log.
 fn served(run: &Path) -> Result<Vec<Served>, CommandError> {
-    let files = RunFiles::of(run);
-    if !RunFiles::so_far(run).log.is_file() {
+    let (files, so_far) = (RunFiles::of(run), RunFiles::so_far(run));
+    if !so_far.log.is_file() {
         return Err(CommandError::bad_input(format!("{} is not there", files.log.display())));
     }
-    let has_grains = RunFiles::so_far(run).grains.is_file();
-    let grains = Some((GRAINS, files.grains)).filter(|_| has_grains);
+    let grains = so_far.grains.is_file().then_some((GRAINS, files.grains));
     let all = std::iter::once((RUN, files.log)).chain(grains);
     Ok(all.map(|(name, path)| Served { name, path }).collect())
 }
@@ -103,10 +104,9 @@ fn as_text(run: &Path, files: &[Served], urls: &[String], page: &str) -> String 
     for (file, url) in files.iter().zip(urls) {
         text.push_str(&format!("  {url}  {}\n", file.path.display()));
     }
-    let run = run.display();
-    let Some((first, url)) = files.first().zip(urls.first()) else { return text };
-    if !first.path.is_file() {
-        let partial = RunFiles::of(&first.path).partial().log;
+    let (log, url) = (&files[0].path, &urls[0]);
+    if !log.is_file() {
+        let partial = RunFiles::of(run).partial().log;
         text.push_str(&format!(
             "\nThe run has not ended; its logs are there when it has. What viewers can read now:\n\n  \
              plunge recover {} now.mcap\n",
@@ -121,7 +121,8 @@ fn as_text(run: &Path, files: &[Served], urls: &[String], page: &str) -> String 
          PlotJuggler  File > Load\n  \
          Python       python examples/read_log.py {log}\n\
          \ndocs/output-files.md has what each of them needs.\n",
-        log = first.path.display()
+        run = run.display(),
+        log = log.display()
     ));
     text
 }

@@ -212,8 +212,8 @@ fn a_clip_beside_a_film_is_at_its_pace_and_touches_when_it_does() {
     })
     .expect("a log");
     let slower = 0.2 / (times[times.len() - 1] - times[0]);
-    let after = told.split("setpts=((T-0.35)*FR/1000*").nth(1).expect(&told);
-    let (factor, _) = after.split_once("+0)/TB,fps=fps=10:start_time=0").expect(&told);
+    let after = told.split("setpts=((T-(0.35))*FR/1000*").nth(1).expect(&told);
+    let (factor, _) = after.split_once("+(0))/TB,fps=fps=10:start_time=0").expect(&told);
     let factor: f64 = factor.parse().expect("a number");
     assert!((factor / slower - 1.0).abs() < 1e-9, "{factor} {slower}");
 }

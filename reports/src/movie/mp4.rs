@@ -115,12 +115,12 @@ impl Beside {
         let shown = film.frames.len().saturating_sub(1) as f64 / f64::from(*per_second);
         let slower = if last > first { shown / (last - first) } else { 1.0 };
         let real = match self.rate {
-            Some(rate) => format!("(T-{})*FR/{rate}", self.contact),
-            None => format!("(T-{})", self.contact),
+            Some(rate) => format!("(T-({}))*FR/{rate}", self.contact),
+            None => format!("(T-({}))", self.contact),
         };
         let at_contact = (impact.times[contact] - first) * slower;
         format!(
-            "[1:v]setpts=({real}*{slower}+{at_contact})/TB,fps=fps={per_second}:start_time=0,\
+            "[1:v]setpts=({real}*{slower}+({at_contact}))/TB,fps=fps={per_second}:start_time=0,\
              tpad=stop_mode=clone:stop=-1,scale=-2:{height},setsar=1[clip];[0:v][clip]hstack=shortest=1"
         )
     }

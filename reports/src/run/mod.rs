@@ -10,6 +10,8 @@ mod player;
 mod sparkline;
 mod thin;
 
+use std::time::Duration;
+
 use runner::run::{BedSummary, ForceSummary, LinkSummary, StopSummary, Summary};
 
 pub use course::Course;
@@ -76,6 +78,26 @@ pub fn page_so_far(name: &str, course: &Course, seen: &Seen) -> Result<String, R
         lead: "This run has not ended: the page goes as far as its logs do.".to_owned(),
         headline,
         sections: sections.into_iter().flatten().collect(),
+        origin: Vec::new(),
+    };
+    page.html()
+}
+
+/// The page in place of that of a run without one, and `why`; a browser asks again `every` so often.
+///
+/// # Errors
+/// If the page cannot be written.
+pub fn page_of_none(why: &ReportError, every: Duration) -> Result<String, ReportError> {
+    let again = format!(
+        "A run has no log before its bed has settled. This page asks again every {} s.",
+        every.as_secs()
+    );
+    let page = Page {
+        title: "No page yet".to_owned(),
+        kind: "run so far",
+        lead: again,
+        headline: Vec::new(),
+        sections: Section::new("Reason", vec![Part::Text(why.to_string())]).into_iter().collect(),
         origin: Vec::new(),
     };
     page.html()

@@ -36,7 +36,7 @@ const RESULTS: [&str; 6] =
     ["run.mcap", "grains.mcap", "summary.json", "model.toml", "grains.csv", "report.html"];
 
 /// The files an unfinished run may have left.
-const UNFINISHED: [&str; 11] = [
+const UNFINISHED: [&str; 12] = [
     "run.mcap.partial",
     "run.mcap.partial.new",
     "grains.mcap.partial",
@@ -45,6 +45,7 @@ const UNFINISHED: [&str; 11] = [
     "model.toml.partial",
     "grains.csv.partial",
     "report.html.partial",
+    "report.partial.html",
     "checkpoint",
     "checkpoint.partial",
     "checkpoint.prev",
