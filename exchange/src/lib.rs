@@ -1,6 +1,7 @@
 //! Files in and out of plunge: what reads, repairs and converts logs.
 
 pub mod export;
+pub mod follow;
 pub mod frames;
 pub mod lammps;
 pub mod read;

@@ -7,7 +7,7 @@
 mod error;
 mod fields;
 pub(crate) mod messages;
-mod records;
+pub(crate) mod records;
 mod series;
 #[cfg(test)]
 mod tests;

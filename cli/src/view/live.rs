@@ -1,5 +1,6 @@
-//! The page of a run while it goes on.
+//! The page of a run while it goes on, and who looks at the run.
 
+use std::cell::Cell;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -28,6 +29,14 @@ struct State {
     asked: Option<Instant>,
     /// Whether somebody has the page of the run that has ended.
     is_handed_over: bool,
+    /// Streams that have not told all of the run.
+    behind: usize,
+}
+
+/// A stream of the messages of a run, as long as it has not told all of it.
+pub(super) struct Streaming<'a> {
+    page: &'a LivePage,
+    is_behind: Cell<bool>,
 }
 
 /// A page, and whether it is that of a run that has ended.
@@ -73,24 +82,51 @@ impl LivePage {
         }
     }
 
+    /// The folder of the run, and of a list of runs that which goes on.
+    pub(super) fn run(&self) -> PathBuf {
+        Stand::of(&self.run).run
+    }
+
+    /// Begins a stream.
+    pub(super) fn streams(&self) -> Streaming<'_> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner).behind += 1;
+        Streaming { page: self, is_behind: Cell::new(true) }
+    }
+
     /// Says that a client has read the last page.
     pub(super) fn hand_over(&self) {
         self.state.lock().unwrap_or_else(PoisonError::into_inner).is_handed_over = true;
     }
 
-    /// Waits until a browser that follows the run has its last page, at most for two of its turns.
+    /// Waits until a browser that follows the run has its last page, and a viewer its last message, at most for two
+    /// turns of a browser.
     pub(super) fn let_it_end(&self) {
         let start = Instant::now();
         while start.elapsed() < 2 * EVERY {
             let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
             let follows = state.asked.is_some_and(|asked| asked.elapsed() < 2 * EVERY);
-            let is_handed_over = state.is_handed_over;
+            let is_seen = (!follows || state.is_handed_over) && state.behind == 0;
             drop(state);
-            if !follows || is_handed_over || crate::signals::is_asked_to_stop() {
+            if is_seen || crate::signals::is_asked_to_stop() {
                 return;
             }
             std::thread::sleep(Duration::from_millis(50));
         }
+    }
+}
+
+impl Streaming<'_> {
+    /// Says that all has been told.
+    pub(super) fn is_done(&self) {
+        if self.is_behind.replace(false) {
+            self.page.state.lock().unwrap_or_else(PoisonError::into_inner).behind -= 1;
+        }
+    }
+}
+
+impl Drop for Streaming<'_> {
+    fn drop(&mut self) {
+        self.is_done();
     }
 }
 

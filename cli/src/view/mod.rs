@@ -1,8 +1,10 @@
-//! `plunge view`: hands a log to viewers that run in a browser, and shows the page of a run while it goes on.
+//! `plunge view`: hands a log to viewers that run in a browser, and shows the page and the messages of a run while it
+//! goes on.
 
 mod live;
 mod request;
 mod server;
+mod stream;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -41,11 +43,14 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let urls: Vec<String> =
         files.iter().map(|file| format!("http://{}{}", server.address(), file.name)).collect();
     if args.json {
-        output::json_to_stdout(
-            &json!({ "port": server.address().port(), "urls": urls, "page": page(&server) }),
-        )?;
+        output::json_to_stdout(&json!({
+            "port": server.address().port(),
+            "urls": urls,
+            "page": page(&server),
+            "stream": stream(&server),
+        }))?;
     } else if !args.quiet {
-        output::to_stdout(&as_text(&args.run, &files, &urls, &page(&server)))?;
+        output::to_stdout(&as_text(&args.run, &files, &urls, &server))?;
     }
     server.serve()
 }
@@ -60,7 +65,11 @@ impl Live {
     pub(crate) fn start(port: u16, out: &Path, quiet: bool) -> Result<Self, CommandError> {
         let server = start(port, out, Vec::new())?;
         if !quiet {
-            output::to_stderr(&format!("live: {}\n", page(&server)));
+            output::to_stderr(&format!(
+                "live: {}\n      {} (Foxglove, Lichtblick)\n",
+                page(&server),
+                stream(&server)
+            ));
         }
         let content = server.content();
         let serve = move || server.serve();
@@ -86,6 +95,11 @@ fn page(server: &Server) -> String {
     format!("http://{}{PAGE}", server.address())
 }
 
+/// Where a viewer has the messages of the run.
+fn stream(server: &Server) -> String {
+    format!("ws://{}", server.address())
+}
+
 /// The logs of `run`. Those of one that goes on are served when it has ended: viewers read the index first, which
 /// stands at the end of a log.
 fn served(run: &Path) -> Result<Vec<Served>, CommandError> {
@@ -98,9 +112,11 @@ fn served(run: &Path) -> Result<Vec<Served>, CommandError> {
     Ok(all.map(|(name, path)| Served { name, path }).collect())
 }
 
-fn as_text(run: &Path, files: &[Served], urls: &[String], page: &str) -> String {
+fn as_text(run: &Path, files: &[Served], urls: &[String], server: &Server) -> String {
     let mut text = "Served on this machine until Ctrl-C:\n\n".to_owned();
+    let (page, stream) = (page(server), stream(server));
     text.push_str(&format!("  {page}  its page, anew as it goes on\n"));
+    text.push_str(&format!("  {stream}  its messages from the start, as it goes on\n"));
     for (file, url) in files.iter().zip(urls) {
         text.push_str(&format!("  {url}  {}\n", file.path.display()));
     }
@@ -115,7 +131,8 @@ fn as_text(run: &Path, files: &[Served], urls: &[String], page: &str) -> String 
     }
     text.push_str(&format!(
         "\n  Foxglove     https://app.foxglove.dev/?ds=remote-file&ds.url={url}\n  \
-         Lichtblick   the address of its web build, then ?ds=remote-file&ds.url={url}\n\
+         Lichtblick   the address of its web build, then ?ds=remote-file&ds.url={url}\n  \
+         both         likewise with ?ds=foxglove-websocket&ds.url={stream}\n\
          \nThese open the files themselves:\n\n  \
          Rerun        python viewers/rerun_impact.py {run}\n  \
          PlotJuggler  File > Load\n  \

@@ -27,6 +27,17 @@ pub(super) struct Request {
     pub(super) path: String,
     /// The header `Range`.
     pub(super) range: Option<String>,
+    /// Whether to go on as a WebSocket (RFC 6455).
+    pub(super) upgrade: Option<Upgrade>,
+}
+
+/// What a client says that wants a WebSocket.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Upgrade {
+    /// The header `Sec-WebSocket-Key`.
+    pub(super) key: String,
+    /// The header `Sec-WebSocket-Protocol`: names with commas between them.
+    pub(super) protocols: String,
 }
 
 /// What is to be done.
@@ -103,7 +114,22 @@ fn parse(bytes: &[u8]) -> Result<Option<Request>, Refusal> {
     }
     let path = head.path.unwrap_or_default().split('?').next().unwrap_or_default();
     let range = value(head.headers, "Range").map(str::to_owned);
-    Ok(Some(Request { method, path: path.to_owned(), range }))
+    let upgrade = upgrade(head.headers).filter(|_| method == Method::Get);
+    Ok(Some(Request { method, path: path.to_owned(), range, upgrade }))
+}
+
+/// What `headers` say of a WebSocket; nothing if they do not ask for one of the version that there is.
+fn upgrade(headers: &[Header<'_>]) -> Option<Upgrade> {
+    let says = |name: &str, wanted: &str| {
+        let mut words = value(headers, name).unwrap_or_default().split(',').map(str::trim);
+        words.any(|word| word.eq_ignore_ascii_case(wanted))
+    };
+    if !says("Upgrade", "websocket") || !says("Connection", "upgrade") {
+        return None;
+    }
+    let text = |name: &str| value(headers, name).map(str::to_owned);
+    let key = text("Sec-WebSocket-Key").filter(|_| says("Sec-WebSocket-Version", "13"))?;
+    Some(Upgrade { key, protocols: text("Sec-WebSocket-Protocol").unwrap_or_default() })
 }
 
 /// The value of the only header called `name`; one that is not text has none.
@@ -147,8 +173,30 @@ mod tests {
             method: Method::Get,
             path: "/run.mcap".to_owned(),
             range: Some("bytes=0-9".to_owned()),
+            upgrade: None,
         };
         assert_eq!(parse(format!("{text}GET").as_bytes()), Ok(Some(request)));
+    }
+
+    #[test]
+    fn a_websocket_is_asked_for_by_all_of_its_headers() {
+        let headers = [
+            "Upgrade: WebSocket",
+            "Connection: keep-alive, Upgrade",
+            "Sec-WebSocket-Version: 13",
+            "Sec-WebSocket-Key: a2V5",
+        ];
+        let upgrade = |headers: &[&str]| {
+            let headers = headers.join("\r\n");
+            let text = format!("GET / HTTP/1.1\r\nHost: [::1]:1\r\n{headers}\r\n\r\n");
+            parse(text.as_bytes()).expect("a request").expect("a whole one").upgrade
+        };
+        let wanted = Upgrade { key: "a2V5".to_owned(), protocols: String::new() };
+        assert_eq!(upgrade(&headers), Some(wanted));
+        for missing in 0..headers.len() {
+            let others: Vec<_> = headers.into_iter().filter(|h| *h != headers[missing]).collect();
+            assert_eq!(upgrade(&others), None, "{missing}");
+        }
     }
 
     #[test]

@@ -3,7 +3,8 @@
 //! A viewer reads the end of a log first and then the parts that it shows, so it wants ranges; and it
 //! comes from another place than the log, so that a browser wants to be told that it may.
 //!
-//! A connection has a thread of its own and takes one request. All that it can hold is bounded: the size of a
+//! A connection has a thread of its own and takes one request; one for a WebSocket goes on as a stream
+//! (`stream/mod.rs`). All that it can hold is bounded: the size of a
 //! request (`request.rs`), the time to ask, the time that an answer waits for a client that does not read, and the
 //! number of connections.
 
@@ -19,6 +20,7 @@ use http_range_header::parse_range_header;
 
 use super::live::{EVERY, LivePage, PAGE, Page};
 use super::request::{self, Method, Refusal, Request};
+use super::stream;
 
 /// Connections at a time: a browser asks for up to six.
 const MOST_CONNECTIONS: usize = 64;
@@ -126,7 +128,14 @@ impl Server {
 /// Reads the request of `stream`, and answers it with what is in `content`.
 fn talk(stream: &TcpStream, content: &Content) -> io::Result<()> {
     stream.set_write_timeout(Some(TIME_TO_READ))?;
-    let (answer, method) = match request::read(stream) {
+    let request = request::read(stream);
+    if let Ok(Request { upgrade: Some(asked), .. }) = &request {
+        return match stream::in_common(asked) {
+            Some(protocol) => stream::talk(stream, asked, protocol, &content.page),
+            None => send(stream, Answer::empty(400), Method::Get),
+        };
+    }
+    let (answer, method) = match request {
         Ok(request) => (answer(&request, content), request.method),
         Err(Refusal::Status(status)) => (Answer::empty(status), Method::Get),
         Err(Refusal::Silence) => return Ok(()),

@@ -28,6 +28,7 @@ mod shapes;
 #[cfg(target_os = "linux")]
 mod signals;
 mod space;
+mod streams;
 mod summary;
 mod sweeps;
 mod tables;

@@ -12,9 +12,9 @@ use serde_json::Value;
 use crate::common::{Call, folder};
 
 /// A server that is told to end when this goes.
-struct View {
+pub(crate) struct View {
     child: Child,
-    port: u16,
+    pub(crate) port: u16,
 }
 
 /// An answer: status, headers in small letters, body.
@@ -25,7 +25,7 @@ struct Answer {
 }
 
 impl View {
-    fn of(run: &Path) -> Self {
+    pub(crate) fn of(run: &Path) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_plunge"));
         command.args(["view", "--json", "--port", "0"]).arg(run);
         let mut child = command.stdout(Stdio::piped()).spawn().expect("plunge starts");
@@ -42,7 +42,18 @@ impl View {
         let port = told["port"].as_u64().and_then(|port| u16::try_from(port).ok()).expect("a port");
         assert_eq!(told["urls"][0], format!("http://127.0.0.1:{port}/run.mcap"));
         assert_eq!(told["page"], format!("http://127.0.0.1:{port}/"));
+        assert_eq!(told["stream"], format!("ws://127.0.0.1:{port}"));
         Self { child, port }
+    }
+
+    /// Of a run that goes on.
+    pub(crate) fn of_live(mut child: Child) -> Self {
+        let mut line = String::new();
+        let stderr = child.stderr.take().expect("a pipe");
+        BufReader::new(stderr).read_line(&mut line).expect("text");
+        let port =
+            line.trim().rsplit(':').next().and_then(|end| end.trim_end_matches('/').parse().ok());
+        Self { child, port: port.expect(&line) }
     }
 
     /// Asks for the page, and gives its text and whether a browser is to ask again.
@@ -83,7 +94,7 @@ impl View {
     }
 
     /// Waits for the end of a live run.
-    fn ended(mut self) -> ExitStatus {
+    pub(crate) fn ended(mut self) -> ExitStatus {
         self.child.wait().expect("it ends")
     }
 
@@ -160,7 +171,7 @@ fn what_is_not_there_is_refused_and_a_head_has_no_body() {
 }
 
 /// Makes the run in `folder` one that goes on: its logs have no index and no end.
-fn go_on(folder: &Path) {
+pub(crate) fn go_on(folder: &Path) {
     for name in ["run.mcap", "grains.mcap"] {
         let path = folder.join(name);
         let bytes = fs::read(&path).expect("a log");
@@ -213,13 +224,7 @@ fn a_live_run_has_a_page_from_its_start_and_hands_over_its_last() {
     let here = folder();
     // A bed of its own takes a while to settle, so that it is asked before the end.
     let call = Call::run(here.path()).args(["--force", "--live=0"]);
-    let mut child = call.set(&["bed.grains.0.count=1000", "run.seed=5"]).start();
-    let mut line = String::new();
-    let stderr = child.stderr.take().expect("a pipe");
-    BufReader::new(stderr).read_line(&mut line).expect("text");
-    let port =
-        line.trim().rsplit(':').next().and_then(|end| end.trim_end_matches('/').parse().ok());
-    let view = View { child, port: port.expect(&line) };
+    let view = View::of_live(call.set(&["bed.grains.0.count=1000", "run.seed=5"]).start());
     // It waits for who has asked once.
     let start = Instant::now();
     loop {

@@ -25,6 +25,8 @@ const WIDTH: u32 = 4;
 pub(super) struct Scene {
     surface_z: f64,
     arrow_m_per_newton: f64,
+    /// How far bodies reach from their positions (m).
+    extents_m: Vec<f64>,
     transforms: FrameTransforms,
     poses: Vec<PoseInFrame>,
     update: SceneUpdate,
@@ -64,6 +66,7 @@ impl Scene {
         Self {
             surface_z: setup.surface_z_m,
             arrow_m_per_newton: setup.arrow_m_per_newton,
+            extents_m: setup.bodies.iter().map(|body| body.shape.extent()).collect(),
             transforms: FrameTransforms { transforms: transforms.collect() },
             poses: vec![pose; setup.bodies.len()],
             update: SceneUpdate { deletions: Vec::new(), entities },
@@ -86,7 +89,8 @@ impl Scene {
         let arrows = self.update.entities.last_mut().map(|force| &mut force.arrows);
         let arrows = arrows.into_iter().flatten();
         let bodies = bodies.iter().zip(&mut self.transforms.transforms).zip(&mut self.poses);
-        for (((body, transform), pose), arrow) in bodies.zip(arrows) {
+        for ((((body, transform), pose), arrow), extent) in bodies.zip(arrows).zip(&self.extents_m)
+        {
             let position = shifted(&body.state.position, self.surface_z);
             let orientation = quaternion(&body.orientation);
             transform.timestamp = Some(now);
@@ -94,11 +98,14 @@ impl Scene {
             transform.rotation = Some(orientation);
             pose.timestamp = Some(now);
             pose.pose = Some(Pose { position: Some(position), orientation: Some(orientation) });
+            // From where the body ends: inside it nothing would be seen of a small force.
+            let force = body.force.norm();
+            let start = if force > 0.0 { body.force * (extent / force) } else { Vec3::zeros() };
             arrow.pose = Some(Pose {
-                position: Some(position),
+                position: Some(shifted(&(body.state.position + start), self.surface_z)),
                 orientation: Some(from_x_axis_to(&body.force)),
             });
-            arrow.shaft_length = body.force.norm() * self.arrow_m_per_newton;
+            arrow.shaft_length = force * self.arrow_m_per_newton;
         }
         self.cloud.timestamp = Some(now);
     }

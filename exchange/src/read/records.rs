@@ -1,7 +1,7 @@
 //! The records of a log from its start to its last whole chunk.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io::{self, BufReader, Read, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use engine::record::chunk::{self, CHUNK_LIMIT, ChunkHead, RECORD_PREFIX};
@@ -10,7 +10,7 @@ use mcap::records::op;
 use super::error::ReadError;
 
 /// A log that is read chunk by chunk.
-pub(super) struct Records {
+pub(crate) struct Records {
     path: PathBuf,
     file: BufReader<File>,
     length: u64,
@@ -23,7 +23,7 @@ pub(super) struct Records {
 }
 
 impl Records {
-    pub(super) fn open(path: &Path) -> Result<Self, ReadError> {
+    pub(crate) fn open(path: &Path) -> Result<Self, ReadError> {
         let io = |doing| move |source| ReadError::Io { path: path.to_owned(), doing, source };
         let file = File::open(path).map_err(io("open"))?;
         let length = file.metadata().map_err(io("read"))?.len();
@@ -50,7 +50,7 @@ impl Records {
 
     /// Goes on to the next chunk or record of interest, and says where it stands (bytes); `None`
     /// where the data ends, or where it stops being whole.
-    pub(super) fn advance(&mut self) -> Result<Option<u64>, ReadError> {
+    pub(crate) fn advance(&mut self) -> Result<Option<u64>, ReadError> {
         loop {
             let offset = self.offset;
             let left = self.length.saturating_sub(offset);
@@ -84,13 +84,21 @@ impl Records {
         }
     }
 
+    /// Lets [`advance`](Self::advance) go on behind what has been read, as far as the file has grown.
+    pub(crate) fn grow(&mut self) -> Result<(), ReadError> {
+        self.length = self.file.get_ref().metadata().map_err(|source| self.io(source))?.len();
+        // The start of a record that was not whole may have been read.
+        self.file.seek(SeekFrom::Start(self.offset)).map_err(|source| self.io(source))?;
+        Ok(())
+    }
+
     /// The records that [`advance`](Self::advance) came to.
-    pub(super) fn present(&self) -> chunk::Records<'_> {
+    pub(crate) fn present(&self) -> chunk::Records<'_> {
         chunk::Records::new(&self.present)
     }
 
     /// Whether the end of the data was reached: only a finished log has one.
-    pub(super) fn complete(&self) -> bool {
+    pub(crate) fn complete(&self) -> bool {
         self.complete
     }
 

@@ -119,6 +119,25 @@ fn the_grain_log_opens_alone_and_its_points_lie_below_their_fields() {
 }
 
 #[test]
+fn the_arrow_of_a_force_starts_where_the_body_ends() {
+    let scratch = Scratch::new();
+    write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
+    let [run, _] = scratch.files();
+    let scene = mcap::MessageStream::new(&run)
+        .unwrap()
+        .map(|message| message.unwrap())
+        .find(|message| message.channel.topic == "/scene")
+        .map(|message| SceneUpdate::decode(message.data.as_ref()).unwrap())
+        .unwrap();
+    let arrow = &scene.entities.last().unwrap().arrows[0];
+    let pose = arrow.pose.as_ref().unwrap();
+    // The ball is 20 mm in radius, at the surface, and its force of 9.81 N points up.
+    let start = pose.position.unwrap();
+    assert!(start.x.abs() < 1e-15 && (start.z - 0.02).abs() < 1e-15, "{start:?}");
+    assert!((arrow.shaft_length - 0.0981).abs() < 1e-15);
+}
+
+#[test]
 fn the_grain_log_says_of_every_frame_how_bodies_move_as_the_other_log_does() {
     let scratch = Scratch::new();
     write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
