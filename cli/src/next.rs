@@ -24,6 +24,7 @@ pub(crate) fn as_text(next: &Next) -> String {
     };
     let head =
         format!("{head}; expected to tell {:.2} of {open_bits:.2} bit:\n", last.expected_bits);
+    let has_cost = best.iter().any(|one| one.cost.is_some());
     let header = [
         "speed (m/s)",
         "angle (deg)",
@@ -37,7 +38,8 @@ pub(crate) fn as_text(next: &Next) -> String {
         "told (bit)",
         "separates most",
     ];
-    let mut table = table(&header);
+    let cost = has_cost.then_some("cost");
+    let mut table = table(&header.into_iter().chain(cost).collect::<Vec<_>>());
     let or_dash = |value: Option<f64>| value.map_or("-".to_owned(), |value| digits(value, 3));
     for one in best {
         let condition = &one.condition;
@@ -55,6 +57,8 @@ pub(crate) fn as_text(next: &Next) -> String {
                 format!("{:.2}", one.expected_bits),
                 one.separates.join(", "),
             ]
+            .into_iter()
+            .chain(has_cost.then(|| or_dash(one.cost)))
             .map(Cell::new),
         );
     }

@@ -23,6 +23,44 @@ pub struct Feasible {
     pub packing: Vec<f64>,
     /// Depths of the bed (m).
     pub bed_depth: Vec<f64>,
+    /// What measuring costs, if that is to be weighed.
+    pub cost: Option<Cost>,
+}
+
+/// What measuring costs, in any one unit, such as hours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// Of a run.
+    pub run: f64,
+    /// Of a condition, besides its runs.
+    pub condition: f64,
+    /// Of a body that is not there yet.
+    pub body: f64,
+    /// Of a bed in a packing or of a depth that has not been made yet.
+    pub bed: f64,
+}
+
+impl Cost {
+    /// Reads the table; faults are reported.
+    fn read(table: TableReader<'_>) -> Option<Self> {
+        let number = |spec: &ParamSpec| table.number(spec).map(|found| found.value);
+        let cost =
+            [keys::COST_OF_RUN, keys::COST_OF_CONDITION, keys::COST_OF_BODY, keys::COST_OF_BED]
+                .map(|spec| number(&spec));
+        table.finish();
+        let [Some(run), Some(condition), Some(body), Some(bed)] = cost else { return None };
+        Some(Self { run, condition, body, bed })
+    }
+
+    /// The values with their keys.
+    pub(super) fn entries(&self) -> [(&'static str, f64); 4] {
+        [
+            (keys::COST_OF_RUN.key, self.run),
+            (keys::COST_OF_CONDITION.key, self.condition),
+            (keys::COST_OF_BODY.key, self.body),
+            (keys::COST_OF_BED.key, self.bed),
+        ]
+    }
 }
 
 impl Feasible {
@@ -49,6 +87,10 @@ impl Feasible {
             spin: list(&keys::SPIN),
             packing: list(&keys::PACKING),
             bed_depth: list(&keys::BED_DEPTH),
+            cost: {
+                let is_stated = table.has("cost");
+                Cost::read(table.table("cost", None)).filter(|_| is_stated)
+            },
         };
         table.finish();
         feasible
@@ -93,6 +135,7 @@ mod tests {
             angle_deg: vec![90.0, 35.0],
             spin: vec![-100.0, 0.0],
             bed_depth: vec![0.3],
+            cost: Some(Cost { run: 0.25, condition: 1.0, body: 8.0, bed: 0.5 }),
             ..Feasible::default()
         };
         for feasible in [some, Feasible::default()] {

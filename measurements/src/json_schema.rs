@@ -91,7 +91,7 @@ fn probes() -> Vec<String> {
                  [model]\nbaseline = 'a'\n\
                  [files]\nruns = 'runs.csv'\n{readings}missing = 'drop'\ndelimiter = ','\ndecimal = '.'\n\
                  [columns]\n{columns}\
-                 [feasible]\nspeed = [1, 2]\n\
+                 [feasible]\nspeed = [1, 2]\ncost = {{ run = 1 }}\n\
                  [[condition]]\nid = 'a'\nrole = 'fit'\nspeed = 1\nangle_deg = 90\nshape = 'sphere'\n\
                  diameter = 0.01\nmass = 0.01\n"
             ));

@@ -242,6 +242,22 @@ pub(super) const LINK_ANGLE: ParamSpec = key(
     "the angle of a link's axis to the vertical in degrees",
 );
 
+pub(super) const COST_OF_RUN: ParamSpec =
+    key("run", NUMBER, POSITIVE, (1e-3, 1e4), "the cost of one run").or(1.0);
+pub(super) const COST_OF_CONDITION: ParamSpec =
+    key("condition", NUMBER, NOT_NEGATIVE, (0.0, 1e4), "the cost of a further condition").or(0.0);
+pub(super) const COST_OF_BODY: ParamSpec =
+    key("body", NUMBER, NOT_NEGATIVE, (0.0, 1e4), "the cost of a body that the set has not")
+        .or(0.0);
+pub(super) const COST_OF_BED: ParamSpec = key(
+    "bed",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 1e4),
+    "the cost of a packing or depth of the bed that the set has not",
+)
+.or(0.0);
+
 /// +1 or -1: whether a column counts the other way.
 pub(super) const SIGN: ParamSpec =
     key("sign", NUMBER, Range::closed(-1.0, 1.0), (-1.0, 1.0), "1, or -1 to turn a column round")

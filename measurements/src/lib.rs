@@ -71,7 +71,7 @@ pub use curve::{Axis, Curve};
 pub use definitions::{Held, Miss, Outcome, Scalar, hold};
 pub use departure::Departure;
 pub use fall::{Fall, reading_noise};
-pub use feasible::Feasible;
+pub use feasible::{Cost, Feasible};
 pub use level::common_level;
 pub use load::{Loaded, SetError};
 pub use priors::ParameterPrior;

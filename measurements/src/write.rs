@@ -262,6 +262,10 @@ impl Toml {
         for (key, values) in feasible.lists() {
             self.numbers(key, values);
         }
+        if let Some(cost) = &feasible.cost {
+            let entries = cost.entries().map(|(key, value)| format!("{key} = {value:?}"));
+            self.line("cost", &format!("{{ {} }}", entries.join(", ")));
+        }
     }
 
     fn bed(&mut self, bed: &Bed) {

@@ -388,6 +388,8 @@ fn next(diagnosis: &Value) -> Vec<Part> {
         "told with those above (bit)",
         "separates most",
     ];
+    let has_cost = list(&diagnosis["next"]).iter().any(|one| one["cost"].is_number());
+    let head: Vec<_> = head.into_iter().chain(has_cost.then_some("cost")).collect();
     let mut table = Table::new(&head);
     for one in list(&diagnosis["next"]) {
         table.rows.push(vec![
@@ -401,6 +403,9 @@ fn next(diagnosis: &Value) -> Vec<Part> {
             fixed(one["expected_bits"].as_f64(), 2),
             texts(&one["separates"]).join(" from "),
         ]);
+        if let Some(row) = table.rows.last_mut().filter(|_| has_cost) {
+            row.push(four_digits(&one["cost"]));
+        }
     }
     let Some(last) = list(&diagnosis["next"]).last() else { return Vec::new() };
     let bits = |key: &str| fixed(last[key].as_f64(), 2);

@@ -2,6 +2,8 @@
 
 use measurements::{Condition, MeasurementSet};
 
+use super::Recommendation;
+
 /// Most conditions that are tried.
 const MOST: usize = 60;
 
@@ -102,6 +104,25 @@ fn bodies(set: &MeasurementSet) -> Vec<Condition> {
     bodies
 }
 
+/// What the runs of `one` cost after those of `before`, if `set` says what measuring costs.
+pub(super) fn cost(
+    set: &MeasurementSet,
+    before: &[Recommendation],
+    one: &Recommendation,
+) -> Option<f64> {
+    let cost = set.feasible.cost?;
+    let there = || set.conditions.iter().chain(before.iter().map(|one| &one.condition));
+    let is_new = |same: fn(&Condition, &Condition) -> bool| {
+        if there().any(|other| same(other, &one.condition)) { 0.0 } else { 1.0 }
+    };
+    let (body, bed) = (is_new(is_same_body), is_new(is_same_bed));
+    Some(cost.condition + cost.run * one.repeats as f64 + cost.body * body + cost.bed * bed)
+}
+
+fn is_same_bed(a: &Condition, b: &Condition) -> bool {
+    (a.packing, a.bed_depth, a.bed) == (b.packing, b.bed_depth, b.bed)
+}
+
 fn is_same_body(a: &Condition, b: &Condition) -> bool {
     let sizes = |one: &Condition| {
         let body = (one.diameter, one.mass, one.length, one.height, one.shaft_diameter);
@@ -146,7 +167,7 @@ fn sorted(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::test_sets::{condition, set};
-    use measurements::{Feasible, Kind, NamedBed};
+    use measurements::{Cost, Feasible, Kind, NamedBed};
 
     fn measured() -> MeasurementSet {
         let conditions = [(1.0, 90.0), (2.0, 60.0), (3.0, 35.0)];
@@ -192,6 +213,7 @@ mod tests {
             spin: vec![-50.0, 50.0],
             packing: vec![0.6],
             bed_depth: vec![0.1, 0.2, 0.3],
+            cost: None,
         };
         let grid = feasible(&set);
         assert_eq!(grid.len(), MOST);
@@ -211,5 +233,29 @@ mod tests {
         let n = |of: fn(&Condition) -> f64| sorted(grid.iter().map(of)).len();
         assert_eq!([n(|one| one.speed), n(|one| one.mass), n(|one| one.diameter)], [4, 3, 2]);
         assert_eq!([n(|one| one.angle_deg), n(|one| one.spin)], [2, 2]);
+    }
+
+    #[test]
+    fn a_body_or_a_bed_is_paid_for_once() {
+        let mut set = measured();
+        let of = |condition: Condition| Recommendation {
+            condition,
+            bed: None,
+            repeats: 4,
+            expected_bits: 0.0,
+            separates: [String::new(), String::new()],
+            expected_delta: 0.0,
+            cost: None,
+        };
+        let known = of(condition(1.7, 45.0));
+        assert_eq!(cost(&set, &[], &known), None);
+        set.feasible.cost = Some(Cost { run: 0.5, condition: 1.0, body: 10.0, bed: 20.0 });
+        assert_eq!(cost(&set, &[], &known), Some(3.0));
+        let light = of(Condition { mass: 0.01, ..known.condition.clone() });
+        assert_eq!(cost(&set, &[], &light), Some(13.0));
+        let loose = of(Condition { packing: Some(0.58), ..light.condition.clone() });
+        assert_eq!(cost(&set, &[], &loose), Some(33.0));
+        assert_eq!(cost(&set, std::slice::from_ref(&light), &loose), Some(23.0));
+        assert_eq!(cost(&set, &[light, loose.clone()], &loose), Some(3.0));
     }
 }

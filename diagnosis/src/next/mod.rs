@@ -2,7 +2,7 @@
 //!
 //! The hypotheses are the effects that cannot be told apart and the two that follow them, each with its
 //! likelihood. A condition is worth the information that its runs are expected to give about which of them holds
-//! (`prospect`). The conditions of a recommendation are chosen one after the other, each with those
+//! (`prospect`), for what they cost where the set says so. The conditions of a recommendation are chosen one after the other, each with those
 //! before it, so the second tells what the first leaves open.
 
 mod designs;
@@ -12,7 +12,7 @@ mod hypothesis;
 mod prospect;
 mod sequel;
 
-use measurements::Condition;
+use measurements::{Condition, MeasurementSet};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -54,6 +54,8 @@ pub struct Recommendation {
     pub separates: [String; 2],
     /// Difference of χ² that it is expected to make between the two.
     pub expected_delta: f64,
+    /// What it costs after those before it, in the unit of the set; none where the set says nothing of costs.
+    pub cost: Option<f64>,
 }
 
 impl Recommendation {
@@ -78,6 +80,7 @@ impl Recommendation {
             "bed_depth_m": condition.bed_depth.map(rounded),
             "bed": self.bed,
             "repeats": self.repeats,
+            "cost": self.cost.map(rounded),
             "expected_bits": rounded(self.expected_bits),
             "open_bits": rounded(open_bits),
             "expected_delta": rounded(self.expected_delta),
@@ -139,21 +142,28 @@ pub fn recommend(
                 expected_bits,
                 separates,
                 expected_delta,
+                cost: None,
             };
+            let cost = grid::cost(bench.set, &[], &alone);
+            let alone = Recommendation { cost, ..alone };
             Some(Feasible { alone, prospect })
         })
         .collect();
     let next = Next {
         open_bits: entropy(&probabilities),
-        best: together(&options, &probabilities),
+        best: together(bench.set, &options, &probabilities),
         feasible: options.into_iter().map(|one| one.alone).collect(),
     };
     diagnosis.next = next.best.iter().map(|one| one.to_json(next.open_bits)).collect();
     Some(next)
 }
 
-/// The conditions that tell most together, found one after the other.
-fn together(options: &[Feasible], probabilities: &[f64]) -> Vec<Recommendation> {
+/// The conditions that tell most together for what they cost, found one after the other.
+fn together(
+    set: &MeasurementSet,
+    options: &[Feasible],
+    probabilities: &[f64],
+) -> Vec<Recommendation> {
     let mut best: Vec<Recommendation> = Vec::new();
     let mut chosen: Vec<&Prospect> = Vec::new();
     while best.len() < TOGETHER {
@@ -165,15 +175,19 @@ fn together(options: &[Feasible], probabilities: &[f64]) -> Vec<Recommendation> 
                 information(&with, probabilities, DEFAULT_SEED).unwrap_or(0.0)
             })
             .collect();
-        // Among equals the first of the grid.
-        let most = told.iter().enumerate().rev().max_by(|a, b| a.1.total_cmp(b.1));
-        let Some((at, &expected_bits)) = most else { break };
         let before = best.last().map_or(0.0, |one| one.expected_bits);
-        if expected_bits - before < TELLING {
-            break;
-        }
+        let telling = told.iter().enumerate().filter(|(_, bits)| **bits - before >= TELLING);
+        let worth = telling.map(|(at, &expected_bits)| {
+            let cost = grid::cost(set, &best, &options[at].alone);
+            let one = Recommendation { expected_bits, cost, ..options[at].alone.clone() };
+            ((expected_bits - before) / cost.unwrap_or(1.0), at, one)
+        });
+        // Among equals the first of the grid.
+        let worth: Vec<_> = worth.collect();
+        let most = worth.into_iter().rev().max_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, at, one)) = most else { break };
         chosen.push(&options[at].prospect);
-        best.push(Recommendation { expected_bits, ..options[at].alone.clone() });
+        best.push(one);
     }
     best
 }
