@@ -240,6 +240,12 @@ fn plan_as_text(plan: &Plan) -> String {
         ]);
     }
     text.push_str(&lines(&rows));
+    if let Some(budget) = plan.wish.budget.filter(|_| !plan.fits()) {
+        text.push_str(&format!(
+            "It is the smallest, and takes more than the budget of {}.\n",
+            about(budget)
+        ));
+    }
     text
 }
 

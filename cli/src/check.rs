@@ -12,6 +12,7 @@ use crate::check_set;
 use crate::common::Common;
 use crate::output::{self, CommandError, CommandResult};
 use crate::table_file;
+use crate::text;
 
 /// Arguments of `plunge check`.
 #[derive(clap::Args, Debug)]
@@ -75,7 +76,10 @@ fn of_grains(grains: GrainModel<'_>, args: &Args) -> Result<Facts, CommandError>
                 (TimeStep::Auto, Some((_, by))) => format!(", set by {}", by.describe()),
                 _ => String::new(),
             };
-            lines.push(("time step", format!("{step:e} s{per_collision}{decided}")));
+            lines.push((
+                "time step",
+                format!("{:e} s{per_collision}{decided}", text::rounded(step, 4)),
+            ));
             lines.push(("steps", format!("{steps} at most, per impact")));
         }
         _ => lines.push(("time step", "known when the laws are built".to_owned())),

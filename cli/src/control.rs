@@ -121,7 +121,8 @@ impl Watch for Terminal {
             runner::Stage::Beds => "beds",
             runner::Stage::Impacts => "impacts",
         };
-        if self.bar.length() != Some(progress.of as u64) {
+        // A bar of nothing would be a full one.
+        if progress.of > 0 && self.bar.length() != Some(progress.of as u64) {
             self.bar.set_length(progress.of as u64);
             self.bar.set_style(style("{msg}{bar:24} {pos}/{len}, {prefix}"));
             self.bar.enable_steady_tick(Duration::from_millis(200));

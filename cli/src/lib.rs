@@ -53,7 +53,7 @@ pub use output::Failure;
 
 /// Impacts on granular beds: simulate them, compare them with measurements, find what is missing.
 #[derive(Debug, Parser)]
-#[command(name = "plunge", version, about, propagate_version = true, after_help = START)]
+#[command(name = "plunge", version, about, propagate_version = true, max_term_width = 100, after_help = START)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -62,9 +62,9 @@ struct Cli {
 /// What the commands are for, and where to begin.
 const START: &str = "\
 Start here:
-  plunge run two-term-vector                   an impact in a tenth of a second; its page is runs/two-term-vector/report.html
-  plunge new --list                            models to start from
-  plunge import drop1.csv drop2.csv -o drops   a measurement set of your own tables
+  plunge run two-term-vector         an impact, and a page of it
+  plunge new --list                  models and sets to start from
+  plunge import drop*.csv -o drops   a measurement set of your own tables
 
 Simulate:                  new, check, bed, run, sweep, effects
 See and convert:           report, movie, view, export, recover

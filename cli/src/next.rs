@@ -3,7 +3,7 @@
 use comfy_table::Cell;
 use diagnosis::next::Next;
 
-use crate::text::{lines, table};
+use crate::text::{lines, rounded, table};
 
 /// `next` as text.
 pub(crate) fn as_text(next: &Next) -> String {
@@ -40,17 +40,18 @@ pub(crate) fn as_text(next: &Next) -> String {
     ];
     let cost = has_cost.then_some("cost");
     let mut table = table(&header.into_iter().chain(cost).collect::<Vec<_>>());
-    let or_dash = |value: Option<f64>| value.map_or("-".to_owned(), |value| digits(value, 3));
+    let or_dash =
+        |value: Option<f64>| value.map_or("-".to_owned(), |value| rounded(value, 3).to_string());
     for one in best {
         let condition = &one.condition;
         table.add_row(
             [
-                digits(condition.speed, 3),
-                digits(condition.angle_deg, 3),
+                rounded(condition.speed, 3).to_string(),
+                rounded(condition.angle_deg, 3).to_string(),
                 condition.shape.clone(),
-                digits(condition.diameter, 3),
-                digits(condition.mass, 3),
-                digits(condition.spin, 3),
+                rounded(condition.diameter, 3).to_string(),
+                rounded(condition.mass, 3).to_string(),
+                rounded(condition.spin, 3).to_string(),
                 or_dash(condition.packing),
                 one.bed.clone().unwrap_or_else(|| "-".to_owned()),
                 or_dash(condition.bed_depth),
@@ -63,10 +64,4 @@ pub(crate) fn as_text(next: &Next) -> String {
         );
     }
     head + &lines(&table)
-}
-
-/// `value` to so many significant digits, without zeros at its end.
-fn digits(value: f64, n: usize) -> String {
-    let rounded = format!("{value:.*e}", n - 1).parse().unwrap_or(value);
-    format!("{rounded}")
 }

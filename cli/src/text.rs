@@ -1,8 +1,9 @@
 //! Tables and numbers of what is printed.
 
 use comfy_table::presets::NOTHING;
-use comfy_table::{CellAlignment, Table};
+use comfy_table::{CellAlignment, ContentArrangement, Table};
 use serde_json::Value;
+use terminal_size::{Width, terminal_size_of};
 
 /// Where the errors come from, in words.
 pub(crate) fn noise_words(noise: &Value) -> String {
@@ -29,15 +30,28 @@ fn reading(noise: &Value) -> String {
     }
 }
 
-/// An empty table with right-aligned numbers behind the first column.
+/// `value` to so many significant digits.
+pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
+}
+
+/// An empty table with right-aligned numbers behind the first column, as wide as a terminal at most.
 pub(crate) fn table(header: &[&str]) -> Table {
     let mut table = Table::new();
     table.load_preset(NOTHING).set_header(header);
+    // A file or a pipe takes lines of any length.
+    if let Some((Width(width), _)) = terminal_size_of(std::io::stdout()) {
+        table.set_content_arrangement(ContentArrangement::Dynamic);
+        table.set_width(width.saturating_sub(INDENT));
+    }
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
     }
     table
 }
+
+/// What the lines of a table are indented by.
+const INDENT: u16 = 1;
 
 /// The lines of a table, indented, without trailing blanks.
 pub(crate) fn lines(table: &Table) -> String {

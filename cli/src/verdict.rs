@@ -46,6 +46,9 @@ pub(crate) fn as_text(
     if let Some(strength) = reports::strength_in_words(object) {
         text.push_str(&format!("{strength}\n"));
     }
+    for warning in &diagnosis.warnings {
+        text.push_str(&format!("warning: {warning}\n"));
+    }
     text.push_str(&apparatus(object));
     if !diagnosis.unexplained.hint.is_empty() {
         text.push_str(&format!("{}.\n", diagnosis.unexplained.hint));

@@ -337,7 +337,7 @@ impl Data<'_> {
     pub(crate) fn scales(&self, start: &Point) -> Vec<Scale> {
         let parameters = self.forward.parameters().iter();
         let parameters = parameters.map(|parameter| Scale {
-            logarithmic: parameter.min >= 0.0 && parameter.start > 0.0,
+            logarithmic: parameter.is_searched_by_logarithm(),
             min: parameter.min,
             max: parameter.max,
             // An open range says nothing of the size of a number that starts at zero; a prior does.

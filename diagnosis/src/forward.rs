@@ -161,6 +161,32 @@ pub struct Parameter {
     pub kind: ParameterKind,
 }
 
+/// What is so small a share of its start tells nothing from zero.
+const NOTHING: f64 = 1e-9;
+
+impl Parameter {
+    /// Whether its logarithm is searched: it has no sign.
+    pub(crate) fn is_searched_by_logarithm(&self) -> bool {
+        self.min >= 0.0 && self.start > 0.0
+    }
+
+    /// The end of its range at which `value` is held, if it is. A logarithm comes to no zero: what is next to nothing
+    /// stands for it.
+    pub(crate) fn bound_at(&self, value: f64) -> Option<Bound> {
+        let nothing = self.min.max(NOTHING * self.start);
+        let is_nothing = self.is_searched_by_logarithm() && value <= nothing;
+        if is_nothing { Some(Bound::Lower) } else { Bound::at(value, self.min, self.max) }
+    }
+
+    /// What is said of a `value` that was searched: the end of the range at which it is held.
+    pub(crate) fn told(&self, value: f64) -> f64 {
+        match self.bound_at(value) {
+            Some(Bound::Lower) => self.min,
+            _ => value,
+        }
+    }
+}
+
 /// What a parameter is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParameterKind {

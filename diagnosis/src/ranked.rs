@@ -17,7 +17,7 @@ fn values(forward: &dyn Forward, point: &Point) -> Map<String, Value> {
     let of_the_model = each.filter(|(parameter, _)| parameter.kind == ParameterKind::Model);
     of_the_model
         .map(|(parameter, value)| {
-            let entry = json!({ "value": rounded(*value), "unit": parameter.unit });
+            let entry = json!({ "value": rounded(parameter.told(*value)), "unit": parameter.unit });
             (parameter.name.clone(), entry)
         })
         .collect()

@@ -25,7 +25,7 @@ pub(crate) fn sentence(diagnosis: &Value) -> String {
             sizes(diagnosis)
         ),
         "none-of-the-candidates" => {
-            "The model lacks something that none of the candidate effects explains".to_owned()
+            format!("The model lacks something that {}", explained_by_none(diagnosis))
         }
         "nothing-detected" => "Nothing is missing that these data could show".to_owned(),
         "explained-by-apparatus" => {
@@ -34,14 +34,48 @@ pub(crate) fn sentence(diagnosis: &Value) -> String {
         "below-noise" => {
             "What the model misses is below what these data can show; no effect is named".to_owned()
         }
-        _ => "These data cannot tell what the model lacks".to_owned(),
+        _ => match text(&diagnosis["unexplained"]["hint"]).trim_end_matches('.') {
+            "" => "These data cannot tell what the model lacks".to_owned(),
+            why => format!("There is no verdict: {why}"),
+        },
     };
-    match errors(diagnosis) {
-        Some([before, after, noise]) if !list(&diagnosis["amplitudes"]).is_empty() => format!(
-            "{claim}. The error on held-out conditions falls from {before} to {after}, where the noise is {noise}."
-        )
-        .replace("falls from", if falls(diagnosis) { "falls from" } else { "goes from" }),
+    match errors(&diagnosis["holdout"]) {
+        Some([before, after, noise]) if !list(&diagnosis["amplitudes"]).is_empty() => {
+            let goes = if falls(diagnosis) { "falls" } else { "goes" };
+            let held_out = held_out(diagnosis);
+            format!(
+                "{claim}. The error on {held_out} {goes} from {before} to {after}, where the noise is {noise}."
+            )
+        }
         _ => format!("{claim}."),
+    }
+}
+
+/// What the errors are of that are called held out.
+pub(crate) fn held_out(diagnosis: &Value) -> &'static str {
+    match diagnosis["holdout"]["conditions"].as_str() {
+        Some("one-at-a-time") => "conditions left out one at a time",
+        _ => "held-out conditions",
+    }
+}
+
+/// That no candidate explains what is missing, and how many could be tested.
+fn explained_by_none(diagnosis: &Value) -> String {
+    let with = |status: &str| {
+        let ranking = list(&diagnosis["ranking"]).iter();
+        ranking.filter(|effect| effect["status"] == status).count()
+    };
+    let (tested, others) = (with("ranked"), with("not-testable") + with("not-tested"));
+    match (tested, others) {
+        (_, 0) => "none of the candidate effects explains".to_owned(),
+        (1, n) => {
+            format!("the one effect that could be tested does not explain; {n} could not be tested")
+        }
+        (tested, n) => {
+            format!(
+                "none of the {tested} effects that could be tested explains; {n} could not be tested"
+            )
+        }
     }
 }
 
@@ -63,15 +97,22 @@ fn sizes(diagnosis: &Value) -> String {
         let unit = list(&diagnosis["ranking"]).iter().find(|effect| effect["id"] == of["id"]);
         let unit = unit.map(|effect| text(&effect["unit"])).filter(|unit| unit != "1");
         let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
-        format!("q = {q}{unit}{interval}")
+        let form = form(of).map_or_else(String::new, |form| format!(", in its form with {form}"));
+        format!("q = {q}{unit}{interval}{form}")
     };
     let sizes: Vec<String> = list(&diagnosis["amplitudes"]).iter().map(size).collect();
     if sizes.is_empty() { String::new() } else { format!(", {}", sizes.join(" and ")) }
 }
 
-/// Errors on what was held out: before, after, and the noise.
-fn errors(diagnosis: &Value) -> Option<[String; 3]> {
-    let held_out = &diagnosis["holdout"];
+/// The form of an effect where it is not the listed one.
+pub(crate) fn form(effect: &Value) -> Option<String> {
+    let form = effect["form"].as_object().filter(|form| !form.is_empty())?;
+    let keys = form.iter().map(|(key, value)| format!("{key} = {}", four_digits(value)));
+    Some(keys.collect::<Vec<_>>().join(", "))
+}
+
+/// Errors on what was `held_out`: before, after, and the noise.
+pub(crate) fn errors(held_out: &Value) -> Option<[String; 3]> {
     let shown = |key: &str| {
         let error = held_out[key].as_f64()?;
         Some(match held_out["unit"].as_str() {
@@ -93,29 +134,39 @@ pub(crate) fn pictures(diagnosis: &Value, texts: &Texts) -> Result<Vec<Part>, Re
         parts.push(figure(svg, caption));
     }
     if let Some(svg) = bars(diagnosis) {
-        let caption = "Error on conditions that were held out, of the model as it is and with the effect, and the noise \
-                       of the measured means, below which no model can be told right.";
-        parts.push(Part::Panels(vec![panel(&svg, caption)]));
+        let with = if has_effect(diagnosis) { " and with the effect" } else { "" };
+        let caption = format!(
+            "Error on {}, of the model as it is{with}, and the noise of the measured means, below which no model can be \
+             told right.",
+            held_out(diagnosis)
+        );
+        parts.push(Part::Panels(vec![panel(&svg, &caption)]));
     }
     Ok(parts)
 }
 
+/// Whether the error after is one with an effect.
+fn has_effect(diagnosis: &Value) -> bool {
+    !list(&diagnosis["amplitudes"]).is_empty()
+}
+
 /// A bar for each error held out.
 fn bars(diagnosis: &Value) -> Option<String> {
-    const SIZE: (u32, u32) = (400, 150);
     const LEFT: f64 = 110.0;
     const ROOM: f64 = 200.0;
-    let words = errors(diagnosis)?;
     let held_out = &diagnosis["holdout"];
+    let words = errors(held_out)?;
     let errors =
         ["before", "after", "noise_floor"].map(|key| held_out[key].as_f64().unwrap_or(0.0));
     let most = errors.iter().fold(f64::MIN_POSITIVE, |most, error| most.max(*error));
     let mut marks = Vec::new();
     let names = ["model as it is", "with the effect", "noise"];
     let colours = [[213, 94, 0], [0, 114, 178], [128, 128, 128]];
-    for (at, ((name, error), (words, colour))) in
-        names.into_iter().zip(errors).zip(words.into_iter().zip(colours)).enumerate()
-    {
+    let bars = names.into_iter().zip(errors).zip(words.into_iter().zip(colours));
+    let bars = bars.enumerate().filter(|(at, _)| *at != 1 || has_effect(diagnosis));
+    let bars: Vec<_> = bars.map(|(_, bar)| bar).collect();
+    let size = (400, 18 + 44 * bars.len() as u32);
+    for (at, ((name, error), (words, colour))) in bars.into_iter().enumerate() {
         let middle = 30.0 + 44.0 * at as f64;
         let length = ROOM * error / most;
         let letters = |place, text: String, anchor| Mark::Text {
@@ -129,7 +180,7 @@ fn bars(diagnosis: &Value) -> Option<String> {
         marks.push(Mark::Box { place: [LEFT, middle - 12.0, length.max(1.0), 24.0], colour });
         marks.push(letters([LEFT + length + 8.0, middle], words, Anchor::Start));
     }
-    Some(Sheet { size: SIZE, layers: vec![Layer { clip: None, marks }] }.svg())
+    Some(Sheet { size, layers: vec![Layer { clip: None, marks }] }.svg())
 }
 
 /// How likely the verdict is right, where it was asked.
@@ -158,6 +209,7 @@ pub(crate) fn decides(diagnosis: &Value) -> Option<String> {
     }
     let others = match list(&diagnosis["next"]).len() {
         1 => String::new(),
+        2 => " and one other condition".to_owned(),
         n => format!(" and {} other conditions", n - 1),
     };
     Some(format!(
@@ -194,6 +246,33 @@ mod tests {
         let svg = bars(&diagnosis).expect("bars");
         // Lengths go as the errors: 200 pixels for the largest.
         assert!(svg.contains("width=\"200\"") && svg.contains("width=\"22\""), "{svg}");
+        let mut without = diagnosis;
+        without["amplitudes"] = json!([]);
+        assert!(!bars(&without).expect("bars").contains("with the effect"));
+    }
+
+    #[test]
+    fn the_claim_says_what_form_what_was_left_out_and_what_could_not_be_tested() {
+        let diagnosis = json!({
+            "verdict": "supported", "effects": ["added-mass"], "ranking": [],
+            "amplitudes": [{ "id": "added-mass", "q": 2.27, "form": { "recruitment": 0.5 }, "interval_95": [1.75, 2.79] }],
+            "holdout": {
+                "before": 1e-3, "after": 5e-4, "noise_floor": 1e-4, "unit": "m", "conditions": "one-at-a-time"
+            },
+        });
+        assert_eq!(
+            sentence(&diagnosis),
+            "The model lacks added-mass, q = 2.27 (95 % interval 1.75 to 2.79), in its form with recruitment = 0.5. The \
+             error on conditions left out one at a time falls from 1.000 mm to 0.500 mm, where the noise is 0.100 mm."
+        );
+        let none = json!({
+            "verdict": "none-of-the-candidates", "amplitudes": [],
+            "ranking": [{ "status": "ranked" }, { "status": "not-testable" }, { "status": "not-tested" }],
+        });
+        assert_eq!(
+            sentence(&none),
+            "The model lacks something that the one effect that could be tested does not explain; 2 could not be tested."
+        );
     }
 
     #[test]

@@ -8,6 +8,7 @@ use crate::comparison::{by_kind, views};
 use crate::figure::figure;
 use crate::numbers::{fixed, four_digits, list, probability, text, texts};
 use crate::page::{Card, Page, Part, Section, Table};
+use crate::verdict::{error_in_words, strength_in_words, verdict_in_words};
 use crate::{ReportError, Texts, object};
 
 /// The file whose presence means a diagnosis.
@@ -18,114 +19,6 @@ const CALIBRATION: &str = "calibration.json";
 
 /// Most effects with a card of their own; the table has all.
 const CARDS: usize = 6;
-
-/// The verdict of a diagnosis, the object of its `diagnosis.json`, in a sentence.
-#[must_use]
-pub fn verdict_in_words(diagnosis: &Value) -> String {
-    let effects = texts(&diagnosis["effects"]);
-    match diagnosis["verdict"].as_str().unwrap_or_default() {
-        "nothing-detected" => "nothing detected: the data are explained".to_owned(),
-        "supported" => format!("supported: {}", effects.join(", ")),
-        "not-separable" => format!(
-            "one of {{{}}}: these data cannot tell them apart",
-            texts(&diagnosis["not_separable"]).join(", ")
-        ),
-        "pair" => {
-            format!("pair: {}, or one effect outside the list", effects.join(" + "))
-        }
-        "none-of-the-candidates" => "none of the candidates".to_owned(),
-        "explained-by-apparatus" => {
-            let named = named_errors(&diagnosis["apparatus"]);
-            format!("explained by the apparatus, no effect needed: {named}")
-        }
-        "explained-by-preparation" => {
-            let named = named_errors(&diagnosis["preparation"]);
-            format!("explained by the preparation of the bed, no effect needed: {named}")
-        }
-        "below-noise" => "below what these data can show: no effect is named".to_owned(),
-        _ => "cannot tell".to_owned(),
-    }
-}
-
-/// Those of `errors`, of the apparatus or the preparation, that a diagnosis names, with their size.
-fn named_errors(errors: &Value) -> String {
-    let errors = errors.as_array().map_or(&[][..], Vec::as_slice);
-    let named = errors.iter().filter(|error| error["named"] == true);
-    named.map(apparatus_error).collect::<Vec<_>>().join(", ")
-}
-
-/// An error of the apparatus with its size: `clock-zero 0.7 ± 0.1 ms`.
-#[must_use]
-pub fn apparatus_error(error: &Value) -> String {
-    let (factor, unit) = match error["unit"].as_str().unwrap_or_default() {
-        "s" => (1e3, " ms"),
-        "m" => (1e3, " mm"),
-        "rad" => (180.0 / std::f64::consts::PI, "°"),
-        "kg/m^2" => (1.0, " kg/m²"),
-        "kg/m^3" => (1.0, " kg/m³"),
-        _ => (1e2, " %"),
-    };
-    let number = |key: &str| error[key].as_f64().map(|value| factor * value);
-    let value = number("value").unwrap_or(0.0);
-    let id = match error["of"].as_str() {
-        Some(of) => format!("{} ({of})", text(&error["id"])),
-        None => text(&error["id"]),
-    };
-    match number("se") {
-        Some(se) => format!("{id} {value:.2} ± {se:.2}{unit}"),
-        None => format!("{id} {value:.2}{unit}"),
-    }
-}
-
-/// What the verdict of a diagnosis rests on, in a sentence; none where nothing is named.
-#[must_use]
-pub fn strength_in_words(diagnosis: &Value) -> Option<String> {
-    let names =
-        matches!(
-            diagnosis["verdict"].as_str(),
-            Some("supported" | "not-separable" | "pair" | "none-of-the-candidates")
-        ) || texts(&diagnosis["strength_reasons"]).iter().any(|one| one == "held-out-above-noise");
-    match diagnosis["strength"].as_str().filter(|_| names)? {
-        "suggested" => {
-            let reasons = texts(&diagnosis["strength_reasons"]);
-            let words: Vec<&str> = reasons.iter().map(|reason| reason_in_words(reason)).collect();
-            Some(match words.is_empty() {
-                true => "Suggested only.".to_owned(),
-                false => format!("Suggested only, because {}.", words.join("; ")),
-            })
-        }
-        _ => Some("Confirmed: by the scatter of repeats and by what was held out.".to_owned()),
-    }
-}
-
-/// One of the `strength_reasons` in words.
-fn reason_in_words(reason: &str) -> &str {
-    match reason {
-        "stated-errors" => "the errors are stated and not seen in repeats",
-        "assumed-scatter" => "nothing was repeated, and the scatter from run to run is assumed",
-        "few-repeats" => "the repeats give fewer than 8 independent deviations",
-        "held-out-no-better" => "what was held out is not predicted better by more than chance",
-        "held-out-above-noise" => {
-            "conditions that were held out are missed by more than their repeats scatter, as where days, pourings or \
-             levels differ (a column `session` in the table of runs says which runs share one)"
-        }
-        "held-out-not-judged" => {
-            "nothing that was held out could be predicted both without and with it"
-        }
-        "conditions-not-predicted" => {
-            "with it, conditions that were held out cannot be predicted that can be without it"
-        }
-        "amplitude-outside-usual-range" => "its amplitude is outside of its usual range",
-        "of-another-form" => {
-            "something is left over beside it, below the noise: its form is another, or there is more"
-        }
-        "small-plan" => "the plan of impacts is too small to confirm anything",
-        "fresh-beds-no-nearer" => {
-            "impacts with it, on fresh beds, are no nearer to what was held out"
-        }
-        other => other,
-    }
-}
 
 pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
     let diagnosis = object(texts, RESULT)?;
@@ -142,6 +35,7 @@ pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
     sections.extend([
         Section::new("Errors by kind of number", by_kind(texts)),
         Section::new("How often verdicts are right in this design", calibrated(texts)?),
+        Section::new("Apparatus and preparation", shared_errors(&diagnosis)),
         Section::new("What the new runs say", after(&diagnosis)),
         Section::new("What to measure next", next(&diagnosis)),
         Section::new("Corrected parameters", corrected(&diagnosis)),
@@ -189,10 +83,12 @@ fn verdict(diagnosis: &Value, texts_of: &Texts) -> Result<Vec<Part>, ReportError
     parts.push(Part::Text(format!("In short: {}.", verdict_in_words(diagnosis))));
     parts.extend(strength_in_words(diagnosis).map(Part::Text));
     parts.extend(not_predicted(diagnosis).map(Part::Text));
+    parts.extend(texts(&diagnosis["warnings"]).into_iter().map(|one| Part::Text(sentence(&one))));
     let unexplained = &diagnosis["unexplained"];
     let hint = text(&unexplained["hint"]);
-    if !hint.is_empty() {
-        parts.push(Part::Text(format!("{hint}.")));
+    // Without a verdict the claim has said it.
+    if !hint.is_empty() && diagnosis["verdict"] != "cannot-tell" {
+        parts.push(Part::Text(sentence(&hint)));
     }
     let depends_on = texts(&unexplained["depends_on"]);
     if !depends_on.is_empty() {
@@ -202,26 +98,48 @@ fn verdict(diagnosis: &Value, texts_of: &Texts) -> Result<Vec<Part>, ReportError
     Ok(parts)
 }
 
+/// `text` as a sentence.
+fn sentence(text: &str) -> String {
+    let mut letters = text.trim_end_matches('.').chars();
+    letters
+        .next()
+        .map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
+/// What all runs share: errors of the apparatus, and how the bed differs from the model's.
+fn shared_errors(diagnosis: &Value) -> Vec<Part> {
+    let head = ["", "estimate", "known to (standard deviation)", "named"];
+    let mut table = Table::new(&head);
+    for error in list(&diagnosis["preparation"]).iter().chain(list(&diagnosis["apparatus"])) {
+        let (id, size) = error_in_words(error, "value", "se");
+        let (_, known) = error_in_words(error, "prior_sigma", "");
+        let named = if error["named"] == true { "yes" } else { "no" };
+        table.rows.push(vec![id, size, known, named.to_owned()]);
+    }
+    let intro = "These are fitted with every effect, and no effect is credited with them. One is named where the data show \
+                 it and it is larger than expected.";
+    match table.rows.is_empty() {
+        true => Vec::new(),
+        false => vec![Part::Text(intro.to_owned()), Part::Table(table)],
+    }
+}
+
 /// The force that no listed effect explains, and the formula for it.
 fn missing_force(diagnosis: &Value, texts: &Texts) -> Vec<Part> {
     let force = &diagnosis["missing_force"];
     let Some(words) = force["words"].as_str() else { return Vec::new() };
-    let mut parts = vec![Part::Text(format!("{words}."))];
+    let mut parts = vec![Part::Text(sentence(words))];
     let caption = "Force that the model lacks, against the motion, with the band that holds it with 95 %: a panel per \
                    condition, depth to the right.";
     parts.extend(texts.get("missing_force.svg").map(|svg| figure(svg, caption)));
     match force["candidate"].as_str() {
         Some(table) => {
-            let error = |key: &str| fixed(force["holdout"][key].as_f64().map(|one| 1e3 * one), 3);
-            let errors = match force["holdout"]["unit"].as_str() {
-                Some("m") => format!(
-                    " On conditions that were not fitted to the error falls from {} to {} mm; their means are known to {} mm.",
-                    error("before"),
-                    error("after"),
-                    error("noise_floor")
-                ),
-                _ => String::new(),
-            };
+            let errors = claim::errors(&force["holdout"]).map_or_else(String::new, |[before, after, noise]| {
+                format!(
+                    " On conditions that were not fitted to the error falls from {before} to {after}; their means are \
+                     known to {noise}."
+                )
+            });
             let q = four_digits(&force["q"]);
             parts.push(Part::Text(format!(
                 "A formula fits and predicts; it does not explain. Its amplitude q is {q}.{errors}"
@@ -253,13 +171,14 @@ fn not_predicted(diagnosis: &Value) -> Option<String> {
     })
 }
 
-/// An amplitude with its standard error, or as the end of its range.
-fn amplitude(of: &Value) -> String {
-    let q = four_digits(&of["q"]);
+/// An amplitude with its standard error and `unit`, or as the end of its range.
+fn amplitude(of: &Value, unit: &str) -> String {
+    let in_unit = |text: String| if unit.is_empty() { text } else { format!("{text} {unit}") };
+    let q = in_unit(four_digits(&of["q"]));
     match of["at_bound"].as_str() {
         Some("lower") => format!("at most {q}, the end of the range"),
         Some("upper") => format!("at least {q}, the end of the range"),
-        _ => format!("{q} \u{b1} {}", four_digits(&of["se"])),
+        _ => in_unit(format!("{} \u{b1} {}", four_digits(&of["q"]), four_digits(&of["se"]))),
     }
 }
 
@@ -307,17 +226,22 @@ fn effects(diagnosis: &Value) -> Vec<Part> {
     let cards: Vec<Card> = testable(diagnosis)
         .enumerate()
         .filter(|(at, effect)| *at < CARDS || named.contains(&text(&effect["id"])))
-        .map(|(at, effect)| card(at, effect, &named))
+        .map(|(at, effect)| {
+            let amplitudes = list(&diagnosis["amplitudes"]);
+            card(at, effect, amplitudes.iter().find(|one| one["id"] == effect["id"]), &named)
+        })
         .collect();
     if cards.is_empty() { Vec::new() } else { vec![Part::Cards(cards)] }
 }
 
-fn card(at: usize, effect: &Value, named: &[String]) -> Card {
+/// The effect in the place `at`, with its amplitude in the verdict, if it has one there.
+fn card(at: usize, effect: &Value, fitted: Option<&Value>, named: &[String]) -> Card {
     let id = text(&effect["id"]);
     let law = find_resistance(&id);
     let unit = effect["unit"].as_str().filter(|unit| *unit != "1").unwrap_or_default();
-    let amplitude = format!("{} {unit}", amplitude(effect));
-    let mut facts = vec![("amplitude", amplitude.trim_end().to_owned())];
+    let of = fitted.unwrap_or(effect);
+    let mut facts = vec![("amplitude", amplitude(of, unit))];
+    facts.extend(claim::form(of).map(|form| ("form", form)));
     facts.extend(usual(effect).map(|usual| ("usual", usual)));
     facts.extend([
         ("fall of \u{3c7}\u{b2}", fixed(effect["delta"].as_f64(), 1)),
@@ -349,7 +273,7 @@ fn ranking(diagnosis: &Value) -> Vec<Part> {
         let behind = best.zip(delta).map(|(best, delta)| best - delta);
         table.rows.push(vec![
             in_unit(effect),
-            amplitude(effect),
+            amplitude(effect, ""),
             fixed(delta, 1),
             fixed(behind, 1),
             fixed(effect["predicted_top1"].as_f64(), 2),
@@ -358,7 +282,11 @@ fn ranking(diagnosis: &Value) -> Vec<Part> {
     }
     let mut parts = Vec::new();
     if !table.rows.is_empty() {
-        parts.push(Part::Table(table));
+        let intro = "Estimates of each effect alone, in its listed form, by which effects are ranked. The verdict fits what \
+                     it names once more, with all that is uncertain. Behind: how much less \u{3c7}\u{b2} falls than by the \
+                     best. Ranked first if there: the share of simulated sets with such an effect in which it comes first. \
+                     Limit: the least amplitude that is seen.";
+        parts.extend([Part::Text(intro.to_owned()), Part::Table(table)]);
     }
     for (status, heading) in [
         ("not-testable", "not testable with these data"),
@@ -469,7 +397,12 @@ fn corrected(diagnosis: &Value) -> Vec<Part> {
         table.rows.push(vec![name, q, se, String::new()]);
     }
     for (name, entry) in diagnosis["parameters"].as_object().into_iter().flatten() {
-        let (value, se) = (four_digits(&entry["value"]), four_digits(&entry["se"]));
+        let se = match entry["at_bound"].as_str() {
+            Some("lower") => "at the lower end of its range".to_owned(),
+            Some("upper") => "at the upper end of its range".to_owned(),
+            _ => four_digits(&entry["se"]),
+        };
+        let value = four_digits(&entry["value"]);
         table.rows.push(vec![name.clone(), value, se, text(&entry["unit"])]);
     }
     if table.rows.is_empty() { Vec::new() } else { vec![Part::Table(table)] }

@@ -19,6 +19,7 @@ mod published;
 pub mod run;
 pub mod scene;
 mod set;
+mod verdict;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -33,9 +34,9 @@ use runner::run::{ListSummary, Summary};
 use serde_json::Value;
 use thiserror::Error;
 
-pub use diagnosis::{apparatus_error, strength_in_words, verdict_in_words};
 pub use run::sparkline;
 pub use set::of_set;
+pub use verdict::{apparatus_error, strength_in_words, verdict_in_words};
 
 /// Name of a report in its folder.
 pub const FILE: &str = "report.html";

@@ -44,7 +44,12 @@ pub(crate) fn four_digits(value: &Value) -> String {
     match value.as_f64() {
         Some(value) => {
             let rounded = format!("{value:.3e}");
-            rounded.parse::<f64>().map_or(rounded, |value| value.to_string())
+            // Zeros before the first digit, or behind the last, are not read but counted.
+            let is_plain = value == 0.0 || (1e-4..1e7).contains(&value.abs());
+            let short = |value: f64| {
+                if is_plain { value.to_string() } else { format!("{value:e}") }
+            };
+            rounded.parse().map_or(rounded, short)
         }
         None => "\u{2013}".to_owned(),
     }

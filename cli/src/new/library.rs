@@ -6,6 +6,7 @@ use configs::json_schema::header;
 use configs::{SHIPPED, Shipped};
 use measurements::{SHIPPED_SETS, TEMPLATE, find_shipped_set};
 
+use super::pages::PAGES;
 use super::schemas;
 use crate::output::CommandError;
 
@@ -27,7 +28,7 @@ impl Group {
         (Self::Models, "models", "Models, each a file"),
         (Self::Sets, "sets", "Measurement sets, each a folder"),
         (Self::Starters, "starters", "To fill in"),
-        (Self::Tools, "tools", "For editors, viewers and Python, each a folder"),
+        (Self::Tools, "tools", "For readers, editors, viewers and Python, each a folder"),
     ];
 }
 
@@ -53,8 +54,9 @@ const CAMPAIGN: &str = "campaign";
 const EFFECT: &str = "effect";
 const VIEWERS: &str = "viewers";
 const SCRIPTS: &str = "scripts";
+const DOCS: &str = "docs";
 
-const OTHERS: [Item; 6] = [
+const OTHERS: [Item; 7] = [
     Item {
         name: MEASUREMENTS,
         summary: "A folder with a commented set of invented numbers.",
@@ -85,6 +87,7 @@ const OTHERS: [Item; 6] = [
         summary: "Scripts and a notebook that read logs in Python.",
         group: Group::Tools,
     },
+    Item { name: DOCS, summary: "The documentation.", group: Group::Tools },
 ];
 
 /// Everything, group by group.
@@ -113,6 +116,7 @@ pub(super) fn content(name: &str) -> Result<Option<Content>, CommandError> {
         }
         VIEWERS => plain(&VIEWER_FILES),
         SCRIPTS => plain(&SCRIPT_FILES),
+        DOCS => plain(&PAGES),
         name => match find_shipped_set(name) {
             Some(shipped) => Content::Folder(set(shipped.files)),
             None => return Ok(None),
@@ -160,6 +164,8 @@ pub(super) fn advice(name: &str) -> String {
             .to_owned(),
         VIEWERS => "Import a layout into Foxglove or Lichtblick beside run.mcap and grains.mcap; \
                     plunge view RUN serves them.\n"
+            .to_owned(),
+        DOCS => "docs/tour.md goes through an impact and its diagnosis; models and messages name the other pages.\n"
             .to_owned(),
         SCRIPTS => "They read run.mcap and grains.mcap; the head of each says what it needs.\n".to_owned(),
         name => format!(

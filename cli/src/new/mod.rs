@@ -2,6 +2,7 @@
 //! program.
 
 mod library;
+mod pages;
 mod schemas;
 
 use std::fs::{self, OpenOptions};

@@ -133,11 +133,10 @@ fn as_text(run: &Path, files: &[Served], urls: &[String], server: &Server) -> St
         "\n  Foxglove     https://app.foxglove.dev/?ds=remote-file&ds.url={url}\n  \
          Lichtblick   the address of its web build, then ?ds=remote-file&ds.url={url}\n  \
          both         likewise with ?ds=foxglove-websocket&ds.url={stream}\n\
-         \nThese open the files themselves:\n\n  \
-         Rerun        python viewers/rerun_impact.py {run}\n  \
+         \n`plunge new viewers` writes layouts for them. These open the files themselves:\n\n  \
+         Rerun        python viewers/rerun_impact.py {run}    (`plunge new viewers`)\n  \
          PlotJuggler  File > Load\n  \
-         Python       python examples/read_log.py {log}\n\
-         \ndocs/output-files.md has what each of them needs.\n",
+         Python       python scripts/read_log.py {log}    (`plunge new scripts`)\n",
         run = run.display(),
         log = log.display()
     ));

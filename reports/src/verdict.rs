@@ -1,0 +1,126 @@
+//! A verdict, and what it rests on, in words.
+
+use serde_json::Value;
+
+use crate::claim;
+use crate::numbers::{text, texts};
+
+/// The verdict of a diagnosis, the object of its `diagnosis.json`, in a sentence.
+#[must_use]
+pub fn verdict_in_words(diagnosis: &Value) -> String {
+    let effects = texts(&diagnosis["effects"]);
+    match diagnosis["verdict"].as_str().unwrap_or_default() {
+        "nothing-detected" => "nothing detected: the data are explained".to_owned(),
+        "supported" => format!("supported: {}", effects.join(", ")),
+        "not-separable" => format!(
+            "one of {{{}}}: these data cannot tell them apart",
+            texts(&diagnosis["not_separable"]).join(", ")
+        ),
+        "pair" => {
+            format!("pair: {}, or one effect outside the list", effects.join(" + "))
+        }
+        "none-of-the-candidates" => "none of the candidates".to_owned(),
+        "explained-by-apparatus" => {
+            let named = named_errors(&diagnosis["apparatus"]);
+            format!("explained by the apparatus, no effect needed: {named}")
+        }
+        "explained-by-preparation" => {
+            let named = named_errors(&diagnosis["preparation"]);
+            format!("explained by the preparation of the bed, no effect needed: {named}")
+        }
+        "below-noise" => "below what these data can show: no effect is named".to_owned(),
+        _ => "cannot tell".to_owned(),
+    }
+}
+
+/// Those of `errors`, of the apparatus or the preparation, that a diagnosis names, with their size.
+fn named_errors(errors: &Value) -> String {
+    let errors = errors.as_array().map_or(&[][..], Vec::as_slice);
+    let named = errors.iter().filter(|error| error["named"] == true);
+    named.map(apparatus_error).collect::<Vec<_>>().join(", ")
+}
+
+/// An error of the apparatus with its size: `clock-zero 0.7 ± 0.1 ms`.
+#[must_use]
+pub fn apparatus_error(error: &Value) -> String {
+    let (id, size) = error_in_words(error, "value", "se");
+    format!("{id} {size}")
+}
+
+/// The name of an error that runs share, and of its keys `value` and `se` the size in a usual unit.
+pub(crate) fn error_in_words(error: &Value, value: &str, se: &str) -> (String, String) {
+    let (factor, unit) = match error["unit"].as_str().unwrap_or_default() {
+        "s" => (1e3, " ms"),
+        "m" => (1e3, " mm"),
+        "rad" => (180.0 / std::f64::consts::PI, "°"),
+        "kg/m^2" => (1.0, " kg/m²"),
+        "kg/m^3" => (1.0, " kg/m³"),
+        _ => (1e2, " %"),
+    };
+    // What rounds to zero has no sign.
+    let unsigned = |value: f64| if value.abs() < 0.005 { 0.0 } else { value };
+    let number = |key: &str| error[key].as_f64().map(|value| unsigned(factor * value));
+    let size = match (number(value), number(se)) {
+        (Some(value), Some(se)) => format!("{value:.2} ± {se:.2}{unit}"),
+        (Some(value), None) => format!("{value:.2}{unit}"),
+        (None, _) => "\u{2013}".to_owned(),
+    };
+    let id = match error["of"].as_str() {
+        Some(of) => format!("{} ({of})", text(&error["id"])),
+        None => text(&error["id"]),
+    };
+    (id, size)
+}
+
+/// What the verdict of a diagnosis rests on, in a sentence; none where nothing is named.
+#[must_use]
+pub fn strength_in_words(diagnosis: &Value) -> Option<String> {
+    let names =
+        matches!(
+            diagnosis["verdict"].as_str(),
+            Some("supported" | "not-separable" | "pair" | "none-of-the-candidates")
+        ) || texts(&diagnosis["strength_reasons"]).iter().any(|one| one == "held-out-above-noise");
+    match diagnosis["strength"].as_str().filter(|_| names)? {
+        "suggested" => {
+            let reasons = texts(&diagnosis["strength_reasons"]);
+            let words: Vec<&str> = reasons.iter().map(|reason| reason_in_words(reason)).collect();
+            Some(match words.is_empty() {
+                true => "Suggested only.".to_owned(),
+                false => format!("Suggested only, because {}.", words.join("; ")),
+            })
+        }
+        _ => Some(format!(
+            "Confirmed: by the scatter of repeats and by {}.",
+            claim::held_out(diagnosis)
+        )),
+    }
+}
+
+/// One of the `strength_reasons` in words.
+fn reason_in_words(reason: &str) -> &str {
+    match reason {
+        "stated-errors" => "the errors are stated and not seen in repeats",
+        "assumed-scatter" => "nothing was repeated, and the scatter from run to run is assumed",
+        "few-repeats" => "the repeats give fewer than 8 independent deviations",
+        "held-out-no-better" => "what was held out is not predicted better by more than chance",
+        "held-out-above-noise" => {
+            "conditions that were held out are missed by more than their repeats scatter, as where days, pourings or \
+             levels differ (a column `session` in the table of runs says which runs share one)"
+        }
+        "held-out-not-judged" => {
+            "nothing that was held out could be predicted both without and with it"
+        }
+        "conditions-not-predicted" => {
+            "with it, conditions that were held out cannot be predicted that can be without it"
+        }
+        "amplitude-outside-usual-range" => "its amplitude is outside of its usual range",
+        "of-another-form" => {
+            "something is left over beside it, below the noise: its form is another, or there is more"
+        }
+        "small-plan" => "the plan of impacts is too small to confirm anything",
+        "fresh-beds-no-nearer" => {
+            "impacts with it, on fresh beds, are no nearer to what was held out"
+        }
+        other => other,
+    }
+}
