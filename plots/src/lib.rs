@@ -23,7 +23,7 @@ pub use canvas::{Canvas, Hover};
 pub struct PictureError(pub String);
 
 /// Colours that stay apart for most colour-blind eyes (Okabe & Ito 2008).
-pub const COLOURS: [RGBColor; 7] = [
+pub const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -31,6 +31,7 @@ pub const COLOURS: [RGBColor; 7] = [
     RGBColor(230, 159, 0),
     RGBColor(86, 180, 233),
     RGBColor(0, 0, 0),
+    RGBColor(240, 228, 66),
 ];
 
 /// Bands, and what is not known.
@@ -97,7 +98,18 @@ pub fn upright() -> TextStyle<'static> {
 #[must_use]
 pub fn short(value: f64) -> String {
     let text = format!("{value:.2e}");
-    text.parse::<f64>().map_or(text, |value| value.to_string())
+    match text.parse::<f64>() {
+        Ok(value) if (1e-4..1e9).contains(&value.abs()) => value.to_string(),
+        Ok(value) if value.abs() > 0.0 => exponential(value),
+        Ok(_) => "0".to_owned(),
+        Err(_) => text,
+    }
+}
+
+/// A number in three digits and a power of ten.
+fn exponential(value: f64) -> String {
+    let text = format!("{value:.2e}");
+    text.parse::<f64>().map_or(text, |value| format!("{value:e}"))
 }
 
 /// As much of `text` as fits `width` pixels, with a mark where some is missing.
@@ -116,4 +128,24 @@ pub fn padded(low: f64, high: f64) -> std::ops::Range<f64> {
     let distance = high - low;
     let pad = if distance > 0.0 { distance / 9.0 } else { low.abs().max(1.0) / 9.0 };
     low - pad..high + pad
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_series_of_a_figure_have_one_colour() {
+        let colours: std::collections::BTreeSet<_> =
+            COLOURS.iter().map(|colour| colour.to_backend_color().rgb).collect();
+        assert_eq!(colours.len(), COLOURS.len());
+    }
+
+    #[test]
+    fn a_short_number_has_three_digits_and_small_ones_a_power_of_ten() {
+        assert_eq!(short(12.345), "12.3");
+        assert_eq!(short(-0.0), "0");
+        assert_eq!(short(1.377e-4), "0.000138");
+        assert_eq!(short(-1.223e-6), "-1.22e-6");
+    }
 }

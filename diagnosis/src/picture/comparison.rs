@@ -1,7 +1,8 @@
 //! A comparison as one picture: measured numbers with their errors, and what each revision predicts.
 
 use measurements::{MeasurementSet, Role};
-use plots::{Area, COLOURS, Drawn, Hover, PictureError, short, svg};
+use plots::axes::Frame;
+use plots::{Area, COLOURS, Drawn, Hover, PictureError, letters, short, svg};
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
@@ -131,13 +132,16 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, names: &[&str]) -> Drawn {
         point.predicted.iter().copied().fold(point.measured + point.error, f64::max)
     });
     let right = 1.05 * highest(|point| point.speed);
-    let mut chart = ChartBuilder::on(area)
-        .caption(panel.title, ("sans-serif", 17))
-        .margin(8)
-        .x_label_area_size(36)
-        .y_label_area_size(48)
-        .build_cartesian_2d(0.0..right, 0.0..1.1 * top * panel.scale)?;
-    chart.configure_mesh().x_desc("impact speed (m/s)").light_line_style(WHITE).draw()?;
+    area.draw(&Text::new(panel.title, (52, 8), letters()))?;
+    let mut chart = Frame {
+        ranges: [0.0..right, 0.0..1.1 * top * panel.scale],
+        ticks: [8, 8],
+        names: ["impact speed (m/s)", ""],
+        above: 30,
+        below: 0,
+        grid: true,
+    }
+    .draw(area)?;
     for (number, angle) in angles.iter().enumerate() {
         let colour = COLOURS[number % COLOURS.len()];
         let mut points: Vec<&Point> = panel

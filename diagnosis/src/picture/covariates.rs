@@ -1,7 +1,8 @@
 //! Force errors over each covariate, with their trends.
 
+use plots::axes;
 use plots::legend::{self, Sign};
-use plots::{Area, Drawn, Hover, PictureError, colour, letters, padded, short, svg};
+use plots::{Area, Drawn, Hover, PictureError, colour, padded, short, svg};
 use plotters::prelude::*;
 
 use super::TWO_SIDED_95;
@@ -51,8 +52,10 @@ pub(crate) fn covariates(found: &WhereItFails<'_>) -> Result<Option<String>, Pic
 
 fn rows(found: &WhereItFails<'_>) -> Vec<(Sign, String)> {
     let models = found.models.iter().enumerate();
+    // A model whose errors are of no covariate has no points.
+    let shown = models.filter(|(_, model)| !model.force_errors.groups.is_empty());
     let mut rows: Vec<_> =
-        models.map(|(at, model)| (Sign::Dot(colour(at)), model.model.clone())).collect();
+        shown.map(|(at, model)| (Sign::Dot(colour(at)), model.model.clone())).collect();
     rows.push((
         Sign::Line(BLACK),
         "trend, significant at a false-discovery rate of 5 %; bars: 95 %, across: values taken together"
@@ -84,26 +87,10 @@ fn draw_panel(area: &Area<'_>, covariate: Covariate, all: &[Series<'_>]) -> Draw
     });
     let across = padded(low, high);
     let shift = (across.end - across.start) / 60.0;
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(10)
-        .margin_left(8)
-        .margin_right(12)
-        .x_label_area_size(44)
-        .y_label_area_size(62)
-        .build_cartesian_2d(across, padded(-100.0 * highest, 100.0 * highest))?;
     let Covariate { heading, unit, .. } = covariate;
     let heading = if unit == "1" { heading.to_owned() } else { format!("{heading} ({unit})") };
-    let axis = heading.clone();
-    chart
-        .configure_mesh()
-        .x_labels(6)
-        .y_labels(6)
-        .x_desc(axis)
-        .y_desc("force error (%)")
-        .axis_desc_style(letters())
-        .light_line_style(WHITE)
-        .bold_line_style(plots::GREY)
-        .draw()?;
+    let over = [across, padded(-100.0 * highest, 100.0 * highest)];
+    let mut chart = axes::chart(area, over, 6, [&heading, "force error (%)"])?;
     chart.draw_series([PathElement::new([(low, 0.0), (high, 0.0)], BLACK.stroke_width(1))])?;
     for (at, series) in all.iter().enumerate() {
         let colour = colour(at);

@@ -1,5 +1,6 @@
 //! Force errors over depth, one column per condition, one panel per model.
 
+use plots::axes::Frame;
 use plots::{Area, Drawn, Hover, LETTER, PictureError, fitting, legend, letters, svg, upright};
 use plotters::prelude::*;
 
@@ -39,12 +40,15 @@ pub(crate) fn depth(found: &WhereItFails<'_>) -> Result<Option<String>, PictureE
     let n = conditions.len() as u32;
     let column = ((WIDTH - LEFT - 20) / n).clamp(COLUMN.0, COLUMN.1);
     let width = (LEFT + 20 + n * column).max(WIDTH);
-    let height = (ABOVE + MAP + below) * found.models.len() as u32;
+    // A model without resolved errors has no map.
+    let shown: Vec<&Failing> =
+        found.models.iter().filter(|model| !model.force_errors.cells.is_empty()).collect();
+    let height = (ABOVE + MAP + below) * shown.len() as u32;
     let scale = Scale::of(cells());
     svg((width, height + signed::HEIGHT), |area| {
         let (maps, legend) = area.split_vertically(height);
-        let maps = maps.split_evenly((found.models.len(), 1));
-        for (model, map) in found.models.iter().zip(&maps) {
+        let maps = maps.split_evenly((shown.len(), 1));
+        for (model, map) in shown.iter().zip(&maps) {
             let (map, _) = map.split_horizontally(LEFT + 20 + n * column);
             draw_map(&map, model, (&conditions, &names), below, &scale)?;
         }
@@ -64,21 +68,15 @@ fn draw_map(
     let cells = &model.force_errors.cells;
     let deepest = cells.iter().fold(0.0_f64, |deepest, cell| deepest.max(cell.to));
     let n = conditions.len();
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(ABOVE)
-        .margin_left(8)
-        .margin_right(20)
-        .x_label_area_size(below)
-        .y_label_area_size(LEFT - 8)
-        .build_cartesian_2d(0.0..n as f64, 1e3 * deepest..0.0)?;
-    chart
-        .configure_mesh()
-        .disable_x_mesh()
-        .x_labels(0)
-        .y_desc("depth (mm)")
-        .light_line_style(WHITE)
-        .bold_line_style(plots::GREY)
-        .draw()?;
+    let chart = Frame {
+        ranges: [0.0..n as f64, 1e3 * deepest..0.0],
+        ticks: [0, 6],
+        names: ["", "depth (mm)"],
+        above: ABOVE,
+        below,
+        grid: true,
+    }
+    .draw(area)?;
     let plot = chart.plotting_area();
     let (inside, corner) = (plot.strip_coord_spec(), plot.get_base_pixel());
     let pixel = |x: f64, z: f64| {
@@ -105,7 +103,7 @@ fn draw_map(
     }
     let bottom = (ABOVE + MAP + 6) as i32;
     for (place, name) in names.iter().enumerate() {
-        let x = LEFT as i32 + pixel(place as f64 + 0.5, 0.0).0;
+        let x = plot.map_coordinate(&(place as f64 + 0.5, 0.0)).0 - area.get_pixel_range().0.start;
         area.draw(&Text::new(name.clone(), (x, bottom), upright()))?;
     }
     Ok(())

@@ -1,5 +1,6 @@
 //! Errors on what was fitted to and on what was held out, model after model, above the noise.
 
+use plots::axes::Frame;
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, Hover, PictureError, centred, fitting, letters, short, svg};
 use plotters::prelude::*;
@@ -106,20 +107,15 @@ fn draw_panel(area: &Area<'_>, panel: &Panel<'_>) -> Drawn {
     let heights = panel.bars.iter().flatten().chain(&panel.floors).flatten();
     let highest = heights.fold(0.0_f64, |highest, height| highest.max(*height)).max(1e-9);
     let n = panel.bars.len();
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(30)
-        .margin_right(8)
-        .x_label_area_size(24)
-        .y_label_area_size(48)
-        .build_cartesian_2d(0.0..n as f64, 0.0..1.08 * highest)?;
-    chart
-        .configure_mesh()
-        .disable_x_mesh()
-        .x_labels(0)
-        .y_labels(6)
-        .light_line_style(WHITE)
-        .bold_line_style(plots::GREY)
-        .draw()?;
+    let mut chart = Frame {
+        ranges: [0.0..n as f64, 0.0..1.08 * highest],
+        ticks: [0, 6],
+        names: ["", ""],
+        above: 30,
+        below: 24,
+        grid: true,
+    }
+    .draw(area)?;
     for (model, bars) in panel.bars.iter().enumerate() {
         let roles = bars.iter().zip(panel.floors).enumerate();
         for (role, (height, floor)) in roles {

@@ -1,6 +1,7 @@
 //! Small panels of numbers along a path, each with its band of noise.
 
 use measurements::Axis;
+use plots::axes::Frame;
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, GREY, Hover, PictureError, fitting, letters, padded, svg};
 use plotters::prelude::*;
@@ -120,27 +121,21 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
     let [across, up] = panel.axes;
     let times = panel.band.iter().map(|(t, _)| across.scale * t);
     let (first, last) = (times.clone().fold(0.0, f64::min), times.fold(0.0, f64::max));
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(24)
-        .margin_left(6)
-        .margin_right(10)
-        .x_label_area_size(34)
-        .y_label_area_size(46)
-        .build_cartesian_2d(padded(first, last), padded(-up.scale * most, up.scale * most))?;
+    let mut chart = Frame {
+        ranges: [padded(first, last), padded(-up.scale * most, up.scale * most)],
+        ticks: [5, 5],
+        names: [&across.label(), &format!("({})", up.unit)],
+        above: 24,
+        below: 0,
+        grid: false,
+    }
+    .draw(area)?;
     let outline: Vec<(f64, f64)> = band
         .clone()
         .map(|(t, half)| (across.scale * t, up.scale * half))
         .chain(band.rev().map(|(t, half)| (across.scale * t, -up.scale * half)))
         .collect();
     chart.draw_series([Polygon::new(outline, GREY.filled())])?;
-    chart
-        .configure_mesh()
-        .disable_mesh()
-        .x_labels(5)
-        .y_labels(5)
-        .x_desc(across.label())
-        .y_desc(format!("({})", up.unit))
-        .draw()?;
     let range = [(first, 0.0), (last, 0.0)];
     chart.draw_series([PathElement::new(range, BLACK.stroke_width(1))])?;
     for (colour, line) in &panel.lines {

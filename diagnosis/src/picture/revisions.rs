@@ -1,10 +1,9 @@
 //! The error of revision after revision, as stairs that go down to the noise.
 
 use measurements::Kind;
+use plots::axes::Frame;
 use plots::legend::{self, Sign};
-use plots::{
-    Area, COLOURS, Drawn, GREY, Hover, PictureError, centred, fitting, letters, short, svg,
-};
+use plots::{Area, COLOURS, Drawn, Hover, PictureError, centred, fitting, short, svg};
 use plotters::prelude::*;
 
 use crate::errors::Errors;
@@ -89,21 +88,15 @@ impl Stairs {
         let n = self.names.len();
         let all = self.errors.iter().flatten().chain(&self.floors).flatten();
         let highest = all.fold(1e-9_f64, |highest, error| highest.max(*error));
-        let mut chart = ChartBuilder::on(area)
-            .margin(8)
-            .x_label_area_size(28)
-            .y_label_area_size(LEFT - 8)
-            .build_cartesian_2d(0.0..n as f64, 0.0..1.12 * highest)?;
-        chart
-            .configure_mesh()
-            .disable_x_mesh()
-            .x_labels(0)
-            .y_labels(6)
-            .y_desc(self.axis)
-            .axis_desc_style(letters())
-            .light_line_style(WHITE)
-            .bold_line_style(GREY)
-            .draw()?;
+        let mut chart = Frame {
+            ranges: [0.0..n as f64, 0.0..1.12 * highest],
+            ticks: [0, 6],
+            names: ["", self.axis],
+            above: 8,
+            below: 34,
+            grid: true,
+        }
+        .draw(area)?;
         for (role, errors) in self.errors.iter().enumerate() {
             let (colour, what) = ROLES[role];
             let steps = errors.iter().enumerate().filter_map(|(at, error)| Some((at, (*error)?)));

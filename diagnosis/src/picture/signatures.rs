@@ -1,5 +1,6 @@
 //! What a model leaves over, and what the best two candidates would do about it.
 
+use plots::axes::Frame;
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, Hover, LETTER, PictureError, colour, fitting, letters, svg, upright};
 use plotters::prelude::*;
@@ -139,19 +140,15 @@ impl Scalars<'_> {
             most = most.max(left(place).abs() + half(place));
             most = signatures.iter().fold(most, |most, one| most.max(change(one, place).abs()));
         }
-        let mut chart = ChartBuilder::on(area)
-            .margin_top(30)
-            .margin_right(8)
-            .x_label_area_size(self.below)
-            .y_label_area_size(52)
-            .build_cartesian_2d(0.0..self.names.len() as f64, -1.05 * most..1.05 * most)?;
-        chart
-            .configure_mesh()
-            .disable_x_mesh()
-            .x_labels(0)
-            .light_line_style(WHITE)
-            .bold_line_style(plots::GREY)
-            .draw()?;
+        let mut chart = Frame {
+            ranges: [0.0..self.names.len() as f64, -1.05 * most..1.05 * most],
+            ticks: [0, 6],
+            names: ["", ""],
+            above: 30,
+            below: self.below,
+            grid: true,
+        }
+        .draw(area)?;
         let zero = [(0.0, 0.0), (self.names.len() as f64, 0.0)];
         chart.draw_series([PathElement::new(zero, BLACK.stroke_width(1))])?;
         for &(condition, place) in self.numbers {

@@ -1,6 +1,7 @@
 //! Force errors of conditions over speed and angle, one panel per intruder and model.
 
 use measurements::Condition;
+use plots::axes::Frame;
 use plots::{Area, Drawn, Hover, PictureError, fitting, legend, letters, padded, short, svg};
 use plotters::prelude::*;
 
@@ -10,6 +11,9 @@ use crate::where_it_fails::WhereItFails;
 
 /// Size of a panel (pixels).
 const PANEL: (u32, u32) = (330, 270);
+
+/// Height of a panel of one angle (pixels).
+const ROW: u32 = 150;
 
 /// Most panels side by side.
 const COLUMNS: usize = 4;
@@ -30,7 +34,8 @@ pub(crate) fn speed_angle(found: &WhereItFails<'_>) -> Result<Option<String>, Pi
     let scale = Scale::of(found.models.iter().flat_map(|model| &model.force_errors.means));
     let columns = intruders.min(COLUMNS);
     let rows = panels.len().div_ceil(columns);
-    let height = PANEL.1 * rows as u32;
+    let one_angle = |panel: &Panel<'_>| values(panel, |condition| condition.angle_deg).len() == 1;
+    let height = if panels.iter().all(one_angle) { ROW } else { PANEL.1 } * rows as u32;
     let width = (PANEL.0 * columns as u32).max(2 * PANEL.0);
     svg((width, height + signed::HEIGHT), |area| {
         let (maps, below) = area.split_vertically(height);
@@ -43,7 +48,7 @@ pub(crate) fn speed_angle(found: &WhereItFails<'_>) -> Result<Option<String>, Pi
     .map(Some)
 }
 
-/// Model by model, intruder by intruder, and how many intruders there are.
+/// Model by model, intruder by intruder, those with anything in them, and how many intruders there are.
 fn panels<'a>(found: &'a WhereItFails<'_>) -> (Vec<Panel<'a>>, usize) {
     let mut intruders: Vec<String> = Vec::new();
     let mut panels = Vec::new();
@@ -57,10 +62,10 @@ fn panels<'a>(found: &'a WhereItFails<'_>) -> (Vec<Panel<'a>>, usize) {
     for model in &found.models {
         for name in &intruders {
             let own = model.force_errors.means.iter().map(|cell| (condition(cell), cell));
-            panels.push(Panel {
-                titles: [model.model.clone(), name.clone()],
-                cells: own.filter(|(condition, _)| intruder(condition) == *name).collect(),
-            });
+            let cells: Vec<_> = own.filter(|(condition, _)| intruder(condition) == *name).collect();
+            if !cells.is_empty() {
+                panels.push(Panel { titles: [model.model.clone(), name.clone()], cells });
+            }
         }
     }
     (panels, intruders.len())
@@ -85,20 +90,21 @@ fn draw_panel(area: &Area<'_>, panel: &Panel<'_>, scale: &Scale) -> Drawn {
     let (Some(slowest), Some(fastest)) = (speeds.first(), speeds.last()) else { return Ok(()) };
     let (Some(flattest), Some(steepest)) = (angles.first(), angles.last()) else { return Ok(()) };
     let (across, up) = (padded(*slowest, *fastest), padded(*flattest, *steepest));
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(42)
-        .margin_left(8)
-        .margin_right(12)
-        .x_label_area_size(40)
-        .y_label_area_size(48)
-        .build_cartesian_2d(across.clone(), up.clone())?;
-    chart
-        .configure_mesh()
-        .x_desc("impact speed (m/s)")
-        .y_desc("angle (deg)")
-        .light_line_style(WHITE)
-        .bold_line_style(plots::GREY)
-        .draw()?;
+    // Along a single value there is no axis.
+    let (speed, angle) = (format!("{slowest} m/s"), format!("{flattest}\u{b0}"));
+    let [speeds_along, angles_along] = [&speeds, &angles].map(|values| values.len() > 1);
+    let chart = Frame {
+        ranges: [across.clone(), up.clone()],
+        ticks: [if speeds_along { 6 } else { 0 }, if angles_along { 6 } else { 0 }],
+        names: [
+            if speeds_along { "impact speed (m/s)" } else { &speed },
+            if angles_along { "angle (deg)" } else { &angle },
+        ],
+        above: 42,
+        below: 0,
+        grid: true,
+    }
+    .draw(area)?;
     let plot = chart.plotting_area();
     let (wide, high) = plot.dim_in_pixel();
     let edge = |values: &[f64], range: std::ops::Range<f64>, pixels: u32| {

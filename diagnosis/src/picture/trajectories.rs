@@ -1,6 +1,7 @@
 //! Paths and velocities, or forces and their slopes, as measured, under what each model predicts.
 
 use measurements::Axis;
+use plots::axes::Frame;
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, GREY, Hover, PictureError, colour, fitting, letters, padded, svg};
 use plotters::prelude::*;
@@ -111,27 +112,21 @@ impl Row {
             (values.clone().fold(0.0, f64::min), values.fold(0.0, f64::max))
         };
         let ((first, last), (low, high)) = (ends(|place| place.0), ends(|place| place.1));
-        let mut chart = ChartBuilder::on(area)
-            .margin_top(24)
-            .margin_left(6)
-            .margin_right(10)
-            .x_label_area_size(34)
-            .y_label_area_size(50)
-            .build_cartesian_2d(padded(first, last), padded(low, high))?;
+        let mut chart = Frame {
+            ranges: [padded(first, last), padded(low, high)],
+            ticks: [6, 5],
+            names: [&across.label(), &up.label()],
+            above: 24,
+            below: 0,
+            grid: false,
+        }
+        .draw(area)?;
         if side == 0 {
             let lower = self.band.iter().map(|&(t, low, _)| (t, low));
             let upper = self.band.iter().rev().map(|&(t, _, high)| (t, high));
             let outline: Line = lower.chain(upper).collect();
             chart.draw_series([Polygon::new(outline, GREY.filled())])?;
         }
-        chart
-            .configure_mesh()
-            .disable_mesh()
-            .x_labels(6)
-            .y_labels(5)
-            .x_desc(across.label())
-            .y_desc(up.label())
-            .draw()?;
         for (at, both) in self.predicted.iter().enumerate() {
             let line = both[side].iter().copied();
             chart.draw_series(LineSeries::new(line, colour(at).stroke_width(2)))?;
