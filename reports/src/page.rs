@@ -87,6 +87,11 @@ impl Table {
     fn has_sentences(&self) -> bool {
         self.rows.iter().flatten().any(|cell| cell.chars().count() > LONGEST_NUMBER)
     }
+
+    /// What a column is called; nothing where it has no name.
+    fn name(&self, column: &usize) -> &str {
+        self.head.get(*column).map_or("", String::as_str)
+    }
 }
 
 impl Page {

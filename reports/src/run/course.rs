@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use configs::{Intruder, LoadOptions, Model, ModelSource};
 use exchange::read::{BodyState, BodyStates, Closing, EnergyBudgets, Keep, ReadError, read_run};
 use exchange::run_files::RunFiles;
 
@@ -23,6 +24,34 @@ pub struct Course {
     pub(super) forces: Forces,
     /// Whether the log is whole.
     pub(super) complete: bool,
+    /// The body of the model beside the log, if there is one.
+    pub(super) body: Option<Body>,
+}
+
+/// The body of a model.
+#[derive(Clone, Debug)]
+pub(super) struct Body {
+    /// Of its model.
+    pub(super) model_hash: String,
+    /// Its shape, size and mass.
+    pub(super) words: String,
+}
+
+impl Body {
+    /// Of the model in `folder`, which wrote a run there.
+    fn in_folder(folder: &Path) -> Option<Self> {
+        let file = folder.join("model.toml");
+        let source = file.is_file().then_some(ModelSource::Path(file))?;
+        let model = Model::load(source, &LoadOptions::default()).ok()?.model;
+        let Intruder { shape, params, mass, .. } = &model.intruder;
+        let sizes = params.iter().filter(|(key, _)| ["diameter", "height", "length"].contains(key));
+        let sizes = sizes.map(|(key, size)| format!("{key} {} mm", plots::short(1e3 * size)));
+        let mass = format!("mass {} g", plots::short(1e3 * mass));
+        let words: Vec<String> = sizes.chain([mass]).collect();
+        let shape = shape.name.replace('-', " ");
+        let words = format!("a {shape} ({})", words.join(", "));
+        Some(Self { model_hash: model.hash(), words })
+    }
 }
 
 impl Course {
@@ -31,12 +60,14 @@ impl Course {
     /// # Errors
     /// If its log cannot be read.
     pub fn read(run: &Path) -> Result<Self, ReadError> {
-        let log = read_run(&RunFiles::so_far(run).log, Keep::All)?;
+        let file = RunFiles::so_far(run).log;
+        let log = read_run(&file, Keep::All)?;
         Ok(Self {
             bodies: log.bodies.iter().map(thinned).collect(),
             energy: log.energy.as_ref().map(thinned_budget),
             forces: Forces::of(&log.loads),
             complete: log.complete,
+            body: file.parent().and_then(Body::in_folder),
         })
     }
 

@@ -1,23 +1,27 @@
 //! The energy budget over time: what was supplied, what became of it, and what is not accounted for.
 
+use plots::axes::Frame;
 use plots::legend::{self, Sign};
-use plots::{Area, Drawn, GREY, Hover, PictureError, colour, letters, svg};
+use plots::{Area, Drawn, Hover, PictureError, colour, svg};
 use plotters::prelude::*;
 
 use super::Course;
 use super::thin::places;
 use crate::numbers::{prefix_of, with_prefix};
 
-/// Size of the figure without its legend, and height of the panel of what is unaccounted for (pixels).
-const SIZE: (u32, u32) = (940, 470);
-const LOWER: u32 = 130;
+/// Size of the stack without its legend, and of the panel of what is unaccounted for (pixels).
+const STACK: (u32, u32) = (400, 330);
+const REST: (u32, u32) = (400, 220);
 
 /// What the axis of time says, and how many times along it.
 const TIME: &str = "time (ms)";
-const TIMES: usize = 8;
+const TIMES: usize = 6;
 
 /// Columns that say their values.
 const COLUMNS: usize = 120;
+
+/// Share of the energy below which nothing is drawn or named.
+const LEAST: f64 = 1e-6;
 
 /// Where energy is or went.
 struct Layer {
@@ -32,7 +36,9 @@ pub(super) struct Budget {
     /// (ms).
     time: Vec<f64>,
     layers: Vec<Layer>,
-    /// What the impact, the weights and whatever puts energy in have supplied (J), at each time.
+    /// What supplies energy, in words.
+    sources: Vec<&'static str>,
+    /// What they have supplied (J), at each time.
     supplied: Vec<f64>,
     /// What is missing; none where the layers are not all there are.
     missing: Option<Missing>,
@@ -42,176 +48,189 @@ pub(super) struct Budget {
 struct Missing {
     /// (J), at each time.
     values: Vec<f64>,
-    /// What they are counted in (J).
+    /// What they are counted in (J), and what that is.
     scale: f64,
+    of: &'static str,
 }
 
 impl Budget {
     /// Of `course`; `None` if its log has no energies, or nothing moves in it.
+    ///
+    /// Accounts are those of [`runner::run::EnergySummary::shares`]: one that is negative is a source.
     pub(super) fn of(course: &Course) -> Option<Self> {
         let energy = course.energy.as_ref()?;
-        let n = energy.time.len();
-        let mut layers: Vec<Layer> = Vec::new();
-        let mut supplied = vec![0.0; n];
+        let mut accounts: Vec<Account> = Vec::new();
         for (term, values) in energy.terms.iter().zip(&energy.values) {
-            match Account::of(term) {
-                Account::Layer(name) => add_to(&mut layers, name, values),
-                Account::Weight => {
-                    let start = values.first().copied().unwrap_or(0.0);
-                    supplied.iter_mut().zip(values).for_each(|(sum, value)| *sum += start - value);
-                }
-                Account::Input => {
-                    supplied.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
-                }
-            }
+            Account::book(&mut accounts, term, values);
         }
-        // What is there at the start: the motion of the intruder, and what springs of a bed at rest hold.
-        let at_start: f64 = layers.iter().filter_map(|layer| layer.values.first()).sum();
-        supplied.iter_mut().for_each(|sum| *sum += at_start);
+        let mut supplied = vec![0.0; energy.time.len()];
+        let mut layers = Vec::new();
+        for account in &accounts {
+            supplied.iter_mut().zip(&account.uses).for_each(|(sum, use_)| *sum += (-use_).max(0.0));
+            let values = account.uses.iter().map(|use_| use_.max(0.0)).collect();
+            layers.push(Layer { name: account.name.clone(), colour: BLACK, values });
+        }
         let most = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         let whole = most(&supplied);
-        layers.retain(|layer| most(&layer.values) > 1e-6 * whole);
+        layers.retain(|layer| most(&layer.values) > LEAST * whole);
         layers.iter_mut().enumerate().for_each(|(at, layer)| layer.colour = colour(at));
-        let missing = energy.closing.as_ref().map(|closing| Missing {
-            values: closing.unaccounted.iter().map(|energy| -energy).collect(),
-            scale: match (closing.closure.last(), most(&closing.unaccounted)) {
+        let gives = |account: &&Account| account.uses.iter().any(|use_| -use_ > SAID * whole);
+        let mut sources: Vec<&str> = accounts.iter().filter(gives).map(|one| one.source).collect();
+        sources.sort_unstable();
+        sources.dedup();
+        let is_pushed = energy.terms.iter().any(|term| term.starts_with("input_drive"));
+        let missing = energy.closing.as_ref().map(|closing| {
+            let (scale, of) = match (closing.closure.last(), most(&closing.unaccounted)) {
+                // A slow drive has next to no energy at the start.
+                _ if is_pushed => (whole, "of all that is supplied"),
                 // The closure is the largest of them over the energy at impact.
-                (Some(&closure), most) if closure > 0.0 && most > 0.0 => most / closure,
-                _ => whole,
-            },
+                (Some(&closure), most) if closure > 0.0 && most > 0.0 => {
+                    (most / closure, "of the energy at impact")
+                }
+                _ => (whole, "of all that is supplied"),
+            };
+            let values = closing.unaccounted.iter().map(|energy| -energy).collect();
+            Missing { values, scale, of }
         });
-        (n > 1 && whole > 0.0).then(|| Self {
+        (energy.time.len() > 1 && whole > 0.0).then(|| Self {
             time: energy.time.iter().map(|time| 1e3 * time).collect(),
             layers,
+            sources,
             supplied,
             missing,
         })
     }
 }
 
-/// Letters of the numbers along an axis, the same in panels of any height.
-fn small() -> TextStyle<'static> {
-    ("sans-serif", 11.0).into_font().into()
-}
+/// Share of what is supplied from which on a source is named.
+const SAID: f64 = 0.005;
 
-/// What a term of the log counts as.
-enum Account {
-    /// A layer of the stack, by name.
-    Layer(String),
-    /// Energy of height, of which a loss is a supply.
-    Weight,
-    /// Energy put in.
-    Input,
+/// An account of the energy.
+struct Account {
+    name: String,
+    /// What it is as a source.
+    source: &'static str,
+    /// What it holds or has taken (J), at each time; negative where it gives.
+    uses: Vec<f64>,
 }
 
 impl Account {
-    fn of(term: &str) -> Self {
+    /// Books a term of the log in one or two of `accounts`.
+    fn book(accounts: &mut Vec<Self>, term: &str, values: &[f64]) {
         let name = term.strip_suffix("_J").unwrap_or(term);
         let (kind, of) = name.split_once('_').unwrap_or((name, ""));
+        let start = values.first().copied().unwrap_or(0.0);
+        let since_start = || values.iter().map(|value| value - start);
+        let mut add =
+            |name: &str, source: &'static str, uses: &mut dyn Iterator<Item = f64>| match accounts
+                .iter_mut()
+                .find(|account| account.name == name)
+            {
+                Some(one) => one.uses.iter_mut().zip(uses).for_each(|(sum, use_)| *sum += use_),
+                None => accounts.push(Self { name: name.to_owned(), source, uses: uses.collect() }),
+            };
         match kind {
-            "potential" => Self::Weight,
-            "input" => Self::Input,
-            "kinetic" if of.starts_with("grains") => Self::Layer("grains in motion".to_owned()),
-            "kinetic" => Self::Layer("intruder in motion".to_owned()),
-            "elastic" => Self::Layer("held by springs".to_owned()),
-            _ => Self::Layer(format!("lost to {}", of.replace('_', " "))),
+            "kinetic" | "potential" if of.starts_with("grains") => {
+                add("grains, motion and height", "the height of the grains", &mut since_start());
+            }
+            "kinetic" => {
+                let at_start = std::iter::repeat_n(-start, values.len());
+                add("motion at the start", "the motion at the start", &mut { at_start });
+                add("intruder in motion", "", &mut values.iter().copied());
+            }
+            "potential" => add("intruder raised", "the height of the intruder", &mut since_start()),
+            "elastic" => add("held by springs", "springs", &mut since_start()),
+            "input" if of == "drive" => {
+                add("given to the drive", "the drive", &mut values.iter().map(|value| -value));
+            }
+            "input" => add(
+                &format!("given to {}", of.replace('_', " ")),
+                "what puts energy in",
+                &mut values.iter().map(|value| -value),
+            ),
+            _ => add(
+                &format!("lost to {}", of.replace('_', " ")),
+                "contacts that give energy back",
+                &mut values.iter().copied(),
+            ),
         }
     }
 }
 
-fn add_to(layers: &mut Vec<Layer>, name: String, values: &[f64]) {
-    match layers.iter_mut().find(|layer| layer.name == name) {
-        Some(layer) => layer.values.iter_mut().zip(values).for_each(|(sum, v)| *sum += v),
-        None => layers.push(Layer { name, colour: BLACK, values: values.to_vec() }),
-    }
-}
-
-/// The stack with the supply over it, and what is unaccounted for below.
-pub(super) fn picture(budget: &Budget) -> Result<String, PictureError> {
+/// The stack with the supply over it, and what is unaccounted for, each with what it shows.
+pub(super) fn pictures(budget: &Budget) -> Result<Vec<(String, String)>, PictureError> {
     let rows: Vec<(Sign, String)> = budget
         .layers
         .iter()
         .rev()
         .map(|layer| (Sign::Square(layer.colour), layer.name.clone()))
-        .chain([(Sign::Dashed(BLACK), "supplied by the impact and the weight".to_owned())])
+        .chain([(Sign::Dashed(BLACK), "supplied".to_owned())])
         .collect();
-    svg((SIZE.0, SIZE.1 + legend::height(rows.len())), |area| {
-        let (charts, below) = area.split_vertically(SIZE.1);
-        match &budget.missing {
-            Some(missing) => {
-                let (stack, rest) = charts.split_vertically(SIZE.1 - LOWER);
-                budget.draw_stack(&stack, 0)?;
-                budget.draw_rest(missing, &rest)?;
-            }
-            None => budget.draw_stack(&charts, TIMES)?,
-        }
+    let stack = svg((STACK.0, STACK.1 + legend::height(rows.len())), |area| {
+        let (chart, below) = area.split_vertically(STACK.1);
+        budget.draw_stack(&chart)?;
         legend::draw(&below, &rows)
-    })
+    })?;
+    let mut pictures = vec![(stack, budget.caption())];
+    if let Some(missing) = &budget.missing {
+        let picture = svg(REST, |area| budget.draw_rest(missing, area))?;
+        let of = missing.of;
+        let caption = format!(
+            "What the stack misses of the line: energy that no account holds, in parts {of}."
+        );
+        pictures.push((picture, caption));
+    }
+    Ok(pictures)
 }
 
 impl Budget {
-    /// What the picture shows, in words.
-    pub(super) fn caption(&self) -> &'static str {
-        match self.missing {
-            Some(_) => {
-                "What the impact and the weight have supplied (dashed), and what has become of it. What \
-                 the stack misses of the line is not accounted for; below, in parts of the energy at \
-                 impact."
-            }
-            None => {
-                "What the impact and the weight have supplied (dashed), and as much of what has become of \
-                 it as the program tells that made the run."
-            }
-        }
+    /// What the stack shows, in words.
+    fn caption(&self) -> String {
+        let supplied = match &self.sources[..] {
+            [] => "all that has come in".to_owned(),
+            [one] => (*one).to_owned(),
+            [first @ .., last] => format!("{} and {last}", first.join(", ")),
+        };
+        let what = match self.missing {
+            Some(_) => "what has become of it",
+            None => "as much of what has become of it as the program tells that made the run",
+        };
+        format!(
+            "Energy supplied (dashed), by {supplied}, and {what}. Springs and heights count from the start."
+        )
     }
 
     fn last(&self) -> f64 {
         self.time.last().copied().unwrap_or(0.0).max(1e-9)
     }
 
-    /// Lower and upper edges (J) of each layer: what is positive stands on zero, what is negative hangs
-    /// below it.
+    /// Lower and upper edges (J) of each layer.
     fn edges(&self) -> Vec<Vec<(f64, f64)>> {
-        let (mut above, mut below) = (vec![0.0; self.time.len()], vec![0.0; self.time.len()]);
-        let edge = |(value, (above, below)): (&f64, (&mut f64, &mut f64))| {
-            let side = if *value < 0.0 { below } else { above };
-            let from = *side;
-            *side += value;
-            (from.min(*side), from.max(*side))
+        let mut top = vec![0.0; self.time.len()];
+        let edge = |(value, top): (&f64, &mut f64)| {
+            let from = *top;
+            *top += value;
+            (from, *top)
         };
-        let layer = |one: &Layer| {
-            one.values.iter().zip(above.iter_mut().zip(&mut below)).map(edge).collect()
-        };
+        let layer = |one: &Layer| one.values.iter().zip(&mut top).map(edge).collect();
         self.layers.iter().map(layer).collect()
     }
 
-    /// With so many `times` along its axis: none where there is another panel below.
-    fn draw_stack(&self, area: &Area<'_>, times: usize) -> Drawn {
+    fn draw_stack(&self, area: &Area<'_>) -> Drawn {
         let edges = self.edges();
-        let all = || edges.iter().flatten();
-        let high = all().fold(0.0_f64, |high, edge| high.max(edge.1));
+        let high = edges.iter().flatten().fold(0.0_f64, |high, edge| high.max(edge.1));
         let high = self.supplied.iter().fold(high, |high, value| high.max(*value));
-        let low = all().fold(0.0_f64, |low, edge| low.min(edge.0));
         let (factor, prefix) = prefix_of(high);
-        let up = 1.05 * factor * low..1.05 * factor * high;
-        let mut chart = ChartBuilder::on(area)
-            .margin(8)
-            .x_label_area_size(if times > 0 { 36 } else { 8 })
-            .y_label_area_size(66)
-            .build_cartesian_2d(0.0..self.last(), up.clone())?;
-        chart
-            .configure_mesh()
-            .disable_x_mesh()
-            .x_labels(times)
-            .x_desc(if times > 0 { TIME } else { "" })
-            .y_labels(6)
-            .y_label_formatter(&|value| plots::short(*value))
-            .label_style(small())
-            .y_desc(format!("energy ({prefix}J)"))
-            .axis_desc_style(letters())
-            .light_line_style(WHITE)
-            .bold_line_style(GREY)
-            .draw()?;
+        let top = 1.05 * factor * high;
+        let mut chart = Frame {
+            ranges: [0.0..self.last(), 0.0..top],
+            ticks: [TIMES, 6],
+            names: [TIME, &format!("energy ({prefix}J)")],
+            above: 8,
+            below: 0,
+            grid: true,
+        }
+        .draw(area)?;
         for (layer, edges) in self.layers.iter().zip(&edges) {
             let lower = self.time.iter().zip(edges).map(|(t, edge)| (*t, factor * edge.0));
             let upper = self.time.iter().zip(edges).map(|(t, edge)| (*t, factor * edge.1));
@@ -223,7 +242,7 @@ impl Budget {
         chart.draw_series(
             self.columns(|place| self.stack_at(place))
                 .into_iter()
-                .map(|([from, to], text)| Hover::over([(from, up.start), (to, up.end)], text)),
+                .map(|([from, to], text)| Hover::over([(from, 0.0), (to, top)], text)),
         )?;
         Ok(())
     }
@@ -235,28 +254,18 @@ impl Budget {
         let exponent = libm::log10(most).floor();
         let factor = libm::pow(10.0, -exponent);
         let up = -1.3 * factor * most..1.3 * factor * most;
-        let mut chart = ChartBuilder::on(area)
-            .margin(8)
-            .x_label_area_size(36)
-            .y_label_area_size(66)
-            .build_cartesian_2d(0.0..self.last(), up.clone())?;
-        chart
-            .configure_mesh()
-            .disable_x_mesh()
-            .x_labels(TIMES)
-            .y_labels(3)
-            .x_label_formatter(&|value| plots::short(*value))
-            .y_label_formatter(&|value| plots::short(*value))
-            .label_style(small())
-            .x_desc(TIME)
-            .y_desc(format!("missing (1e{exponent})"))
-            .axis_desc_style(letters())
-            .light_line_style(WHITE)
-            .bold_line_style(GREY)
-            .draw()?;
+        let mut chart = Frame {
+            ranges: [0.0..self.last(), up.clone()],
+            ticks: [TIMES, 4],
+            names: [TIME, &format!("missing (1e{exponent})")],
+            above: 8,
+            below: 0,
+            grid: true,
+        }
+        .draw(area)?;
         let line = self.time.iter().zip(&shares).map(|(t, share)| (*t, factor * share));
         chart.draw_series(LineSeries::new(line, colour(1).stroke_width(2)))?;
-        let text = |place: usize| format!("missing: {:.2e} of the impact", shares[place]);
+        let text = |place: usize| format!("missing: {:.2e} {}", shares[place], missing.of);
         chart.draw_series(
             self.columns(text)
                 .into_iter()
@@ -312,13 +321,16 @@ mod tests {
             energy: Some(budget),
             forces: crate::scene::Forces::default(),
             complete: true,
+            body: None,
         }
     }
 
     #[test]
     fn the_stack_misses_of_the_supply_what_is_unaccounted_for() {
         let budget = Budget::of(&course()).expect("energies");
-        assert_eq!(budget.supplied, [1.0, 0.5]);
+        // What it has put into its height is a layer.
+        assert_eq!(budget.supplied, [1.0, 1.0]);
+        assert_eq!(budget.sources, ["the motion at the start"]);
         let stacked: f64 = budget.layers.iter().map(|layer| layer.values[1]).sum();
         // Sums of three numbers near one.
         let missing = budget.missing.expect("the terms are all there are");
@@ -327,25 +339,38 @@ mod tests {
     }
 
     #[test]
-    fn what_is_negative_hangs_below_zero_and_the_rest_stands_on_it() {
-        let layer =
-            |values: &[f64]| Layer { name: String::new(), colour: BLACK, values: values.to_vec() };
-        let budget = Budget {
-            time: vec![0.0],
-            layers: vec![layer(&[2.0]), layer(&[-1.0]), layer(&[3.0])],
-            supplied: vec![4.0],
-            missing: None,
-        };
-        let edges: Vec<(f64, f64)> = budget.edges().into_iter().flatten().collect();
-        assert_eq!(edges, [(0.0, 2.0), (-1.0, 0.0), (2.0, 5.0)]);
+    fn what_gives_is_supplied_and_in_no_layer_as_in_the_table_of_shares() {
+        let mut course = course();
+        let energy = course.energy.as_mut().expect("energies");
+        // Grains that sink by 0.25 J, springs of a bed at rest that hold 2 J, and a drive.
+        for (term, values) in [
+            ("potential_grains_J", [4.0, 3.75]),
+            ("elastic_contacts_J", [2.0, 2.125]),
+            ("input_drive_J", [0.0, 0.5]),
+        ] {
+            energy.terms.push(term.to_owned());
+            energy.values.push(values.into());
+        }
+        let budget = Budget::of(&course).expect("energies");
+        // Sums of powers of two: exact.
+        assert_eq!(budget.supplied, [1.0, 1.75]);
+        let names: Vec<&str> = budget.layers.iter().map(|layer| layer.name.as_str()).collect();
+        assert_eq!(names.len(), 4, "{names:?}");
+        assert!(!names.contains(&"grains, motion and height"), "{names:?}");
+        let springs = budget.layers.iter().find(|layer| layer.name == "held by springs");
+        assert_eq!(springs.expect("springs").values, [0.0, 0.125]);
+        let sources = ["the drive", "the height of the grains", "the motion at the start"];
+        assert_eq!(budget.sources, sources);
+        assert!(budget.edges().iter().flatten().all(|edge| edge.0 <= edge.1));
     }
 
     #[test]
     fn every_layer_is_drawn_and_says_its_energy() {
-        let picture = picture(&Budget::of(&course()).expect("energies")).expect("a picture");
+        let pictures = pictures(&Budget::of(&course()).expect("energies")).expect("pictures");
+        let picture = &pictures[0].0;
         for layer in ["intruder in motion", "lost to sliding"] {
             assert!(picture.matches(layer).count() >= 3, "legend and two columns: {layer}");
         }
-        assert!(picture.contains("supplied: 500 mJ"));
+        assert!(picture.contains("supplied: 1 J"));
     }
 }

@@ -80,7 +80,7 @@ pub(super) fn parts(seen: &Seen, course: &Course) -> Result<Vec<Part>, ReportErr
     let mut stills = Vec::new();
     impact.scenes(&view, &view.near, &frames, |scene| {
         let svg = sheet((impact, &view), &scene, Quantity::Speed, size).svg();
-        stills.push((svg, caption(impact, scene.frame)));
+        stills.push((svg, caption(impact, scene.frame, course.end())));
         ControlFlow::Continue(())
     })?;
     let player = Player::of(impact, course)?;
@@ -92,16 +92,21 @@ pub(super) fn parts(seen: &Seen, course: &Course) -> Result<Vec<Part>, ReportErr
 }
 
 /// What a still shows.
-fn caption(impact: &Impact, frame: usize) -> String {
+fn caption(impact: &Impact, frame: usize, end: Option<f64>) -> String {
     let [contact, _, last] = impact.moments();
+    let milliseconds = |time: f64| format!("{:.1} ms", 1e3 * time);
+    let shown = milliseconds(impact.times[frame]);
     let when = match frame {
         frame if frame == contact => "At contact".to_owned(),
-        frame if frame == last => "At the end of the run".to_owned(),
+        frame if frame == last => match end.map(milliseconds).filter(|end| *end != shown) {
+            Some(end) => format!("The last frame, at {shown} of {end}"),
+            None => "At the end of the run".to_owned(),
+        },
         _ => match impact.forces.greatest() {
             Some((time, newton)) => format!(
-                "In the frame nearest to the greatest force of the bed, {} at {:.1} ms",
+                "The frame at {shown}, the nearest to the greatest force of the bed, {} at {}",
                 crate::numbers::with_prefix(newton, "N"),
-                1e3 * time
+                milliseconds(time)
             ),
             None => "In the middle of the run".to_owned(),
         },

@@ -7,6 +7,7 @@ mod impact;
 mod pair;
 mod path;
 mod player;
+mod push;
 mod sparkline;
 mod thin;
 
@@ -21,7 +22,7 @@ pub use pair::picture as pair_picture;
 pub use sparkline::sparkline;
 
 use crate::ReportError;
-use crate::figure::{figure, panel};
+use crate::figure::panel;
 use crate::numbers::{fixed, share, with_prefix};
 use crate::page::{Number, Page, Part, Section, Table};
 
@@ -41,8 +42,11 @@ pub fn page(summary: &Summary, course: &Course, seen: &Seen) -> Result<String, R
     let page = Page {
         title: summary.name.clone(),
         kind: "run",
-        lead: lead(summary),
-        headline: headline(summary),
+        lead: lead(summary, course),
+        headline: match &summary.intrusion {
+            Some(push) => push::headline(summary, push),
+            None => headline(summary),
+        },
         sections: sections.into_iter().flatten().collect(),
         origin: origin(&summary.version, &summary.model_hash),
     };
@@ -54,11 +58,10 @@ pub fn page(summary: &Summary, course: &Course, seen: &Seen) -> Result<String, R
 /// # Errors
 /// If a figure cannot be drawn, or the log of grains cannot be read again.
 pub fn page_so_far(name: &str, course: &Course, seen: &Seen) -> Result<String, ReportError> {
-    let panels = path::pictures(course, None)?;
-    let panels: Vec<_> = panels.iter().map(|(svg, caption)| panel(svg, caption)).collect();
+    let panels = panels_of(&path::pictures(course, None)?);
     let motion = (!panels.is_empty()).then_some(Part::Panels(panels));
     let budget = energy::Budget::of(course);
-    let energy = budget.map(|budget| Ok(figure(&energy::picture(&budget)?, budget.caption())));
+    let energy = budget.map(|budget| Ok(Part::Panels(panels_of(&energy::pictures(&budget)?))));
     let sections = [
         Section::new("Impact", impact::parts(seen, course)?),
         Section::new("Motion and force", motion.into_iter().collect()),
@@ -108,13 +111,28 @@ pub(crate) fn origin(version: &str, model_hash: &str) -> Vec<(&'static str, Stri
     vec![("plunge", version.to_owned()), ("model", model_hash.to_owned())]
 }
 
-fn lead(summary: &Summary) -> String {
-    let ground = match &summary.bed {
-        Some(bed) => format!("onto a bed of {} grains", bed.grains),
-        None => "into a resistive medium".to_owned(),
+fn panels_of(pictures: &[(String, String)]) -> Vec<(String, String)> {
+    pictures.iter().map(|(svg, caption)| panel(svg, caption)).collect()
+}
+
+fn lead(summary: &Summary, course: &Course) -> String {
+    let pushed = summary.intrusion.as_ref();
+    let ground = match (&summary.bed, pushed) {
+        (Some(bed), Some(_)) => format!("into a bed of {} grains", bed.grains),
+        (Some(bed), None) => format!("onto a bed of {} grains", bed.grains),
+        (None, _) => "into a resistive medium".to_owned(),
     };
+    let body = course.body.as_ref().filter(|body| body.model_hash == summary.model_hash);
+    let of = body.map_or(String::new(), |body| format!(" of {}", body.words));
     let (speed, angle) = (summary.impact.speed_m_per_s, summary.impact.angle_deg);
-    format!("An impact at {speed} m/s, {angle}\u{b0} from the horizontal, {ground}.")
+    let how = format!("at {speed} m/s, {angle}\u{b0} from the horizontal");
+    match pushed {
+        Some(push) => {
+            let depth = plots::short(1e3 * push.to_depth_m);
+            format!("A push{of} {ground} to a depth of {depth} mm, {how} all the way.")
+        }
+        None => format!("An impact{of} {how}, {ground}."),
+    }
 }
 
 fn headline(summary: &Summary) -> Vec<Number> {
@@ -124,11 +142,11 @@ fn headline(summary: &Summary) -> Vec<Number> {
         Some(time) => format!("{:.1} ms", 1e3 * time),
         None => "not reached".to_owned(),
     };
-    let components = format!(
-        "vertical {}, horizontal {}",
-        milliseconds(stopping_time_z_s),
-        milliseconds(stopping_time_x_s)
-    );
+    let horizontal = match stopping_time_x_s {
+        Some(time) if time <= 0.0 => "no motion sideways at contact".to_owned(),
+        time => format!("horizontal {}", milliseconds(time)),
+    };
+    let components = format!("vertical {}, {horizontal}", milliseconds(stopping_time_z_s));
     let depth_note = if stopped { "" } else { "still moving at the end" };
     let energy = &summary.energy;
     vec![
@@ -147,13 +165,17 @@ fn headline(summary: &Summary) -> Vec<Number> {
 
 fn motion(summary: &Summary, course: &Course, seen: &Seen) -> Result<Vec<Part>, ReportError> {
     let mut panels = path::pictures(course, summary.stop.stopping_time_s)?;
+    if let Some(over_depth) = summary.intrusion.as_ref().map(push::picture).transpose()?.flatten() {
+        panels.insert(0, over_depth);
+    }
     panels.extend(impact::crater(seen)?);
-    let panels = panels.iter().map(|(svg, caption)| panel(svg, caption));
-    let mut parts = vec![Part::Panels(panels.collect())];
+    let mut parts = vec![Part::Panels(panels_of(&panels))];
     if !course.complete {
         parts.push(Part::Text("The log is cut: curves go as far as it does.".to_owned()));
     }
-    parts.extend(summary.forces.as_ref().map(|forces| Part::Text(forces_text(forces))));
+    // At a set speed no part of the force overtakes the other, and nothing stops.
+    let forces = summary.forces.as_ref().filter(|_| summary.intrusion.is_none());
+    parts.extend(forces.map(|forces| Part::Text(forces_text(forces))));
     Ok(parts)
 }
 
@@ -173,7 +195,7 @@ fn forces_text(forces: &ForceSummary) -> String {
 fn energy_section(summary: &Summary, course: &Course) -> Result<Vec<Part>, ReportError> {
     let mut parts = Vec::new();
     if let Some(budget) = energy::Budget::of(course) {
-        parts.push(figure(&energy::picture(&budget)?, budget.caption()));
+        parts.push(Part::Panels(panels_of(&energy::pictures(&budget)?)));
     }
     let shares = summary.energy.shares();
     let mut table = Table::new(&["", "energy", "of what was supplied"]);
@@ -232,32 +254,53 @@ fn bed(bed: Option<&BedSummary>) -> Vec<Part> {
     [Part::Table(table)].into_iter().chain(warnings).collect()
 }
 
+const TERMS_OF_AN_IMPACT: &[(&str, &str)] = &[
+    (
+        "range",
+        "horizontal distance from the point of contact to where the body, of a link its tip, first stops moving \
+         sideways",
+    ),
+    ("angle", "of the velocity at contact from the horizontal: 90\u{b0} is straight down"),
+    (
+        "stopping time",
+        "from contact until the velocity, or a component of it, is zero for the first time; it can be late, because a \
+         body creeps",
+    ),
+    (
+        "at rest after",
+        "from contact until the speed stays below a small share of the speed at contact; it can come before the \
+         stopping time",
+    ),
+    ("energy supplied", "the motion of the body at contact, and what it gives by sinking"),
+    (
+        "closure",
+        "the largest energy that no account holds at any time, over the energy at impact: how well the calculation \
+         keeps its books",
+    ),
+];
+
+const TERMS_OF_A_PUSH: &[(&str, &str)] = &[
+    ("angle", "of the velocity from the horizontal: 90\u{b0} is straight down"),
+    ("force", "of the ground on the body, without its weight: the mean over a fiftieth of the way"),
+    ("work of the drive", "what holds the speed, against the bed and the weight of the body"),
+    (
+        "closure",
+        "the largest energy that no account holds at any time, over what is given to the bed: how well the \
+         calculation keeps its books",
+    ),
+];
+
 /// What words of the page mean.
 fn terms(summary: &Summary) -> Vec<(&'static str, &'static str)> {
-    let mut terms = vec![
-        (
-            "depth",
-            "of the lowest point of the body below the undisturbed surface, positive downward",
-        ),
-        ("range", "horizontal distance from the point of contact to where the body ends"),
-        ("angle", "of the velocity at contact from the horizontal: 90\u{b0} is straight down"),
-        (
-            "stopping time",
-            "from contact until the velocity, or a component of it, is zero for the first time; it can be late, \
-             because a body creeps",
-        ),
-        (
-            "at rest after",
-            "from contact until the speed stays below a small share of the speed at contact; it can come before the \
-             stopping time",
-        ),
-        ("energy supplied", "the motion of the body at contact, and what it gives by sinking"),
-        (
-            "closure",
-            "the largest energy that no account holds at any time, over the energy at impact: how well the \
-             calculation keeps its books",
-        ),
-    ];
+    let mut terms = vec![(
+        "depth",
+        "of the lowest point of the body below the undisturbed surface, positive downward",
+    )];
+    terms.extend(match summary.intrusion {
+        Some(_) => TERMS_OF_A_PUSH,
+        None => TERMS_OF_AN_IMPACT,
+    });
+
     if summary.bed.is_some() {
         terms.push((
             "sliding, normal and tangential damping",

@@ -1,8 +1,9 @@
 //! A run over a run.
 
 use exchange::read::BodyState;
+use plots::axes;
 use plots::legend::{self, Sign};
-use plots::{Area, Drawn, GREY, Hover, PictureError, colour, letters, svg};
+use plots::{Area, Drawn, Hover, PictureError, colour, svg};
 use plotters::prelude::*;
 use serde_json::Value;
 
@@ -121,21 +122,7 @@ fn draw(area: &Area<'_>, panel: &Panel, of_runs: &[Curves; 2], names: [&str; 2])
     let low = 1.06 * factor * points().fold(0.0_f64, |low, point| low.min(point.1));
     let high = 1.06 * factor * points().fold(1e-12_f64, |high, point| high.max(point.1));
     let up = if panel.downward { high..low } else { low..high };
-    let mut chart = ChartBuilder::on(area)
-        .margin(8)
-        .x_label_area_size(36)
-        .y_label_area_size(56)
-        .build_cartesian_2d(0.0..last, up)?;
-    chart
-        .configure_mesh()
-        .x_labels(6)
-        .y_labels(6)
-        .x_desc("time (ms)")
-        .y_desc(title.as_str())
-        .axis_desc_style(letters())
-        .light_line_style(WHITE)
-        .bold_line_style(GREY)
-        .draw()?;
+    let mut chart = axes::chart(area, [0.0..last, up], 6, ["time (ms)", &title])?;
     for (at, curves) in of_runs.iter().enumerate() {
         for curve in curves {
             let points: Vec<(f64, f64)> =
@@ -223,7 +210,8 @@ mod tests {
             closing: None,
         };
         let forces = crate::scene::Forces::default();
-        let course = Course { bodies: Vec::new(), energy: Some(energy), forces, complete: true };
+        let bodies = Vec::new();
+        let course = Course { bodies, energy: Some(energy), forces, complete: true, body: None };
         let grains = of_energies(&course, ["kinetic_grains", "potential_grains"], 1.0);
         // Sums of powers of two: exact.
         assert_eq!(grains, [[(0.0, 0.0), (0.5, 0.75)]]);

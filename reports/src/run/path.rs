@@ -33,6 +33,8 @@ struct Panel {
     band: Vec<[f64; 3]>,
     /// Which way the axis runs.
     downward: bool,
+    /// Whether there is nothing to see of numbers that are all zero.
+    leaves_out_zero: bool,
 }
 
 /// Figures of `course` over time, each with what it shows: depth, velocity, force and acceleration. `stop` is
@@ -46,17 +48,24 @@ pub(super) fn pictures(
     let force = force(course, moves_along);
     let grey = !force.band.is_empty();
     let panels = [
-        (position(course, moves_along), DEPTH),
+        (position(course, moves_along), if moves_along { DEPTH_AND_WAY } else { DEPTH }),
         (velocity(course, moves_along), VELOCITY),
         (force, if grey { FORCE_AND_RANGE } else { FORCE }),
         (acceleration(course, moves_along), ACCELERATION),
     ];
-    let there = panels.into_iter().filter(|(panel, _)| !panel.curves.is_empty());
-    there.map(|(panel, caption)| Ok((panel.picture(stop)?, caption.to_owned()))).collect()
+    let there = panels.into_iter().filter(|(panel, _)| panel.shows_something());
+    there
+        .map(|(panel, caption)| {
+            let line = if panel.downward && stop.is_some() { STOP } else { "" };
+            Ok((panel.picture(stop)?, format!("{caption}{line}")))
+        })
+        .collect()
 }
 
-const DEPTH: &str = "Depth of the lowest point of the body below the undisturbed surface. The vertical dashed line is \
-                     the stopping time.";
+const DEPTH: &str = "Depth of the lowest point of the body below the undisturbed surface.";
+const DEPTH_AND_WAY: &str = "Depth of the lowest point of the body below the undisturbed surface, and the way of its \
+                             centre of mass along it.";
+const STOP: &str = " The vertical dashed line is the stopping time.";
 const VELOCITY: &str = "Velocity of the centre of mass, downward positive.";
 const FORCE: &str =
     "Force of the ground on the body, without its weight: the mean over short spans of time.";
@@ -72,7 +81,8 @@ fn position(course: &Course, moves_along: bool) -> Panel {
         body.states.iter().map(|state| (state.time, 1e3 * place(state))).collect()
     });
     let axis = if moves_along { "position (mm)" } else { "depth (mm)" };
-    Panel { axis, unit: "mm", curves, band: Vec::new(), downward: true }
+    let band = Vec::new();
+    Panel { axis, unit: "mm", curves, band, downward: true, leaves_out_zero: false }
 }
 
 fn velocity(course: &Course, moves_along: bool) -> Panel {
@@ -80,7 +90,8 @@ fn velocity(course: &Course, moves_along: bool) -> Panel {
         let of = |state: &BodyState| if along { state.velocity.x } else { -state.velocity.z };
         body.states.iter().map(|state| (state.time, of(state))).collect()
     });
-    Panel { axis: "velocity (m/s)", unit: "m/s", curves, band: Vec::new(), downward: false }
+    let (axis, band) = ("velocity (m/s)", Vec::new());
+    Panel { axis, unit: "m/s", curves, band, downward: false, leaves_out_zero: false }
 }
 
 fn force(course: &Course, moves_along: bool) -> Panel {
@@ -98,7 +109,8 @@ fn force(course: &Course, moves_along: bool) -> Panel {
     let single = !moves_along && forces.ranges.len() == 1;
     let ranges = forces.ranges.iter().flatten().filter(|_| single);
     let band = forces.time.iter().zip(ranges).map(|(time, [low, high])| [1e3 * time, *low, *high]);
-    Panel { axis: "force (N)", unit: "N", curves, band: band.collect(), downward: false }
+    let (axis, band) = ("force (N)", band.collect());
+    Panel { axis, unit: "N", curves, band, downward: false, leaves_out_zero: false }
 }
 
 fn acceleration(course: &Course, moves_along: bool) -> Panel {
@@ -117,6 +129,7 @@ fn acceleration(course: &Course, moves_along: bool) -> Panel {
         curves,
         band: Vec::new(),
         downward: false,
+        leaves_out_zero: true,
     }
 }
 
@@ -162,7 +175,16 @@ fn curves(
     curves
 }
 
+/// Least acceleration that is more than the rounding of a set speed (m/s²).
+const ROUNDING: f64 = 1e-6;
+
 impl Panel {
+    /// Whether it has curves, of an acceleration any that is not zero.
+    fn shows_something(&self) -> bool {
+        let mut points = self.curves.iter().flat_map(|curve| &curve.points);
+        points.any(|(_, value)| !self.leaves_out_zero || value.abs() > ROUNDING)
+    }
+
     fn picture(&self, stop: Option<f64>) -> Result<String, PictureError> {
         let rows: Vec<(Sign, String)> =
             self.curves.iter().map(|curve| (curve.sign, curve.name.clone())).collect();
