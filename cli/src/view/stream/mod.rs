@@ -31,8 +31,9 @@ const MOST_SUBSCRIPTIONS: usize = 4096;
 const PAUSE: Duration = Duration::from_millis(50);
 const GLANCE: Duration = Duration::from_millis(1);
 
-/// How long after the last change of its subscriptions a client is told: it makes several at once.
-const SETTLED: Duration = Duration::from_millis(200);
+/// How long after the last change of its subscriptions a client is told. A viewer subscribes panel by panel while it
+/// draws them, and a plot that is told from the start once more joins its end to its start.
+const SETTLED: Duration = Duration::from_secs(1);
 
 /// A client that has asked for the messages of a run.
 struct Client<'a> {
