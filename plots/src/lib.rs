@@ -99,7 +99,7 @@ pub fn upright() -> TextStyle<'static> {
 pub fn short(value: f64) -> String {
     let text = format!("{value:.2e}");
     match text.parse::<f64>() {
-        Ok(value) if (1e-4..1e9).contains(&value.abs()) => value.to_string(),
+        Ok(value) if (1e-3..1e9).contains(&value.abs()) => value.to_string(),
         Ok(value) if value.abs() > 0.0 => exponential(value),
         Ok(_) => "0".to_owned(),
         Err(_) => text,
@@ -145,7 +145,7 @@ mod tests {
     fn a_short_number_has_three_digits_and_small_ones_a_power_of_ten() {
         assert_eq!(short(12.345), "12.3");
         assert_eq!(short(-0.0), "0");
-        assert_eq!(short(1.377e-4), "0.000138");
+        assert_eq!(short(1.377e-3), "0.00138");
         assert_eq!(short(-1.223e-6), "-1.22e-6");
     }
 }

@@ -7,14 +7,15 @@ use plotters::prelude::*;
 use runner::campaign::{Counts, Headline, Outcome, Point, Results, Values, Varied, varied};
 
 use crate::ReportError;
-use crate::figure::figure;
+use crate::figure::panel;
+use crate::numbers::four_digits;
 use crate::page::{Number, Page, Part, Section, Table};
 
 /// Size of a panel (pixels).
-const PANEL: (u32, u32) = (310, 270);
+const PANEL: (u32, u32) = (400, 270);
 
-/// Most panels side by side; further keys begin another row.
-const ACROSS: usize = 3;
+/// Characters of the name of a folder that tell it from others.
+const NAME: usize = 12;
 
 /// Most points that are listed one by one.
 const MOST_POINTS: usize = 500;
@@ -34,6 +35,7 @@ const RESPONSES: [Response; 3] = [
 
 /// A key over whose numbers results are drawn.
 struct Across {
+    key: String,
     title: String,
     numbers: Vec<Option<f64>>,
 }
@@ -79,11 +81,11 @@ pub(crate) fn page(results: &Results) -> Result<String, ReportError> {
     page.html()
 }
 
-/// One figure per response that differs from point to point.
+/// A figure per response that differs from point to point, and key that was varied.
 fn responses(results: &Results, varied: &[Varied]) -> Result<Vec<Part>, PictureError> {
     let across: Vec<Across> = varied.iter().filter_map(Across::of).collect();
     let models = models(results);
-    let mut parts = Vec::new();
+    let mut panels = Vec::new();
     for response in &RESPONSES {
         let values: Vec<Option<f64>> = results
             .outcomes
@@ -94,14 +96,15 @@ fn responses(results: &Results, varied: &[Varied]) -> Result<Vec<Part>, PictureE
         if across.is_empty() || found.iter().all(|value| value.total_cmp(&found[0]).is_eq()) {
             continue;
         }
-        let caption = format!("{} of every point that is done.", sentence(response.title));
         let drawing = Drawing { results, response, values: &values, models: &models };
-        parts.push(figure(&drawing.picture(&across)?, &caption));
+        for across in &across {
+            let (title, key) = (sentence(response.title), &across.key);
+            let caption = format!("{title} of every point that is done, over {key}.");
+            panels.push(panel(&drawing.picture(across)?, &caption));
+        }
     }
-    if parts.is_empty() {
-        parts.push(Part::Text("Nothing is done yet that differs from point to point.".to_owned()));
-    }
-    Ok(parts)
+    let none = "Nothing is done yet that differs from point to point.";
+    Ok(vec![if panels.is_empty() { Part::Text(none.to_owned()) } else { Part::Panels(panels) }])
 }
 
 fn sentence(title: &str) -> String {
@@ -124,9 +127,10 @@ impl Across {
     /// Of numbers those themselves; of few words their places in the order of the plan.
     fn of(varied: &Varied) -> Option<Self> {
         let unit = varied.unit.as_ref().map_or(String::new(), |unit| format!(" ({unit})"));
+        let key = varied.key.clone();
         match &varied.values {
             Values::Numbers(numbers) => {
-                Some(Self { title: format!("{}{unit}", varied.key), numbers: numbers.clone() })
+                Some(Self { title: format!("{key}{unit}"), key, numbers: numbers.clone() })
             }
             Values::Texts(words) => {
                 let mut known: Vec<&String> = Vec::new();
@@ -143,14 +147,14 @@ impl Across {
                 }
                 let names: Vec<String> =
                     (1..).zip(&known).map(|(at, word)| format!("{at} {word}")).collect();
-                let title = format!("{}: {}", varied.key, names.join(", "));
-                Some(Self { title, numbers })
+                let title = format!("{key}: {}", names.join(", "));
+                Some(Self { key, title, numbers })
             }
         }
     }
 }
 
-/// One response, over all that was varied.
+/// One response.
 struct Drawing<'a> {
     results: &'a Results,
     response: &'a Response,
@@ -160,9 +164,7 @@ struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    fn picture(&self, across: &[Across]) -> Result<String, PictureError> {
-        let columns = across.len().min(ACROSS);
-        let rows = across.len().div_ceil(ACROSS);
+    fn picture(&self, across: &Across) -> Result<String, PictureError> {
         let signs: Vec<(Sign, String)> = match self.models {
             [_] => Vec::new(),
             models => models
@@ -171,13 +173,10 @@ impl Drawing<'_> {
                 .map(|(at, model)| (Sign::Dot(colour(at)), (*model).to_owned()))
                 .collect(),
         };
-        let height = rows as u32 * PANEL.1;
-        let width = (columns as u32 * PANEL.0).max(2 * PANEL.0);
-        svg((width, height + legend::height(signs.len())), |area| {
-            let (charts, below) = area.split_vertically(height);
-            for (across, panel) in across.iter().zip(charts.split_evenly((rows, columns))) {
-                self.panel(&panel, across)?;
-            }
+        let legend = if signs.is_empty() { 0 } else { legend::height(signs.len()) };
+        svg((PANEL.0, PANEL.1 + legend), |area| {
+            let (chart, below) = area.split_vertically(PANEL.1);
+            self.panel(&chart, across)?;
             legend::draw(&below, &signs)
         })
     }
@@ -234,20 +233,33 @@ fn failures(results: &Results) -> Vec<Part> {
     any.then_some(Part::Table(table)).into_iter().collect()
 }
 
+/// The value at the point `at` of the plan, of a number four digits: a drawn one has as many as there are.
+fn shown(varied: &Varied, at: usize) -> String {
+    let number = match &varied.values {
+        Values::Numbers(numbers) => numbers[at],
+        Values::Texts(_) => None,
+    };
+    let unit = varied.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
+    number
+        .map_or_else(|| varied.shown(at), |number| format!("{}{unit}", four_digits(&number.into())))
+}
+
 fn listed(results: &Results, varied: &[Varied]) -> Vec<Part> {
-    let mut head = vec!["point", "model"];
+    let is_one_model = models(results).len() == 1;
+    let mut head = if is_one_model { vec!["point"] } else { vec!["point", "model"] };
     head.extend(varied.iter().map(|one| one.key.as_str()));
-    head.extend(["", "depth (mm)", "stopping time (ms)", "folder"]);
+    head.extend(["state", "depth (mm)", "stopping time (ms)", "folder, from its first letters"]);
     let mut table = Table::new(&head);
     for (at, (point, outcome)) in results.points().take(MOST_POINTS).enumerate() {
         let one = outcome.headline();
-        let mut row = vec![point.point.to_string(), point.model.clone()];
-        row.extend(varied.iter().map(|varied| varied.shown(at)));
+        let mut row = vec![point.point.to_string()];
+        row.extend(Some(point.model.clone()).filter(|_| !is_one_model));
+        row.extend(varied.iter().map(|varied| shown(varied, at)));
         row.push(outcome.word().to_owned());
         row.push(crate::numbers::fixed(one.map(|one| 1e3 * one.depth_m), 2));
         let time = one.and_then(|one| one.stopping_time_s);
         row.push(crate::numbers::fixed(time.map(|time| 1e3 * time), 2));
-        row.push(point.hash.clone());
+        row.push(point.hash.chars().take(NAME).collect());
         table.rows.push(row);
     }
     let mut parts = vec![Part::Table(table)];

@@ -6,13 +6,13 @@ use plotters::prelude::*;
 use runner::run::{Group, ListSummary, Scatter};
 
 use crate::ReportError;
-use crate::figure::figure;
+use crate::figure::panel;
 use crate::numbers::share;
 use crate::page::{Number, Page, Part, Section, Table};
 use crate::run::origin;
 
 /// Size of a panel (pixels).
-const PANEL: (u32, u32) = (470, 300);
+const PANEL: (u32, u32) = (400, 280);
 
 /// Most runs that are listed one by one.
 const MOST_RUNS: usize = 500;
@@ -30,8 +30,6 @@ const QUANTITIES: [Quantity; 2] = [
 ];
 
 pub(crate) fn page(summary: &ListSummary) -> Result<String, ReportError> {
-    let caption = "Means over the positions of each speed and angle, with the standard deviation \
-                   between them.";
     let stopped = summary.runs.iter().filter(|run| run.stop.stopped).count();
     let closure = summary.runs.iter().filter_map(|run| run.energy.closure).fold(0.0, f64::max);
     let n = summary.runs.len();
@@ -47,7 +45,7 @@ pub(crate) fn page(summary: &ListSummary) -> Result<String, ReportError> {
         sections: [
             Section::new(
                 "Conditions",
-                vec![figure(&picture(&summary.groups)?, caption), Part::Table(groups(summary))],
+                vec![Part::Panels(pictures(&summary.groups)?), Part::Table(groups(summary))],
             ),
             Section::new("Runs", runs(summary)),
         ]
@@ -135,7 +133,8 @@ fn axes(groups: &[Group]) -> Axes {
     }
 }
 
-fn picture(groups: &[Group]) -> Result<String, PictureError> {
+/// Each quantity, with what it shows.
+fn pictures(groups: &[Group]) -> Result<Vec<(String, String)>, PictureError> {
     let axes = axes(groups);
     let mut lines: Vec<f64> = groups.iter().map(axes.line).collect();
     lines.sort_by(f64::total_cmp);
@@ -145,13 +144,19 @@ fn picture(groups: &[Group]) -> Result<String, PictureError> {
         .enumerate()
         .map(|(at, value)| (Sign::Dot(colour(at)), format!("{value}{}", axes.unit_of_line)))
         .collect();
-    svg((2 * PANEL.0, PANEL.1 + legend::height(signs.len())), |area| {
-        let (charts, below) = area.split_vertically(PANEL.1);
-        for (quantity, chart) in QUANTITIES.iter().zip(charts.split_evenly((1, 2))) {
+    let picture = |quantity: &Quantity| {
+        let picture = svg((PANEL.0, PANEL.1 + legend::height(signs.len())), |area| {
+            let (chart, below) = area.split_vertically(PANEL.1);
             quantity.draw(&chart, groups, &axes, &lines)?;
-        }
-        legend::draw(&below, &signs)
-    })
+            legend::draw(&below, &signs)
+        })?;
+        let (name, _) = quantity.title.split_once(" (").unwrap_or((quantity.title, ""));
+        let caption = format!(
+            "Mean {name} over the positions of each speed and angle, with the standard deviation between them."
+        );
+        Ok(panel(&picture, &caption))
+    };
+    QUANTITIES.iter().map(picture).collect()
 }
 
 impl Quantity {

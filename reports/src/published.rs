@@ -64,7 +64,7 @@ fn overview(rows: &[Value]) -> Table {
         let checks = list(&row["checks"]);
         let count =
             |verdict: &str| checks.iter().filter(|check| check["verdict"] == verdict).count();
-        let mut cells = vec![text(&row["id"]), text(&row["title"]), text(&row["verdict"])];
+        let mut cells = vec![text(&row["id"]), text(&row["title"]), verdict(&row["verdict"])];
         cells.extend(VERDICTS.iter().map(|(key, _)| count(key).to_string()));
         table.rows.push(cells);
     }
@@ -74,7 +74,7 @@ fn overview(rows: &[Value]) -> Table {
 /// One row: how it was run, its checks, the numbers and figures behind them.
 fn section(row: &Value, texts: &Texts) -> Option<Section> {
     let mut parts = vec![
-        Part::Answer(format!("{}: {}", text(&row["verdict"]), text(&row["title"]))),
+        Part::Answer(format!("{}: {}", verdict(&row["verdict"]), text(&row["title"]))),
         Part::Text(format!("{}. Run: {}.", text(&row["source"]), text(&row["how"]))),
     ];
     if let Some(why) = row["error"].as_str() {
@@ -107,7 +107,7 @@ fn table_of(checks: &[Value]) -> Table {
     let mut table = Table::new(&["check", "published", "ours", "band", "verdict"]);
     for check in checks {
         let cause = text(&check["cause"]);
-        let verdict = text(&check["verdict"]);
+        let verdict = verdict(&check["verdict"]);
         table.rows.push(vec![
             text(&check["what"]),
             side(&check["published"]),
@@ -119,13 +119,20 @@ fn table_of(checks: &[Value]) -> Table {
     table
 }
 
+/// A verdict as it is counted, in words.
+fn verdict(value: &Value) -> String {
+    let key = text(value);
+    let known = VERDICTS.iter().find(|(one, _)| *one == key);
+    known.map_or(key, |(_, name)| (*name).to_owned())
+}
+
 /// A number with its error, or words.
 fn side(side: &Value) -> String {
     let (value, error) = (side["value"].as_f64(), side["error"].as_f64());
     match (value, error) {
         (Some(value), Some(error)) if error > 0.0 => {
             let [value, error] = [value, error].map(plots::short);
-            format!("{value} \u{b1} {error}")
+            format!("{value}\u{a0}\u{b1}\u{a0}{error}")
         }
         (Some(value), _) => plots::short(value),
         (None, _) => side.as_str().unwrap_or("\u{2013}").to_owned(),
@@ -152,7 +159,7 @@ mod tests {
             { "id": "E1", "title": "one", "verdict": "deviates", "checks": [check],
               "headline": { "caption": "at a glance", "head": ["angle"], "rows": [["90"]] },
               "figures": [{ "file": "e1.svg", "caption": "a figure" }] },
-            { "id": "E2", "title": "two", "verdict": "fail", "error": "no bed" },
+            { "id": "E2", "title": "two", "verdict": "not-run", "error": "no bed" },
         ] });
         let svg = plots::svg((30, 20), |_| Ok(())).expect("a picture");
         let texts = [(RESULT.to_owned(), found.to_string()), ("e1.svg".to_owned(), svg)];
@@ -160,8 +167,9 @@ mod tests {
         // Words of a band are no number: they take several lines.
         assert!(html.contains("<table class=\"sentences\">"), "{html}");
         for shown in [
-            "0.1 \u{b1} 0.01",
+            "0.1\u{a0}\u{b1}\u{a0}0.01",
             "deviates: a cause",
+            "not run: two",
             "Could not be run: no bed",
             "at a glance",
             "<svg",

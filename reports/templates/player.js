@@ -94,7 +94,10 @@
     pen.fillStyle = ink();
     pen.textAlign = "left";
     for (const share of [0, 0.25, 0.5, 0.75, 1]) {
-      pen.fillText(short(top * share * share), left + 16, box.above + height * (1 - share) + (share ? 4 : -4));
+      // Round numbers below the top, each at its root.
+      const value = share < 1 ? Number((top * share * share).toPrecision(1)) : top;
+      const place = top > 0 ? Math.sqrt(value / top) : share;
+      pen.fillText(short(value), left + 16, box.above + height * (1 - place) + (share ? 4 : -4));
     }
     pen.textAlign = "right";
     pen.fillText(name + " (" + unit + ")", Math.min(canvas.clientWidth, box.right + 66) - 2, box.above - 14);

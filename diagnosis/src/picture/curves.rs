@@ -2,7 +2,7 @@
 
 use measurements::{Condition, Curve, MeasurementSet, Run};
 use plots::legend::{self, Sign};
-use plots::{Area, Drawn, Hover, PictureError, colour, fitting, letters, padded, svg};
+use plots::{Area, Drawn, Hover, PictureError, colour, fitting, letters, padded, short, svg};
 use plotters::prelude::*;
 
 use super::panel::framed;
@@ -36,7 +36,8 @@ pub(super) fn curves(set: &MeasurementSet) -> Result<String, PictureError> {
 
 fn draw(area: &Area<'_>, curve: &Curve, condition: &Condition, runs: &[&Run]) -> Drawn {
     let Condition { id, speed, diameter, .. } = condition;
-    let title = format!("{id}: {} mm, {speed} m/s, {} runs", 1e3 * diameter, runs.len());
+    let (diameter, speed) = (short(1e3 * diameter), short(*speed));
+    let title = format!("{id}: {diameter} mm, {speed} m/s, {} runs", runs.len());
     area.draw(&Text::new(fitting(&title, PANEL.0 - 60), (52, 5), letters()))?;
     let (along, value) = (curve.along, curve.value);
     let samples = || runs.iter().flat_map(|run| &run.samples);

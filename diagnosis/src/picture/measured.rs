@@ -67,7 +67,8 @@ fn paths(set: &MeasurementSet) -> Result<String, PictureError> {
 
 fn draw_paths(area: &Area<'_>, condition: &Condition, gravity: f64, runs: &[&Run]) -> Drawn {
     let Condition { id, speed, angle_deg, .. } = condition;
-    let title = format!("{id}: {speed} m/s, {angle_deg}\u{b0}, {} runs", runs.len());
+    let title =
+        format!("{id}: {} m/s, {}\u{b0}, {} runs", short(*speed), short(*angle_deg), runs.len());
     area.draw(&Text::new(fitting(&title, PANEL.0 - 60), (52, 5), letters()))?;
     let frames = || runs.iter().flat_map(|run| &run.frames);
     let times = frames().map(|frame| 1e3 * frame.t);

@@ -3,7 +3,7 @@
 use measurements::Axis;
 use plots::axes::Frame;
 use plots::legend::{self, Sign};
-use plots::{Area, Drawn, GREY, Hover, PictureError, fitting, letters, padded, svg};
+use plots::{Area, Drawn, GREY, Hover, PictureError, fitting, letters, padded, short, svg};
 use plotters::prelude::*;
 
 use super::TWO_SIDED_95;
@@ -61,7 +61,8 @@ impl Track {
             Observable::Acceleration => "acceleration",
             _ => "x",
         };
-        let (id, speed, angle) = (&condition.id, condition.speed, condition.angle_deg);
+        let (id, speed, angle) =
+            (&condition.id, short(condition.speed), short(condition.angle_deg));
         format!("{axis}, {id}: {speed} m/s, {angle}\u{b0}")
     }
 

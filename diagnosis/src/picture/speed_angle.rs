@@ -91,7 +91,8 @@ fn draw_panel(area: &Area<'_>, panel: &Panel<'_>, scale: &Scale) -> Drawn {
     let (Some(flattest), Some(steepest)) = (angles.first(), angles.last()) else { return Ok(()) };
     let (across, up) = (padded(*slowest, *fastest), padded(*flattest, *steepest));
     // Along a single value there is no axis.
-    let (speed, angle) = (format!("{slowest} m/s"), format!("{flattest}\u{b0}"));
+    let (speed, angle) =
+        (format!("{} m/s", short(*slowest)), format!("{}\u{b0}", short(*flattest)));
     let [speeds_along, angles_along] = [&speeds, &angles].map(|values| values.len() > 1);
     let chart = Frame {
         ranges: [across.clone(), up.clone()],

@@ -35,6 +35,8 @@ pub(super) struct Body {
     pub(super) model_hash: String,
     /// Its shape, size and mass.
     pub(super) words: String,
+    /// Whether its motion is that of a tip.
+    pub(super) has_tip: bool,
 }
 
 impl Body {
@@ -48,9 +50,10 @@ impl Body {
         let sizes = sizes.map(|(key, size)| format!("{key} {} mm", plots::short(1e3 * size)));
         let mass = format!("mass {} g", plots::short(1e3 * mass));
         let words: Vec<String> = sizes.chain([mass]).collect();
+        let has_tip = shape.name.contains("link");
         let shape = shape.name.replace('-', " ");
         let words = format!("a {shape} ({})", words.join(", "));
-        Some(Self { model_hash: model.hash(), words })
+        Some(Self { model_hash: model.hash(), words, has_tip })
     }
 }
 

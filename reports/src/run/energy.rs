@@ -20,8 +20,11 @@ const TIMES: usize = 6;
 /// Columns that say their values.
 const COLUMNS: usize = 120;
 
-/// Share of the energy below which nothing is drawn or named.
-const LEAST: f64 = 1e-6;
+/// Share of what is supplied below which a layer is not seen and not drawn.
+const LEAST: f64 = 1e-3;
+
+/// Share of what is supplied from which on a source is named.
+const SAID: f64 = 0.01;
 
 /// Where energy is or went.
 struct Layer {
@@ -37,7 +40,7 @@ pub(super) struct Budget {
     time: Vec<f64>,
     layers: Vec<Layer>,
     /// What supplies energy, in words.
-    sources: Vec<&'static str>,
+    sources: Vec<String>,
     /// What they have supplied (J), at each time.
     supplied: Vec<f64>,
     /// What is missing; none where the layers are not all there are.
@@ -75,7 +78,8 @@ impl Budget {
         layers.retain(|layer| most(&layer.values) > LEAST * whole);
         layers.iter_mut().enumerate().for_each(|(at, layer)| layer.colour = colour(at));
         let gives = |account: &&Account| account.uses.iter().any(|use_| -use_ > SAID * whole);
-        let mut sources: Vec<&str> = accounts.iter().filter(gives).map(|one| one.source).collect();
+        let mut sources: Vec<String> =
+            accounts.iter().filter(gives).map(|one| one.source.clone()).collect();
         sources.sort_unstable();
         sources.dedup();
         let is_pushed = energy.terms.iter().any(|term| term.starts_with("input_drive"));
@@ -102,14 +106,11 @@ impl Budget {
     }
 }
 
-/// Share of what is supplied from which on a source is named.
-const SAID: f64 = 0.005;
-
 /// An account of the energy.
 struct Account {
     name: String,
     /// What it is as a source.
-    source: &'static str,
+    source: String,
     /// What it holds or has taken (J), at each time; negative where it gives.
     uses: Vec<f64>,
 }
@@ -121,14 +122,17 @@ impl Account {
         let (kind, of) = name.split_once('_').unwrap_or((name, ""));
         let start = values.first().copied().unwrap_or(0.0);
         let since_start = || values.iter().map(|value| value - start);
-        let mut add =
-            |name: &str, source: &'static str, uses: &mut dyn Iterator<Item = f64>| match accounts
-                .iter_mut()
-                .find(|account| account.name == name)
-            {
-                Some(one) => one.uses.iter_mut().zip(uses).for_each(|(sum, use_)| *sum += use_),
-                None => accounts.push(Self { name: name.to_owned(), source, uses: uses.collect() }),
-            };
+        let mut add = |name: &str, source: &str, uses: &mut dyn Iterator<Item = f64>| match accounts
+            .iter_mut()
+            .find(|account| account.name == name)
+        {
+            Some(one) => one.uses.iter_mut().zip(uses).for_each(|(sum, use_)| *sum += use_),
+            None => accounts.push(Self {
+                name: name.to_owned(),
+                source: source.to_owned(),
+                uses: uses.collect(),
+            }),
+        };
         match kind {
             "kinetic" | "potential" if of.starts_with("grains") => {
                 add("grains, motion and height", "the height of the grains", &mut since_start());
@@ -141,11 +145,11 @@ impl Account {
             "potential" => add("intruder raised", "the height of the intruder", &mut since_start()),
             "elastic" => add("held by springs", "springs", &mut since_start()),
             "input" if of == "drive" => {
-                add("given to the drive", "the drive", &mut values.iter().map(|value| -value));
+                add("taken by the drive", "the drive", &mut values.iter().map(|value| -value));
             }
             "input" => add(
-                &format!("given to {}", of.replace('_', " ")),
-                "what puts energy in",
+                &format!("taken by the {}", of.replace('_', " ")),
+                &format!("the {}", of.replace('_', " ")),
                 &mut values.iter().map(|value| -value),
             ),
             _ => add(
@@ -188,7 +192,7 @@ impl Budget {
     fn caption(&self) -> String {
         let supplied = match &self.sources[..] {
             [] => "all that has come in".to_owned(),
-            [one] => (*one).to_owned(),
+            [one] => one.clone(),
             [first @ .., last] => format!("{} and {last}", first.join(", ")),
         };
         let what = match self.missing {

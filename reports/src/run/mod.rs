@@ -45,7 +45,7 @@ pub fn page(summary: &Summary, course: &Course, seen: &Seen) -> Result<String, R
         lead: lead(summary, course),
         headline: match &summary.intrusion {
             Some(push) => push::headline(summary, push),
-            None => headline(summary),
+            None => headline(summary, course),
         },
         sections: sections.into_iter().flatten().collect(),
         origin: origin(&summary.version, &summary.model_hash),
@@ -135,7 +135,7 @@ fn lead(summary: &Summary, course: &Course) -> String {
     }
 }
 
-fn headline(summary: &Summary) -> Vec<Number> {
+fn headline(summary: &Summary, course: &Course) -> Vec<Number> {
     let StopSummary { stopped, stopping_time_s, stopping_time_z_s, stopping_time_x_s, .. } =
         summary.stop;
     let milliseconds = |time: Option<f64>| match time {
@@ -148,10 +148,12 @@ fn headline(summary: &Summary) -> Vec<Number> {
     };
     let components = format!("vertical {}, {horizontal}", milliseconds(stopping_time_z_s));
     let depth_note = if stopped { "" } else { "still moving at the end" };
+    let has_tip = course.body.as_ref().is_some_and(|body| body.has_tip);
+    let range_note = if has_tip { "of the tip, until it stops moving sideways" } else { "" };
     let energy = &summary.energy;
     vec![
         Number::new("depth", format!("{:.2} mm", 1e3 * summary.stop.depth_m), depth_note),
-        Number::new("range", format!("{:.2} mm", 1e3 * summary.stop.range_m), ""),
+        Number::new("range", format!("{:.2} mm", 1e3 * summary.stop.range_m), range_note),
         Number::new("stopping time", milliseconds(stopping_time_s), components),
         Number::new("at rest after", milliseconds(summary.stop.rest_time_s), ""),
         Number::new("energy at impact", with_prefix(energy.initial, "J"), ""),

@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::Course;
 use super::thin::places;
 use crate::figure::figure;
-use crate::numbers::{four_digits, list, prefix_of, texts};
+use crate::numbers::{fixed, list, prefix_of, texts, with_prefix};
 use crate::page::{Number, Page, Part, Section, Table};
 use crate::{ReportError, Texts};
 
@@ -81,6 +81,18 @@ fn of_energies(course: &Course, kinds: [&str; 2], sign: f64) -> Curves {
     vec![times.map(|(place, time)| (*time, sign * since_start(place))).collect()]
 }
 
+/// What the runs are called in tables.
+const SIDES: [&str; 2] = ["A", "B"];
+
+/// How the first body of a run comes in; nothing without one.
+fn contact(course: &Course) -> String {
+    let Some(state) = course.bodies.first().and_then(|body| body.states.first()) else {
+        return String::new();
+    };
+    let angle = libm::atan2(-state.velocity.z, state.velocity.x.abs()).to_degrees();
+    format!(", {} m/s at {angle:.0}\u{b0} at contact", plots::short(state.velocity.norm()))
+}
+
 /// Depth, speed and energies over time of two runs under their names: of the energies those that
 /// every program tells.
 ///
@@ -90,7 +102,10 @@ pub fn picture(runs: [(&str, &Course); 2]) -> Result<String, PictureError> {
     let rows: Vec<(Sign, String)> = runs
         .iter()
         .enumerate()
-        .map(|(at, (name, _))| (Sign::Line(colour(at)), (*name).to_owned()))
+        .map(|(at, (name, course))| {
+            let text = format!("{}: {name}{}", SIDES[at], contact(course));
+            (Sign::Line(colour(at)), text)
+        })
         .collect();
     let panels: Vec<(&Panel, [Curves; 2])> = PANELS
         .iter()
@@ -149,13 +164,16 @@ pub(crate) fn page(texts: &Texts, comparison: &Value) -> Result<String, ReportEr
     let paths: Vec<Part> =
         texts.get("paths.svg").map(|svg| figure(svg, caption)).into_iter().collect();
     let millimetres = |key: &str| match comparison["rms"][key].as_f64() {
-        Some(value) => format!("{:.4} mm", 1e3 * value),
+        Some(value) => format!("{:.2} mm", 1e3 * value),
         None => "\u{2013}".to_owned(),
     };
     let page = Page {
         title: names.join(" and "),
         kind: "comparison of runs",
-        lead: "How far two runs lie apart.".to_owned(),
+        lead: match &names[..] {
+            [a, b] => format!("How far two runs lie apart: A is {a}, B is {b}."),
+            _ => "How far two runs lie apart.".to_owned(),
+        },
         headline: vec![
             Number::new("depth", millimetres("z_m"), "root mean square along the path"),
             Number::new("range", millimetres("x_m"), "root mean square along the path"),
@@ -174,21 +192,38 @@ pub(crate) fn page(texts: &Texts, comparison: &Value) -> Result<String, ReportEr
 }
 
 fn stops(stops: &Value) -> Table {
-    let mut table = Table::new(&["", "A", "B", "B \u{2212} A", "relative"]);
+    let mut table = Table::new(&["", "A", "B", "B \u{2212} A", "of A"]);
     for (key, change) in stops.as_object().into_iter().flatten() {
-        let [first, second] = [0, 1].map(|at| four_digits(&change["values"][at]));
-        let (difference, relative) = (&change["difference"], &change["relative"]);
-        let row = [key.clone(), first, second, four_digits(difference), four_digits(relative)];
-        table.rows.push(row.into());
+        let (name, scale) = in_words(key);
+        let shown = |value: &Value| fixed(value.as_f64().map(|value| scale * value), 2);
+        let [first, second] = [0, 1].map(|at| shown(&change["values"][at]));
+        let relative = change["relative"].as_f64();
+        let relative =
+            relative.map_or("\u{2013}".to_owned(), |share| format!("{:+.1} %", 1e2 * share));
+        table.rows.push(vec![name, first, second, shown(&change["difference"]), relative]);
     }
     table
 }
 
+/// A key of a result as it is said, with the unit it is shown in, and the factor to that.
+fn in_words(key: &str) -> (String, f64) {
+    let (name, unit, scale) = match (key.strip_suffix("_s"), key.strip_suffix("_m")) {
+        (Some(name), _) => (name, " (ms)", 1e3),
+        (_, Some(name)) => (name, " (mm)", 1e3),
+        _ => (key, "", 1.0),
+    };
+    (format!("{}{unit}", name.replace('_', " ")), scale)
+}
+
 fn energies(comparison: &Value) -> Table {
-    let mut table = Table::new(&["channel (J)", "A", "B"]);
+    let mut table = Table::new(&["channel", "A", "B"]);
+    let energy = |value: &Value| match value.as_f64() {
+        Some(value) => with_prefix(value, "J"),
+        None => "\u{2013}".to_owned(),
+    };
     let channels = comparison["energy"]["dissipated_J"].as_object();
     for (name, values) in channels.into_iter().flatten() {
-        let of = |at: usize| list(values).get(at).map_or(String::new(), four_digits);
+        let of = |at: usize| list(values).get(at).map_or(String::new(), energy);
         table.rows.push(vec![name.replace('_', " "), of(0), of(1)]);
     }
     table
@@ -199,6 +234,18 @@ mod tests {
     use exchange::read::EnergyBudgets;
 
     use super::*;
+
+    #[test]
+    fn results_at_the_stop_are_in_words_and_in_the_units_of_the_other_pages() {
+        let stop = serde_json::json!({
+            "stopping_time_s": { "values": [0.2, 0.25], "difference": 0.05, "relative": 0.25 },
+            "range_m": { "values": [0.0, 0.5], "difference": 0.5, "relative": null },
+        });
+        let rows = stops(&stop).rows;
+        let row = |name: &str| rows.iter().find(|row| row[0] == name).expect("a row")[1..].to_vec();
+        assert_eq!(row("stopping time (ms)"), ["200.00", "250.00", "50.00", "+25.0 %"]);
+        assert_eq!(row("range (mm)"), ["0.00", "500.00", "500.00", "\u{2013}"]);
+    }
 
     #[test]
     fn energies_count_from_the_start_and_only_where_a_program_tells_them() {

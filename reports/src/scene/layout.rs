@@ -199,10 +199,10 @@ impl Axes {
                 colour: ramp(share(part as f64 + 0.5) * top, top),
             })
             .collect();
-        for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
-            let value = quantity.factor() * top * part * part;
-            let place = [left + 16.0, y + height * (1.0 - part)];
-            marks.push(text(place, plots::short(two_digits(value)), Anchor::Start));
+        let most = quantity.factor() * top;
+        for (value, place) in marks_of_a_bar(most) {
+            let place = [left + 16.0, y + height * (1.0 - place)];
+            marks.push(text(place, plots::short(value), Anchor::Start));
         }
         let name = format!("{} ({})", quantity.name(), quantity.unit());
         marks.push(text([self.size.0 - 4.0, y - 14.0], name, Anchor::End));
@@ -257,14 +257,30 @@ fn number(value: f64) -> String {
     plots::short(value)
 }
 
-fn two_digits(value: f64) -> f64 {
-    let text = format!("{value:.1e}");
-    text.parse().unwrap_or(value)
+/// Numbers of a bar up to `most` and their places in it, which go by the root: `most` itself and round ones.
+fn marks_of_a_bar(most: f64) -> Vec<(f64, f64)> {
+    let digits = |value: f64, text: String| text.parse().unwrap_or(value);
+    let round = |part: f64| {
+        let value = most * part * part;
+        let value: f64 = digits(value, format!("{value:.0e}"));
+        (value, if most > 0.0 { (value / most).sqrt() } else { part })
+    };
+    let top = digits(most, format!("{most:.1e}"));
+    [0.0, 0.25, 0.5, 0.75].map(round).into_iter().chain([(top, 1.0)]).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn marks_of_a_bar_are_round_and_stand_at_their_roots() {
+        let marks = marks_of_a_bar(1.17);
+        let values: Vec<f64> = marks.iter().map(|mark| mark.0).collect();
+        assert_eq!(values, [0.0, 0.07, 0.3, 0.7, 1.2]);
+        // A square of a root, but for rounding; the top is written in two digits.
+        assert!(marks[..4].iter().all(|(value, at)| (1.17 * at * at - value).abs() < 1e-12));
+    }
 
     #[test]
     fn ticks_are_round_and_within() {
