@@ -23,9 +23,9 @@ fn a_run_of_either_medium_leaves_a_page_with_its_motion_and_its_energies() {
     let (grains, law) = (folder(), folder());
     Call::run(grains.path()).done();
     resistive(law.path(), &[]);
-    // Depth, velocity, force, acceleration and energy; of a bed its three moments and its crater too.
+    // Depth, velocity, force, acceleration, energy and what it misses; of a bed its three moments and its crater too.
     for (folder, losses, expected) in
-        [(grains.path(), "lost to sliding", 9), (law.path(), "lost to depth friction", 5)]
+        [(grains.path(), "lost to sliding", 10), (law.path(), "lost to depth friction", 6)]
     {
         let page = report(folder);
         let (figures, values) = figures(&page);
@@ -86,10 +86,25 @@ fn a_list_has_a_page_and_so_has_each_of_its_runs() {
     let conditions = ["conditions.speed=[\"1 m/s\", \"2 m/s\"]", "conditions.angle=[\"45 deg\"]"];
     resistive(out.path(), &conditions);
     for member in ["001", "002"] {
-        assert_eq!(figures(&report(&out.path().join(member))).0, 5, "{member}");
+        assert_eq!(figures(&report(&out.path().join(member))).0, 6, "{member}");
     }
     let page = report(out.path());
-    assert_eq!(figures(&page), (1, 4), "two conditions in two panels");
+    assert_eq!(figures(&page), (2, 4), "two conditions in two panels");
+}
+
+#[test]
+fn a_push_is_reported_as_one_with_its_force_over_depth_and_the_work_of_its_drive() {
+    let out = folder();
+    Call::new(["run", "--json", "--out"]).arg(out.path()).arg("bekker").done();
+    let page = report(out.path());
+    for said in
+        ["A push of a cylinder (diameter", "work of the drive", "force at the end", "mm deep"]
+    {
+        assert!(page.contains(said), "{said} in {page}");
+    }
+    for of_an_impact in ["not reached", "An impact", "acceleration (m/s", "Friction becomes"] {
+        assert!(!page.contains(of_an_impact), "{of_an_impact} in {page}");
+    }
 }
 
 #[test]
