@@ -59,12 +59,13 @@ def upward_forces(log, body):
 
 
 def energy_fields(log):
-    """The channels of the ledger, without those that count nothing."""
+    """The channels of the ledger, without those that count nothing, and without heights: their zero is arbitrary."""
     with open(log, "rb") as file:
         for record in make_reader(file).iter_metadata():
             if record.name == "run":
                 identity = record.metadata["closure_identity"].split(" = ")[0]
-                return [term for term in identity.replace("-", "+").split(" + ") if term]
+                terms = identity.replace("-", "+").split(" + ")
+                return [term for term in terms if term and not term.startswith("potential_")]
     return []
 
 
@@ -116,11 +117,16 @@ def along(quaternion):
 
 
 def draw_frames(log, speed):
-    """Everything that is drawn of the frames of a log; grains are yellow from `speed` (m/s) on."""
-    drawn = set()
+    """Everything that is drawn of the frames of a log; grains are yellow from `speed` (m/s) on.
+
+    A bed in space is cut open through the body at the start: the half towards the eye is left out.
+    """
+    drawn, cut = set(), None
     for topic, time, message in decoded(log, ["/tf", "/scene", "/grains"]):
         rr.set_time("message_log_time", timestamp=np.datetime64(time, "ns"))
         if topic == "/tf":
+            if cut is None and message.transforms:
+                cut = message.transforms[0].translation.y - 1e-9
             for place in message.transforms:
                 pose = rr.Transform3D(translation=xyz(place.translation), quaternion=turn(place.rotation))
                 rr.log(f"impact/{place.child_frame_id}", pose)
@@ -135,6 +141,7 @@ def draw_frames(log, speed):
                     rr.log("impact/force", rr.Arrows3D(vectors=vectors, origins=origins, colors=FORCE))
         else:
             grains = points(message)
+            grains = grains if cut is None else grains[grains["y"] >= cut]
             positions = np.stack([grains[axis] for axis in "xyz"], axis=1)
             shades = colours(grains["speed"] / speed)
             rr.log("impact/grains", rr.Points3D(positions, radii=grains["radius"], colors=shades))
