@@ -117,7 +117,7 @@ impl LivePage {
 
 impl Streaming<'_> {
     /// Says that all has been told.
-    pub(super) fn is_done(&self) {
+    pub(super) fn finish(&self) {
         if self.is_behind.replace(false) {
             self.page.state.lock().unwrap_or_else(PoisonError::into_inner).behind -= 1;
         }
@@ -126,7 +126,7 @@ impl Streaming<'_> {
 
 impl Drop for Streaming<'_> {
     fn drop(&mut self) {
-        self.is_done();
+        self.finish();
     }
 }
 

@@ -131,12 +131,13 @@ fn as_text(run: &Path, files: &[Served], urls: &[String], server: &Server) -> St
     }
     text.push_str(&format!(
         "\n  Foxglove     https://app.foxglove.dev/?ds=remote-file&ds.url={url}\n  \
-         Lichtblick   the address of its web build, then ?ds=remote-file&ds.url={url}\n  \
+         Lichtblick   the address of its web build, then ?ds=remote-file{every}\n  \
          both         likewise with ?ds=foxglove-websocket&ds.url={stream}\n\
          \n`plunge new viewers` writes layouts for them. These open the files themselves:\n\n  \
          Rerun        python viewers/rerun_impact.py {run}    (`plunge new viewers`)\n  \
          PlotJuggler  File > Load\n  \
          Python       python scripts/read_log.py {log}    (`plunge new scripts`)\n",
+        every = urls.iter().map(|url| format!("&ds.url={url}")).collect::<String>(),
         run = run.display(),
         log = log.display()
     ));

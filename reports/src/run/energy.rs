@@ -1,6 +1,6 @@
 //! The energy budget over time: what was supplied, what became of it, and what is not accounted for.
 
-use plots::axes::Frame;
+use plots::axes::{self, Frame};
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, Hover, PictureError, colour, svg};
 use plotters::prelude::*;
@@ -226,15 +226,8 @@ impl Budget {
         let high = self.supplied.iter().fold(high, |high, value| high.max(*value));
         let (factor, prefix) = prefix_of(high);
         let top = 1.05 * factor * high;
-        let mut chart = Frame {
-            ranges: [0.0..self.last(), 0.0..top],
-            ticks: [TIMES, 6],
-            names: [TIME, &format!("energy ({prefix}J)")],
-            above: 8,
-            below: 0,
-            grid: true,
-        }
-        .draw(area)?;
+        let names = [TIME, &format!("energy ({prefix}J)")];
+        let mut chart = axes::chart(area, [0.0..self.last(), 0.0..top], TIMES, names)?;
         for (layer, edges) in self.layers.iter().zip(&edges) {
             let lower = self.time.iter().zip(edges).map(|(t, edge)| (*t, factor * edge.0));
             let upper = self.time.iter().zip(edges).map(|(t, edge)| (*t, factor * edge.1));

@@ -69,7 +69,7 @@ pub(super) fn talk(
     stream.write_all(head.as_bytes())?;
     let run = page.run();
     let streaming = page.streams();
-    match Client::of(stream).follow(&run, page, || streaming.is_done()) {
+    match Client::of(stream).follow(&run, page, || streaming.finish()) {
         Ok(()) | Err(Error::ConnectionClosed | Error::AlreadyClosed) => Ok(()),
         Err(Error::Io(why)) => Err(why),
         Err(other) => Err(io::Error::other(other)),
