@@ -59,14 +59,15 @@ def upward_forces(log, body):
 
 
 def energy_fields(log):
-    """The channels of the ledger, without those that count nothing, and without heights: their zero is arbitrary."""
+    """The channels of the ledger that reach a hundredth of the largest, without heights: their zero is arbitrary."""
     with open(log, "rb") as file:
-        for record in make_reader(file).iter_metadata():
-            if record.name == "run":
-                identity = record.metadata["closure_identity"].split(" = ")[0]
-                terms = identity.replace("-", "+").split(" + ")
-                return [term for term in terms if term and not term.startswith("potential_")]
-    return []
+        runs = (record.metadata for record in make_reader(file).iter_metadata() if record.name == "run")
+        identity = next(runs, {"closure_identity": ""})["closure_identity"].split(" = ")[0]
+    terms = [term for term in identity.replace("-", "+").split(" + ") if term and not term.startswith("potential_")]
+    most = {term: 0.0 for term in terms}
+    for _, _, budget in decoded(log, ["/energy/budget"]):
+        most = {term: max(largest, abs(getattr(budget, term))) for term, largest in most.items()}
+    return [term for term, largest in most.items() if largest > 0.01 * max(most.values())]
 
 
 def decoded(log, topics):
@@ -179,7 +180,7 @@ def blueprint(run):
         rrb.TimeSeriesView(
             name="energy (J)",
             contents="/energy/budget",
-            plot_legend=rrb.PlotLegend(visible=False),
+            plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop),
             overrides={"/energy/budget": curves(found["/energy/budget"], energy_fields(log))},
         ),
         rrb.TimeSeriesView(
@@ -202,7 +203,7 @@ def blueprint(run):
     return rrb.Blueprint(
         rrb.Horizontal(
             rrb.Spatial3DView(name="impact", origin="/impact", eye_controls=from_the_side(run)),
-            rrb.Vertical(*views),
+            rrb.Vertical(*views, row_shares=[2, 1, 1]),
             column_shares=[3, 2],
         ),
         collapse_panels=True,

@@ -199,7 +199,7 @@ pub(crate) fn diagnose(
     files.extend(report::of_results(&files, flags.quiet));
     results.write(&files)?;
     if flags.json {
-        return output::to_stdout(&json);
+        return output::whole_to_stdout(&json);
     }
     let mut text = as_text(
         &model.name,

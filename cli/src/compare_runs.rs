@@ -94,8 +94,9 @@ pub(crate) fn run(folders: [&Path; 2], flags: &Flags) -> CommandResult {
     let paths =
         PathDifference::between(&first.tracks, &second.tracks).map_err(CommandError::bad_input)?;
     let stops = StopDifference::between(&first.summary, &second.summary);
-    flags.notes(&notes(&runs, folders));
-    let object = as_json(&runs, &paths, &stops);
+    let notes = notes(&runs, folders);
+    flags.notes(&notes);
+    let object = as_json(&runs, &notes, &paths, &stops);
     let results = flags.chosen_results(&inputs(folders)?)?;
     if let Some(results) = &results {
         results.write(&files(&runs, folders, &object, flags.quiet)?)?;
@@ -223,14 +224,20 @@ fn notes(runs: &[Run; 2], folders: [&Path; 2]) -> Vec<String> {
         notes.push("both are the same run".to_owned());
     }
     let impact =
-        |one: &Summary| (one.impact.speed_m_per_s.to_bits(), one.impact.angle_deg.to_bits());
-    if impact(first) != impact(second) {
-        notes.push("the runs are of different impacts".to_owned());
+        |one: &Summary| format!("{} m/s at {} deg", one.impact.speed_m_per_s, one.impact.angle_deg);
+    let [first, second] = [impact(first), impact(second)];
+    if first != second {
+        notes.push(format!("the runs are of different impacts: A {first}, B {second}"));
     }
     notes
 }
 
-fn as_json(runs: &[Run; 2], paths: &PathDifference, stops: &StopDifference) -> Value {
+fn as_json(
+    runs: &[Run; 2],
+    notes: &[String],
+    paths: &PathDifference,
+    stops: &StopDifference,
+) -> Value {
     let dissipated: Map<String, Value> = channels(runs)
         .into_iter()
         .map(|channel| (channel.to_owned(), json!(dissipated(runs, channel))))
@@ -238,6 +245,7 @@ fn as_json(runs: &[Run; 2], paths: &PathDifference, stops: &StopDifference) -> V
     json!({
         "runs": runs.each_ref().map(|run| &run.name),
         "labels": labels(runs),
+        "notes": notes,
         "common": paths.common,
         "rms": paths.rms,
         "largest": paths.largest,

@@ -30,7 +30,7 @@ pub(crate) fn completions(args: &CompletionArgs, mut command: Command) -> Comman
     let mut text = Vec::new();
     let name = command.get_name().to_owned();
     clap_complete::generate(args.shell, &mut command, name, &mut text);
-    output::to_stdout(&String::from_utf8_lossy(&text))
+    output::whole_to_stdout(&String::from_utf8_lossy(&text))
 }
 
 /// Writes a manual page of `command` and of each of its own.

@@ -8,6 +8,7 @@ use runner::CampaignError;
 use runner::run::RunError;
 
 use crate::host;
+use crate::text::fitted;
 
 /// Why a command did not do what was asked.
 #[derive(Debug)]
@@ -120,6 +121,11 @@ fn printable_lines(text: &str) -> String {
 
 /// Writes the result of a command; a reader that has left is no error.
 pub(crate) fn to_stdout(text: &str) -> CommandResult {
+    whole_to_stdout(&fitted(text))
+}
+
+/// Writes a result whose lines stay as they are: another program reads it.
+pub(crate) fn whole_to_stdout(text: &str) -> CommandResult {
     // Names and sources are of files from anywhere. Scripts for shells have tabulators.
     let text = text.split('\t').map(configs::printable).collect::<Vec<_>>().join("\t");
     if let Some(host) = host::current() {
@@ -138,7 +144,7 @@ pub(crate) fn to_stdout(text: &str) -> CommandResult {
 
 /// Writes the one JSON object of a command.
 pub(crate) fn json_to_stdout(object: &serde_json::Value) -> CommandResult {
-    to_stdout(&format!("{object:#}\n"))
+    whole_to_stdout(&format!("{object:#}\n"))
 }
 
 /// Writes progress or a diagnostic; when even that fails there is nothing left to do.

@@ -1,5 +1,7 @@
 //! Tables and numbers of what is printed.
 
+use std::borrow::Cow;
+
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, ContentArrangement, Table};
 use serde_json::Value;
@@ -39,8 +41,7 @@ pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
 pub(crate) fn table(header: &[&str]) -> Table {
     let mut table = Table::new();
     table.load_preset(NOTHING).set_header(header);
-    // A file or a pipe takes lines of any length.
-    if let Some((Width(width), _)) = terminal_size_of(std::io::stdout()) {
+    if let Some(width) = terminal_width() {
         table.set_content_arrangement(ContentArrangement::Dynamic);
         table.set_width(width.saturating_sub(INDENT));
     }
@@ -48,6 +49,37 @@ pub(crate) fn table(header: &[&str]) -> Table {
         column.set_cell_alignment(CellAlignment::Right);
     }
     table
+}
+
+/// Columns of the terminal that reads the results; none where a file or a pipe does.
+fn terminal_width() -> Option<u16> {
+    terminal_size_of(std::io::stdout()).map(|(Width(width), _)| width)
+}
+
+/// `text` with lines no wider than a terminal that reads it.
+pub(crate) fn fitted(text: &str) -> Cow<'_, str> {
+    match terminal_width() {
+        Some(width) => Cow::Owned(fitted_to(text, width.into())),
+        None => Cow::Borrowed(text),
+    }
+}
+
+/// `text` with its wider lines broken between words; what continues a line is indented as that is.
+fn fitted_to(text: &str, width: usize) -> String {
+    let fitted = text.split_inclusive('\n').map(|line| {
+        let (line, end) = match line.strip_suffix('\n') {
+            Some(line) => (line, "\n"),
+            None => (line, ""),
+        };
+        let indent = &line[..line.len() - line.trim_start().len()];
+        // A name, a number with its sign and an address stay whole.
+        let options = textwrap::Options::new(width)
+            .subsequent_indent(indent)
+            .break_words(false)
+            .word_splitter(textwrap::WordSplitter::NoHyphenation);
+        textwrap::fill(line, options) + end
+    });
+    fitted.collect()
 }
 
 /// What the lines of a table are indented by.
@@ -64,5 +96,19 @@ pub(crate) fn probability(p: f64) -> String {
         p if p < 1e-4 => "< 1e-4".to_owned(),
         p if p < 0.1 => format!("{p:.4}"),
         p => format!("{p:.2}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wide_lines_are_broken_between_words_and_narrow_ones_stay() {
+        let text =
+            "VERDICT  none\n a  1.0   2.0\n  added mass of a cone in water, /a/path-that/is/long\n";
+        let expected = "VERDICT  none\n a  1.0   2.0\n  added mass of\n  a cone in\n  water,\n  /a/path-that/is/long\n";
+        assert_eq!(fitted_to(text, 16), expected);
+        assert_eq!(fitted_to(text, 80), text);
     }
 }

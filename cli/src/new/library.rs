@@ -178,11 +178,14 @@ pub(super) fn advice(name: &str) -> String {
 const CAMPAIGN_TEXT: &str = include_str!("../../../examples/campaign.toml");
 const EFFECT_TEXT: &str = include_str!("../../templates/effect.toml");
 
-const VIEWER_FILES: [(&str, &str); 3] = [
+/// The layouts of Foxglove and Lichtblick: of runs on beds of grains, and of resistive forces.
+pub(crate) const LAYOUTS: [(&str, &str); 2] = [
     ("foxglove_grains.json", include_str!("../../../viewers/foxglove_grains.json")),
     ("foxglove_resistive.json", include_str!("../../../viewers/foxglove_resistive.json")),
-    ("rerun_impact.py", include_str!("../../../viewers/rerun_impact.py")),
 ];
+
+const VIEWER_FILES: [(&str, &str); 3] =
+    [LAYOUTS[0], LAYOUTS[1], ("rerun_impact.py", include_str!("../../../viewers/rerun_impact.py"))];
 
 const SCRIPT_FILES: [(&str, &str); 3] = [
     ("draw_impact.py", include_str!("../../../examples/draw_impact.py")),

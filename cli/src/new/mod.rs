@@ -14,6 +14,7 @@ use configs::json_schema::header;
 use configs::{SHIPPED, Shipped, find_shipped, nearest};
 use serde_json::{Map, Value, json};
 
+pub(crate) use self::library::LAYOUTS;
 use self::library::{Content, Group, Text, model_schema};
 use crate::output::{self, CommandError, CommandResult};
 use crate::table_file;

@@ -15,7 +15,7 @@ use serde_json::json;
 
 use crate::output::{self, CommandError, CommandResult};
 use live::{LivePage, PAGE};
-use server::{Content, Served, Server};
+use server::{Content, LAYOUT, Served, Server};
 
 /// The names under which logs are served, whatever their files are called.
 const RUN: &str = "/run.mcap";
@@ -48,6 +48,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
             "urls": urls,
             "page": page(&server),
             "stream": stream(&server),
+            "layout": layout(&server),
         }))?;
     } else if !args.quiet {
         output::to_stdout(&as_text(&args.run, &files, &urls, &server))?;
@@ -85,7 +86,7 @@ impl Live {
 }
 
 fn start(port: u16, run: &Path, files: Vec<Served>) -> Result<Server, CommandError> {
-    let content = Arc::new(Content { files, page: LivePage::of(run) });
+    let content = Arc::new(Content { files, run: run.to_owned(), page: LivePage::of(run) });
     Server::start(port, content).map_err(|why| {
         CommandError::bad_input(format!("cannot listen on port {port}: {why}; choose another"))
     })
@@ -93,6 +94,11 @@ fn start(port: u16, run: &Path, files: Vec<Served>) -> Result<Server, CommandErr
 
 fn page(server: &Server) -> String {
     format!("http://{}{PAGE}", server.address())
+}
+
+/// Where a viewer has its layout.
+fn layout(server: &Server) -> String {
+    format!("http://{}{LAYOUT}", server.address())
 }
 
 /// Where a viewer has the messages of the run.
@@ -131,12 +137,13 @@ fn as_text(run: &Path, files: &[Served], urls: &[String], server: &Server) -> St
     }
     text.push_str(&format!(
         "\n  Foxglove     https://app.foxglove.dev/?ds=remote-file&ds.url={url}\n  \
-         Lichtblick   the address of its web build, then ?ds=remote-file{every}\n  \
+         Lichtblick   the address of its web build, then ?ds=remote-file{every}&layoutUrl={layout}\n  \
          both         likewise with ?ds=foxglove-websocket&ds.url={stream}\n\
-         \n`plunge new viewers` writes layouts for them. These open the files themselves:\n\n  \
+         \nFoxglove imports its layout: {layout}, or from `plunge new viewers`. These open the files themselves:\n\n  \
          Rerun        python viewers/rerun_impact.py {run}    (`plunge new viewers`)\n  \
          PlotJuggler  File > Load\n  \
          Python       python scripts/read_log.py {log}    (`plunge new scripts`)\n",
+        layout = layout(server),
         every = urls.iter().map(|url| format!("&ds.url={url}")).collect::<String>(),
         run = run.display(),
         log = log.display()

@@ -16,11 +16,13 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use exchange::run_files::RunFiles;
 use http_range_header::parse_range_header;
 
 use super::live::{EVERY, LivePage, PAGE, Page};
 use super::request::{self, Method, Refusal, Request};
 use super::stream;
+use crate::new::LAYOUTS;
 
 /// Connections at a time: a browser asks for up to six.
 const MOST_CONNECTIONS: usize = 64;
@@ -48,6 +50,9 @@ const ALLOWED: [(&str, &str); 3] = [
     ("Access-Control-Allow-Private-Network", "true"),
 ];
 
+/// Where the layout is; viewers call it by this name.
+pub(super) const LAYOUT: &str = "/plunge.json";
+
 /// A file, and the name under which it is served.
 #[derive(Clone, Debug)]
 pub(super) struct Served {
@@ -60,7 +65,17 @@ pub(super) struct Served {
 #[derive(Debug)]
 pub(super) struct Content {
     pub(super) files: Vec<Served>,
+    /// The folder or log of the run.
+    pub(super) run: PathBuf,
     pub(super) page: LivePage,
+}
+
+impl Content {
+    /// The layout for viewers of the run; logs of resistive forces hold no grains.
+    fn layout(&self) -> &'static str {
+        let [(_, of_grains), (_, of_resistance)] = LAYOUTS;
+        if RunFiles::so_far(&self.run).grains.is_file() { of_grains } else { of_resistance }
+    }
 }
 
 /// A server of files and a page.
@@ -80,6 +95,7 @@ struct Answer {
 
 enum Body {
     Part(io::Take<File>),
+    Text(&'static str),
     Page(Page),
 }
 
@@ -172,6 +188,12 @@ fn answer(request: &Request, content: &Content) -> Answer {
     if request.path == PAGE {
         return page(&content.page);
     }
+    if request.path == LAYOUT {
+        let headers = vec![("Content-Type", "application/json".to_owned())];
+        let layout = content.layout();
+        let body = Some(Body::Text(layout));
+        return Answer { status: 200, headers, body, length: layout.len() as u64 };
+    }
     match content.files.iter().find(|file| file.name == request.path) {
         Some(file) => {
             part_of(file, request.range.as_deref()).unwrap_or_else(|error| match error.kind() {
@@ -233,6 +255,7 @@ fn send(mut stream: &TcpStream, answer: Answer, method: Method) -> io::Result<()
     stream.write_all(head.as_bytes())?;
     match body.filter(|_| method == Method::Get) {
         Some(Body::Part(mut part)) => io::copy(&mut part, &mut stream).map(drop),
+        Some(Body::Text(text)) => stream.write_all(text.as_bytes()),
         Some(Body::Page(page)) => stream.write_all(page.html.as_bytes()),
         None => Ok(()),
     }

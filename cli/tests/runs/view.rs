@@ -43,6 +43,7 @@ impl View {
         assert_eq!(told["urls"][0], format!("http://127.0.0.1:{port}/run.mcap"));
         assert_eq!(told["page"], format!("http://127.0.0.1:{port}/"));
         assert_eq!(told["stream"], format!("ws://127.0.0.1:{port}"));
+        assert_eq!(told["layout"], format!("http://127.0.0.1:{port}/plunge.json"));
         Self { child, port }
     }
 
@@ -147,6 +148,23 @@ fn a_log_is_served_whole_and_in_parts_to_pages_from_anywhere() {
         }
         let exposed = answer.head.lines().find(|line| line.contains("expose-headers"));
         assert!(exposed.is_some_and(|line| line.contains("content-range")), "{}", answer.head);
+    }
+}
+
+#[test]
+fn a_layout_for_viewers_is_that_of_what_was_logged() {
+    let layouts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../viewers");
+    let (here, _) = log();
+    let view = View::of(here.path());
+    for logged in ["resistive", "grains"] {
+        if logged == "grains" {
+            fs::write(here.path().join("grains.mcap"), "grains").expect("a file");
+        }
+        let answer = view.ask("GET", "/plunge.json", "");
+        let file = layouts.join(format!("foxglove_{logged}.json"));
+        let expected = fs::read(&file).expect("a layout");
+        assert_eq!((answer.status, answer.body), (200, expected), "{logged}");
+        assert!(answer.head.contains("content-type: application/json"), "{}", answer.head);
     }
 }
 

@@ -37,8 +37,8 @@ const TOLERANCE: Tolerance = Tolerance { relative: 1e-8, absolute: 1e-10 };
 const EFFORT: Effort = Effort { steps: 4_000, changes: 400 };
 
 /// How many predictions of a condition are kept: a derivative by one parameter leaves most conditions
-/// as they were.
-const KEPT: usize = 4;
+/// as they were, and several threads take derivatives.
+const KEPT: usize = 8;
 
 /// A condition with the model's law for it.
 pub(super) struct Prepared {

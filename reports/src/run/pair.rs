@@ -170,10 +170,7 @@ pub(crate) fn page(texts: &Texts, comparison: &Value) -> Result<String, ReportEr
     let page = Page {
         title: names.join(" and "),
         kind: "comparison of runs",
-        lead: match &names[..] {
-            [a, b] => format!("How far two runs lie apart: A is {a}, B is {b}."),
-            _ => "How far two runs lie apart.".to_owned(),
-        },
+        lead: lead(&names, &self::texts(&comparison["notes"])),
         headline: vec![
             Number::new("depth", millimetres("z_m"), "root mean square along the path"),
             Number::new("range", millimetres("x_m"), "root mean square along the path"),
@@ -189,6 +186,18 @@ pub(crate) fn page(texts: &Texts, comparison: &Value) -> Result<String, ReportEr
         origin: vec![("plunge", env!("CARGO_PKG_VERSION").to_owned())],
     };
     page.html()
+}
+
+/// What is compared, and what is easily overlooked of it.
+fn lead(names: &[String], notes: &[String]) -> String {
+    let mut lead = match names {
+        [a, b] => format!("How far two runs lie apart: A is {a}, B is {b}."),
+        _ => "How far two runs lie apart.".to_owned(),
+    };
+    for note in notes {
+        lead.push_str(&format!(" Note: {note}."));
+    }
+    lead
 }
 
 fn stops(stops: &Value) -> Table {
@@ -234,6 +243,14 @@ mod tests {
     use exchange::read::EnergyBudgets;
 
     use super::*;
+
+    #[test]
+    fn the_page_says_what_is_easily_overlooked() {
+        let names = ["low", "high"].map(str::to_owned);
+        let notes = ["the log of low is cut".to_owned()];
+        let said = lead(&names, &notes);
+        assert!(said.ends_with("A is low, B is high. Note: the log of low is cut."), "{said}");
+    }
 
     #[test]
     fn results_at_the_stop_are_in_words_and_in_the_units_of_the_other_pages() {
