@@ -12,7 +12,6 @@ use crate::check_set;
 use crate::common::Common;
 use crate::output::{self, CommandError, CommandResult};
 use crate::table_file;
-use crate::text;
 
 /// Arguments of `plunge check`.
 #[derive(clap::Args, Debug)]
@@ -78,7 +77,7 @@ fn of_grains(grains: GrainModel<'_>, args: &Args) -> Result<Facts, CommandError>
             };
             lines.push((
                 "time step",
-                format!("{:e} s{per_collision}{decided}", text::rounded(step, 4)),
+                format!("{:e} s{per_collision}{decided}", plots::rounded(step, 4)),
             ));
             lines.push(("steps", format!("{steps} at most, per impact")));
         }

@@ -32,11 +32,6 @@ fn reading(noise: &Value) -> String {
     }
 }
 
-/// `value` to so many significant digits.
-pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
-    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
-}
-
 /// An empty table with right-aligned numbers behind the first column, as wide as a terminal at most.
 pub(crate) fn table(header: &[&str]) -> Table {
     let mut table = Table::new();

@@ -7,7 +7,7 @@ use plotters::coord::ranged1d::{BoldPoints, Ranged};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-use crate::{Area, Canvas, GREY, exponential, letters};
+use crate::{Area, Canvas, GREY, letters, rounded};
 
 /// A chart of two numbers.
 pub type Chart<'a, 'b> = ChartContext<'a, Canvas<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
@@ -169,7 +169,7 @@ fn tick(value: f64, step: f64) -> String {
     };
     match (0..=MOST_DECIMALS).find(is_whole) {
         Some(decimals) if value.abs() < 1e6 => format!("{value:.decimals$}"),
-        _ => exponential(value),
+        _ => format!("{:e}", rounded(value, 3)),
     }
 }
 

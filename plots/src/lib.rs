@@ -94,22 +94,22 @@ pub fn upright() -> TextStyle<'static> {
     letters().transform(FontTransform::Rotate270).pos(Pos::new(HPos::Right, VPos::Center))
 }
 
+/// `value` to so many significant digits.
+#[must_use]
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
+}
+
 /// A number as labels have it: three digits, no zeros behind the point.
 #[must_use]
 pub fn short(value: f64) -> String {
-    let text = format!("{value:.2e}");
-    match text.parse::<f64>() {
-        Ok(value) if (1e-3..1e9).contains(&value.abs()) => value.to_string(),
-        Ok(value) if value.abs() > 0.0 => exponential(value),
-        Ok(_) => "0".to_owned(),
-        Err(_) => text,
+    let value = rounded(value, 3);
+    match value.abs() {
+        size if (1e-3..1e9).contains(&size) => value.to_string(),
+        size if size > 0.0 => format!("{value:e}"),
+        // Of either sign.
+        _ => "0".to_owned(),
     }
-}
-
-/// A number in three digits and a power of ten.
-fn exponential(value: f64) -> String {
-    let text = format!("{value:.2e}");
-    text.parse::<f64>().map_or(text, |value| format!("{value:e}"))
 }
 
 /// As much of `text` as fits `width` pixels, with a mark where some is missing.

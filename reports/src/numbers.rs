@@ -1,5 +1,6 @@
 //! Numbers as a report shows them.
 
+use plots::rounded;
 use serde_json::Value;
 
 /// `value` with so many digits behind the point; a dash where there is none.
@@ -43,13 +44,10 @@ pub(crate) fn probability(p: Option<f64>) -> String {
 pub(crate) fn four_digits(value: &Value) -> String {
     match value.as_f64() {
         Some(value) => {
-            let rounded = format!("{value:.3e}");
+            let value = rounded(value, 4);
             // Zeros before the first digit, or behind the last, are not read but counted.
             let is_plain = value == 0.0 || (1e-4..1e7).contains(&value.abs());
-            let short = |value: f64| {
-                if is_plain { value.to_string() } else { format!("{value:e}") }
-            };
-            rounded.parse().map_or(rounded, short)
+            if is_plain { value.to_string() } else { format!("{value:e}") }
         }
         None => "\u{2013}".to_owned(),
     }

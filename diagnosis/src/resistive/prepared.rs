@@ -65,7 +65,7 @@ pub(super) struct Prepared {
 #[derive(Clone, PartialEq)]
 struct Inputs {
     numbers: Vec<f64>,
-    effects: Vec<(String, f64)>,
+    effects: Vec<(Effect, f64)>,
     scatter: Scatter,
 }
 
@@ -168,7 +168,7 @@ impl Law {
         let all = own.chain(added.iter().copied());
         Inputs {
             numbers: self.coefficients.iter().map(|one| one.at(parameters)).collect(),
-            effects: all.map(|(effect, q)| (effect.name().to_owned(), q)).collect(),
+            effects: all.map(|(effect, q)| (effect.clone(), q)).collect(),
             scatter: Scatter { level: 0.0, scale: 0.0, ..scatter.clone() },
         }
     }
