@@ -77,7 +77,7 @@ fn of_grains(grains: GrainModel<'_>, args: &Args) -> Result<Facts, CommandError>
             };
             lines.push((
                 "time step",
-                format!("{:e} s{per_collision}{decided}", plots::rounded(step, 4)),
+                format!("{:e} s{per_collision}{decided}", reports::rounded(step, 4)),
             ));
             lines.push(("steps", format!("{steps} at most, per impact")));
         }

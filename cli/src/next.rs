@@ -41,18 +41,18 @@ pub(crate) fn as_text(next: &Next) -> String {
     let cost = has_cost.then_some("cost");
     let mut table = table(&header.into_iter().chain(cost).collect::<Vec<_>>());
     let or_dash = |value: Option<f64>| {
-        value.map_or("-".to_owned(), |value| plots::rounded(value, 3).to_string())
+        value.map_or("-".to_owned(), |value| reports::rounded(value, 3).to_string())
     };
     for one in best {
         let condition = &one.condition;
         table.add_row(
             [
-                plots::rounded(condition.speed, 3).to_string(),
-                plots::rounded(condition.angle_deg, 3).to_string(),
+                reports::rounded(condition.speed, 3).to_string(),
+                reports::rounded(condition.angle_deg, 3).to_string(),
                 condition.shape.clone(),
-                plots::rounded(condition.diameter, 3).to_string(),
-                plots::rounded(condition.mass, 3).to_string(),
-                plots::rounded(condition.spin, 3).to_string(),
+                reports::rounded(condition.diameter, 3).to_string(),
+                reports::rounded(condition.mass, 3).to_string(),
+                reports::rounded(condition.spin, 3).to_string(),
                 or_dash(condition.packing),
                 one.bed.clone().unwrap_or_else(|| "-".to_owned()),
                 or_dash(condition.bed_depth),

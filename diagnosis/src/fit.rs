@@ -22,7 +22,7 @@ const TOLERANCE: f64 = 1e-6;
 const PATIENCE: usize = 30;
 
 /// Most searches in a row, each with derivatives taken where the last one ended.
-const DESCENTS: usize = 10;
+const DESCENTS: usize = 100;
 
 /// By how much what cannot be integrated misses, in units of the best that was tried: the search turns back from it
 /// and takes a tenth of the step.

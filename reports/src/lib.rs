@@ -29,6 +29,7 @@ use std::path::{Path, PathBuf};
 use exchange::read::ReadError;
 use exchange::run_files::{RunFiles, is_log};
 use plots::PictureError;
+pub use plots::rounded;
 use runner::campaign::{Folder, FolderError, PLAN, Results};
 use runner::run::{ListSummary, Summary};
 use serde_json::Value;
