@@ -21,9 +21,6 @@ const TOLERANCE: f64 = 1e-6;
 /// Most evaluations per unknown, and one more: a search that converges takes a tenth of them.
 const PATIENCE: usize = 30;
 
-/// Most searches in a row, each with derivatives taken where the last one ended.
-const DESCENTS: usize = 100;
-
 /// By how much what cannot be integrated misses, in units of the best that was tried: the search turns back from it
 /// and takes a tenth of the step.
 const REFUSED: f64 = 1e3;
@@ -159,7 +156,7 @@ impl Data<'_> {
             parameter.is_some_and(|one| one.kind == ParameterKind::Apparatus)
         };
         let held = forms.iter().enumerate().map(|(at, &form)| form || is_apparatus(at)).collect();
-        let first = self.search(&start, &scales, held)?.point;
+        let (first, _) = self.search(&start, &scales, held)?;
         self.fit_but(&first, &scales, forms)
     }
 
@@ -187,11 +184,9 @@ impl Data<'_> {
     fn ending_at(&self, point: Point, mut held: Vec<bool>) -> Result<Fit, PredictError> {
         let scales = self.scales(&point);
         for (at, scale) in scales.iter().enumerate() {
-            held[at] |= scale.is_at_bound(value(&point, at));
+            held[at] |= Bound::at(value(&point, at), scale.min, scale.max).is_some();
         }
-        let free = free(&held);
-        let jacobian = self.derivative(&point, &scales, &free)?;
-        self.result(End { point, free, jacobian }, &scales)
+        self.result(point, &scales, &held)
     }
 
     /// Which unknowns of `point` are numbers of a form.
@@ -208,65 +203,41 @@ impl Data<'_> {
         scales: &[Scale],
         held: Vec<bool>,
     ) -> Result<Fit, PredictError> {
-        let end = self.search(start, scales, held)?;
-        self.result(end, scales)
+        let (point, at_end) = self.search(start, scales, held)?;
+        self.result(point, scales, &at_end)
     }
 
-    /// Searches what is not `held` from `start`; what ends at a bound is held there.
+    /// Searches what is not `held` from `start`; gives the best and what is held there, since it is at a bound.
     fn search(
         &self,
         start: &Point,
         scales: &[Scale],
         mut held: Vec<bool>,
-    ) -> Result<End, PredictError> {
+    ) -> Result<(Point, Vec<bool>), PredictError> {
+        self.residual(start)?;
         let mut point = start.clone();
-        loop {
-            let free = free(&held);
-            let (found, jacobian) = self.descend(point, scales, &free)?;
-            if let Some(jacobian) = jacobian {
-                return Ok(End { point: found, free, jacobian });
-            }
-            free.into_iter().for_each(|at| held[at] = scales[at].is_at_bound(value(&found, at)));
-            point = found;
-        }
-    }
-
-    /// Searches what is `free` from `point`: the best, and the derivatives there; none if something ends at a bound.
-    fn descend(
-        &self,
-        mut point: Point,
-        scales: &[Scale],
-        free: &[usize],
-    ) -> Result<(Point, Option<DMatrix<f64>>), PredictError> {
-        let solver = LevenbergMarquardt::new()
-            .with_ftol(TOLERANCE)
-            .with_xtol(TOLERANCE)
-            .with_patience(PATIENCE);
-        let mut residual = self.residual(&point)?;
-        let mut jacobian = self.derivative(&point, scales, free)?;
-        for _ in 0..DESCENTS {
-            let chi2 = residual.norm_squared();
-            let columns = free.iter().enumerate().map(|(column, &at)| {
-                -jacobian.column(column) * scales[at].slope(value(&point, at))
-            });
-            let columns = matrix(residual.len(), &columns.collect::<Vec<_>>());
-            if promised(&columns, &residual) <= TOLERANCE * chi2 {
-                break;
-            }
-            let search = Search::new(self, scales, free, &point, residual, columns);
+        while held.contains(&false) {
+            let unknowns = unknowns(&point, scales);
+            let best = RefCell::new((f64::INFINITY, unknowns.clone()));
+            let search = Search { data: self, scales, held: &held, like: start, unknowns, best };
+            let solver = LevenbergMarquardt::new()
+                .with_ftol(TOLERANCE)
+                .with_xtol(TOLERANCE)
+                .with_patience(PATIENCE);
             // The best that was tried, since the search may end where the model cannot be integrated.
             let (_, unknowns) = solver.minimize(search).0.best.into_inner();
-            point = point_of(&unknowns, scales, &point);
-            if free.iter().any(|&at| scales[at].is_at_bound(value(&point, at))) {
-                return Ok((point, None));
+            point = point_of(&unknowns, scales, start);
+            let mut outside = false;
+            for (at, scale) in scales.iter().enumerate() {
+                let beyond = !held[at] && !scale.contains(unknowns[at]);
+                held[at] |= beyond;
+                outside |= beyond;
             }
-            residual = self.residual(&point)?;
-            jacobian = self.derivative(&point, scales, free)?;
-            if chi2 - residual.norm_squared() <= TOLERANCE * chi2 {
+            if !outside {
                 break;
             }
         }
-        Ok((point, Some(jacobian)))
+        Ok((point, held))
     }
 
     /// Whitened measured less predicted at `point`, condition after condition; then parameters with a prior likewise.
@@ -319,26 +290,31 @@ impl Data<'_> {
         free: &[usize],
     ) -> Result<DMatrix<f64>, PredictError> {
         let here = self.residual(point)?;
-        let column = |&at: &usize| {
+        let mut jacobian = DMatrix::zeros(self.rows(), free.len());
+        for (column, &at) in free.iter().enumerate() {
             let step = scales[at].physical_step(value(point, at));
             let moved = |by: f64| {
                 let mut point = point.clone();
                 *value_mut(&mut point, at) += by;
                 self.residual(&point)
             };
-            // To the other side where the model cannot be integrated on one; what cannot be moved at all is where it
-            // is, as at a bound.
-            moved(step)
-                .map(|more| (&here - more) / step)
-                .or_else(|_| moved(-step).map(|less| (less - &here) / step))
-                .unwrap_or_else(|_| &here * 0.0)
-        };
-        let columns: Vec<DVector<f64>> = free.par_iter().map(column).collect();
-        Ok(matrix(here.len(), &columns))
+            // To the other side where the model cannot be integrated on one.
+            let slope = match moved(step) {
+                Ok(more) => (&here - more) / step,
+                // What cannot be moved at all is where it is, as at a bound.
+                Err(_) => match moved(-step) {
+                    Ok(less) => (less - &here) / step,
+                    Err(_) => continue,
+                },
+            };
+            jacobian.set_column(column, &slope);
+        }
+        Ok(jacobian)
     }
 
-    fn result(&self, end: End, scales: &[Scale]) -> Result<Fit, PredictError> {
-        let End { point, free, jacobian } = end;
+    fn result(&self, point: Point, scales: &[Scale], held: &[bool]) -> Result<Fit, PredictError> {
+        let free: Vec<usize> = (0..scales.len()).filter(|&at| !held[at]).collect();
+        let jacobian = self.derivative(&point, scales, &free)?;
         // What nothing depends on any more, such as a logarithm on its way to minus infinity, is at a
         // bound too.
         let weight = |column: usize| {
@@ -404,10 +380,6 @@ impl Scale {
         if self.logarithmic { value } else { 1.0 }
     }
 
-    fn is_at_bound(&self, value: f64) -> bool {
-        Bound::at(value, self.min, self.max).is_some()
-    }
-
     fn unknown(&self, value: f64) -> f64 {
         if self.logarithmic { libm::log(value.max(f64::MIN_POSITIVE)) } else { value }
     }
@@ -418,9 +390,17 @@ impl Scale {
         value.clamp(self.min, self.max)
     }
 
+    fn contains(&self, unknown: f64) -> bool {
+        (self.unknown(self.min)..=self.unknown(self.max)).contains(&unknown)
+    }
+
     /// By how much an unknown of this value is moved in earnest, to weigh derivatives by.
     fn reach(&self, value: f64) -> f64 {
         if self.logarithmic { value } else { self.step / STEP }
+    }
+
+    fn unknown_step(&self) -> f64 {
+        if self.logarithmic { STEP } else { self.step }
     }
 
     fn physical_step(&self, value: f64) -> f64 {
@@ -450,98 +430,24 @@ pub(crate) fn point_of(unknowns: &[f64], scales: &[Scale], like: &Point) -> Poin
     point
 }
 
-/// The matrix of `columns` of so many rows.
-fn matrix(rows: usize, columns: &[DVector<f64>]) -> DMatrix<f64> {
-    DMatrix::from_fn(rows, columns.len(), |row, column| columns[column][row])
-}
-
-/// Which of the unknowns are not `held`.
-fn free(held: &[bool]) -> Vec<usize> {
-    (0..held.len()).filter(|&at| !held[at]).collect()
-}
-
-/// Fall of χ² to first order, where `columns` are the derivatives of `residual`; infinite where they are not told apart.
-fn promised(columns: &DMatrix<f64>, residual: &DVector<f64>) -> f64 {
-    if columns.is_empty() {
-        return 0.0;
-    }
-    let onto = columns.tr_mul(residual);
-    Cholesky::new(columns.tr_mul(columns))
-        .map_or(f64::INFINITY, |factor| onto.dot(&factor.solve(&onto)))
-}
-
-/// Where a search ends.
-struct End {
-    point: Point,
-    /// Unknowns that are not held.
-    free: Vec<usize>,
-    /// Whitened derivative of the prediction by these.
-    jacobian: DMatrix<f64>,
-}
-
-/// The search of the unknowns that are free.
-///
-/// Derivatives are those where it begins, corrected after every step by what the step did (Broyden 1965, Math. Comp.
-/// 19, 577): each costs one prediction of the set, where derivatives by differences cost one per unknown.
+/// The search of the unknowns that are not held.
 struct Search<'a> {
     data: &'a Data<'a>,
     scales: &'a [Scale],
-    free: &'a [usize],
+    held: &'a [bool],
     like: &'a Point,
     unknowns: Vec<f64>,
     /// χ² and unknowns of the best that was tried.
     best: RefCell<(f64, Vec<f64>)>,
-    secant: RefCell<Secant>,
 }
 
-/// Derivatives of the residual by the free unknowns, as far as steps have told.
-struct Secant {
-    at: DVector<f64>,
-    residual: DVector<f64>,
-    jacobian: DMatrix<f64>,
-    /// Length of each column where the search began: units in which unknowns compare.
-    lengths: DVector<f64>,
-    /// The last that was tried.
-    tried: Option<(DVector<f64>, DVector<f64>)>,
-}
-
-impl Secant {
-    /// Goes to the last that was tried, with the derivatives that predict what the way there did.
-    fn follow(&mut self) {
-        let Some((there, residual)) = self.tried.take() else { return };
-        let change = &there - &self.at;
-        let scaled = change.component_mul(&self.lengths);
-        let length = scaled.norm_squared();
-        if length > 0.0 {
-            let missed = &residual - &self.residual - &self.jacobian * &change;
-            let share = scaled.component_mul(&self.lengths) / length;
-            self.jacobian += missed * share.transpose();
-        }
-        (self.at, self.residual) = (there, residual);
-    }
-}
-
-impl<'a> Search<'a> {
-    fn new(
-        data: &'a Data<'a>,
-        scales: &'a [Scale],
-        free: &'a [usize],
-        like: &'a Point,
-        residual: DVector<f64>,
-        jacobian: DMatrix<f64>,
-    ) -> Self {
-        let unknowns = unknowns(like, scales);
-        let at = DVector::from_iterator(free.len(), free.iter().map(|&at| unknowns[at]));
-        let best = RefCell::new((residual.norm_squared(), unknowns.clone()));
-        let lengths = jacobian.column_iter().map(|column| column.norm());
-        let lengths = DVector::from_iterator(free.len(), lengths);
-        let secant = Secant { at, residual, jacobian, lengths, tried: None };
-        Self { data, scales, free, like, unknowns, best, secant: RefCell::new(secant) }
+impl Search<'_> {
+    fn free(&self) -> Vec<usize> {
+        (0..self.held.len()).filter(|&at| !self.held[at]).collect()
     }
 
-    fn residual_here(&self) -> Option<DVector<f64>> {
-        let point = point_of(&self.unknowns, self.scales, self.like);
-        let residual = self.data.residual(&point).ok()?;
+    fn residual_at(&self, unknowns: &[f64]) -> Option<DVector<f64>> {
+        let residual = self.data.residual(&point_of(unknowns, self.scales, self.like)).ok()?;
         residual.iter().all(|r| r.is_finite()).then_some(residual)
     }
 }
@@ -552,23 +458,19 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
     type ParameterStorage = Owned<f64, Dyn>;
 
     fn set_params(&mut self, free: &DVector<f64>) {
-        for (&at, unknown) in self.free.iter().zip(free.iter()) {
+        for (at, unknown) in self.free().into_iter().zip(free.iter()) {
             self.unknowns[at] = *unknown;
         }
     }
 
     fn params(&self) -> DVector<f64> {
-        DVector::from_iterator(self.free.len(), self.free.iter().map(|&at| self.unknowns[at]))
+        let free = self.free();
+        DVector::from_iterator(free.len(), free.iter().map(|&at| self.unknowns[at]))
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        let mut secant = self.secant.borrow_mut();
-        let here = self.params();
-        if here == secant.at {
-            return Some(secant.residual.clone());
-        }
         let mut best = self.best.borrow_mut();
-        let Some(residual) = self.residual_here() else {
+        let Some(residual) = self.residual_at(&self.unknowns) else {
             let rows = self.data.rows();
             let size = REFUSED * (best.0.max(1.0) / rows.max(1) as f64).sqrt();
             return size.is_finite().then(|| DVector::from_element(rows, size));
@@ -577,13 +479,23 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
         if chi2 < best.0 {
             *best = (chi2, self.unknowns.clone());
         }
-        secant.tried = Some((here, residual.clone()));
         Some(residual)
     }
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let mut secant = self.secant.borrow_mut();
-        secant.follow();
-        Some(secant.jacobian.clone())
+        let here = self.residual_at(&self.unknowns)?;
+        let column = |at: usize| {
+            let mut unknowns = self.unknowns.clone();
+            let step = self.scales[at].unknown_step();
+            unknowns[at] += step;
+            if let Some(there) = self.residual_at(&unknowns) {
+                return (there - &here) / step;
+            }
+            unknowns[at] -= 2.0 * step;
+            let there = self.residual_at(&unknowns);
+            there.map_or_else(|| &here * 0.0, |there| (&here - there) / step)
+        };
+        let columns: Vec<_> = self.free().into_iter().map(column).collect();
+        Some(DMatrix::from_columns(&columns))
     }
 }
