@@ -8,7 +8,6 @@ use std::cell::RefCell;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
-use rayon::prelude::*;
 
 use crate::forward::{Bound, Forward, ParameterKind, PredictError, Prior};
 use crate::observed::Observed;
@@ -245,16 +244,11 @@ impl Data<'_> {
     /// # Errors
     /// If the model cannot be integrated there.
     pub fn residual(&self, point: &Point) -> Result<DVector<f64>, PredictError> {
-        let of_condition = |(&condition, weight): (&usize, &Weight)| {
+        let mut residual = Vec::new();
+        for (&condition, weight) in self.conditions.iter().zip(self.weights) {
             let mean = &self.observed.conditions[condition].mean;
             let difference = mean - weight.predict(point, self.forward, condition)?;
-            Ok(weight.whiten(&difference))
-        };
-        let each = self.conditions.par_iter().zip(self.weights.par_iter()).map(of_condition);
-        let each: Vec<Result<DVector<f64>, PredictError>> = each.collect();
-        let mut residual = Vec::new();
-        for one in each {
-            residual.extend(one?.iter());
+            residual.extend(weight.whiten(&difference).iter());
         }
         let known = self.forward.parameters().iter().zip(&point.parameters);
         residual.extend(known.filter_map(|(parameter, value)| {

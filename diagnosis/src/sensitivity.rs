@@ -2,7 +2,6 @@
 
 use measurements::Instrument;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use crate::forward::{Forward, PredictError, Request, Scatter};
 
@@ -130,14 +129,12 @@ impl Sensitivity {
             .collect();
         let mut slope = DMatrix::zeros(mean.len(), inputs.len());
         let mut curvature = slope.clone();
-        let runs = inputs.par_iter().map(|input| {
-            [input.step(), -input.step()].map(|by| {
+        for (column, input) in inputs.iter().enumerate() {
+            let step = input.step();
+            let run = |by: f64| {
                 point.predict_run(forward, condition, &input.scatter(by, coefficients, reach))
-            })
-        });
-        for (column, [forth, back]) in runs.collect::<Vec<_>>().into_iter().enumerate() {
-            let step = inputs[column].step();
-            match (forth, back) {
+            };
+            match (run(step), run(-step)) {
                 (Ok(more), Ok(less)) => {
                     slope.set_column(column, &((&more - &less) / (2.0 * step)));
                     curvature.set_column(column, &((more + less - 2.0 * &mean) / (step * step)));
