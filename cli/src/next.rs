@@ -2,6 +2,7 @@
 
 use comfy_table::Cell;
 use diagnosis::next::Next;
+use reports::rounded;
 
 use crate::text::{lines, table};
 
@@ -40,19 +41,18 @@ pub(crate) fn as_text(next: &Next) -> String {
     ];
     let cost = has_cost.then_some("cost");
     let mut table = table(&header.into_iter().chain(cost).collect::<Vec<_>>());
-    let or_dash = |value: Option<f64>| {
-        value.map_or("-".to_owned(), |value| reports::rounded(value, 3).to_string())
-    };
+    let or_dash =
+        |value: Option<f64>| value.map_or("-".to_owned(), |value| rounded(value, 3).to_string());
     for one in best {
         let condition = &one.condition;
         table.add_row(
             [
-                reports::rounded(condition.speed, 3).to_string(),
-                reports::rounded(condition.angle_deg, 3).to_string(),
+                rounded(condition.speed, 3).to_string(),
+                rounded(condition.angle_deg, 3).to_string(),
                 condition.shape.clone(),
-                reports::rounded(condition.diameter, 3).to_string(),
-                reports::rounded(condition.mass, 3).to_string(),
-                reports::rounded(condition.spin, 3).to_string(),
+                rounded(condition.diameter, 3).to_string(),
+                rounded(condition.mass, 3).to_string(),
+                rounded(condition.spin, 3).to_string(),
                 or_dash(condition.packing),
                 one.bed.clone().unwrap_or_else(|| "-".to_owned()),
                 or_dash(condition.bed_depth),
