@@ -8,7 +8,6 @@ use measurements::{Condition, Kind, MeasurementSet, Role};
 
 use crate::forward::{Parameter, ParameterKind, Prior, Scatter};
 use crate::observable::Layout;
-use crate::rounding::to_digits;
 
 /// Standard deviations where a set states none.
 pub mod defaults {
@@ -143,8 +142,8 @@ impl Apparatus {
             let (shape, diameter, mass) = (&first.shape, 1e3 * first.diameter, 1e3 * first.mass);
             let name = format!(
                 "mass ({shape} of {} mm, {} g)",
-                to_digits(diameter, 4),
-                to_digits(mass, 4)
+                plots::rounded(diameter, 4),
+                plots::rounded(mass, 4)
             );
             self.add(Fault::Mass { body }, name, "1", sigma);
         }

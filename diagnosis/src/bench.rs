@@ -2,6 +2,7 @@
 
 use measurements::MeasurementSet;
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::apparatus::defaults;
@@ -249,8 +250,8 @@ impl Bench<'_> {
         noise: &Noise,
     ) -> Result<(Vec<Sensitivity>, Noise), BenchError> {
         let fit = &self.observed.fit;
-        let sensitivities =
-            fit.iter().map(|&c| self.sensitivity(point, c)).collect::<Result<Vec<_>, _>>()?;
+        let sensitivities = fit.par_iter().map(|&c| self.sensitivity(point, c)).collect::<Vec<_>>();
+        let sensitivities = sensitivities.into_iter().collect::<Result<Vec<_>, _>>()?;
         let noise = noise.estimate(self.observed, &sensitivities, &self.set.instrument);
         Ok((sensitivities, noise))
     }

@@ -220,7 +220,7 @@ pub(crate) fn note_readings(set: &MeasurementSet, curve: &Curve) -> Option<Strin
     is_assumed.then(|| {
         format!(
             "readings without a stated error count as known to {} {}, {} % of the greatest",
-            crate::rounding::to_digits(curve.value.scale * reading_error(set, curve), 3),
+            plots::rounded(curve.value.scale * reading_error(set, curve), 3),
             curve.value.unit,
             1e2 * UNSTATED
         )

@@ -36,8 +36,8 @@ const ROUNDS: usize = 2;
 /// Fall of the likelihood from which a scatter between conditions is seen: two standard errors.
 const SEEN: f64 = 4.0;
 
-/// By how much more likely two effects have to be than one with conditions that differ: odds of 100 to 1, times the
-/// number of effects that the second is chosen from.
+/// By how much more likely two effects have to be than one that explains the data: odds of 100 to 1, times the number of
+/// effects that the second is chosen from.
 const LIKELIER: f64 = 15.0;
 
 /// Fewest deviations of repeats from their means that make more than a suggestion: a standard deviation
@@ -185,7 +185,10 @@ impl Judge<'_> {
         let is_of_its_form =
             self.bench.forward.is_judged_by_held_out() && held_out.is_within_noise();
         let is_explained = adequate(p_leader) || is_of_its_form;
-        if is_explained && !self.leaves_conditions_apart() {
+        // Grains are asked again, by impacts on fresh beds: there, two are tried only where one is not enough.
+        let is_enough =
+            !self.bench.forward.is_judged_by_held_out() && !self.leaves_conditions_apart();
+        if is_explained && is_enough {
             return self.one((p_lof, p_leader), held_out);
         }
         if let Some(Two { pair, p_lof: p_pair, held_out }) = self.two(is_explained)? {
@@ -245,8 +248,8 @@ impl Judge<'_> {
         self.diagnosis(verdict, &self.leader, p, (String::new(), Some(held_out)))
     }
 
-    /// The two effects that explain the data, if there are two; where one does (`is_explained`) with conditions that
-    /// differ, two have to be far more likely.
+    /// The two effects that explain the data, if there are two; where one does (`is_explained`), two have to be far more
+    /// likely.
     fn two(&self, is_explained: bool) -> Result<Option<Two>, BenchError> {
         let pair = best_pair(self.bench, &self.weighed, &self.ranking, self.seed)?;
         let Some(pair) = pair.filter(|pair| pair.p <= ALPHA) else { return Ok(None) };

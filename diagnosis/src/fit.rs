@@ -1,13 +1,15 @@
 //! Weighted least squares: the free parameters of a model, and the amplitudes of effects added to it.
 //!
-//! A parameter that cannot be negative is fitted in its logarithm, the others and all amplitudes as
-//! they are. One that ends outside its range is held at the bound while the rest is fitted again.
+//! A parameter that cannot be negative is fitted in a logarithm that turns linear near zero (an inverse hyperbolic sine),
+//! the others and all amplitudes as they are. One that ends outside its range is held at the bound while the rest is
+//! fitted again, and set free if χ² then falls from the bound inwards.
 
 use std::cell::RefCell;
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use rayon::prelude::*;
 
 use crate::forward::{Bound, Forward, ParameterKind, PredictError, Prior};
 use crate::observed::Observed;
@@ -20,9 +22,20 @@ const TOLERANCE: f64 = 1e-6;
 /// Most evaluations per unknown, and one more: a search that converges takes a tenth of them.
 const PATIENCE: usize = 30;
 
+/// Longest first step, in units of the distance from zero: a longer one leaves where derivatives hold, and logarithms
+/// do not come back.
+const FIRST_STEP: f64 = 1.0;
+
 /// By how much what cannot be integrated misses, in units of the best that was tried: the search turns back from it
 /// and takes a tenth of the step.
 const REFUSED: f64 = 1e3;
+
+/// How often what is held at bounds is set free: a step too long leaves a range that the best fit is in.
+const RELEASES: usize = 10;
+
+/// Share of its start below which a parameter without a sign is searched as it is: a logarithm never comes to zero, and
+/// from next to zero never back.
+const LINEAR: f64 = 0.1;
 
 /// Share of a parameter by which it is moved for a derivative.
 const STEP: f64 = 1e-3;
@@ -213,16 +226,54 @@ impl Data<'_> {
         scales: &[Scale],
         mut held: Vec<bool>,
     ) -> Result<(Point, Vec<bool>), PredictError> {
-        self.residual(start)?;
+        let mut best = self.residual(start)?.norm_squared();
         let mut point = start.clone();
+        let fixed = held.clone();
+        for _ in 0..=RELEASES {
+            point = self.descend(start, point, scales, &mut held);
+            let chi2 = self.residual(&point)?.norm_squared();
+            if best - chi2 <= TOLERANCE * best {
+                break;
+            }
+            best = chi2;
+            let inward = (0..scales.len()).filter(|&at| held[at] && !fixed[at]);
+            let inward: Vec<usize> =
+                inward.filter(|&at| self.falls_inward(&point, scales, at, chi2)).collect();
+            if inward.is_empty() {
+                break;
+            }
+            inward.into_iter().for_each(|at| held[at] = false);
+        }
+        Ok((point, held))
+    }
+
+    /// Whether χ² falls below `chi2` where unknown `at`, held at a bound, moves into its range.
+    fn falls_inward(&self, point: &Point, scales: &[Scale], at: usize, chi2: f64) -> bool {
+        let scale = &scales[at];
+        let step = scale.physical_step(value(point, at));
+        let mut moved = point.clone();
+        let place = value_mut(&mut moved, at);
+        *place = if *place + step < scale.max { *place + step } else { *place - step };
+        self.residual(&moved).is_ok_and(|there| there.norm_squared() < chi2)
+    }
+
+    /// Searches what is not `held` from `point`, and holds what ends outside its range.
+    fn descend(
+        &self,
+        start: &Point,
+        mut point: Point,
+        scales: &[Scale],
+        held: &mut [bool],
+    ) -> Point {
         while held.contains(&false) {
             let unknowns = unknowns(&point, scales);
             let best = RefCell::new((f64::INFINITY, unknowns.clone()));
-            let search = Search { data: self, scales, held: &held, like: start, unknowns, best };
+            let search = Search { data: self, scales, held, like: start, unknowns, best };
             let solver = LevenbergMarquardt::new()
                 .with_ftol(TOLERANCE)
                 .with_xtol(TOLERANCE)
-                .with_patience(PATIENCE);
+                .with_patience(PATIENCE)
+                .with_stepbound(FIRST_STEP);
             // The best that was tried, since the search may end where the model cannot be integrated.
             let (_, unknowns) = solver.minimize(search).0.best.into_inner();
             point = point_of(&unknowns, scales, start);
@@ -236,7 +287,7 @@ impl Data<'_> {
                 break;
             }
         }
-        Ok((point, held))
+        point
     }
 
     /// Whitened measured less predicted at `point`, condition after condition; then parameters with a prior likewise.
@@ -244,17 +295,33 @@ impl Data<'_> {
     /// # Errors
     /// If the model cannot be integrated there.
     pub fn residual(&self, point: &Point) -> Result<DVector<f64>, PredictError> {
-        let mut residual = Vec::new();
-        for (&condition, weight) in self.conditions.iter().zip(self.weights) {
+        let of_condition = |(&condition, weight): (&usize, &Weight)| {
             let mean = &self.observed.conditions[condition].mean;
             let difference = mean - weight.predict(point, self.forward, condition)?;
-            residual.extend(weight.whiten(&difference).iter());
+            Ok(weight.whiten(&difference))
+        };
+        let each = self.conditions.par_iter().zip(self.weights.par_iter()).map(of_condition);
+        let each: Vec<Result<DVector<f64>, PredictError>> = each.collect();
+        let mut residual = Vec::new();
+        for one in each {
+            residual.extend(one?.iter());
         }
         let known = self.forward.parameters().iter().zip(&point.parameters);
         residual.extend(known.filter_map(|(parameter, value)| {
             parameter.prior.map(|prior| (prior.mean - value) / prior.sigma)
         }));
         Ok(DVector::from_vec(residual))
+    }
+
+    /// The same at `unknowns`; none where it cannot be integrated, or is not finite.
+    fn residual_at(
+        &self,
+        unknowns: &[f64],
+        scales: &[Scale],
+        like: &Point,
+    ) -> Option<DVector<f64>> {
+        let residual = self.residual(&point_of(unknowns, scales, like)).ok()?;
+        residual.iter().all(|r| r.is_finite()).then_some(residual)
     }
 
     /// How many numbers were measured: rows of a residual, before those of priors.
@@ -284,26 +351,25 @@ impl Data<'_> {
         free: &[usize],
     ) -> Result<DMatrix<f64>, PredictError> {
         let here = self.residual(point)?;
-        let mut jacobian = DMatrix::zeros(self.rows(), free.len());
-        for (column, &at) in free.iter().enumerate() {
+        let column = |&at: &usize| {
             let step = scales[at].physical_step(value(point, at));
             let moved = |by: f64| {
                 let mut point = point.clone();
                 *value_mut(&mut point, at) += by;
                 self.residual(&point)
             };
-            // To the other side where the model cannot be integrated on one.
-            let slope = match moved(step) {
-                Ok(more) => (&here - more) / step,
-                // What cannot be moved at all is where it is, as at a bound.
-                Err(_) => match moved(-step) {
-                    Ok(less) => (less - &here) / step,
-                    Err(_) => continue,
-                },
-            };
-            jacobian.set_column(column, &slope);
-        }
-        Ok(jacobian)
+            // To the other side where the model cannot be integrated on one; what cannot be moved at all is where it
+            // is, as at a bound.
+            moved(step)
+                .map(|more| (&here - more) / step)
+                .or_else(|_| moved(-step).map(|less| (less - &here) / step))
+                .unwrap_or_else(|_| &here * 0.0)
+        };
+        let columns: Vec<DVector<f64>> = free.par_iter().map(column).collect();
+        Ok(match columns.is_empty() {
+            true => DMatrix::zeros(self.rows(), 0),
+            false => DMatrix::from_columns(&columns),
+        })
     }
 
     fn result(&self, point: Point, scales: &[Scale], held: &[bool]) -> Result<Fit, PredictError> {
@@ -337,7 +403,7 @@ impl Data<'_> {
     pub(crate) fn scales(&self, start: &Point) -> Vec<Scale> {
         let parameters = self.forward.parameters().iter();
         let parameters = parameters.map(|parameter| Scale {
-            logarithmic: parameter.is_searched_by_logarithm(),
+            linear: parameter.has_no_sign().then_some(LINEAR * parameter.start),
             min: parameter.min,
             max: parameter.max,
             // An open range says nothing of the size of a number that starts at zero; a prior does.
@@ -351,7 +417,7 @@ impl Data<'_> {
         });
         let candidates = self.forward.candidates();
         let amplitudes = start.effects.iter().map(|&(index, _)| Scale {
-            logarithmic: false,
+            linear: None,
             min: candidates[index].min,
             max: candidates[index].max,
             step: 0.1 * candidates[index].step,
@@ -362,7 +428,8 @@ impl Data<'_> {
 
 /// How an unknown is searched.
 pub(crate) struct Scale {
-    logarithmic: bool,
+    /// Size below which one without a sign is searched as it is, above by its logarithm; none for what has a sign.
+    linear: Option<f64>,
     pub(crate) min: f64,
     pub(crate) max: f64,
     step: f64,
@@ -371,16 +438,16 @@ pub(crate) struct Scale {
 impl Scale {
     /// Derivative of the value by its unknown, at `value`.
     pub(crate) fn slope(&self, value: f64) -> f64 {
-        if self.logarithmic { value } else { 1.0 }
+        self.linear.map_or(1.0, |linear| libm::hypot(value, linear))
     }
 
     fn unknown(&self, value: f64) -> f64 {
-        if self.logarithmic { libm::log(value.max(f64::MIN_POSITIVE)) } else { value }
+        self.linear.map_or(value, |linear| libm::asinh(value / linear))
     }
 
     /// The value, brought into its range.
     fn value(&self, unknown: f64) -> f64 {
-        let value = if self.logarithmic { libm::exp(unknown) } else { unknown };
+        let value = self.linear.map_or(unknown, |linear| linear * libm::sinh(unknown));
         value.clamp(self.min, self.max)
     }
 
@@ -390,15 +457,15 @@ impl Scale {
 
     /// By how much an unknown of this value is moved in earnest, to weigh derivatives by.
     fn reach(&self, value: f64) -> f64 {
-        if self.logarithmic { value } else { self.step / STEP }
+        if self.linear.is_some() { self.slope(value) } else { self.step / STEP }
     }
 
     fn unknown_step(&self) -> f64 {
-        if self.logarithmic { STEP } else { self.step }
+        if self.linear.is_some() { STEP } else { self.step }
     }
 
     fn physical_step(&self, value: f64) -> f64 {
-        if self.logarithmic { STEP * value } else { self.step }
+        if self.linear.is_some() { STEP * self.slope(value) } else { self.step }
     }
 }
 
@@ -439,11 +506,6 @@ impl Search<'_> {
     fn free(&self) -> Vec<usize> {
         (0..self.held.len()).filter(|&at| !self.held[at]).collect()
     }
-
-    fn residual_at(&self, unknowns: &[f64]) -> Option<DVector<f64>> {
-        let residual = self.data.residual(&point_of(unknowns, self.scales, self.like)).ok()?;
-        residual.iter().all(|r| r.is_finite()).then_some(residual)
-    }
 }
 
 impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
@@ -464,7 +526,8 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
 
     fn residuals(&self) -> Option<DVector<f64>> {
         let mut best = self.best.borrow_mut();
-        let Some(residual) = self.residual_at(&self.unknowns) else {
+        let Self { data, scales, like, unknowns, .. } = self;
+        let Some(residual) = data.residual_at(unknowns, scales, like) else {
             let rows = self.data.rows();
             let size = REFUSED * (best.0.max(1.0) / rows.max(1) as f64).sqrt();
             return size.is_finite().then(|| DVector::from_element(rows, size));
@@ -477,19 +540,22 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
     }
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let here = self.residual_at(&self.unknowns)?;
+        let Self { data, scales, like, unknowns, .. } = self;
+        let here = data.residual_at(unknowns, scales, like)?;
         let column = |at: usize| {
-            let mut unknowns = self.unknowns.clone();
-            let step = self.scales[at].unknown_step();
-            unknowns[at] += step;
-            if let Some(there) = self.residual_at(&unknowns) {
-                return (there - &here) / step;
-            }
-            unknowns[at] -= 2.0 * step;
-            let there = self.residual_at(&unknowns);
-            there.map_or_else(|| &here * 0.0, |there| (&here - there) / step)
+            // Inwards from the upper end of a range, where a step outwards changes nothing.
+            let step = scales[at].unknown_step();
+            let step = if scales[at].contains(unknowns[at] + step) { step } else { -step };
+            let moved = |by: f64| {
+                let mut unknowns = unknowns.clone();
+                unknowns[at] += by;
+                data.residual_at(&unknowns, scales, like)
+            };
+            let forth = moved(step).map(|there| (there - &here) / step);
+            let slope = forth.or_else(|| moved(-step).map(|there| (&here - there) / step));
+            slope.unwrap_or_else(|| &here * 0.0)
         };
-        let columns: Vec<_> = self.free().into_iter().map(column).collect();
+        let columns: Vec<_> = self.free().into_par_iter().map(column).collect();
         Some(DMatrix::from_columns(&columns))
     }
 }

@@ -165,8 +165,8 @@ pub struct Parameter {
 const NOTHING: f64 = 1e-9;
 
 impl Parameter {
-    /// Whether its logarithm is searched: it has no sign.
-    pub(crate) fn is_searched_by_logarithm(&self) -> bool {
+    /// Whether it has no sign: its logarithm is searched, down to a share of its start.
+    pub(crate) fn has_no_sign(&self) -> bool {
         self.min >= 0.0 && self.start > 0.0
     }
 
@@ -174,7 +174,7 @@ impl Parameter {
     /// stands for it.
     pub(crate) fn bound_at(&self, value: f64) -> Option<Bound> {
         let nothing = self.min.max(NOTHING * self.start);
-        let is_nothing = self.is_searched_by_logarithm() && value <= nothing;
+        let is_nothing = self.has_no_sign() && value <= nothing;
         if is_nothing { Some(Bound::Lower) } else { Bound::at(value, self.min, self.max) }
     }
 

@@ -1,5 +1,7 @@
 //! Two effects at once, for when no single one is enough.
 
+use rayon::prelude::*;
+
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::chord::{Extended, extend};
 use crate::forward::Candidate;
@@ -51,7 +53,7 @@ pub(crate) fn best_pair(
 ) -> Result<Option<Pair>, BenchError> {
     let data = bench.data(&baseline.weights);
     let mut tried: Vec<Extended> = promising(singles, bench)
-        .iter()
+        .par_iter()
         .map(|[a, b]| {
             extend(&data, &baseline.fit, &[(a.candidate, &a.slope), (b.candidate, &b.slope)])
         })
@@ -61,10 +63,11 @@ pub(crate) fn best_pair(
         let with_first = Fitted { fit, ..baseline.clone() };
         let others = singles.scores.iter().map(Score::candidate);
         let others: Vec<usize> = others.filter(|&other| other != first.candidate()).collect();
-        for second in promising_beside(bench, &with_first, &others) {
-            let added = [(second.candidate, &second.slope)];
-            tried.push(extend(&data, &with_first.fit, &added));
-        }
+        let second = promising_beside(bench, &with_first, &others).into_par_iter();
+        tried
+            .par_extend(second.map(|second| {
+                extend(&data, &with_first.fit, &[(second.candidate, &second.slope)])
+            }));
     }
     let best = tried.into_iter().min_by(|a, b| a.chi2.total_cmp(&b.chi2));
     let Some(best) = best else { return Ok(None) };

@@ -6,12 +6,9 @@ use serde_json::Value;
 /// To six digits, which is more than any statistic is worth; what is not finite is null.
 #[must_use]
 pub(crate) fn rounded(value: f64) -> Value {
-    Some(to_digits(value, 6)).filter(|value| value.is_finite()).map_or(Value::Null, Value::from)
-}
-
-/// `value` to this number of significant digits.
-pub(crate) fn to_digits(value: f64, digits: usize) -> f64 {
-    format!("{value:.0$e}", digits - 1).parse().unwrap_or(value)
+    Some(plots::rounded(value, 6))
+        .filter(|value| value.is_finite())
+        .map_or(Value::Null, Value::from)
 }
 
 /// The same, for fields.

@@ -1,5 +1,7 @@
 //! Refits of a model with one more effect, and which of them the measurements tell apart.
 
+use rayon::prelude::*;
+
 use crate::bench::{Bench, Fitted};
 use crate::chord::extend;
 use crate::fit::Fit;
@@ -70,14 +72,12 @@ impl Ranking {
     pub(crate) fn of(bench: &Bench<'_>, fitted: &Fitted, candidates: &[usize], seed: u64) -> Self {
         let (signatures, failed) = signatures(bench, fitted, candidates);
         let mut scores: Vec<Score> =
-            signatures.into_iter().map(|signature| refit(bench, fitted, signature)).collect();
+            signatures.into_par_iter().map(|signature| refit(bench, fitted, signature)).collect();
         if bench.data(&fitted.weights).is_strained(&fitted.fit.point) {
-            for score in &mut scores {
-                start_over(bench, fitted, score);
-            }
+            scores.par_iter_mut().for_each(|score| start_over(bench, fitted, score));
         }
         let id = |score: &Score| &bench.forward.candidates()[score.candidate()].id;
-        let mut leaders = Vec::new();
+        let (mut leaders, mut rows) = (Vec::new(), Vec::new());
         for row in best_first(&scores) {
             if !leaders.contains(&id(&scores[row])) {
                 leaders.push(id(&scores[row]));
@@ -85,7 +85,13 @@ impl Ranking {
             if leaders.len() > POLISHED || scores[row].delta <= 0.0 {
                 break;
             }
-            polish(bench, fitted, &mut scores[row]);
+            rows.push(row);
+        }
+        let polished = |&row: &usize| (row, polished(bench, fitted, &scores[row]));
+        for (row, fit) in rows.par_iter().map(polished).collect::<Vec<_>>() {
+            if let Some(fit) = fit {
+                scores[row].take(fitted.fit.chi2, fit);
+            }
         }
         Self::ranked(bench, fitted, scores, failed, seed)
     }
@@ -221,9 +227,10 @@ pub(crate) fn signatures(
     fitted: &Fitted,
     candidates: &[usize],
 ) -> (Vec<Signature>, Vec<(usize, PredictError)>) {
+    let each = candidates.par_iter().map(|&one| (one, signature(bench, fitted, one)));
     let (mut found, mut failed) = (Vec::new(), Vec::new());
-    for &candidate in candidates {
-        match signature(bench, fitted, candidate) {
+    for (candidate, signature) in each.collect::<Vec<_>>() {
+        match signature {
             Ok(signature) => found.extend(signature),
             Err(error) => failed.push((candidate, error)),
         }
@@ -246,10 +253,8 @@ fn refit(bench: &Bench<'_>, fitted: &Fitted, signature: Signature) -> Score {
 }
 
 /// The same with derivatives of its own, from there, if the model can be integrated around it.
-fn polish(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) {
-    if let Ok(fit) = bench.data(&fitted.weights).fit_as_listed(&score.point) {
-        score.take(fitted.fit.chi2, fit);
-    }
+fn polished(bench: &Bench<'_>, fitted: &Fitted, score: &Score) -> Option<Fit> {
+    bench.data(&fitted.weights).fit_as_listed(&score.point).ok()
 }
 
 /// The same from where parameters start, if that explains more: around a fit that strains the apparatus, derivatives

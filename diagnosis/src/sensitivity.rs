@@ -2,6 +2,7 @@
 
 use measurements::Instrument;
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use crate::forward::{Forward, PredictError, Request, Scatter};
 
@@ -129,12 +130,14 @@ impl Sensitivity {
             .collect();
         let mut slope = DMatrix::zeros(mean.len(), inputs.len());
         let mut curvature = slope.clone();
-        for (column, input) in inputs.iter().enumerate() {
-            let step = input.step();
-            let run = |by: f64| {
+        let runs = inputs.par_iter().map(|input| {
+            [input.step(), -input.step()].map(|by| {
                 point.predict_run(forward, condition, &input.scatter(by, coefficients, reach))
-            };
-            match (run(step), run(-step)) {
+            })
+        });
+        for (column, [forth, back]) in runs.collect::<Vec<_>>().into_iter().enumerate() {
+            let step = inputs[column].step();
+            match (forth, back) {
                 (Ok(more), Ok(less)) => {
                     slope.set_column(column, &((&more - &less) / (2.0 * step)));
                     curvature.set_column(column, &((more + less - 2.0 * &mean) / (step * step)));

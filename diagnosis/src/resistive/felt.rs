@@ -19,7 +19,9 @@ pub(super) fn readings(
     let mut felt = impact.felt_in_flight(&backward).map_err(|error| error.to_string())?;
     felt.reverse();
     let mut seen = Accelerometer::at(after, impact.bed().gravity);
-    impact.run(DURATION, &mut seen).map_err(|error| error.to_string())?;
+    // What is not read is not integrated: a body in water comes to no rest.
+    let last = after.last().map_or(0.0, |last| last.min(DURATION));
+    impact.run(last, &mut seen).map_err(|error| error.to_string())?;
     felt.extend(seen.into_readings());
     let scaled = felt.iter().map(|reading| reading * (1.0 + scatter.scale));
     Ok(scaled.collect())

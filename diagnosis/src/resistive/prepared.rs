@@ -37,8 +37,8 @@ const TOLERANCE: Tolerance = Tolerance { relative: 1e-8, absolute: 1e-10 };
 const EFFORT: Effort = Effort { steps: 4_000, changes: 400 };
 
 /// How many predictions of a condition are kept: a derivative by one parameter leaves most conditions
-/// as they were.
-const KEPT: usize = 4;
+/// as they were, and several threads take derivatives.
+const KEPT: usize = 8;
 
 /// A condition with the model's law for it.
 pub(super) struct Prepared {
@@ -65,7 +65,7 @@ pub(super) struct Prepared {
 #[derive(Clone, PartialEq)]
 struct Inputs {
     numbers: Vec<f64>,
-    effects: Vec<(String, f64)>,
+    effects: Vec<(Effect, f64)>,
     scatter: Scatter,
 }
 
@@ -168,7 +168,7 @@ impl Law {
         let all = own.chain(added.iter().copied());
         Inputs {
             numbers: self.coefficients.iter().map(|one| one.at(parameters)).collect(),
-            effects: all.map(|(effect, q)| (effect.name().to_owned(), q)).collect(),
+            effects: all.map(|(effect, q)| (effect.clone(), q)).collect(),
             scatter: Scatter { level: 0.0, scale: 0.0, ..scatter.clone() },
         }
     }

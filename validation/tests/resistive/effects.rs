@@ -163,6 +163,26 @@ fn every_effect_acts_on_an_all_round_set_and_smoothly_so() {
 }
 
 #[test]
+fn forms_of_an_effect_at_one_amplitude_are_predicted_each_as_it_is() {
+    let set = all_round();
+    let forward = forward(&set);
+    let candidates = forward.candidates();
+    let mut compared = 0;
+    for (index, other) in candidates.iter().enumerate().filter(|(_, one)| !one.form.is_empty()) {
+        let listed = candidates.iter().position(|one| one.id == other.id && one.form.is_empty());
+        let listed = listed.expect("a form beside the listed one");
+        // In turn, at equal amplitudes, as derivatives of both are taken.
+        let q = SMALL * other.step.min(candidates[listed].step);
+        let [one, another] =
+            [listed, index].map(|which| predicted(&forward, set.conditions.len(), which, q));
+        let apart = norm(one.iter().zip(&another).map(|(a, b)| a - b));
+        assert!(apart > SEEN, "{} {:?}: {apart:e}", other.id, other.form);
+        compared += 1;
+    }
+    assert!(compared > 3, "{compared} forms");
+}
+
+#[test]
 fn an_all_round_set_leaves_no_twins_together() {
     let set = all_round();
     for candidate in forward(&set).candidates() {
