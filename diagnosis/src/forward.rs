@@ -170,8 +170,7 @@ impl Parameter {
         self.min >= 0.0 && self.start > 0.0
     }
 
-    /// The end of its range at which `value` is held, if it is. A logarithm comes to no zero: what is next to nothing
-    /// stands for it.
+    /// The end of its range at which `value` is held, if it is. What is next to nothing stands for zero.
     pub(crate) fn bound_at(&self, value: f64) -> Option<Bound> {
         let nothing = self.min.max(NOTHING * self.start);
         let is_nothing = self.has_no_sign() && value <= nothing;

@@ -5,6 +5,7 @@ mod diagnosis;
 mod laboratory;
 mod next;
 mod noise;
+mod search;
 mod several_beds;
 mod strained;
 mod where_it_fails;
