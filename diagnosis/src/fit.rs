@@ -375,8 +375,7 @@ impl Data<'_> {
     fn result(&self, point: Point, scales: &[Scale], held: &[bool]) -> Result<Fit, PredictError> {
         let free: Vec<usize> = (0..scales.len()).filter(|&at| !held[at]).collect();
         let jacobian = self.derivative(&point, scales, &free)?;
-        // What nothing depends on any more, such as a logarithm on its way to minus infinity, is at a
-        // bound too.
+        // What nothing depends on any more is at a bound too.
         let weight = |column: usize| {
             let at = free[column];
             jacobian.column(column).norm() * scales[at].reach(value(&point, at))
