@@ -43,6 +43,9 @@ pub(crate) fn as_text(
         text.push_str(&format!("\nLack of fit with the best: p {}.\n", probability(p)));
     }
     text.push_str(&format!("\nVERDICT  {}\n", reports::verdict_in_words(object)));
+    for force in reports::forces_in_words(object) {
+        text.push_str(&format!("{force}\n"));
+    }
     if let Some(strength) = reports::strength_in_words(object) {
         text.push_str(&format!("{strength}\n"));
     }

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use measurements::MeasurementSet;
 
+use crate::added_force::added_forces;
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::fitted_parameters::parameters;
 use crate::force_error::ForceErrors;
@@ -321,13 +322,15 @@ impl Judge<'_> {
             .effects
             .iter()
             .enumerate()
-            .map(|(at, &(index, q))| {
+            .zip(added_forces(bench, &proposed.fit))
+            .map(|((at, &(index, q)), force)| {
                 let se = proposed.fit.standard_error(proposed.fit.point.parameters.len() + at);
                 let candidate = &bench.forward.candidates()[index];
                 let (at_bound, unusual) = (candidate.bound_at(q), candidate.is_unusual(q, se));
                 let interval_95 = candidate.interval_95(q, se);
                 let form = candidate.form.iter().copied().collect();
-                Amplitude { id: self.name(index), form, q, se, at_bound, interval_95, unusual }
+                let id = self.name(index);
+                Amplitude { id, form, q, se, at_bound, interval_95, unusual, force }
             })
             .collect();
         let held_out = match held_out {
@@ -407,7 +410,7 @@ fn nothing(bench: &Bench<'_>, fitted: &Fitted) -> Verdict {
 ///
 /// Confirmed is what rests on the scatter of repeats, from [`CONTRASTS`] independent deviations at least, and, where
 /// an effect is named, has amplitudes that are no more than two standard errors outside of the usual range of their
-/// effects, and predicts better what it has not seen without leaving out a condition that the model predicts without
+/// effects, takes no error of the apparatus far beyond what is known of it, and predicts better what it has not seen without leaving out a condition that the model predicts without
 /// it.
 fn doubts(
     bench: &Bench<'_>,
@@ -426,6 +429,9 @@ fn doubts(
     }
     if amplitudes.iter().any(|amplitude| amplitude.unusual) {
         doubts.push(StrengthReason::AmplitudeOutsideUsualRange);
+    }
+    if bench.data(&proposed.weights).is_strained(&proposed.fit.point) {
+        doubts.push(StrengthReason::ApparatusFarFromStated);
     }
     doubts.extend(held_out.doubt());
     doubts

@@ -17,6 +17,7 @@
 //!
 //! [`runs`] holds a run against a run.
 
+pub mod added_force;
 pub mod apparatus;
 pub mod beds;
 pub mod bench;

@@ -34,6 +34,9 @@ pub enum StrengthReason {
     ConditionsNotPredicted,
     /// An amplitude of what is named lies outside of the usual range of its effect, by more than two standard errors.
     AmplitudeOutsideUsualRange,
+    /// The fit with what is named moves an error of the apparatus by more than four standard deviations of what is known
+    /// of it.
+    ApparatusFarFromStated,
     /// Something is left over beside what is named, below the noise of what was held out: it is of another form than
     /// its formula, or there is more.
     OfAnotherForm,

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use crate::added_force::AddedForce;
 use crate::bench::Fitted;
 use crate::between::Between;
 use crate::fit::Fit;
@@ -214,6 +215,8 @@ pub struct Amplitude {
     pub interval_95: [Option<f64>; 2],
     /// Whether it is outside of what one would expect of its effect, by more than two standard errors.
     pub unusual: bool,
+    /// What it is as a force; none of grain beds, and of effects that are no force against the motion.
+    pub force: Option<AddedForce>,
 }
 
 /// An error that runs share: of the clock, the zero of depth, the speed, the scale, a mass, gravity or a session.

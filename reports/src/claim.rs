@@ -183,19 +183,25 @@ fn bars(diagnosis: &Value) -> Option<String> {
     Some(Sheet { size, layers: vec![Layer { clip: None, marks }] }.svg())
 }
 
-/// How likely the verdict is right, where it was asked.
+/// How likely the verdict is right, or how to have that answered; none of beds of grains, of which no sets are simulated.
 pub(crate) fn probability(diagnosis: &Value) -> Option<String> {
     let of = &diagnosis["probability"];
     let shown = |key: &str| of[key].as_f64().map_or("\u{2013}".to_owned(), |p| format!("{p:.2}"));
-    of["right"].as_f64().map(|_| {
-        format!(
+    match of["right"].as_f64() {
+        Some(_) => Some(format!(
             "Of simulated sets with this verdict, where nothing, a listed and an unlisted effect are equally likely, a \
              share of {} is named rightly; in {} nothing is missing, in {} something unlisted.",
             shown("right"),
             shown("nothing"),
             shown("unlisted")
-        )
-    })
+        )),
+        None if diagnosis["bed"].is_null() && diagnosis["verdict"] != "cannot-tell" => Some(
+            "How often such a verdict is right in this design: `plunge diagnose` with `--calibrate` simulates sets of it \
+             and counts."
+                .to_owned(),
+        ),
+        None => None,
+    }
 }
 
 /// Which runs would decide, if any are expected to tell half of what is open.

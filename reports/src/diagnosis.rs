@@ -8,7 +8,7 @@ use crate::comparison::{by_kind, views};
 use crate::figure::figure;
 use crate::numbers::{fixed, four_digits, list, probability, text, texts};
 use crate::page::{Card, Page, Part, Section, Table};
-use crate::verdict::{error_in_words, strength_in_words, verdict_in_words};
+use crate::verdict::{error_in_words, forces_in_words, strength_in_words, verdict_in_words};
 use crate::{ReportError, Texts, object};
 
 /// The file whose presence means a diagnosis.
@@ -78,6 +78,7 @@ fn tests_behind(diagnosis: &Value) -> Vec<Part> {
 fn verdict(diagnosis: &Value, texts_of: &Texts) -> Result<Vec<Part>, ReportError> {
     let mut parts = vec![Part::Answer(claim::sentence(diagnosis))];
     parts.extend(claim::pictures(diagnosis, texts_of)?);
+    parts.extend(forces_in_words(diagnosis).into_iter().map(Part::Text));
     parts.extend(claim::probability(diagnosis).map(Part::Text));
     parts.extend(claim::decides(diagnosis).map(Part::Text));
     parts.push(Part::Text(format!("In short: {}.", verdict_in_words(diagnosis))));

@@ -37,7 +37,7 @@ use thiserror::Error;
 
 pub use run::sparkline;
 pub use set::of_set;
-pub use verdict::{apparatus_error, strength_in_words, verdict_in_words};
+pub use verdict::{apparatus_error, forces_in_words, strength_in_words, verdict_in_words};
 
 /// Name of a report in its folder.
 pub const FILE: &str = "report.html";

@@ -96,6 +96,35 @@ pub fn strength_in_words(diagnosis: &Value) -> Option<String> {
     }
 }
 
+/// What each effect that a diagnosis names is as a force, in a sentence each; none of what is no force of a formula.
+#[must_use]
+pub fn forces_in_words(diagnosis: &Value) -> Vec<String> {
+    let force = |amplitude: &Value| {
+        let of = &amplitude["force"];
+        let [greatest, model, depth, speed, share] =
+            ["greatest", "of", "depth", "speed", "share_of_work"].map(|key| of[key].as_f64());
+        let (greatest, share) = (greatest?, share?);
+        let short = plots::short;
+        let size = match greatest < 0.0 {
+            true => format!("weakens the resistance by up to {} N, to {} N", short(-greatest), short(model?)),
+            false => format!("adds up to {} N, of {} N in all", short(greatest), short(model?)),
+        };
+        let work = match share < 0.0 {
+            true => format!("the bed does {:.1} % less work with it", -100.0 * share),
+            false => format!("it does {:.1} % of the work of the bed", 100.0 * share),
+        };
+        Some(format!(
+            "{} {size}, at a depth of {} mm and {} m/s in {}; {work}.",
+            text(&amplitude["id"]),
+            short(1e3 * depth?),
+            short(speed?),
+            text(&of["condition"]),
+        ))
+    };
+    let amplitudes = diagnosis["amplitudes"].as_array().map_or(&[][..], Vec::as_slice);
+    amplitudes.iter().filter_map(force).collect()
+}
+
 /// One of the `strength_reasons` in words.
 fn reason_in_words(reason: &str) -> &str {
     match reason {
@@ -114,6 +143,9 @@ fn reason_in_words(reason: &str) -> &str {
             "with it, conditions that were held out cannot be predicted that can be without it"
         }
         "amplitude-outside-usual-range" => "its amplitude is outside of its usual range",
+        "apparatus-far-from-stated" => {
+            "the fit moves an error of the apparatus by more than 4 standard deviations of what is known of it"
+        }
         "of-another-form" => {
             "something is left over beside it, below the noise: its form is another, or there is more"
         }
