@@ -183,10 +183,11 @@ fn zeros_as_json(loaded: &Loaded) -> Value {
     let contacts: Vec<Value> = zeros
         .contacts
         .iter()
-        .map(|RunContact { run, contact, is_off }| {
+        .map(|RunContact { run, contact, is_off, is_slowed }| {
             json!({
                 "run": set.runs[*run].name,
                 "is_off": is_off,
+                "is_slowed": is_slowed,
                 "contact_time_s": reading(contact.time),
                 "contact_time_between_s": contact.between.map(|t| t.is_finite().then_some(t)),
                 "depth_at_zero_m": contact.depth_at_zero.map(reading),

@@ -30,6 +30,8 @@ pub struct Contact {
     pub at_time: Reading,
     /// Downward velocity (m/s) of free fall there.
     pub falling: Reading,
+    /// Downward acceleration (m/s²) before it.
+    pub acceleration: Reading,
     /// Downward velocity (m/s) at `time`.
     pub sinking: Reading,
     /// Forward velocity (m/s) at `time`.
@@ -67,7 +69,10 @@ const MOST: usize = 48;
 const BETWEEN_FRAMES: usize = 4;
 
 /// How well the acceleration before contact is known, relative to gravity: guides and air take some of it.
-const ACCELERATION: f64 = 0.3;
+pub(super) const FREE: f64 = 0.3;
+
+/// The same where they may take all of it, and more.
+pub(super) const SLOWED: f64 = 5.0;
 
 /// Frames that the first velocity is taken over.
 const EARLY: usize = 4;
@@ -75,14 +80,14 @@ const EARLY: usize = 4;
 /// Squared distance, in standard errors, up to which a fit is possible.
 const POSSIBLE: f64 = 16.0;
 
-/// The contact of `run` under `condition`, with readings that are good to `sigma` (m), the depth of free
-/// fall at the time `zero` (s) of the table; `None` where the frames do not show it, or the lowest point
+/// The contact of `run` under `condition`, with an acceleration before it that is gravity to `doubt` (relative), readings
+/// that are good to `sigma` (m), and the depth of free fall at the time `zero` (s) of the table; `None` where the frames do not show it, or the lowest point
 /// of the intruder is no mass that falls freely.
 #[must_use]
 pub(super) fn read(
     run: &Run,
     condition: &Condition,
-    (gravity, sigma): (f64, f64),
+    (gravity, doubt, sigma): (f64, f64, f64),
     zero: f64,
 ) -> Option<Contact> {
     let power = power(condition)?;
@@ -90,7 +95,7 @@ pub(super) fn read(
     if all.len() < FEWEST {
         return coarse(&run.frames, sigma, (condition, gravity, zero));
     }
-    let (fits, contact) = fit(all, (MOST, false), (gravity, sigma), power);
+    let (fits, contact) = fit(all, (MOST, false), (gravity, doubt, sigma), power);
     let [first, last] = fits.ends;
     let reaches_zero = first <= zero + 1.5 * contact.step && zero <= last;
     let is_whole = all[0].t <= run.frames[0].t;
@@ -99,19 +104,24 @@ pub(super) fn read(
         false if is_whole => back_to_zero(all, condition, gravity, zero),
         false => None,
     };
-    Some(Contact { depth_at_zero, ..contact })
+    // A body that is slowed has its speed where the table says that contact is.
+    let sinking = match doubt > FREE && reaches_zero {
+        true => fits.mean(|fit| fits.whole_velocity(fit, zero)),
+        false => contact.sinking,
+    };
+    Some(Contact { depth_at_zero, sinking, ..contact })
 }
 
 /// The fits to the frames `all` near contact, and what they say of it.
 pub(super) fn fit(
     all: &[Frame],
     (most, bends): (usize, bool),
-    (gravity, sigma): (f64, f64),
+    (gravity, doubt, sigma): (f64, f64, f64),
     power: f64,
 ) -> (Fits, Contact) {
     let step = (all[all.len() - 1].t - all[0].t) / (all.len() - 1) as f64;
     let (frames, sigma) = blocks(all, most, sigma);
-    let fits = Fits::of(&frames, (gravity, sigma), (power, bends));
+    let fits = Fits::of(&frames, (gravity, doubt, sigma), (power, bends));
     let time = fits.mean(|fit| (fit.contact, 0.0));
     // Behind the contact the bed brakes the forward motion too.
     let before = frames.iter().filter(|frame| frame.t <= time.value + step).count();
@@ -124,6 +134,7 @@ pub(super) fn fit(
         depth: fits.mean(|fit| fits.free(fit, fit.contact)),
         at_time: fits.mean(|fit| fits.free(fit, time.value)),
         falling: fits.mean(|fit| fits.velocity(fit, time.value)),
+        acceleration: fits.mean(|fit| fits.acceleration(fit)),
         sinking: fits.mean(|fit| fits.velocity(fit, fit.contact)),
         forward,
         first: all[0].t,
@@ -164,6 +175,7 @@ fn coarse(
         depth,
         at_time: depth,
         falling: Reading { value: velocity, se: change },
+        acceleration: Reading { value: gravity, se: f64::INFINITY },
         sinking: Reading { value: velocity, se: change },
         forward: unknown,
         first: frames[0].t,
@@ -233,7 +245,11 @@ pub(super) struct Fit {
 }
 
 impl Fits {
-    fn of(frames: &[Frame], (gravity, sigma): (f64, f64), (power, bends): (f64, bool)) -> Self {
+    fn of(
+        frames: &[Frame],
+        (gravity, doubt, sigma): (f64, f64, f64),
+        (power, bends): (f64, bool),
+    ) -> Self {
         let (first, last) = (frames[0].t, frames[frames.len() - 1].t);
         let (origin, scale) = (0.5 * (first + last), 0.5 * (last - first));
         let places = BETWEEN_FRAMES * (frames.len() - 1);
@@ -244,7 +260,7 @@ impl Fits {
                 all.extend(Fit::of(
                     frames,
                     (origin, scale),
-                    (gravity, sigma),
+                    (gravity, doubt, sigma),
                     (contact, power, bends),
                 ));
             }
@@ -302,13 +318,26 @@ impl Fits {
         let t = (time - self.origin) / self.scale;
         fit.along(Vector5::new(0.0, 1.0, t, 0.0, 0.0) / self.scale)
     }
+
+    /// Velocity (m/s) at `time`, the departure from free fall included, and its variance.
+    fn whole_velocity(&self, fit: &Fit, time: f64) -> (f64, f64) {
+        let t = (time - self.origin) / self.scale;
+        let since = ((time - fit.contact) / self.scale).max(0.0);
+        let departure = fit.power * libm::pow(since, fit.power - 1.0);
+        fit.along(Vector5::new(0.0, 1.0, t, -departure, 0.0) / self.scale)
+    }
+
+    /// Acceleration (m/s²) before the contact, and its variance.
+    fn acceleration(&self, fit: &Fit) -> (f64, f64) {
+        fit.along(Vector5::new(0.0, 0.0, 1.0, 0.0, 0.0) / (self.scale * self.scale))
+    }
 }
 
 impl Fit {
     fn of(
         frames: &[Frame],
         (origin, scale): (f64, f64),
-        (gravity, sigma): (f64, f64),
+        (gravity, doubt, sigma): (f64, f64, f64),
         (contact, power, bends): (f64, f64, bool),
     ) -> Option<Self> {
         let (mut normal, mut right, mut square) = (Matrix5::zeros(), Vector5::zeros(), 0.0);
@@ -326,7 +355,7 @@ impl Fit {
             add(row, frame.z, 1.0 / (sigma * sigma));
         }
         let acceleration = gravity * scale * scale;
-        let doubt = ACCELERATION * gravity.max(1.0) * scale * scale;
+        let doubt = doubt * gravity.max(1.0) * scale * scale;
         add(Vector5::new(0.0, 0.0, 1.0, 0.0, 0.0), acceleration, 1.0 / (doubt * doubt));
         // Without a frame behind the contact nothing is known of what bends the path: it is 0.
         normal[(4, 4)] += if bends { 1e-12 * normal[(0, 0)] } else { 1.0 };

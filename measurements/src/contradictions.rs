@@ -54,6 +54,9 @@ pub(super) fn find(
         return all;
     }
     let speeds = &agreement.zeros.speeds;
+    if let Some(warning) = of_slowed(&agreement.zeros.contacts, document) {
+        first(warning, findings);
+    }
     if let Some(offset) = &agreement.zeros.offset {
         let diagnostic = of_offset(set, offset, (&agreement.zeros.contacts, document));
         match offset.severity {
@@ -84,6 +87,25 @@ pub(super) fn find(
 fn first(diagnostic: Diagnostic, findings: &mut Findings) {
     findings.warn(Diagnostic { severity: configs::Severity::Warning, ..diagnostic });
     findings.diagnostics.rotate_right(1);
+}
+
+/// That bodies are slowed before their contact, if the zeros are right; none if no body is.
+fn of_slowed(contacts: &[RunContact], document: &Document) -> Option<Diagnostic> {
+    let slowed: Vec<f64> = contacts
+        .iter()
+        .filter(|one| one.is_slowed)
+        .map(|one| one.contact.acceleration.value)
+        .collect();
+    let (n, all) = (slowed.len(), contacts.len());
+    let mean = slowed.iter().sum::<f64>() / n as f64;
+    let table = document.files.readings.first().and_then(|table| table.span);
+    (n > 0).then(|| {
+        Diagnostic::warning(format!(
+            "{n} of {all} runs do not fall freely before t = 0: their acceleration is {mean:.1} m/s² downward on average"
+        ))
+        .at(table, "the frames before first contact")
+        .help("guides or air slow the body, or the bed does, and t = 0 is later than first contact: look at the frames")
+    })
 }
 
 /// A reading with its error, both in the thousandth of the SI unit.

@@ -1,7 +1,7 @@
 //! First contact of a path whose clock and depths count from anywhere.
 
 use super::Frame;
-use super::contact::{Contact, FEWEST, Fit, fit, power_of};
+use super::contact::{Contact, FEWEST, FREE, Fit, fit, power_of};
 use super::reading::Reading;
 use super::smooth::velocity_window;
 
@@ -48,7 +48,7 @@ impl Departure {
         let from = frames.partition_point(|frame| frame.t < start);
         let to = frames.partition_point(|frame| frame.t <= end);
         let all = Some(&frames[from..to]).filter(|all| all.len() >= FEWEST)?;
-        let (fits, contact) = fit(all, (MOST_OF_FALL, true), (gravity, sigma), power);
+        let (fits, contact) = fit(all, (MOST_OF_FALL, true), (gravity, FREE, sigma), power);
         let trial = |fit: &Fit| Trial {
             power: fit.power,
             depth: fits.free(fit, fit.contact).0,

@@ -78,6 +78,8 @@ pub struct RunContact {
     pub contact: Contact,
     /// Whether its own frames alone show that a zero is off.
     pub is_off: bool,
+    /// Whether the zeros of the run are right only if the body is slowed before its contact.
+    pub is_slowed: bool,
 }
 
 /// An offset of the zeros.
@@ -159,15 +161,28 @@ impl Zeros {
 }
 
 /// The contacts of all runs that show them, with the depth of free fall at `zero` (s).
+///
+/// Guides and air may slow a body before its contact, as a bed does behind it. Zeros that are stated stand where that
+/// explains what frames of every run show.
 fn contacts(set: &MeasurementSet, level: f64, zero: f64) -> Vec<RunContact> {
-    let read = |(run, of): (usize, &Run)| {
+    let read = |doubt: f64, run: usize| {
+        let of = &set.runs[run];
         let condition = &set.conditions[of.condition];
-        let known = (set.gravity_of(of), position(set, of));
+        let known = (set.gravity_of(of), doubt, position(set, of));
         let contact = contact::read(of, condition, known, zero)?;
         let is_off = clock_is_off(&contact) || depth_is_off(&contact, level);
-        Some(RunContact { run, contact, is_off })
+        Some(RunContact { run, contact, is_off, is_slowed: false })
     };
-    set.runs.iter().enumerate().filter_map(read).collect()
+    let fall: Vec<RunContact> =
+        (0..set.runs.len()).filter_map(|run| read(contact::FREE, run)).collect();
+    if zero != 0.0 || fall.iter().all(|one| !one.is_off) {
+        return fall;
+    }
+    let slowed = |one: &RunContact| {
+        let slowed = read(contact::SLOWED, one.run).filter(|slowed| !slowed.is_off)?;
+        Some(RunContact { is_slowed: one.is_off, ..slowed })
+    };
+    fall.iter().map(slowed).collect::<Option<Vec<_>>>().unwrap_or(fall)
 }
 
 /// Error of one reading of `run` (m).
