@@ -200,11 +200,22 @@ impl Judge<'_> {
             let found = (hint, Some(held_out));
             return self.diagnosis(Verdict::Pair, &pair.fitted, (p_lof, p_pair), found);
         }
-        if is_explained {
-            return self.one((p_lof, p_leader), held_out);
+        // What takes nearly all of a clear error is there, in a form that no formula here has, or not alone.
+        let is_most = self.bench.forward.is_judged_by_held_out()
+            && self.alike.len() == 1
+            && held_out.takes_most();
+        if is_explained || is_most {
+            let mut found = self.one((p_lof, p_leader), held_out)?;
+            if !adequate(p_leader) && !found.effects.is_empty() {
+                found.strength_reasons.push(StrengthReason::OfAnotherForm);
+                found.strength = strength(&found.strength_reasons);
+            }
+            return Ok(found);
         }
-        let hint =
-            format!("no one or two listed effects explain the data; {leader} explains a part");
+        let part = held_out.in_words().map_or(String::new(), |words| format!(": {words}"));
+        let hint = format!(
+            "no one or two listed effects explain the data; {leader} explains a part{part}"
+        );
         if !self.bench.forward.is_judged_by_held_out() {
             // Impacts on fresh beds decide whether what is left matters.
             let verdict = match self.alike.len() {

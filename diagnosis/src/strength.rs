@@ -37,8 +37,7 @@ pub enum StrengthReason {
     /// The fit with what is named moves an error of the apparatus by more than four standard deviations of what is known
     /// of it.
     ApparatusFarFromStated,
-    /// Something is left over beside what is named, below the noise of what was held out: it is of another form than
-    /// its formula, or there is more.
+    /// Something is left over beside what is named: it is of another form than its formula, or there is more.
     OfAnotherForm,
     /// The plan of impacts was too small to confirm anything.
     SmallPlan,

@@ -147,7 +147,7 @@ fn reason_in_words(reason: &str) -> &str {
             "the fit moves an error of the apparatus by more than 4 standard deviations of what is known of it"
         }
         "of-another-form" => {
-            "something is left over beside it, below the noise: its form is another, or there is more"
+            "something is left over beside it: its form is another, or there is more"
         }
         "small-plan" => "the plan of impacts is too small to confirm anything",
         "fresh-beds-no-nearer" => {

@@ -173,3 +173,16 @@ fn runs_of_a_few_frames_are_read_without_a_fault() {
     }
     assert_eq!(Zeros::of(&still).offset, None);
 }
+
+#[test]
+fn guides_that_slow_a_body_before_its_contact_do_not_deny_the_zeros() {
+    let mut slowed = 0;
+    for seed in 0..DRAWN {
+        let laboratory = Laboratory { guide: 1.5, before: 12, ..sound(seed) };
+        let zeros = Zeros::of(&laboratory.measure(seed));
+        let severity = zeros.offset.map(|offset| offset.severity);
+        assert!(severity < Some(Severity::Wrong), "{seed}: {:?} {laboratory:?}", zeros.offset);
+        slowed += usize::from(zeros.contacts.iter().any(|one| one.is_slowed));
+    }
+    println!("SLOWED {slowed}");
+}
