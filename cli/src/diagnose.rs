@@ -110,7 +110,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let n = [&measured.observed.fit, &measured.observed.holdout].map(Vec::len);
     let mut text = as_text(&model.name, (&diagnosis, &object), n);
     if let Some(calibration) = &calibration {
-        text.push_str(&calibration_as_text(calibration, &diagnosis));
+        text.push_str(&calibration_as_text(calibration));
     }
     if let Some(sequel) = &sequel {
         text.push_str(&after::as_text(sequel));

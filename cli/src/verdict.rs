@@ -46,6 +46,9 @@ pub(crate) fn as_text(
     for force in reports::forces_in_words(object) {
         text.push_str(&format!("{force}\n"));
     }
+    if let Some(probability) = reports::probability_in_words(object) {
+        text.push_str(&format!("{probability}\n"));
+    }
     if let Some(strength) = reports::strength_in_words(object) {
         text.push_str(&format!("{strength}\n"));
     }
@@ -216,8 +219,8 @@ fn held_out(diagnosis: &Diagnosis) -> String {
     text
 }
 
-/// How often verdicts are right before sets of this design, and how likely this one is.
-pub(crate) fn calibration_as_text(calibration: &Calibration, diagnosis: &Diagnosis) -> String {
+/// How often verdicts are right before sets of this design.
+pub(crate) fn calibration_as_text(calibration: &Calibration) -> String {
     let head =
         ["truth", "sets", "named alone", "in a set", "something else named", "nothing named"];
     let mut table = table(&head);
@@ -235,21 +238,10 @@ pub(crate) fn calibration_as_text(calibration: &Calibration, diagnosis: &Diagnos
     }
     let covered: Vec<bool> = calibration.sets.iter().filter_map(|set| set.covered).collect();
     let holding = covered.iter().filter(|holds| **holds).count();
-    let mut text = format!(
+    format!(
         "\nOf {} simulated sets of this design:\n{}95 % intervals that hold the true amplitude: {holding} of {}.\n",
         calibration.sets.len(),
         lines(&table),
         covered.len()
-    );
-    if let Some(probability) = diagnosis.probability {
-        let shown = |share: Option<f64>| share.map_or("-".to_owned(), |p| format!("{p:.2}"));
-        text.push_str(&format!(
-            "Sets with this verdict, where nothing, a listed and an unlisted effect are equally likely: named rightly {}, \
-             nothing missing {}, something unlisted {}.\n",
-            shown(probability.right),
-            shown(probability.nothing),
-            shown(probability.unlisted)
-        ));
-    }
-    text
+    )
 }

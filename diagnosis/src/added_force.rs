@@ -70,9 +70,9 @@ fn added_force(
     place: usize,
 ) -> Option<AddedForce> {
     let added = |moment: &Moment| moment.force - moment.others[place];
-    let all = passages.iter().flat_map(|(condition, moments)| {
-        moments.iter().map(move |moment| (*condition, moment))
-    });
+    let all = passages
+        .iter()
+        .flat_map(|(condition, moments)| moments.iter().map(move |moment| (*condition, moment)));
     let (condition, most) = all.max_by(|a, b| added(a.1).abs().total_cmp(&added(b.1).abs()))?;
     let works = passages.iter().flat_map(|(_, moments)| moments.windows(2)).map(|pair| {
         let (a, b) = (&pair[0], &pair[1]);

@@ -18,7 +18,7 @@ use crate::forward::{ParameterKind, Scatter};
 use crate::observed::{Observed, ObservedCondition};
 use crate::random::{Purpose, normal, stream};
 use crate::sensitivity::Point;
-use crate::verdict::{Diagnosis, Probability, Status, Verdict};
+use crate::verdict::{Counted, Diagnosis, Probability, Status, Verdict};
 
 /// How many sets are simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -320,6 +320,7 @@ impl Calibration {
             (all > 0.0).then(|| some.abs() / all)
         };
         Probability {
+            counted_in: Counted::Design,
             right: share(&|set| set.is_right()),
             nothing: share(&|set| set.truth == "nothing"),
             unlisted: share(&|set| set.truth == "unlisted"),

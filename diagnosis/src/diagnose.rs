@@ -12,6 +12,7 @@ use crate::added_force::added_forces;
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::fitted_parameters::parameters;
 use crate::force_error::ForceErrors;
+use crate::frequency::of_benchmark;
 use crate::held_out::HeldOut;
 use crate::lack_of_fit::lack_of_fit;
 use crate::marginal::{Marginals, marginals};
@@ -372,7 +373,10 @@ impl Judge<'_> {
         Ok(Diagnosis {
             verdict,
             strength: strength(&strength_reasons),
-            probability: None,
+            probability: match bench.forward.is_judged_by_held_out() {
+                true => of_benchmark(verdict),
+                false => None,
+            },
             evidence: evidence(bench, proposed),
             warnings: warnings(bench, proposed, &amplitudes),
             strength_reasons,

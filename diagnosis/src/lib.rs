@@ -36,6 +36,7 @@ pub mod fit;
 pub mod fitted_parameters;
 pub mod force_error;
 pub mod forward;
+mod frequency;
 pub mod held_out;
 pub mod lack_of_fit;
 mod marginal;

@@ -40,9 +40,21 @@ pub enum Verdict {
     CannotTell,
 }
 
+/// What verdicts were counted in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Counted {
+    /// Sets of the benchmark, of another design.
+    Benchmark,
+    /// Simulated sets of the design of the set.
+    Design,
+}
+
 /// Probabilities of what is true, given a verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Probability {
+    /// Where such verdicts were counted.
+    pub counted_in: Counted,
     /// The effect that is named, or one of those named, is missing.
     #[serde(serialize_with = "six_digits_or_null")]
     pub right: Option<f64>,
@@ -89,7 +101,8 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// What it rests on.
     pub strength: Strength,
-    /// How likely it is that this comes true; none unless sets of the same design were simulated.
+    /// How likely it is that this comes true, as such verdicts do in the benchmark, or in simulated sets of the same design
+    /// where they were asked for; none of grain beds.
     pub probability: Option<Probability>,
     /// What the noise is known from.
     pub evidence: Evidence,

@@ -183,25 +183,38 @@ fn bars(diagnosis: &Value) -> Option<String> {
     Some(Sheet { size, layers: vec![Layer { clip: None, marks }] }.svg())
 }
 
-/// How likely the verdict is right, or how to have that answered; none of beds of grains, of which no sets are simulated.
-pub(crate) fn probability(diagnosis: &Value) -> Option<String> {
+/// How often such a verdict is right, in a sentence; none of beds of grains, and where nothing can be told.
+#[must_use]
+pub fn probability(diagnosis: &Value) -> Option<String> {
     let of = &diagnosis["probability"];
-    let shown = |key: &str| of[key].as_f64().map_or("\u{2013}".to_owned(), |p| format!("{p:.2}"));
-    match of["right"].as_f64() {
-        Some(_) => Some(format!(
-            "Of simulated sets with this verdict, where nothing, a listed and an unlisted effect are equally likely, a \
-             share of {} is named rightly; in {} nothing is missing, in {} something unlisted.",
-            shown("right"),
-            shown("nothing"),
-            shown("unlisted")
-        )),
-        None if diagnosis["bed"].is_null() && diagnosis["verdict"] != "cannot-tell" => Some(
-            "How often such a verdict is right in this design: `plunge diagnose` with `--calibrate` simulates sets of it \
-             and counts."
-                .to_owned(),
-        ),
-        None => None,
-    }
+    let share = |key: &str| of[key].as_f64();
+    let shares = (share("right"), share("nothing"), share("unlisted"));
+    let (Some(right), Some(nothing), Some(unlisted)) = shares else {
+        let is_of_a_law = diagnosis["bed"].is_null() && diagnosis["verdict"] != "cannot-tell";
+        return is_of_a_law.then(|| {
+            "How often such a verdict is right: `--calibrate` counts in simulated sets of your design.".to_owned()
+        });
+    };
+    let (sets, more) = match of["counted_in"].as_str() {
+        Some("design") => ("simulated sets of this design", ""),
+        _ => ("benchmark sets", " `--calibrate` counts in simulated sets of your design."),
+    };
+    let is_nothing = matches!(
+        diagnosis["verdict"].as_str(),
+        Some("nothing-detected" | "explained-by-apparatus" | "below-noise")
+    );
+    let named = match is_nothing {
+        true => {
+            format!("a listed effect is missing in {:.0} %", 100.0 * (1.0 - nothing - unlisted))
+        }
+        false => format!("what is missing is named in {:.0} %", 100.0 * right),
+    };
+    Some(format!(
+        "Of {sets} with this verdict, where nothing, a listed and an unlisted effect are equally likely, {named}, nothing is \
+         missing in {:.0} %, something unlisted in {:.0} %.{more}",
+        100.0 * nothing,
+        100.0 * unlisted
+    ))
 }
 
 /// Which runs would decide, if any are expected to tell half of what is open.

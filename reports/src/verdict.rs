@@ -106,7 +106,11 @@ pub fn forces_in_words(diagnosis: &Value) -> Vec<String> {
         let (greatest, share) = (greatest?, share?);
         let short = plots::short;
         let size = match greatest < 0.0 {
-            true => format!("weakens the resistance by up to {} N, to {} N", short(-greatest), short(model?)),
+            true => format!(
+                "weakens the resistance by up to {} N, to {} N",
+                short(-greatest),
+                short(model?)
+            ),
             false => format!("adds up to {} N, of {} N in all", short(greatest), short(model?)),
         };
         let work = match share < 0.0 {
