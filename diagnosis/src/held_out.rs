@@ -302,13 +302,15 @@ impl HeldOut {
         })
     }
 
-    /// Whether what is proposed takes two thirds of a clear error away at least, and half in most choices of the conditions.
+    /// Whether what is proposed takes two thirds of a clear error away at least, half of it in most choices of the
+    /// conditions, and predicts better than without it.
     #[must_use]
     pub fn takes_most(&self) -> bool {
-        let most = self.before.zip(self.after).is_some_and(|(before, after)| {
-            after <= MOST * before && self.ratio_at_most.unwrap_or(0.0) <= 0.5
-        });
-        most && self.is_above_noise() == Some(true)
+        let most =
+            self.before.zip(self.after).is_some_and(|(before, after)| after <= MOST * before);
+        most && self.ratio_at_most.is_some_and(|ratio| ratio <= 0.5)
+            && self.log_density_gain > 0.0
+            && self.is_above_noise() == Some(true)
     }
 
     /// Whether it predicts that worse, by more than chance excuses: means of few runs under few

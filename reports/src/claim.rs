@@ -199,11 +199,9 @@ pub fn probability(diagnosis: &Value) -> Option<String> {
         Some("design") => ("simulated sets of this design", ""),
         _ => ("benchmark sets", " `--calibrate` counts in simulated sets of your design."),
     };
-    let is_nothing = matches!(
-        diagnosis["verdict"].as_str(),
-        Some("nothing-detected" | "explained-by-apparatus" | "below-noise")
-    );
-    let named = match is_nothing {
+    let names_nothing =
+        texts(&diagnosis["effects"]).is_empty() && diagnosis["verdict"] != "explained-by-apparatus";
+    let named = match names_nothing {
         true => {
             format!("a listed effect is missing in {:.0} %", 100.0 * (1.0 - nothing - unlisted))
         }
