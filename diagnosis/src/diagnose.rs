@@ -425,8 +425,8 @@ fn nothing(bench: &Bench<'_>, fitted: &Fitted) -> Verdict {
 ///
 /// Confirmed is what rests on the scatter of repeats, from [`CONTRASTS`] independent deviations at least, and, where
 /// an effect is named, has amplitudes that are no more than two standard errors outside of the usual range of their
-/// effects, takes no error of the apparatus far beyond what is known of it, and predicts better what it has not seen without leaving out a condition that the model predicts without
-/// it.
+/// effects, takes no error of the apparatus far beyond what is known of it, and predicts better what it has not seen
+/// without leaving out a condition that the model predicts without it.
 fn doubts(
     bench: &Bench<'_>,
     proposed: &Fitted,

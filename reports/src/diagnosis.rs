@@ -78,7 +78,7 @@ fn tests_behind(diagnosis: &Value) -> Vec<Part> {
 fn verdict(diagnosis: &Value, texts_of: &Texts) -> Result<Vec<Part>, ReportError> {
     let mut parts = vec![Part::Answer(claim::sentence(diagnosis))];
     parts.extend(claim::pictures(diagnosis, texts_of)?);
-    parts.extend(forces_in_words(diagnosis).into_iter().map(Part::Text));
+    parts.extend(forces_in_words(diagnosis).iter().map(|force| Part::Text(sentence(force))));
     parts.extend(claim::probability(diagnosis).map(Part::Text));
     parts.extend(claim::decides(diagnosis).map(Part::Text));
     parts.push(Part::Text(format!("In short: {}.", verdict_in_words(diagnosis))));
