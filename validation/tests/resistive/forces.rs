@@ -1,6 +1,6 @@
 //! Plates that are pushed into a medium of a known law: the force over depth names what is hidden, and nothing else.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
 use diagnosis::bench::{Bench, DEFAULT_SEED};
@@ -182,6 +182,13 @@ fn a_hidden_cohesion_is_named_by_forces_with_its_amplitude() {
     let (q, se) = (effect.q.expect("an amplitude"), effect.se.expect("an error"));
     // Four standard errors: chance takes one in fifteen thousand.
     assert!((q - hidden).abs() < 4.0 * se && se < 0.3 * hidden, "{q} ± {se}");
+    // A constant q ρ g A D, greatest on the widest plate; its strength is fitted with a smooth change over depth.
+    let added = found.amplitudes[0].force.as_ref().expect("cohesion is a force");
+    let widest = DIAMETERS.into_iter().fold(0.0, f64::max);
+    let constant = q * BED.bulk_density * BED.gravity * FRAC_PI_4 * widest.powi(3);
+    assert!((added.greatest / constant - 1.0).abs() < 0.3, "{added:?} {constant}");
+    assert!(added.condition.starts_with("d60"), "{added:?}");
+    assert!(added.of > added.greatest && (0.01..0.9).contains(&added.share_of_work), "{added:?}");
 }
 
 #[test]
