@@ -136,8 +136,8 @@ pub const NEARER: f64 = 0.75;
 /// Largest error on held-out conditions, over the noise of their means, that counts as noise.
 pub const WITHIN: f64 = 1.3;
 
-/// Largest share of a clear error that an effect leaves which is named though something is left over beside it: effects
-/// of another form than their formula leave 0.14 to 0.43 in benchmark sets, those that are not there 0.36 and more.
+/// An effect that leaves at most this share of a clear error is named though something is left over. In benchmark sets,
+/// effects of another form than their formula leave 0.14 to 0.43, and effects that are not there 0.36 or more.
 const MOST: f64 = 1.0 / 3.0;
 
 /// Share of the information on a combination of parameters that has to be left without a condition.
@@ -256,11 +256,15 @@ impl HeldOut {
         Some(ratio.max(self.ratio_at_most.unwrap_or(0.0)) <= NEARER)
     }
 
+    /// `error` over the noise.
+    fn in_noise(&self, error: Option<f64>) -> Option<f64> {
+        Some(error? / self.noise_floor?)
+    }
+
     /// By what held-out conditions are missed without and with what is proposed; `None` where that is not known.
     #[must_use]
     pub(crate) fn in_words(&self) -> Option<String> {
-        let times = |error: Option<f64>| Some(error? / self.noise_floor?);
-        let (before, after) = (times(self.before)?, times(self.after)?);
+        let (before, after) = (self.in_noise(self.before)?, self.in_noise(self.after)?);
         Some(format!(
             "held-out conditions are missed by {after:.2} times their noise with it, after {before:.2} without"
         ))
@@ -269,7 +273,7 @@ impl HeldOut {
     /// That held-out conditions are missed by too little for any name; `None` where they are missed by more.
     #[must_use]
     pub(crate) fn below(&self) -> Option<String> {
-        let before = self.before? / self.noise_floor?;
+        let before = self.in_noise(self.before)?;
         (self.is_above_noise() == Some(false)).then(|| {
             format!("held-out conditions are missed by {before:.2} times their noise, and a name needs {CLEAR}")
         })
@@ -280,8 +284,7 @@ impl HeldOut {
     #[must_use]
     pub(crate) fn too_small(&self, name: &str, most: f64) -> Option<String> {
         let hides = format!("{name} of up to {most:.3} could hide here");
-        let times = |error: Option<f64>| Some(error? / self.noise_floor?);
-        let (before, after) = (times(self.before)?, times(self.after)?);
+        let (before, after) = (self.in_noise(self.before)?, self.in_noise(self.after)?);
         if let Some(below) = self.below() {
             return Some(format!("{below}: {hides}"));
         }

@@ -10,7 +10,8 @@
 //! 4. [`compare::compare`] says how wrong each revision of a model is and where
 //!    ([`errors`], [`lack_of_fit`], [`force_error`], [`residual`]), and [`where_it_fails`] writes that
 //!    as tables and [`mod@picture`]s;
-//! 5. [`diagnose::diagnose`] says which effect is missing, as a [`verdict`];
+//! 5. [`diagnose::diagnose`] says which effect is missing, as a [`verdict`], with the force of the effect
+//!    ([`added_force`]) and how often benchmark sets with this verdict are named rightly;
 //! 6. [`mod@missing_force`] says, where no listed effect explains the data, what force is missing;
 //! 7. [`mod@calibrate`] says how often such verdicts come true before sets of the same design;
 //! 8. [`next::recommend`] says what to measure next where several effects remain.
