@@ -1,18 +1,31 @@
 //! The force that a named effect adds along the ways of the bodies.
 
+use measurements::Condition;
 use serde::Serialize;
 
 use crate::bench::Bench;
 use crate::fit::Fit;
 use crate::forward::{Moment, Request, Scatter};
+use crate::observable::Observable;
 use crate::rounding::six_digits;
+use crate::sensitivity::Point;
 
 /// Moments of each condition at which the force is asked for.
 const MOMENTS: usize = 200;
 
 /// What an effect adds to the force of the model that it is a part of, the other coefficients as fitted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct AddedForce {
+#[serde(untagged)]
+pub enum AddedForce {
+    /// Of a force law, whose force is known at every moment.
+    AtAMoment(GreatestForce),
+    /// Of a bed of grains, whose force on the way down follows from how deep the body comes.
+    OnTheWayDown(MeanForce),
+}
+
+/// The force of an effect where it is greatest.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GreatestForce {
     /// Where it is greatest, against the motion (N); negative where the effect weakens the resistance.
     #[serde(serialize_with = "six_digits")]
     pub greatest: f64,
@@ -32,12 +45,67 @@ pub struct AddedForce {
     pub share_of_work: f64,
 }
 
-/// What each effect of `fit` adds. `None` of models that are no force law, of effects that are no force against the
-/// motion, and where the model cannot be integrated so far.
+/// The mean vertical force of a bed on a body, from contact to its deepest point.
+///
+/// m (g + w²/2d), with the vertical speed at contact w and the greatest depth d: what brings the body to rest over
+/// that way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MeanForce {
+    /// With the effect less without it (N), in the condition in which that is most.
+    #[serde(serialize_with = "six_digits")]
+    pub mean: f64,
+    /// With the effect (N).
+    #[serde(serialize_with = "six_digits")]
+    pub of: f64,
+    /// Name of that condition.
+    pub condition: String,
+    /// Greatest depth of the lowest point there, with the effect (m).
+    #[serde(serialize_with = "six_digits")]
+    pub depth: f64,
+    /// Speed at contact there (m/s).
+    #[serde(serialize_with = "six_digits")]
+    pub speed: f64,
+}
+
+/// What each effect of `fit` adds. `None` of effects that are no force against the motion, where the model cannot be
+/// integrated so far, and of beds of which no depth was measured.
 pub(crate) fn added_forces(bench: &Bench<'_>, fit: &Fit) -> Vec<Option<AddedForce>> {
-    let effects = &fit.point.effects;
-    let Some(passages) = passages(bench, fit) else { return vec![None; effects.len()] };
-    (0..effects.len()).map(|place| added_force(bench, &passages, place)).collect()
+    let n_effects = fit.point.effects.len();
+    if bench.forward.by_formulas().is_none() {
+        let mean = |place| mean_force(bench, fit, place).map(AddedForce::OnTheWayDown);
+        return (0..n_effects).map(mean).collect();
+    }
+    let Some(passages) = passages(bench, fit) else { return vec![None; n_effects] };
+    let greatest = |place| added_force(bench, &passages, place).map(AddedForce::AtAMoment);
+    (0..n_effects).map(greatest).collect()
+}
+
+/// What effect `place` of `fit` adds to the mean force on the way down.
+fn mean_force(bench: &Bench<'_>, fit: &Fit, place: usize) -> Option<MeanForce> {
+    let mut without = fit.point.clone();
+    without.effects[place].1 = 0.0;
+    let changes = bench.observed.fit.iter().filter_map(|&condition| {
+        let with = way_down(bench, &fit.point, condition)?;
+        let without = way_down(bench, &without, condition)?;
+        Some((condition, with, with.1 - without.1))
+    });
+    let most = changes.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
+    let (condition, (depth, of), mean) = most.filter(|(.., mean)| *mean != 0.0)?;
+    let Condition { id, speed, .. } = &bench.set.conditions[condition];
+    Some(MeanForce { mean, of, condition: id.clone(), depth, speed: *speed })
+}
+
+/// The greatest depth (m) that the model at `point` predicts for a condition, and the mean force on the way there (N).
+fn way_down(bench: &Bench<'_>, point: &Point, condition: usize) -> Option<(f64, f64)> {
+    let body = &bench.set.conditions[condition];
+    let fall = body.speed * libm::sin(body.angle_deg.to_radians());
+    let kinds = bench.observed.conditions[condition].layout.kinds();
+    let predicted = point.predict(bench.forward, condition).ok()?;
+    let is_depth = |kind: Observable| matches!(kind, Observable::Depth | Observable::FinalDepth);
+    let depths = kinds.into_iter().zip(predicted.iter()).filter(|(kind, _)| is_depth(*kind));
+    let depth = depths.map(|(_, depth)| *depth).fold(0.0, f64::max);
+    let gravity = bench.set.bed_of(body).gravity;
+    (depth > 0.0).then(|| (depth, body.mass * (gravity + fall * fall / (2.0 * depth))))
 }
 
 /// What bodies go through in each condition, and what they would meet without each effect.
@@ -68,7 +136,7 @@ fn added_force(
     bench: &Bench<'_>,
     passages: &[(usize, Vec<Moment>)],
     place: usize,
-) -> Option<AddedForce> {
+) -> Option<GreatestForce> {
     let added = |moment: &Moment| moment.force - moment.others[place];
     let all = passages
         .iter()
@@ -80,7 +148,7 @@ fn added_force(
         [0.5 * (added(a) + added(b)) * way, 0.5 * (a.force + b.force) * way]
     });
     let [work, of_model] = works.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
-    (added(most) != 0.0 && of_model != 0.0).then(|| AddedForce {
+    (added(most) != 0.0 && of_model != 0.0).then(|| GreatestForce {
         greatest: added(most),
         of: most.force,
         condition: bench.set.conditions[condition].id.clone(),

@@ -79,7 +79,7 @@ fn verdict(diagnosis: &Value, texts_of: &Texts) -> Result<Vec<Part>, ReportError
     let mut parts = vec![Part::Answer(claim::sentence(diagnosis))];
     parts.extend(claim::pictures(diagnosis, texts_of)?);
     parts.extend(forces_in_words(diagnosis).iter().map(|force| Part::Text(sentence(force))));
-    parts.extend(claim::probability(diagnosis).map(Part::Text));
+    parts.extend(claim::probability(diagnosis).map(|said| said.replace('`', "")).map(Part::Text));
     parts.extend(claim::decides(diagnosis).map(Part::Text));
     parts.push(Part::Text(format!("In short: {}.", verdict_in_words(diagnosis))));
     parts.extend(strength_in_words(diagnosis).map(Part::Text));

@@ -96,37 +96,53 @@ pub fn strength_in_words(diagnosis: &Value) -> Option<String> {
     }
 }
 
-/// What each effect that a diagnosis names is as a force, in a sentence each; none of what is no force of a formula.
+/// What each effect that a diagnosis names is as a force, in a sentence each; none of what is no force.
 #[must_use]
 pub fn forces_in_words(diagnosis: &Value) -> Vec<String> {
     let force = |amplitude: &Value| {
-        let of = &amplitude["force"];
-        let [greatest, model, depth, speed, share] =
-            ["greatest", "of", "depth", "speed", "share_of_work"].map(|key| of[key].as_f64());
-        let (greatest, share) = (greatest?, share?);
-        let short = plots::short;
-        let size = match greatest < 0.0 {
-            true => format!(
-                "weakens the resistance by up to {} N, to {} N",
-                short(-greatest),
-                short(model?)
-            ),
-            false => format!("adds up to {} N, of {} N in all", short(greatest), short(model?)),
-        };
-        let work = match share < 0.0 {
-            true => format!("the bed does {:.1} % less work with it", -100.0 * share),
-            false => format!("it does {:.1} % of the work of the bed", 100.0 * share),
-        };
-        Some(format!(
-            "{} {size}, at a depth of {} mm and {} m/s in {}; {work}.",
-            text(&amplitude["id"]),
-            short(1e3 * depth?),
-            short(speed?),
-            text(&of["condition"]),
-        ))
+        let (id, force) = (text(&amplitude["id"]), &amplitude["force"]);
+        greatest_force(&id, force).or_else(|| mean_force(&id, force))
     };
     let amplitudes = diagnosis["amplitudes"].as_array().map_or(&[][..], Vec::as_slice);
     amplitudes.iter().filter_map(force).collect()
+}
+
+/// Of an effect of a force law.
+fn greatest_force(id: &str, force: &Value) -> Option<String> {
+    let [greatest, of, depth, speed, share] =
+        ["greatest", "of", "depth", "speed", "share_of_work"].map(|key| force[key].as_f64());
+    let (greatest, share, short) = (greatest?, share?, plots::short);
+    let size = match greatest < 0.0 {
+        true => {
+            format!("weakens the resistance by up to {} N, to {} N", short(-greatest), short(of?))
+        }
+        false => format!("adds up to {} N, of {} N in all", short(greatest), short(of?)),
+    };
+    let work = match share < 0.0 {
+        true => format!("the bed does {:.1} % less work with it", -100.0 * share),
+        false => format!("it does {:.1} % of the work of the bed", 100.0 * share),
+    };
+    Some(format!(
+        "{id} {size}, at a depth of {} mm and {} m/s in {}; {work}.",
+        short(1e3 * depth?),
+        short(speed?),
+        text(&force["condition"]),
+    ))
+}
+
+/// Of an effect of a bed of grains.
+fn mean_force(id: &str, force: &Value) -> Option<String> {
+    let [mean, of, depth, speed] = ["mean", "of", "depth", "speed"].map(|key| force[key].as_f64());
+    let (mean, short) = (mean?, plots::short);
+    let change = if mean < 0.0 { "lowers" } else { "raises" };
+    Some(format!(
+        "{id} {change} the mean vertical force on the way down by {} N, to {} N, at {} m/s to a depth of {} mm in {}.",
+        short(mean.abs()),
+        short(of?),
+        short(speed?),
+        short(1e3 * depth?),
+        text(&force["condition"]),
+    ))
 }
 
 /// One of the `strength_reasons` in words.

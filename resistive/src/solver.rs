@@ -33,6 +33,9 @@ const LEAST_ERROR: f64 = 1e-2;
 /// Least and greatest ratio of a step to the one before.
 const RATIOS: (f64, f64) = (1.0 / 3.0, 6.0);
 
+/// Greatest ratio of the second step to the first, whose length comes from two slopes alone.
+const SECOND_RATIO: f64 = 100.0;
+
 fn state(time: f64, flat: &Flat) -> State {
     let mut state = State { time, ..State::default() };
     state.position.copy_from_slice(&flat[..COORDINATES]);
@@ -159,7 +162,7 @@ impl<'a> Solver<'a> {
         self.fault.set(self.fault.get().filter(begins_here));
         self.before = self.after;
         self.slopes[0] = self.slopes[END];
-        let mut largest_ratio = RATIOS.1;
+        let mut largest_ratio = if self.accepted.is_some() { RATIOS.1 } else { SECOND_RATIO };
         while self.tried < self.most {
             self.tried += 1;
             let left = self.end - from;

@@ -49,6 +49,11 @@ pub static SHIPPED: &[Shipped] = &[
         text: include_str!("../../fine-2d.toml"),
     },
     Shipped {
+        name: "sphere-3d",
+        summary: "A steel ball straight down into 20 000 spheres, 2 m/s: the usual drop test.",
+        text: include_str!("../../sphere-3d.toml"),
+    },
+    Shipped {
         name: "hemisphere-3d",
         summary: "A hemisphere, dome first, into 20 000 spheres, 2 m/s.",
         text: include_str!("../../hemisphere-3d.toml"),

@@ -23,6 +23,10 @@ impl Bent {
     fn bend(&self, at: &Immersion, motion: &Motion, load: &mut Load, act: impl Fn(&mut Load)) {
         let before = *load;
         act(load);
+        // Of its three ways to act a law has mostly one.
+        if *load == before {
+            return;
+        }
         let factor = self.factor(at.depth, motion.speed);
         let scale = |before: f64, after: f64| before + factor * (after - before);
         let both = |before: Vec3, after: Vec3| before + (after - before) * factor;
@@ -53,6 +57,9 @@ impl ResistanceLaw for Bent {
     fn expose(&self, at: &mut Immersion, motion: &Motion, bed: &Surroundings) {
         let before = *at;
         self.law.expose(at, motion, bed);
+        if *at == before {
+            return;
+        }
         let factor = self.factor(at.depth, motion.speed);
         let scale = |before: f64, after: &mut f64| *after = before + factor * (*after - before);
         scale(before.effective_depth, &mut at.effective_depth);

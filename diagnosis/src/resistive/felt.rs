@@ -4,8 +4,8 @@ use resistive::{Accelerometer, Impact};
 
 use crate::forward::Scatter;
 
-/// Longer than any impact (s).
-const DURATION: f64 = 10.0;
+/// Longer than any impact (s): what has not stopped then never does.
+pub(super) const DURATION: f64 = 10.0;
 
 /// Readings (m/s²) of `impact` at `times` (s), in rising order.
 pub(super) fn readings(

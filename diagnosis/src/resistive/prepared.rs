@@ -19,15 +19,12 @@ use resistive::{
 
 use super::bent::Bent;
 use super::error::ForwardError;
-use super::felt;
+use super::felt::{self, DURATION};
 use super::field::FieldForce;
 use super::pushed;
 use super::scatter::PathScatter;
 use crate::forward::{Bend, Moment, Scatter};
 use crate::observable::Layout;
-
-/// Longer than any impact (s): what has not stopped then never does.
-const DURATION: f64 = 10.0;
 
 /// Errors near 1e-9 m, far below any camera and small beside every difference that is taken.
 const TOLERANCE: Tolerance = Tolerance { relative: 1e-8, absolute: 1e-10 };

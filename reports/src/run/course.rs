@@ -50,7 +50,7 @@ impl Body {
         let sizes = sizes.map(|(key, size)| format!("{key} {} mm", plots::short(1e3 * size)));
         let mass = format!("mass {} g", plots::short(1e3 * mass));
         let words: Vec<String> = sizes.chain([mass]).collect();
-        let has_tip = shape.name.contains("link");
+        let has_tip = shape.links.is_some();
         let shape = shape.name.replace('-', " ");
         let words = format!("a {shape} ({})", words.join(", "));
         Some(Self { model_hash: model.hash(), words, has_tip })

@@ -14,9 +14,10 @@ use engine::math::Vec3;
 /// A speed below this share of the greatest so far counts as rest.
 const REST_SPEED: f64 = 0.05;
 
-/// A body on a curved path whose speed falls below this share of √(gD) is asked whether friction
-/// holds it; what is left of its way, some 1e-10 m, is covered at constant deceleration.
-const ALMOST_REST: f64 = 1e-4;
+/// A body on a curved path whose speed falls below a share of √(gD) is asked whether friction holds it; what is left of
+/// its way is covered at constant deceleration. That way goes with the square of the speed, so this is the square of the
+/// share over the relative tolerance: some 1e-10 m are left at a tolerance of 1e-11.
+const ALMOST_REST: f64 = 1e3;
 
 /// Events this near to each other are one (s).
 const SIMULTANEOUS: f64 = 1e-12;
@@ -66,7 +67,8 @@ impl Impact {
                 Some(direction) => first.velocity.dot(&direction),
                 None => {
                     let scale = (self.bed.gravity * first.immersion.diameter).sqrt();
-                    let above = speed - ALMOST_REST * scale;
+                    let share = (ALMOST_REST * self.tolerance.relative).sqrt();
+                    let above = speed - share * scale;
                     if modes.creeping { -above } else { above }
                 }
             };

@@ -16,7 +16,14 @@ use super::registry::{ResistanceEntry, Role, amplitude};
 ///
 /// Source: geometry.
 struct Tilt {
-    q: f64,
+    /// (sin q, 0, 1 − cos q).
+    lean: Vec3,
+}
+
+impl Tilt {
+    fn by(q: f64) -> Self {
+        Self { lean: Vec3::new(libm::sin(q), 0.0, 1.0 - libm::cos(q)) }
+    }
 }
 
 const ACCOUNTS: &[Account] = &[Account {
@@ -48,7 +55,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     forms: &[],
     variables: &[],
     accounts: ACCOUNTS,
-    build: |given| Box::new(Tilt { q: given.get("q") }),
+    build: |given| Box::new(Tilt::by(given.get("q"))),
 };
 
 impl ResistanceLaw for Tilt {
@@ -57,8 +64,7 @@ impl ResistanceLaw for Tilt {
     }
 
     fn act_everywhere(&self, at: &Immersion, _: &Motion, bed: &Surroundings, load: &mut Load) {
-        let weight = at.mass * bed.gravity;
-        load.dynamic += Vec3::new(libm::sin(self.q), 0.0, 1.0 - libm::cos(self.q)) * weight;
+        load.dynamic += self.lean * (at.mass * bed.gravity);
     }
 
     fn deflects(&self) -> bool {
@@ -74,7 +80,7 @@ mod tests {
     #[test]
     fn the_weight_is_turned_and_keeps_its_size() {
         let mut load = Load::default();
-        let law = Tilt { q: 0.1 };
+        let law = Tilt::by(0.1);
         law.act_everywhere(&SPHERE.at(0.02), &sinking(1.0), &surroundings(), &mut load);
         // 0.0692 kg × 9.8 m/s² × sin 0.1.
         assert!((load.dynamic.x - 0.067_703).abs() < 1e-5, "{}", load.dynamic.x);

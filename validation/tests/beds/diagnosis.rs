@@ -2,6 +2,7 @@
 
 use diagnosis::beds::{Plan, Stand, Variation, Wish, diagnose_bed};
 use diagnosis::observed::Observed;
+use measurements::MeasurementSet;
 use validation::benchmark::beds::{Case, Hidden, Outcome, Prepared, campaign, measure, model};
 
 use crate::imitation::Imitation;
@@ -102,4 +103,36 @@ fn where_nothing_is_hidden_model_and_measurements_have_one_force_law_within_its_
     // Standard normal numbers, a few of which hang together.
     let square = scores.iter().map(|score| score * score).sum::<f64>() / scores.len() as f64;
     assert!(square < 2.5 && scores.iter().all(|score| score.abs() < 4.0), "{scores:?}");
+}
+
+#[test]
+fn the_force_of_a_named_effect_is_what_the_depths_with_and_without_it_say() {
+    let impacts = Imitation { beds: 0.05, runs: 0.02, fades: false };
+    let measured = |hidden: Hidden| {
+        let case = Case { is_weighed: true, ..Case::alike(hidden, 0) };
+        case.measured(&impacts, None).unwrap()
+    };
+    let (_, plain) = measured(Hidden::Nothing);
+    let (model, set) = measured(Hidden::Switch("rolling-resistance", 0.2));
+    let (stand, observed) = (Stand::new(&model, &set).unwrap(), Observed::of(&set));
+    let plan = Plan::new(&stand, &observed, &impacts, &Wish::default()).unwrap();
+    let found = diagnose_bed(&stand, &observed, &impacts, plan, 1).unwrap();
+    let force = &found.to_json(&stand).unwrap()["amplitudes"][0]["force"];
+    let number = |key: &str| force[key].as_f64().unwrap();
+    let at = set.conditions.iter().position(|one| force["condition"] == one.id).unwrap();
+    let body = &set.conditions[at];
+    let fall = body.speed * body.angle_deg.to_radians().sin();
+    let depth = |set: &MeasurementSet| {
+        let depths = set.runs.iter().filter(|run| run.condition == at);
+        let deepest = depths.map(|run| {
+            let frames = run.frames.iter().map(|frame| frame.z);
+            frames.chain(run.final_z).fold(0.0, f64::max)
+        });
+        let deepest: Vec<f64> = deepest.collect();
+        deepest.iter().sum::<f64>() / deepest.len() as f64
+    };
+    // What stops a fall over another way: the weight is the same.
+    let more = 0.5 * body.mass * fall * fall * (1.0 / depth(&set) - 1.0 / depth(&plain));
+    assert!(more > 0.0 && (number("mean") / more - 1.0).abs() < 0.25, "{more} {force}");
+    assert!((number("depth") / depth(&set) - 1.0).abs() < 0.1, "{force}");
 }

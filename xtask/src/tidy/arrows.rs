@@ -93,7 +93,7 @@ const ONLY: [(&str, &[&str]); 48] = [
     ("safe_arch", &["engine"]),
     ("signal-hook", &["plunge"]),
     ("sobol_burley", &["runner"]),
-    ("statrs", &["diagnosis", "validation"]),
+    ("statrs", &["diagnosis", "reports", "validation"]),
     ("toml", &["plunge-python"]),
     ("tiny-skia", &["plots"]),
     ("toml_edit", &["configs", "fixtures"]),

@@ -1,11 +1,14 @@
 //! The report of a campaign: what its points came to, over what was varied.
 
+mod dependence;
+
 use plots::axes;
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, Hover, PictureError, colour, short, svg};
 use plotters::prelude::*;
 use runner::campaign::{Counts, Headline, Outcome, Point, Results, Values, Varied, varied};
 
+use self::dependence::{Dependence, bars};
 use crate::ReportError;
 use crate::figure::panel;
 use crate::numbers::four_digits;
@@ -66,6 +69,7 @@ pub(crate) fn page(results: &Results) -> Result<String, ReportError> {
             ),
         ],
         sections: [
+            Section::new("What it depends on", dependences(results, &varied)),
             Section::new("Responses", responses(results, &varied)?),
             Section::new("Failed", failures(results)),
             Section::new("Points", listed(results, &varied)),
@@ -81,21 +85,58 @@ pub(crate) fn page(results: &Results) -> Result<String, ReportError> {
     page.html()
 }
 
+/// The values of a response in the order of the plan; `None` where it does not differ from point to point.
+fn values(results: &Results, response: &Response) -> Option<Vec<Option<f64>>> {
+    let of =
+        |one: &Outcome| one.headline().and_then(response.of).map(|value| response.scale * value);
+    let values: Vec<Option<f64>> = results.outcomes.iter().map(of).collect();
+    let mut found = values.iter().flatten();
+    let first = found.next()?;
+    found.any(|value| value.total_cmp(first).is_ne()).then_some(values)
+}
+
+/// How each response goes with every key of numbers, strongest first.
+fn dependences(results: &Results, varied: &[Varied]) -> Vec<Part> {
+    let mut panels = Vec::new();
+    for response in &RESPONSES {
+        let Some(values) = values(results, response) else { continue };
+        let of = |one: &Varied| match &one.values {
+            Values::Numbers(numbers) => Dependence::of(&one.key, numbers, &values),
+            Values::Texts(_) => None,
+        };
+        let mut found: Vec<Dependence> = varied.iter().filter_map(of).collect();
+        found.sort_by(|a, b| b.rank_correlation.abs().total_cmp(&a.rank_correlation.abs()));
+        if found.is_empty() {
+            continue;
+        }
+        let clear = found.iter().filter(|one| one.is_clear());
+        let said: Vec<String> =
+            clear.map(|one| format!("{} ({:+.2})", one.key, one.rank_correlation)).collect();
+        let (name, _) = response.title.split_once(" (").unwrap_or((response.title, ""));
+        let most = match said.is_empty() {
+            true => format!("No rank correlation of the {name} is told from zero."),
+            false => format!("The {name} goes with {}, strongest first.", said.join(", ")),
+        };
+        let caption = format!("{most} Lines are 95 % intervals; grey bars are not told from zero.");
+        panels.push(panel(&bars(&found), &caption));
+    }
+    if panels.is_empty() {
+        return Vec::new();
+    }
+    let what = "Rank correlations (Spearman): +1 where a result always rises with what was varied, -1 where it always \
+                falls.";
+    vec![Part::Text(what.to_owned()), Part::Panels(panels)]
+}
+
 /// A figure per response that differs from point to point, and key that was varied.
 fn responses(results: &Results, varied: &[Varied]) -> Result<Vec<Part>, PictureError> {
     let across: Vec<Across> = varied.iter().filter_map(Across::of).collect();
     let models = models(results);
     let mut panels = Vec::new();
     for response in &RESPONSES {
-        let values: Vec<Option<f64>> = results
-            .outcomes
-            .iter()
-            .map(|one| one.headline().and_then(response.of).map(|value| response.scale * value))
-            .collect();
-        let found: Vec<f64> = values.iter().flatten().copied().collect();
-        if across.is_empty() || found.iter().all(|value| value.total_cmp(&found[0]).is_eq()) {
+        let Some(values) = values(results, response).filter(|_| !across.is_empty()) else {
             continue;
-        }
+        };
         let drawing = Drawing { results, response, values: &values, models: &models };
         for across in &across {
             let (title, key) = (sentence(response.title), &across.key);
