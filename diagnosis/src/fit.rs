@@ -16,9 +16,8 @@ use crate::observed::Observed;
 use crate::sensitivity::Point;
 use crate::weights::Weight;
 
-/// Where the search ends: relative change of χ² and of the unknowns. Of a model that fits, χ² is as large as there are
-/// numbers, some hundreds: it changes by less than a hundredth, where odds of a verdict are falls by four and more.
-const TOLERANCE: f64 = 1e-5;
+/// Where the search ends: relative change of χ² and of the unknowns.
+const TOLERANCE: f64 = 1e-6;
 
 /// Most evaluations per unknown, and one more: a search that converges takes a tenth of them.
 const PATIENCE: usize = 30;

@@ -121,7 +121,7 @@ fn the_force_of_a_named_effect_is_what_the_depths_with_and_without_it_say() {
     let number = |key: &str| force[key].as_f64().unwrap();
     let at = set.conditions.iter().position(|one| force["condition"] == one.id).unwrap();
     let body = &set.conditions[at];
-    let fall = body.speed * body.angle_deg.to_radians().sin();
+    let fall = body.speed * libm::sin(body.angle_deg.to_radians());
     let depth = |set: &MeasurementSet| {
         let depths = set.runs.iter().filter(|run| run.condition == at);
         let deepest = depths.map(|run| {
