@@ -39,6 +39,8 @@ impl Dependence {
         let [x, y] = [x, y].map(|values| Data::new(values).ranks(RankTieBreaker::Average));
         let covariance = x.iter().covariance(y.iter());
         let rank_correlation = covariance / (x.iter().std_dev() * y.iter().std_dev());
+        // Round-off leaves the range that the transformation is of.
+        let rank_correlation = rank_correlation.clamp(-1.0, 1.0);
         let reach = NORMAL_95 * (VARIANCE / (n as f64 - 3.0)).sqrt();
         let middle = libm::atanh(rank_correlation);
         let interval = [middle - reach, middle + reach].map(libm::tanh);
