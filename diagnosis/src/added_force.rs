@@ -13,58 +13,48 @@ use crate::sensitivity::Point;
 /// Moments of each condition at which the force is asked for.
 const MOMENTS: usize = 200;
 
-/// What an effect adds to the force of the model that it is a part of, the other coefficients as fitted.
+/// What an effect adds to the force of the model that it is a part of, the other coefficients as fitted, in the
+/// condition in which that is most.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AddedForce {
+    /// How much that is.
+    #[serde(flatten)]
+    pub size: Size,
+    /// Force of the model with the effect (N), at the same moment or in the same mean.
+    #[serde(serialize_with = "six_digits")]
+    pub of: f64,
+    /// Name of the condition.
+    pub condition: String,
+    /// Depth of the lowest point at that moment (m); of a mean, the greatest.
+    #[serde(serialize_with = "six_digits")]
+    pub depth: f64,
+    /// Speed at that moment (m/s); of a mean, that at contact.
+    #[serde(serialize_with = "six_digits")]
+    pub speed: f64,
+}
+
+/// The force of an effect.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum AddedForce {
+pub enum Size {
     /// Of a force law, whose force is known at every moment.
-    AtAMoment(GreatestForce),
-    /// Of a bed of grains, whose force on the way down follows from how deep the body comes.
-    OnTheWayDown(MeanForce),
-}
-
-/// The force of an effect where it is greatest.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct GreatestForce {
-    /// Where it is greatest, against the motion (N); negative where the effect weakens the resistance.
-    #[serde(serialize_with = "six_digits")]
-    pub greatest: f64,
-    /// Force of the model with the effect at that moment (N).
-    #[serde(serialize_with = "six_digits")]
-    pub of: f64,
-    /// Name of the condition of that moment.
-    pub condition: String,
-    /// Depth of the lowest point at that moment (m).
-    #[serde(serialize_with = "six_digits")]
-    pub depth: f64,
-    /// Speed at that moment (m/s).
-    #[serde(serialize_with = "six_digits")]
-    pub speed: f64,
-    /// Work of the effect over that of the model with it, in all conditions that were fitted to.
-    #[serde(serialize_with = "six_digits")]
-    pub share_of_work: f64,
-}
-
-/// The mean vertical force of a bed on a body, from contact to its deepest point.
-///
-/// m (g + w²/2d), with the vertical speed at contact w and the greatest depth d: what brings the body to rest over
-/// that way.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct MeanForce {
-    /// With the effect less without it (N), in the condition in which that is most.
-    #[serde(serialize_with = "six_digits")]
-    pub mean: f64,
-    /// With the effect (N).
-    #[serde(serialize_with = "six_digits")]
-    pub of: f64,
-    /// Name of that condition.
-    pub condition: String,
-    /// Greatest depth of the lowest point there, with the effect (m).
-    #[serde(serialize_with = "six_digits")]
-    pub depth: f64,
-    /// Speed at contact there (m/s).
-    #[serde(serialize_with = "six_digits")]
-    pub speed: f64,
+    AtAMoment {
+        /// Where it is greatest, against the motion (N); negative where the effect weakens the resistance.
+        #[serde(serialize_with = "six_digits")]
+        greatest: f64,
+        /// Work of the effect over that of the model with it, in all conditions that were fitted to.
+        #[serde(serialize_with = "six_digits")]
+        share_of_work: f64,
+    },
+    /// Of a bed of grains, the mean vertical force from contact to the deepest point.
+    ///
+    /// m (g + w²/2d), with the vertical speed at contact w and the greatest depth d: what brings the body to rest over
+    /// that way.
+    OnTheWayDown {
+        /// With the effect less without it (N).
+        #[serde(serialize_with = "six_digits")]
+        mean: f64,
+    },
 }
 
 /// What each effect of `fit` adds. `None` of effects that are no force against the motion, where the model cannot be
@@ -72,16 +62,14 @@ pub struct MeanForce {
 pub(crate) fn added_forces(bench: &Bench<'_>, fit: &Fit) -> Vec<Option<AddedForce>> {
     let n_effects = fit.point.effects.len();
     if bench.forward.by_formulas().is_none() {
-        let mean = |place| mean_force(bench, fit, place).map(AddedForce::OnTheWayDown);
-        return (0..n_effects).map(mean).collect();
+        return (0..n_effects).map(|place| mean_force(bench, fit, place)).collect();
     }
     let Some(passages) = passages(bench, fit) else { return vec![None; n_effects] };
-    let greatest = |place| added_force(bench, &passages, place).map(AddedForce::AtAMoment);
-    (0..n_effects).map(greatest).collect()
+    (0..n_effects).map(|place| greatest_force(bench, &passages, place)).collect()
 }
 
 /// What effect `place` of `fit` adds to the mean force on the way down.
-fn mean_force(bench: &Bench<'_>, fit: &Fit, place: usize) -> Option<MeanForce> {
+fn mean_force(bench: &Bench<'_>, fit: &Fit, place: usize) -> Option<AddedForce> {
     let mut without = fit.point.clone();
     without.effects[place].1 = 0.0;
     let changes = bench.observed.fit.iter().filter_map(|&condition| {
@@ -92,7 +80,8 @@ fn mean_force(bench: &Bench<'_>, fit: &Fit, place: usize) -> Option<MeanForce> {
     let most = changes.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
     let (condition, (depth, of), mean) = most.filter(|(.., mean)| *mean != 0.0)?;
     let Condition { id, speed, .. } = &bench.set.conditions[condition];
-    Some(MeanForce { mean, of, condition: id.clone(), depth, speed: *speed })
+    let size = Size::OnTheWayDown { mean };
+    Some(AddedForce { size, of, condition: id.clone(), depth, speed: *speed })
 }
 
 /// The greatest depth (m) that the model at `point` predicts for a condition, and the mean force on the way there (N).
@@ -132,11 +121,12 @@ fn passages(bench: &Bench<'_>, fit: &Fit) -> Option<Vec<(usize, Vec<Moment>)>> {
     bench.observed.fit.iter().map(of).collect()
 }
 
-fn added_force(
+/// What effect `place` adds where that is most along `passages`.
+fn greatest_force(
     bench: &Bench<'_>,
     passages: &[(usize, Vec<Moment>)],
     place: usize,
-) -> Option<GreatestForce> {
+) -> Option<AddedForce> {
     let added = |moment: &Moment| moment.force - moment.others[place];
     let all = passages
         .iter()
@@ -148,12 +138,11 @@ fn added_force(
         [0.5 * (added(a) + added(b)) * way, 0.5 * (a.force + b.force) * way]
     });
     let [work, of_model] = works.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
-    (added(most) != 0.0 && of_model != 0.0).then(|| GreatestForce {
-        greatest: added(most),
+    (added(most) != 0.0 && of_model != 0.0).then(|| AddedForce {
+        size: Size::AtAMoment { greatest: added(most), share_of_work: work / of_model },
         of: most.force,
         condition: bench.set.conditions[condition].id.clone(),
         depth: most.depth,
         speed: most.speed,
-        share_of_work: work / of_model,
     })
 }

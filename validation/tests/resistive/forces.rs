@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
-use diagnosis::added_force::AddedForce;
+use diagnosis::added_force::Size;
 use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::diagnose::diagnose;
 use diagnosis::forward::Forward;
@@ -187,10 +187,12 @@ fn a_hidden_cohesion_is_named_by_forces_with_its_amplitude() {
     let added = found.amplitudes[0].force.as_ref().expect("cohesion is a force");
     let widest = DIAMETERS.into_iter().fold(0.0, f64::max);
     let constant = q * BED.bulk_density * BED.gravity * FRAC_PI_4 * widest.powi(3);
-    let AddedForce::AtAMoment(added) = added else { panic!("{added:?} is of a force law") };
-    assert!((added.greatest / constant - 1.0).abs() < 0.3, "{added:?} {constant}");
+    let Size::AtAMoment { greatest, share_of_work } = added.size else {
+        panic!("{added:?} is of a force law")
+    };
+    assert!((greatest / constant - 1.0).abs() < 0.3, "{added:?} {constant}");
     assert!(added.condition.starts_with("d60"), "{added:?}");
-    assert!(added.of > added.greatest && (0.01..0.9).contains(&added.share_of_work), "{added:?}");
+    assert!(added.of > greatest && (0.01..0.9).contains(&share_of_work), "{added:?}");
 }
 
 #[test]
