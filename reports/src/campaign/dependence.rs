@@ -4,7 +4,7 @@
 //! does not hang on it or both rises and falls. The interval is that of Fisher's transformation with the variance of
 //! Fieller, Hartley & Pearson, Biometrika 1957: artanh ρ ± 1.96 (1.06 / (n − 3))^½.
 
-use plots::sheet::{Anchor, Layer, Mark, Sheet};
+use plots::sheet::{Anchor, INK, Layer, Mark, Sheet};
 use statrs::statistics::{Data, OrderStatistics, RankTieBreaker, Statistics};
 
 /// Fewest points of which a correlation says anything.
@@ -62,7 +62,6 @@ pub(super) fn bars(found: &[Dependence]) -> String {
     const WIDTH: f64 = 400.0;
     const LETTERS: f64 = 7.0;
     const ROW: f64 = 28.0;
-    const INK: [u8; 3] = [80, 80, 80];
     let longest = found.iter().map(|one| one.key.chars().count()).max().unwrap_or(0);
     let left = (LETTERS * longest as f64 + 12.0).min(0.5 * WIDTH);
     let at = |value: f64| left + (WIDTH - left - 12.0) * 0.5 * (1.0 + value);
