@@ -12,6 +12,7 @@ use configs::resistive::{RESISTANCE_LAWS, ResistanceEntry, Role, Twin, twins};
 use configs::{describe_range, nearest};
 use serde_json::{Value, json};
 
+use crate::bed_changes;
 use crate::output::{self, CommandError, CommandResult};
 use crate::own_effects::{self, OwnInModel};
 
@@ -198,16 +199,28 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     if let Some(own) = own.iter().find(|one| one.effect.id() == name) {
         return own.describe(args.json);
     }
-    let found = library.iter().find(|law| law.name == name);
-    let law = found.ok_or_else(|| unknown(name, &library))?;
-    match args.json {
-        true => output::json_to_stdout(&as_json(law)),
-        false => output::to_stdout(&as_text(law)),
+    let law = library.iter().find(|law| law.name == name);
+    let change = bed_changes::all().find(|change| change.id == name);
+    match (law, change, args.json) {
+        (None, None, _) => Err(unknown(name, &library)),
+        (None, Some(change), true) => output::json_to_stdout(&bed_changes::as_json(change)),
+        (None, Some(change), false) => output::to_stdout(&bed_changes::as_text(change)),
+        (Some(law), None, true) => output::json_to_stdout(&as_json(law)),
+        (Some(law), None, false) => output::to_stdout(&as_text(law)),
+        (Some(law), Some(change), true) => {
+            let mut object = as_json(law);
+            object["change_of_beds"] = bed_changes::as_json(change);
+            output::json_to_stdout(&object)
+        }
+        (Some(law), Some(change), false) => {
+            output::to_stdout(&format!("{}\n{}", as_text(law), bed_changes::as_text(change)))
+        }
     }
 }
 
 fn unknown(name: &str, library: &[Described]) -> CommandError {
-    let names: Vec<&str> = library.iter().map(|law| law.name).collect();
+    let changes = bed_changes::all().map(|change| change.id);
+    let names: Vec<&str> = library.iter().map(|law| law.name).chain(changes).collect();
     let hint = match nearest(name, names.iter().copied()) {
         Some(near) => format!("did you mean `{near}`? "),
         None => String::new(),
@@ -222,7 +235,8 @@ fn list(library: &[Described], own: &[OwnInModel], as_object: bool) -> CommandRe
     if as_object {
         let own = own.iter().map(OwnInModel::as_json);
         let laws: Vec<Value> = library.iter().map(as_json).chain(own).collect();
-        return output::json_to_stdout(&json!({ "effects": laws }));
+        let changes: Vec<Value> = bed_changes::all().map(bed_changes::as_json).collect();
+        return output::json_to_stdout(&json!({ "effects": laws, "changes_of_beds": changes }));
     }
     let names = library.iter().map(|law| law.name).chain(own.iter().map(|one| one.effect.id()));
     let width = names.map(str::len).max().unwrap_or(0) + 2;
@@ -240,6 +254,10 @@ fn list(library: &[Described], own: &[OwnInModel], as_object: bool) -> CommandRe
         "  {:<width$}{:<15}a force of your own, as a formula\n",
         "expression", "[[effect]]"
     ));
+    text.push_str("\nchanges of a bed that its diagnosis tries\n");
+    for change in bed_changes::all() {
+        text.push_str(&format!("  {:<width$}{}\n", change.id, change.amplitude));
+    }
     if !own.is_empty() {
         text.push_str("\ndefined by the model\n");
     }

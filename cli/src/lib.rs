@@ -6,6 +6,7 @@
 mod add;
 mod after;
 mod bed;
+mod bed_changes;
 mod beds;
 mod check;
 mod check_cost;

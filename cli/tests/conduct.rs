@@ -71,6 +71,7 @@ fn json_is_one_object() {
         &["check", "vertical-2d", "--json", "--set", "impact.speed=150 m/s"][..],
         &["effects", "--json"],
         &["effects", "rolling-resistance", "--json"],
+        &["effects", "grain-friction", "--json"],
         &["new", "--list", "--json"],
         &["new", "x", "--json"],
     ] {

@@ -139,6 +139,18 @@ fn sets_campaign_and_effect_work_where_they_are_written() {
     assert!(said.contains("late-drag"), "{said}");
 }
 
+#[test]
+fn changes_of_a_bed_are_described_as_its_candidates() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let here = folder.path();
+    let all = done(here, &["effects"]);
+    assert!(all.contains("intruder-friction"), "{all}");
+    let one = done(here, &["effects", "grain-friction"]);
+    assert!(one.contains("-1 to 4, screened at 0.5"), "{one}");
+    let both = done(here, &["effects", "packing"]);
+    assert!(both.contains("bed.preparation_friction") && both.contains("parameters"), "{both}");
+}
+
 /// The model with the effect as a candidate.
 fn read_candidate(folder: &Path) -> String {
     let text = read(&folder.join("effect.toml"));

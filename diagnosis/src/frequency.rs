@@ -36,26 +36,50 @@ const ROWS: [Row; 5] = [
 /// Added to each count: what was not seen in so few sets may be.
 const UNSEEN: f64 = 0.5;
 
-/// What is true of a verdict, where nothing, a listed effect and an unlisted one are equally likely beforehand; `None` of
-/// verdicts that the benchmark does not count.
+/// Sets of the rows `--lammps` and `--prepared` of `cargo xtask bench beds`: rolling resistance or another friction is hidden,
+/// nothing, and another density of the grains.
+const BED_SETS: [f64; 3] = [52.0, 26.0, 7.0];
+
+/// Of these, those in which an effect is named, alone or among others, and those in which none is: the benchmark of beds is
+/// too small to count each verdict by itself.
+const BEDS_NAMED: [f64; 4] = [31.0, 3.0, 0.0, 1.0];
+const BEDS_UNNAMED: [f64; 4] = [0.0, 18.0, 26.0, 6.0];
+
+/// What is true of a verdict on a force law, where nothing, a listed effect and an unlisted one are equally likely
+/// beforehand; `None` of verdicts that the benchmark does not count.
 pub(crate) fn of_benchmark(verdict: Verdict) -> Option<Probability> {
     let row = ROWS.iter().find(|row| row.verdict == verdict)?;
-    let [listed, nothing, unlisted] = SETS;
-    let share = |count: f64, sets: f64| (count + UNSEEN) / sets;
-    let shares = [
-        share(row.right, listed),
-        share(row.missed, listed),
-        share(row.nothing, nothing),
-        share(row.unlisted, unlisted),
-    ];
+    let counts = [row.right, row.missed, row.nothing, row.unlisted];
+    Some(weighed(Counted::Benchmark, counts, SETS))
+}
+
+/// The same of a verdict on a bed of grains; `None` where the data cannot answer.
+pub(crate) fn of_bed_benchmark(verdict: Verdict, names: bool) -> Option<Probability> {
+    let counts = match (verdict, names) {
+        (Verdict::CannotTell, _) => return None,
+        (_, true) => BEDS_NAMED,
+        (_, false) => BEDS_UNNAMED,
+    };
+    Some(weighed(Counted::BedBenchmark, counts, BED_SETS))
+}
+
+/// Shares of `sets` in which the answer is right, a listed effect is missed, nothing is hidden and something unlisted is,
+/// as parts of one.
+fn weighed(
+    counted_in: Counted,
+    counts: [f64; 4],
+    [listed, nothing, unlisted]: [f64; 3],
+) -> Probability {
+    let sets = [listed, listed, nothing, unlisted];
+    let shares: [f64; 4] = std::array::from_fn(|i| (counts[i] + UNSEEN) / sets[i]);
     let all: f64 = shares.iter().sum();
     let of = |share: f64| Some(share / all);
-    Some(Probability {
-        counted_in: Counted::Benchmark,
+    Probability {
+        counted_in,
         right: of(shares[0]),
         nothing: of(shares[2]),
         unlisted: of(shares[3]),
-    })
+    }
 }
 
 #[cfg(test)]
@@ -73,5 +97,15 @@ mod tests {
         assert!(is(supported.nothing, nothing / all), "{supported:?}");
         assert!(is(supported.unlisted, unlisted / all), "{supported:?}");
         assert_eq!(of_benchmark(Verdict::CannotTell), None);
+    }
+
+    #[test]
+    fn a_name_speaks_for_the_effect_and_no_name_against_none_of_three_truths() {
+        let named = of_bed_benchmark(Verdict::Supported, true).expect("it is counted");
+        assert!(named.right > Some(0.5) && named.nothing < Some(0.1), "{named:?}");
+        let unnamed = of_bed_benchmark(Verdict::BelowNoise, false).expect("it is counted");
+        assert!(unnamed.right < Some(0.1), "{unnamed:?}");
+        assert!(unnamed.nothing > unnamed.unlisted, "{unnamed:?}");
+        assert_eq!(of_bed_benchmark(Verdict::CannotTell, false), None);
     }
 }

@@ -46,6 +46,8 @@ pub enum Verdict {
 pub enum Counted {
     /// Sets of the benchmark, of another design.
     Benchmark,
+    /// Sets of the benchmark of beds, of another design: by whether an effect is named.
+    BedBenchmark,
     /// Simulated sets of the design of the set.
     Design,
 }

@@ -183,7 +183,7 @@ fn bars(diagnosis: &Value) -> Option<String> {
     Some(Sheet { size, layers: vec![Layer { clip: None, marks }] }.svg())
 }
 
-/// How often such a verdict is right, in a sentence; none of beds of grains, and where nothing can be told.
+/// How often such a verdict is right, in a sentence; none where nothing can be told.
 #[must_use]
 pub fn probability(diagnosis: &Value) -> Option<String> {
     let of = &diagnosis["probability"];
@@ -195,12 +195,19 @@ pub fn probability(diagnosis: &Value) -> Option<String> {
             "How often such a verdict is right: `--calibrate` counts in simulated sets of your design.".to_owned()
         });
     };
-    let (sets, more) = match of["counted_in"].as_str() {
-        Some("design") => ("simulated sets of this design", ""),
-        _ => ("benchmark sets", " `--calibrate` counts in simulated sets of your design."),
-    };
     let names_nothing =
         texts(&diagnosis["effects"]).is_empty() && diagnosis["verdict"] != "explained-by-apparatus";
+    let (sets, more) = match of["counted_in"].as_str() {
+        Some("design") => ("simulated sets of this design with this verdict", ""),
+        Some("bed-benchmark") if names_nothing => {
+            ("benchmark beds of 450 discs in which no effect is named", "")
+        }
+        Some("bed-benchmark") => ("benchmark beds of 450 discs in which an effect is named", ""),
+        _ => (
+            "benchmark sets with this verdict",
+            " `--calibrate` counts in simulated sets of your design.",
+        ),
+    };
     let named = match names_nothing {
         true => {
             format!("a listed effect is missing in {:.0} %", 100.0 * (1.0 - nothing - unlisted))
@@ -208,7 +215,7 @@ pub fn probability(diagnosis: &Value) -> Option<String> {
         false => format!("what is missing is named in {:.0} %", 100.0 * right),
     };
     Some(format!(
-        "Of {sets} with this verdict, where nothing, a listed and an unlisted effect are equally likely, {named}, nothing is \
+        "Of {sets}, where nothing, a listed and an unlisted effect are equally likely, {named}, nothing is \
          missing in {:.0} %, something unlisted in {:.0} %.{more}",
         100.0 * nothing,
         100.0 * unlisted

@@ -26,7 +26,7 @@ const ERRORS: [(&str, &str, f64); 8] = [
 const VIEWS: [(&str, &str, &str); 7] = [
     (
         "revisions.svg",
-        "The error falls",
+        "Error by revision",
         "Root mean square error, revision after revision; the dashed lines are what the noise of the \
          means alone would give.",
     ),

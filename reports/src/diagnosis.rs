@@ -1,6 +1,8 @@
 //! The report of a diagnosis: which effect is missing, what else it could be, and what to measure next.
 
+use configs::contact_laws::{self, find_grain_force};
 use configs::resistive::find_resistance;
+use diagnosis::beds::SWITCHES;
 use serde_json::Value;
 
 use crate::claim;
@@ -224,21 +226,62 @@ fn testable(diagnosis: &Value) -> impl Iterator<Item = &Value> {
 fn effects(diagnosis: &Value) -> Vec<Part> {
     let mut named = texts(&diagnosis["effects"]);
     named.extend(texts(&diagnosis["not_separable"]));
+    let about = (&named[..], diagnosis["bed"].is_object());
     let cards: Vec<Card> = testable(diagnosis)
         .enumerate()
         .filter(|(at, effect)| *at < CARDS || named.contains(&text(&effect["id"])))
         .map(|(at, effect)| {
             let amplitudes = list(&diagnosis["amplitudes"]);
-            card(at, effect, amplitudes.iter().find(|one| one["id"] == effect["id"]), &named)
+            card(at, effect, amplitudes.iter().find(|one| one["id"] == effect["id"]), about)
         })
         .collect();
     if cards.is_empty() { Vec::new() } else { vec![Part::Cards(cards)] }
 }
 
+/// An effect of no registry.
+const OWN: &str = "A formula of your own.";
+
+/// What an effect is.
+struct About {
+    summary: String,
+    law: Option<&'static str>,
+    source: Option<&'static str>,
+}
+
+impl About {
+    /// Of a bed of grains, what the simulation has under this name comes before what a force law has.
+    fn of(id: &str, is_of_a_bed: bool) -> Self {
+        let listed = |summary: &str, law, source| Self {
+            summary: summary.to_owned(),
+            law: Some(law),
+            source: Some(source),
+        };
+        let switch = SWITCHES.iter().find(|switch| is_of_a_bed && switch.id == id);
+        match (switch, contact_laws::find(id), find_grain_force(id)) {
+            (Some(switch), ..) if switch.is_change() => Self {
+                summary: format!("A change of the bed. Amplitude: {}.", switch.amplitude),
+                law: None,
+                source: None,
+            },
+            (Some(_), Some(law), _) => listed(law.summary, law.formula, law.source),
+            (Some(_), _, Some(force)) => listed(force.summary, force.formula, force.source),
+            _ => match find_resistance(id) {
+                Some(law) => listed(law.summary, law.formula, law.source),
+                None => Self { summary: OWN.to_owned(), law: None, source: None },
+            },
+        }
+    }
+}
+
 /// The effect in the place `at`, with its amplitude in the verdict, if it has one there.
-fn card(at: usize, effect: &Value, fitted: Option<&Value>, named: &[String]) -> Card {
+fn card(
+    at: usize,
+    effect: &Value,
+    fitted: Option<&Value>,
+    (named, is_of_a_bed): (&[String], bool),
+) -> Card {
     let id = text(&effect["id"]);
-    let law = find_resistance(&id);
+    let about = About::of(&id, is_of_a_bed);
     let unit = effect["unit"].as_str().filter(|unit| *unit != "1").unwrap_or_default();
     let of = fitted.unwrap_or(effect);
     let mut facts = vec![("amplitude", amplitude(of, unit))];
@@ -249,15 +292,16 @@ fn card(at: usize, effect: &Value, fitted: Option<&Value>, named: &[String]) -> 
         ("ranked first if there", fixed(effect["predicted_top1"].as_f64(), 2)),
         ("detection limit", four_digits(&effect["detection_limit"])),
     ]);
-    let mut notes: Vec<_> = law.map(|law| ("law", law.formula.to_owned())).into_iter().collect();
+    let mut notes: Vec<_> = about.law.map(|law| ("law", law.to_owned())).into_iter().collect();
     let note = text(&effect["note"]);
     if !note.is_empty() {
-        notes.push(("separable", note));
+        let name = if note.starts_with("from ") { "separable" } else { "note" };
+        notes.push((name, note));
     }
-    notes.extend(law.map(|law| ("source", law.source.to_owned())));
+    notes.extend(about.source.map(|source| ("source", source.to_owned())));
     Card {
         rank: format!("{}.", at + 1),
-        summary: law.map_or("A formula of your own.".to_owned(), |law| law.summary.to_owned()),
+        summary: about.summary,
         facts,
         notes,
         named: named.contains(&id),
@@ -453,6 +497,18 @@ mod tests {
             ("where_it_fails.json".to_owned(), found.to_string()),
             ("signatures.svg".to_owned(), svg),
         ])
+    }
+
+    #[test]
+    fn what_a_bed_may_lack_is_described_by_its_registry() {
+        for switch in SWITCHES.iter() {
+            let about = About::of(switch.id, true);
+            assert_ne!(about.summary, OWN, "{}", switch.id);
+            assert_eq!(about.law.is_none(), switch.is_change(), "{}", switch.id);
+        }
+        assert!(About::of("packing", true).law.is_none(), "a bed is prepared again");
+        assert!(About::of("packing", false).law.is_some(), "a force law has a term");
+        assert_eq!(About::of("stickiness", true).summary, OWN);
     }
 
     #[test]

@@ -36,19 +36,19 @@ pub fn of_set(loaded: &Loaded) -> Result<String, ReportError> {
         .map(Part::Text);
     let agreement = Some(loaded.agreement.describe(set)).filter(|text| !text.is_empty());
     let held = contradictions.chain(agreement.map(Part::Listing)).collect();
+    let held_out = format!("{held_out} held out");
+    let mut headline = vec![
+        Number::new("conditions", set.conditions.len().to_string(), held_out),
+        Number::new("runs", set.runs.len().to_string(), ""),
+    ];
+    if readings > 0 {
+        headline.push(Number::new("readings", readings.to_string(), ""));
+    }
     let page = Page {
         title: set.id.clone(),
         kind: "measurement set",
         lead: set.source.clone().unwrap_or_else(|| "What was understood of the files.".to_owned()),
-        headline: vec![
-            Number::new(
-                "conditions",
-                set.conditions.len().to_string(),
-                format!("{held_out} held out"),
-            ),
-            Number::new("runs", set.runs.len().to_string(), ""),
-            Number::new("readings", readings.to_string(), ""),
-        ],
+        headline,
         sections: [
             Section::new("What was read", vec![figure(&picture::measured(set)?, caption)]),
             Section::new("Held against its own frames", held),

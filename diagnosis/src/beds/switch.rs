@@ -58,6 +58,12 @@ impl Switch {
         }
     }
 
+    /// Whether it changes what every bed has, and is no effect of a registry.
+    #[must_use]
+    pub fn is_change(&self) -> bool {
+        matches!(self.act, Act::Change { .. })
+    }
+
     /// The reason why it is not a candidate for `model`; `None` for a candidate.
     #[must_use]
     pub fn lacks(&self, model: GrainModel<'_>) -> Option<&'static str> {

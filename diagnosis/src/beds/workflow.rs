@@ -26,6 +26,7 @@ use crate::bench::{Bench, BenchError};
 use crate::diagnose::{ALPHA, as_it_is, diagnose, withdraw};
 use crate::fit::Fit;
 use crate::forward::{Forward, Parameter, ParameterKind};
+use crate::frequency::of_bed_benchmark;
 use crate::observable::Layout;
 use crate::observed::Observed;
 use crate::verdict::{Diagnosis, Status, Strength, StrengthReason, Verdict};
@@ -221,6 +222,8 @@ impl Work<'_> {
             // Only a bed that the set rules out would explain what no effect is large enough for.
             diagnosis.verdict = Verdict::BelowNoise;
         }
+        let names = !diagnosis.effects.is_empty();
+        diagnosis.probability = of_bed_benchmark(diagnosis.verdict, names);
         diagnosis.warnings.splice(0..0, preparation.sentences.iter().cloned());
         let changes = preparation.changes;
         BedDiagnosis {
