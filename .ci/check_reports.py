@@ -4,9 +4,9 @@ usage: check_reports.py CHROMIUM SCREENSHOTS REPORT...
 
 A report asks nothing of any network and leaves no error in the console; its figures have a size and
 something drawn in them; pointing at a value shows it; it turns dark where the reader wants that, and
-prints. On a telephone and on a desk, in light and dark, axe finds no barrier, nothing is wider than the
-window, and no text is smaller than 11 pixels. A picture of each is left in the folder SCREENSHOTS, to be
-looked at.
+prints; its figures and tables can be downloaded. On a telephone and on a desk, in light and dark, axe finds
+no barrier, nothing is wider than the window, and no text is smaller than 11 pixels. A picture of each is left
+in the folder SCREENSHOTS, to be looked at.
 """
 
 import sys
@@ -133,6 +133,27 @@ def look(browser, report, width, scheme, screenshots):
     page.close()
 
 
+def download(browser, report):
+    """Figures and tables come as files of what they are called."""
+    page = browser.new_page()
+    page.goto(report.resolve().as_uri())
+    begins = {"Figure as SVG": b"<svg", "as PNG": b"\x89PNG", "Table as CSV": b""}
+    for name, magic in begins.items():
+        button = page.get_by_role("button", name=name).first
+        if name == "Table as CSV" and not button.count():
+            continue
+        with page.expect_download() as waited:
+            button.click()
+        content = Path(waited.value.path()).read_bytes()
+        require(content.startswith(magic) and len(content) > 20, f"{name}: no such file")
+        if name == "as PNG":
+            width = int.from_bytes(content[16:20], "big")
+            drawn = page.evaluate("document.querySelector('figure svg').viewBox.baseVal.width")
+            require(width == round(3 * drawn), f"{name}: {width} pixels of {drawn}")
+            require(len(content) > 2_000, f"{name}: nothing is drawn")
+    page.close()
+
+
 def main():
     chromium, screenshots, *reports = sys.argv[1:]
     screenshots = Path(screenshots)
@@ -143,6 +164,7 @@ def main():
         for report in map(Path, reports):
             try:
                 figures, values = check(browser, report)
+                download(browser, report)
                 for width in WIDTHS:
                     for scheme in ["light", "dark"]:
                         look(browser, report, width, scheme, screenshots)
