@@ -130,9 +130,9 @@ impl Watch for Terminal {
         self.bar.set_message(format!("{what} "));
         let share = progress.done as f64 / progress.of.max(1) as f64;
         self.tell_progress(|| format!("{} of {} {what}", progress.done, progress.of), Some(share));
-        let left = progress.left.map_or(String::new(), |left| {
-            format!("about {} left", HumanDuration(Duration::from_secs_f64(left)))
-        });
+        let left = progress
+            .left
+            .map_or(String::new(), |left| format!("about {} left", HumanDuration(left)));
         self.bar.set_prefix(left);
         self.bar.set_position(progress.done as u64);
     }

@@ -77,7 +77,11 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     }
     let terminal = Terminal::new(args.quiet);
     let cache = cache_folder(args.cache.as_deref());
-    let deadline = args.budget.map(|budget| Instant::now() + Duration::from_secs_f64(budget));
+    // A budget beyond what the clock can tell is none.
+    let deadline = args
+        .budget
+        .and_then(|budget| Duration::try_from_secs_f64(budget).ok())
+        .and_then(|budget| Instant::now().checked_add(budget));
     let watch = Budgeted { terminal: &terminal, deadline };
     let workers = args.threads.and_then(|n| NonZero::new(usize::from(n)));
     let place = Place { cache: &cache, workers, watch: &watch, elsewhere: None };

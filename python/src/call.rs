@@ -7,6 +7,7 @@ use std::thread;
 use std::time::Duration;
 
 use plunge::{Failure, Host};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
 
@@ -73,9 +74,11 @@ impl Call {
 
     /// What came of it; `None` if it has not ended within `seconds`. To be asked until it has.
     fn wait<'py>(&self, py: Python<'py>, seconds: f64) -> PyResult<Option<Ended<'py>>> {
+        let most = Duration::try_from_secs_f64(seconds)
+            .map_err(|fault| PyValueError::new_err(fault.to_string()))?;
         let given = py.detach(|| {
             let given = self.given.lock().unwrap_or_else(PoisonError::into_inner);
-            given.recv_timeout(Duration::from_secs_f64(seconds))
+            given.recv_timeout(most)
         });
         let none = PyByteArray::new(py, &[]);
         Ok(match given {

@@ -19,7 +19,7 @@ use crate::error::CampaignError;
 use crate::hexadecimal;
 use crate::run::result_key;
 use crate::schedulers::{Array, Scheduler, Word, script};
-use crate::workers::{Progress, Stage, Watch};
+use crate::workers::{Progress, Stage, Watch, left};
 
 /// The folder of lists, scripts and logs in a cache.
 const FOLDER: &str = "tasks";
@@ -137,7 +137,7 @@ impl Elsewhere {
             let ended = waiting.ended()?;
             let done = (0..tasks.len()).filter(|&at| is_there(at)).count();
             let share = done as f64 / tasks.len() as f64;
-            let left = (done > 0).then(|| start.elapsed().as_secs_f64() * (1.0 - share) / share);
+            let left = left(start.elapsed(), share);
             watch.progress(&Progress { what, done, of: tasks.len(), left });
             match ended {
                 Some(true) => return Ok(()),

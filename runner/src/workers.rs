@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use engine::parallel::with_threads;
 
@@ -18,8 +18,15 @@ pub struct Progress {
     pub done: usize,
     /// Of how many.
     pub of: usize,
-    /// Time that is left at the pace so far (s); `None` before there is a pace.
-    pub left: Option<f64>,
+    /// Time that is left at the pace so far; `None` before there is a pace.
+    pub left: Option<Duration>,
+}
+
+/// The time left at the pace of `spent`, in which a `share` of the work was done; `None` before there is a pace.
+pub(crate) fn left(spent: Duration, share: f64) -> Option<Duration> {
+    // A share that is a sum of parts may round to more than one.
+    let rest = (1.0 - share).max(0.0) / share;
+    Duration::try_from_secs_f64(spent.as_secs_f64() * rest).ok()
 }
 
 /// What a campaign is doing.
@@ -113,12 +120,11 @@ impl Workers<'_> {
         let failed = AtomicUsize::new(0);
         let stop = || self.watch.wants_to_stop() || failed.load(Ordering::Relaxed) > 0;
         let report = |done: usize, share: f64| {
-            let left = (share > 0.0).then(|| start.elapsed().as_secs_f64() * (1.0 - share) / share);
             self.watch.progress(&Progress {
                 what,
                 done: before + done,
                 of: before + tasks.len(),
-                left,
+                left: left(start.elapsed(), share),
             });
         };
         report(0, 0.0);
@@ -158,5 +164,20 @@ impl Workers<'_> {
             }
         }
         if interrupted { Err(CampaignError::Interrupted) } else { Ok(results) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_is_at_the_pace_so_far_and_never_below_zero() {
+        let spent = Duration::from_secs(30);
+        assert_eq!(left(spent, 0.75), Some(Duration::from_secs(10)));
+        // The last of many parts may round to more than all of them.
+        assert_eq!(left(spent, 1.0 + f64::EPSILON), Some(Duration::ZERO));
+        assert_eq!(left(spent, 0.0), None);
+        assert_eq!(left(spent, f64::NAN), None);
     }
 }

@@ -267,8 +267,8 @@ impl Watch for Teller {
             Stage::Beds => "beds",
             Stage::Impacts => "impacts",
         };
-        let left =
-            progress.left.map_or_else(String::new, |left| format!(", {:.0} min left", left / 60.0));
+        let minutes = |left: Duration| format!(", {:.0} min left", left.as_secs_f64() / 60.0);
+        let left = progress.left.map_or_else(String::new, minutes);
         eprintln!("{}: {} of {} {what}{left}", self.row, progress.done, progress.of);
     }
 
