@@ -150,7 +150,6 @@ fn as_text(
     text.push_str("root mean square errors\n");
     text.push_str(&errors(comparison));
     text.push_str(&numbers(set, &comparison.models));
-    text.push_str("\nparameters, refitted\n");
     text.push_str(&parameters(&comparison.models));
     text.push_str("\nwhere the force is wrong (significant at a false-discovery rate of 5 %)\n");
     text.push_str(&failures(&comparison.models));
@@ -233,7 +232,11 @@ fn numbers(set: &MeasurementSet, models: &[ModelComparison]) -> String {
     format!("\nmeasured and predicted\n{}", lines(&table))
 }
 
+/// The parameters with their heading; nothing of beds, which have none to fit.
 fn parameters(models: &[ModelComparison]) -> String {
+    if models.iter().all(|model| model.parameters.is_empty()) {
+        return String::new();
+    }
     let mut table = table(&["model", "parameter", "value", "se", "unit"]);
     for model in models {
         for (index, (name, entry)) in model.parameters.iter().enumerate() {
@@ -248,7 +251,7 @@ fn parameters(models: &[ModelComparison]) -> String {
     if let Some(column) = table.column_mut(1) {
         column.set_cell_alignment(CellAlignment::Left);
     }
-    lines(&table)
+    format!("\nparameters, refitted\n{}", lines(&table))
 }
 
 fn failures(models: &[ModelComparison]) -> String {

@@ -14,7 +14,7 @@ use super::leaders::{is_beaten, is_named, is_settled, leaders};
 use super::line_search::{Against, LineSearch};
 use super::observables::observables;
 use super::plan::{Plan, RIVALS, SEARCHES, SIDE_DRAWS};
-use super::preparation::{Known, Preparation, at_level, is_far, listed};
+use super::preparation::{DENSE, Known, Preparation, at_level, is_far, listed};
 use super::response::Response;
 use super::screening::screened;
 use super::shared::{Column, Shared};
@@ -40,7 +40,7 @@ const ALONE: f64 = 0.5;
 const FRAMES: usize = 12;
 
 /// Preparations whose impacts say how observables follow the packing fraction, and the least difference of their beds.
-const LEVELS: [f64; 2] = [1.0, -1.0];
+const LEVELS: [f64; 2] = [1.0, DENSE];
 const LEAST_DIFFERENCE: f64 = 0.002;
 
 /// Farthest that a packing fraction is searched from what is known of it.

@@ -13,20 +13,23 @@ use lexopt::Parser;
 use lexopt::prelude::{Long, Short, ValueExt};
 use runner::beds::Place;
 use runner::{Elsewhere, Unattended};
-use validation::benchmark::beds::{Case, Outcome, all, by_lammps, prepared, quick, table};
+use validation::benchmark::beds::{
+    Case, Outcome, all, by_lammps, of_spheres, prepared, quick, table,
+};
 use validation::command::{conclude, on};
 use validation::speed::lammps::Lammps;
 
 const HELP: &str = "\
 How often the diagnosis of a bed of grains names what is hidden in it.
 
-Usage: cargo xtask bench beds [--quick | --prepared | --lammps] [--draws N] [--minutes N] [--threads N] [--on WHERE]
-                             [--cache DIR] [--out FILE]
+Usage: cargo xtask bench beds [--quick | --prepared | --lammps | --spheres] [--draws N] [--minutes N] [--threads N]
+                             [--on WHERE] [--cache DIR] [--out FILE]
 
   --quick      small beds: every preparation with nothing hidden, two listed effects, one that is not listed
   --prepared   small beds, prepared in seven ways, weighed or not, with nothing hidden and with two effects
   --lammps     small beds that LAMMPS rains and hits, with nothing, two effects, and one that is not listed;
                it is installed below target/peers, unless PLUNGE_LAMMPS names an lmp
+  --spheres    beds of 1 000 spheres, prepared in three ways, with nothing, two effects, and one that is not listed
   --draws N    draws of every case (2)
   --minutes N  impacts of one diagnosis at most, as estimated (as long as the largest plan takes)
   --threads N  impacts at a time (one per core)
@@ -68,6 +71,7 @@ fn parse(mut parser: Parser) -> Result<Option<Wanted>, lexopt::Error> {
             Long("quick") => list = |_| quick(),
             Long("prepared") => list = prepared,
             Long("lammps") => list = by_lammps,
+            Long("spheres") => list = of_spheres,
             Long("draws") => draws = parser.value()?.parse()?,
             Long("minutes") => minutes = parser.value()?.parse()?,
             Long("threads") => wanted.threads = Some(parser.value()?.parse()?),

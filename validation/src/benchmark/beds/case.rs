@@ -14,7 +14,7 @@ use thiserror::Error;
 use super::hidden::Hidden;
 use super::lammps::{LEVEL, World};
 use super::prepared::Prepared;
-use super::world::{campaign, measure, model, small, stated, weighed};
+use super::world::{campaign, measure, model, small, spheres, stated, weighed};
 use crate::speed::SpeedError;
 use crate::speed::lammps::Lammps;
 
@@ -25,6 +25,17 @@ const FEW: usize = 5;
 /// Beds of LAMMPS that are weighed.
 const WEIGHED: usize = 3;
 
+/// The grains of a bed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Grains {
+    /// 900 discs.
+    Discs,
+    /// 450 discs.
+    FewDiscs,
+    /// 1 000 spheres.
+    Spheres,
+}
+
 /// One bed to be diagnosed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Case {
@@ -34,8 +45,8 @@ pub struct Case {
     pub prepared: Prepared,
     /// Whether its set states its packing fraction and its bulk density.
     pub is_weighed: bool,
-    /// Whether it is one of the small beds.
-    pub is_small: bool,
+    /// Which bed it is.
+    pub bed: Grains,
     /// Whether LAMMPS rains and hits it.
     pub is_by_lammps: bool,
     /// Which draw of beds, camera and resampling.
@@ -162,6 +173,30 @@ pub fn by_lammps(draws: u64) -> Vec<Case> {
     cases
 }
 
+/// Beds of spheres, prepared like those of the model, rougher and smoother, the latter two weighed, with nothing hidden, with
+/// two effects and with one that is not listed; `draws` of each.
+#[must_use]
+pub fn of_spheres(draws: u64) -> Vec<Case> {
+    let hidden = [
+        Hidden::Nothing,
+        Hidden::Switch("rolling-resistance", 0.17),
+        Hidden::Switch("grain-friction", 0.8),
+        Hidden::Unlisted,
+    ];
+    let ways = [(Prepared::Alike, false), (Prepared::Rough, true), (Prepared::Smooth, true)];
+    let mut cases = Vec::new();
+    for (row, hidden) in hidden.into_iter().enumerate() {
+        for draw in 0..draws {
+            for (at, (prepared, is_weighed)) in ways.into_iter().enumerate() {
+                let seed = 30_000 + 1000 * row as u64 + 100 * at as u64 + draw;
+                let bed = Grains::Spheres;
+                cases.push(Case { prepared, is_weighed, bed, ..Case::alike(hidden, seed) });
+            }
+        }
+    }
+    cases
+}
+
 /// Five switches at two strengths, nothing, and what is not listed; `draws` of each.
 #[must_use]
 pub fn all(draws: u64) -> Vec<Case> {
@@ -194,22 +229,25 @@ impl Case {
     #[must_use]
     pub fn alike(hidden: Hidden, seed: u64) -> Self {
         let prepared = Prepared::Alike;
-        Self { hidden, prepared, is_weighed: false, is_small: false, is_by_lammps: false, seed }
+        Self { hidden, prepared, is_weighed: false, bed: Grains::Discs, is_by_lammps: false, seed }
     }
 
     /// A small bed, prepared as that of the model.
     #[must_use]
     pub fn small(hidden: Hidden, seed: u64) -> Self {
-        Self { is_small: true, ..Self::alike(hidden, seed) }
+        Self { bed: Grains::FewDiscs, ..Self::alike(hidden, seed) }
     }
 
     /// What it is called.
     #[must_use]
     pub fn name(&self) -> String {
         let mut name = self.hidden.name();
-        if self.is_small {
+        if self.bed != Grains::Discs {
             let said = if self.is_weighed { "weighed" } else { "not weighed" };
             name.push_str(&format!("; {}, {said}", self.prepared.name()));
+        }
+        if self.bed == Grains::Spheres {
+            name.push_str("; spheres");
         }
         if self.is_by_lammps {
             name.push_str("; by LAMMPS");
@@ -252,7 +290,11 @@ impl Case {
         lammps: Option<(&Lammps, &Path)>,
     ) -> Result<(Model, MeasurementSet), CaseError> {
         let first = 1 + 1000 * self.seed;
-        let model = if self.is_small { small(first) } else { model(first) };
+        let model = match self.bed {
+            Grains::Discs => model(first),
+            Grains::FewDiscs => small(first),
+            Grains::Spheres => spheres(first),
+        };
         let model = model.map_err(|why| BedError::from(BaselineError::from(why)))?;
         let empty = campaign(&model);
         let stand = Stand::new(&model, &empty).map_err(BedError::from)?;

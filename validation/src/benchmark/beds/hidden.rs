@@ -62,8 +62,11 @@ impl Hidden {
                     return Variation::default();
                 };
                 let mut grains = settle.grains.clone();
-                for (kind, grams) in grains.iter_mut().zip([0.049, 0.073]) {
-                    kind.material = Material::Mass(grams * HEAVIER / 1e3);
+                for kind in &mut grains {
+                    kind.material = match kind.material {
+                        Material::Mass(mass) => Material::Mass(HEAVIER * mass),
+                        Material::Density(density) => Material::Density(HEAVIER * density),
+                    };
                 }
                 Variation::before(Change::Grains(grains))
             }

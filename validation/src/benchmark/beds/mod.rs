@@ -8,8 +8,8 @@ mod prepared;
 mod table;
 mod world;
 
-pub use case::{Case, CaseError, Outcome, all, by_lammps, prepared, quick};
+pub use case::{Case, CaseError, Grains, Outcome, all, by_lammps, of_spheres, prepared, quick};
 pub use hidden::Hidden;
 pub use prepared::Prepared;
 pub use table::table;
-pub use world::{campaign, measure, model, small};
+pub use world::{campaign, measure, model, small, spheres};

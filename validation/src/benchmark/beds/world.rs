@@ -2,6 +2,7 @@
 
 use configs::{ConfigError, LoadOptions, Model, ModelSource};
 use engine::bed::random;
+use engine::grains::Space;
 use measurements::{
     Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
     Role, Run, StatedBed, StatedError, StopDefinition,
@@ -17,6 +18,9 @@ const MODEL: &str = include_str!("model.toml");
 
 /// The analyst's model of a small bed.
 const SMALL: &str = include_str!("small.toml");
+
+/// The analyst's model of a bed of spheres.
+const SPHERES: &str = include_str!("spheres.toml");
 
 /// How well a bed is weighed and its packing is known: the packing fraction, and the bulk density, relative.
 const PACKING_SIGMA: f64 = 0.003;
@@ -56,6 +60,14 @@ pub fn small(seed: u64) -> Result<Model, ConfigError> {
     load(SMALL, seed)
 }
 
+/// The analyst's model of a bed of spheres, likewise.
+///
+/// # Errors
+/// Never: the model is ours.
+pub fn spheres(seed: u64) -> Result<Model, ConfigError> {
+    load(SPHERES, seed)
+}
+
 fn load(text: &str, seed: u64) -> Result<Model, ConfigError> {
     let source = ModelSource::Text {
         name: "the bed of the benchmark".to_owned(),
@@ -72,6 +84,10 @@ pub fn campaign(model: &Model) -> MeasurementSet {
     let (fit, held_out) = SPEEDS;
     let fit = fit.map(|speed| condition(model, speed, Role::Fit));
     let held_out = held_out.map(|speed| condition(model, speed, Role::Holdout));
+    let (geometry, grain_diameter) = match model.grains().map(|grains| grains.medium.space) {
+        Some(Space::Spatial) => (Geometry::Spatial, 4e-3),
+        _ => (Geometry::Planar, 4.8e-3),
+    };
     MeasurementSet {
         id: "beds-benchmark".to_owned(),
         source: Some("impacts on small beds in which something is hidden".to_owned()),
@@ -84,10 +100,10 @@ pub fn campaign(model: &Model) -> MeasurementSet {
             ..Instrument::default()
         },
         bed: Bed {
-            geometry: Geometry::Planar,
+            geometry,
             bulk_density: None,
             gravity: 9.81,
-            grain_diameter: Some(4.8e-3),
+            grain_diameter: Some(grain_diameter),
             stated: StatedBed::default(),
         },
         beds: Vec::new(),
