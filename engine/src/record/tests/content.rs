@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 
-use prost::Message as _;
+use prost::Message;
 use prost::bytes::Buf;
 use prost::encoding::{decode_key, decode_varint};
 use prost_types::FileDescriptorSet;
@@ -99,12 +99,7 @@ fn the_grain_log_opens_alone_and_its_points_lie_below_their_fields() {
     let scratch = Scratch::new();
     write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
     let [_, grains] = scratch.files();
-    let cloud = mcap::MessageStream::new(&grains)
-        .unwrap()
-        .map(|message| message.unwrap())
-        .find(|message| message.channel.topic == "/grains")
-        .map(|message| PointCloud::decode(message.data.as_ref()).unwrap())
-        .unwrap();
+    let cloud: PointCloud = first(&grains, "/grains");
     assert_eq!(cloud.point_stride, 40);
     let offsets: Vec<_> = cloud.fields.iter().map(|f| (f.name.as_str(), f.offset)).collect();
     let names = ["x", "y", "z", "radius", "vx", "vy", "vz", "speed", "force", "id"];
@@ -123,12 +118,7 @@ fn the_arrow_of_a_force_starts_where_the_body_ends() {
     let scratch = Scratch::new();
     write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
     let [run, _] = scratch.files();
-    let scene = mcap::MessageStream::new(&run)
-        .unwrap()
-        .map(|message| message.unwrap())
-        .find(|message| message.channel.topic == "/scene")
-        .map(|message| SceneUpdate::decode(message.data.as_ref()).unwrap())
-        .unwrap();
+    let scene: SceneUpdate = first(&run, "/scene");
     let arrow = &scene.entities.last().unwrap().arrows[0];
     let pose = arrow.pose.as_ref().unwrap();
     // The ball is 20 mm in radius, at the surface, and its force of 9.81 N points up.
@@ -155,11 +145,7 @@ fn fields_and_crater_are_clouds_in_the_frame_of_the_log() {
     let scratch = Scratch::new();
     write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
     let [run, _] = scratch.files();
-    let cloud = |topic: &str| {
-        let mut messages = mcap::MessageStream::new(&run).unwrap().map(|message| message.unwrap());
-        let message = messages.find(|message| message.channel.topic == topic).unwrap();
-        PointCloud::decode(message.data.as_ref()).unwrap()
-    };
+    let cloud = |topic: &str| -> PointCloud { first(&run, topic) };
     let value = |cloud: &PointCloud, point: usize, name: &str| {
         let field = cloud.fields.iter().find(|field| field.name == name).unwrap();
         let at = point * cloud.point_stride as usize + field.offset as usize;
@@ -252,6 +238,13 @@ fn steps_and_times_out_of_range_or_out_of_order_are_refused() {
     log.event(stamp(9), EventLevel::Info, "").unwrap();
     let error = log.event(stamp(8), EventLevel::Info, "").unwrap_err();
     assert!(matches!(error, RecordError::StepOrder { step: 8, last: 9, .. }), "{error}");
+}
+
+/// The first message of `topic` in a log.
+fn first<M: Message + Default>(log: &[u8], topic: &str) -> M {
+    let mut messages = mcap::MessageStream::new(log).unwrap().map(|message| message.unwrap());
+    let message = messages.find(|message| message.channel.topic == topic).unwrap();
+    M::decode(message.data.as_ref()).unwrap()
 }
 
 /// One line per channel: topic, schema and, for our own messages, the fields.
