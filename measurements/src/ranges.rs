@@ -54,7 +54,7 @@ impl Kind {
     fn error(&self, whose: &str, value: f64) -> Diagnostic {
         let Self { name, unit, sizes: [least, most] } = self;
         let from = if *least > 0.0 { format!("0, or {least:e}") } else { "0".to_owned() };
-        Diagnostic::error(format!("{whose}: a {name} of {value:e} {unit} cannot be meant"))
+        Diagnostic::error(format!("{whose}: the {name} of {value:e} {unit} cannot be meant"))
             .help(format!("its size is {from} to {most:e} {unit}; compare it with the others, and with its unit"))
     }
 }

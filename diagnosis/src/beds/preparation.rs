@@ -4,6 +4,7 @@
 //! stated is a parameter with a prior, as every fit has it.
 
 use configs::{BedSource, Change, GrainModel, Material};
+use engine::grains::Space;
 use measurements::{Geometry, MeasurementSet};
 use runner::CampaignError;
 use runner::beds::{Impacts, Lie};
@@ -299,9 +300,17 @@ fn lies(
     }
 }
 
-/// The level of a dense bed that comes to rest soon: of spheres without any friction the last ones rattle for fifteen times
-/// as long, to lie denser by a hundredth.
-pub(super) const DENSE: f64 = -0.9;
+/// The level of dense spheres that come to rest soon: without any friction the last ones rattle for fifteen times as long, to
+/// lie denser by a hundredth. Discs do not.
+const DENSE_SPHERES: f64 = -0.9;
+
+/// The level of a dense bed that comes to rest soon.
+pub(super) fn dense(space: Space) -> f64 {
+    match space {
+        Space::Planar => -1.0,
+        Space::Spatial => DENSE_SPHERES,
+    }
+}
 
 /// How `model` is prepared at a level from -1, the densest bed that settles, over 0, as it is, to 1, with three times the
 /// friction, and 2, the loosest, where grains do not roll either; `None` without a friction to change.
@@ -343,7 +352,11 @@ fn prepared_to(
     };
     let model = stand.grains();
     let is_looser = stated.value < own.value;
-    let ends: &[f64] = if is_looser { &[1.0, 2.0] } else { &[DENSE, -1.0] };
+    let ends: &[f64] = match (is_looser, model.medium.space) {
+        (true, _) => &[1.0, 2.0],
+        (false, Space::Planar) => &[-1.0],
+        (false, Space::Spatial) => &[DENSE_SPHERES, -1.0],
+    };
     let (mut near, mut far) = ((0.0, own.value), None);
     for &level in ends {
         let Some(changes) = at_level(model, level) else { return Ok(None) };

@@ -14,7 +14,7 @@ use super::leaders::{is_beaten, is_named, is_settled, leaders};
 use super::line_search::{Against, LineSearch};
 use super::observables::observables;
 use super::plan::{Plan, RIVALS, SEARCHES, SIDE_DRAWS};
-use super::preparation::{DENSE, Known, Preparation, at_level, is_far, listed};
+use super::preparation::{Known, Preparation, at_level, dense, is_far, listed};
 use super::response::Response;
 use super::screening::screened;
 use super::shared::{Column, Shared};
@@ -39,8 +39,7 @@ const ALONE: f64 = 0.5;
 /// what one says beside the other, and a covariance that seems to would veto what is true.
 const FRAMES: usize = 12;
 
-/// Preparations whose impacts say how observables follow the packing fraction, and the least difference of their beds.
-const LEVELS: [f64; 2] = [1.0, DENSE];
+/// Least difference of the packing fractions of loose and dense beds that says how observables follow it.
 const LEAST_DIFFERENCE: f64 = 0.002;
 
 /// Farthest that a packing fraction is searched from what is known of it.
@@ -253,7 +252,7 @@ impl Work<'_> {
         };
         let draws = [few(fit), few(confirm)].concat();
         let mut sides = Vec::new();
-        for level in LEVELS {
+        for level in [1.0, dense(self.stand.grains().medium.space)] {
             let Some(changes) = at_level(self.stand.grains(), level) else { return Ok(()) };
             let variation = Variation { before: changes, during: Vec::new() };
             let Ok(jobs) = self.stand.jobs(&conditions, &draws, &variation) else { continue };
