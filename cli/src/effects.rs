@@ -201,20 +201,19 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     }
     let law = library.iter().find(|law| law.name == name);
     let change = bed_changes::all().find(|change| change.id == name);
-    match (law, change, args.json) {
-        (None, None, _) => Err(unknown(name, &library)),
-        (None, Some(change), true) => output::json_to_stdout(&bed_changes::as_json(change)),
-        (None, Some(change), false) => output::to_stdout(&bed_changes::as_text(change)),
-        (Some(law), None, true) => output::json_to_stdout(&as_json(law)),
-        (Some(law), None, false) => output::to_stdout(&as_text(law)),
-        (Some(law), Some(change), true) => {
-            let mut object = as_json(law);
-            object["change_of_beds"] = bed_changes::as_json(change);
-            output::json_to_stdout(&object)
+    if law.is_none() && change.is_none() {
+        return Err(unknown(name, &library));
+    }
+    if !args.json {
+        let texts = [law.map(as_text), change.map(bed_changes::as_text)];
+        return output::to_stdout(&texts.into_iter().flatten().collect::<Vec<_>>().join("\n"));
+    }
+    match (law.map(as_json), change.map(bed_changes::as_json)) {
+        (Some(mut law), Some(change)) => {
+            law["change_of_beds"] = change;
+            output::json_to_stdout(&law)
         }
-        (Some(law), Some(change), false) => {
-            output::to_stdout(&format!("{}\n{}", as_text(law), bed_changes::as_text(change)))
-        }
+        (law, change) => output::json_to_stdout(&json!(law.or(change))),
     }
 }
 

@@ -77,7 +77,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     }
     let terminal = Terminal::new(args.quiet);
     let cache = cache_folder(args.cache.as_deref());
-    // A budget beyond what the clock can tell is none.
+    // A budget that overflows the clock sets no deadline.
     let deadline = args
         .budget
         .and_then(|budget| Duration::try_from_secs_f64(budget).ok())

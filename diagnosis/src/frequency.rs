@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_speaks_for_the_effect_and_no_name_against_none_of_three_truths() {
+    fn a_name_is_right_in_most_beds_and_no_name_does_not_prove_that_nothing_is_missing() {
         let named = of_bed_benchmark(Verdict::Supported, true).expect("it is counted");
         assert!(named.right > Some(0.5) && named.nothing < Some(0.1), "{named:?}");
         let unnamed = of_bed_benchmark(Verdict::BelowNoise, false).expect("it is counted");

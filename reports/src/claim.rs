@@ -195,9 +195,12 @@ pub fn probability(diagnosis: &Value) -> Option<String> {
             "How often such a verdict is right: `--calibrate` counts in simulated sets of your design.".to_owned()
         });
     };
-    let names_nothing =
-        texts(&diagnosis["effects"]).is_empty() && diagnosis["verdict"] != "explained-by-apparatus";
-    let (sets, more) = match of["counted_in"].as_str() {
+    let counted_in = of["counted_in"].as_str();
+    // An error of the apparatus counts as a name, except in the benchmark of beds, which hides none.
+    let names_nothing = texts(&diagnosis["effects"]).is_empty()
+        && (counted_in == Some("bed-benchmark")
+            || diagnosis["verdict"] != "explained-by-apparatus");
+    let (sets, more) = match counted_in {
         Some("design") => ("simulated sets of this design with this verdict", ""),
         Some("bed-benchmark") if names_nothing => {
             ("benchmark beds of 450 discs in which no effect is named", "")
@@ -273,6 +276,20 @@ mod tests {
         let mut without = diagnosis;
         without["amplitudes"] = json!([]);
         assert!(!bars(&without).expect("bars").contains("with the effect"));
+    }
+
+    #[test]
+    fn an_error_of_the_apparatus_is_no_named_effect_of_a_bed() {
+        let said = |counted_in: &str| {
+            let shares =
+                json!({ "counted_in": counted_in, "right": 0.1, "nothing": 0.5, "unlisted": 0.3 });
+            let verdict = "explained-by-apparatus";
+            probability(&json!({ "verdict": verdict, "effects": [], "probability": shares }))
+        };
+        let of_a_bed = said("bed-benchmark").expect("a sentence");
+        assert!(of_a_bed.contains("in which no effect is named"), "{of_a_bed}");
+        let of_a_law = said("benchmark").expect("a sentence");
+        assert!(of_a_law.contains("what is missing is named in 10 %"), "{of_a_law}");
     }
 
     #[test]

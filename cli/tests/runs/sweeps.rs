@@ -203,7 +203,7 @@ fn a_budget_that_is_spent_leaves_a_campaign_to_go_on_with() {
         sweep(&file, &out).arg("--budget").arg("1 ms").arg("--threads").arg("1").done().json();
     assert!(told["waiting"].as_u64() > Some(0), "{told}");
     assert!(out.join("report.html").exists() && out.join("results.parquet").exists());
-    // No clock tells when this one ends.
+    // This budget overflows the clock.
     let told = sweep(&file, &out).arg("--budget").arg("1e300 s").done().json();
     assert_eq!(told["waiting"], 0);
 }

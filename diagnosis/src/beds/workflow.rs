@@ -252,7 +252,8 @@ impl Work<'_> {
         };
         let draws = [few(fit), few(confirm)].concat();
         let mut sides = Vec::new();
-        for level in [1.0, dense(self.stand.grains().medium.space)] {
+        let dense = dense(self.stand.grains().medium.space).first();
+        for &level in [1.0].iter().chain(dense) {
             let Some(changes) = at_level(self.stand.grains(), level) else { return Ok(()) };
             let variation = Variation { before: changes, during: Vec::new() };
             let Ok(jobs) = self.stand.jobs(&conditions, &draws, &variation) else { continue };

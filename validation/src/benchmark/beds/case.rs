@@ -133,18 +133,8 @@ pub fn prepared(draws: u64) -> Vec<Case> {
         Hidden::Switch("rolling-resistance", 0.17),
         Hidden::Switch("grain-friction", 0.8),
     ];
-    let mut cases = Vec::new();
-    for (row, hidden) in hidden.into_iter().enumerate() {
-        for draw in 0..draws {
-            for (at, prepared) in Prepared::ALL.into_iter().enumerate() {
-                for is_weighed in [false, true] {
-                    let seed = 10_000 + 1000 * row as u64 + 100 * at as u64 + draw;
-                    cases.push(Case { prepared, is_weighed, ..Case::small(hidden, seed) });
-                }
-            }
-        }
-    }
-    cases
+    let ways = Prepared::ALL.map(|prepared| (prepared, &[false, true][..]));
+    crossed((10_000, draws), &hidden, &ways, Case::small)
 }
 
 /// Small beds that LAMMPS rains in every way that it can, of which the set says how they lie or does not, with nothing
@@ -157,20 +147,10 @@ pub fn by_lammps(draws: u64) -> Vec<Case> {
         Hidden::Switch("grain-friction", 1.5),
         Hidden::Unlisted,
     ];
-    let mut cases = Vec::new();
-    for (row, hidden) in hidden.into_iter().enumerate() {
-        for draw in 0..draws {
-            let ways = Prepared::ALL.into_iter().filter(|one| *one != Prepared::Tapped);
-            for (at, prepared) in ways.enumerate() {
-                for is_weighed in [false, true] {
-                    let seed = 20_000 + 1000 * row as u64 + 100 * at as u64 + draw;
-                    let case = Case::small(hidden, seed);
-                    cases.push(Case { prepared, is_weighed, is_by_lammps: true, ..case });
-                }
-            }
-        }
-    }
-    cases
+    let ways = Prepared::ALL.into_iter().filter(|one| *one != Prepared::Tapped);
+    let ways: Vec<_> = ways.map(|prepared| (prepared, &[false, true][..])).collect();
+    let case = |hidden, seed| Case { is_by_lammps: true, ..Case::small(hidden, seed) };
+    crossed((20_000, draws), &hidden, &ways, case)
 }
 
 /// Beds of spheres, prepared like those of the model, rougher and smoother, the latter two weighed, with nothing hidden, with
@@ -183,14 +163,27 @@ pub fn of_spheres(draws: u64) -> Vec<Case> {
         Hidden::Switch("grain-friction", 0.8),
         Hidden::Unlisted,
     ];
-    let ways = [(Prepared::Alike, false), (Prepared::Rough, true), (Prepared::Smooth, true)];
+    let ways: [(_, &[bool]); 3] =
+        [(Prepared::Alike, &[false]), (Prepared::Rough, &[true]), (Prepared::Smooth, &[true])];
+    let case = |hidden, seed| Case { bed: Grains::Spheres, ..Case::alike(hidden, seed) };
+    crossed((30_000, draws), &hidden, &ways, case)
+}
+
+/// Everything of `hidden` in beds of every way, weighed or not as it lists: `draws` of each, with seeds from `first` on.
+fn crossed(
+    (first, draws): (u64, u64),
+    hidden: &[Hidden],
+    ways: &[(Prepared, &[bool])],
+    case: impl Fn(Hidden, u64) -> Case,
+) -> Vec<Case> {
     let mut cases = Vec::new();
-    for (row, hidden) in hidden.into_iter().enumerate() {
+    for (row, &hidden) in hidden.iter().enumerate() {
         for draw in 0..draws {
-            for (at, (prepared, is_weighed)) in ways.into_iter().enumerate() {
-                let seed = 30_000 + 1000 * row as u64 + 100 * at as u64 + draw;
-                let bed = Grains::Spheres;
-                cases.push(Case { prepared, is_weighed, bed, ..Case::alike(hidden, seed) });
+            for (at, &(prepared, weighed)) in ways.iter().enumerate() {
+                let seed = first + 1000 * row as u64 + 100 * at as u64 + draw;
+                for &is_weighed in weighed {
+                    cases.push(Case { prepared, is_weighed, ..case(hidden, seed) });
+                }
             }
         }
     }
