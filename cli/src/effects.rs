@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use configs::contact_laws::{
     ActsOn, Candidacy, Candidate, GRAIN_FORCES, GrainForceEntry, LAWS, LawEntry,
 };
+use configs::engine::grains::Space;
 use configs::engine::ledger::{Channel, ChannelKind};
 use configs::engine::params::{Default, ParamSpec, Range};
 use configs::engine::units::format_si;
@@ -129,7 +130,11 @@ impl From<&GrainForceEntry> for Described {
         Self {
             name: force.name,
             medium: "grains",
-            acts_on: if force.planar { "discs" } else { "grains" },
+            acts_on: match force.only_in {
+                Some(Space::Planar) => "discs",
+                Some(Space::Spatial) => "spheres",
+                None => "grains",
+            },
             table: "[[effect]]",
             summary: force.summary,
             formula: force.formula,

@@ -105,6 +105,10 @@ pub struct RigidBody {
     pub name: String,
     /// (kg).
     pub mass: f64,
+    /// Volume that a fluid around it asks for (m³): 0 where there is none, and of a body in a plane.
+    pub volume: f64,
+    /// Mass of a fluid that moves with it (kg).
+    pub added_mass: f64,
     /// Principal moments of inertia, along the axes of the body frame (kg m²).
     pub inertia: Vec3,
     /// Centre of mass (m).
@@ -130,6 +134,8 @@ impl RigidBody {
         let mut body = Self {
             name: name.to_owned(),
             mass,
+            volume: 0.0,
+            added_mass: 0.0,
             inertia,
             position: Vec3::zeros(),
             orientation: Quat::identity(),
@@ -159,11 +165,11 @@ impl RigidBody {
         spin_of(self.orientation, self.inertia, self.angular_momentum)
     }
 
-    /// Kinetic energy of translation and of rotation (J).
+    /// Kinetic energy of translation, that of the fluid that moves with it included, and of rotation (J).
     #[must_use]
     pub fn kinetic_energy(&self) -> [f64; 2] {
         [
-            0.5 * self.mass * self.velocity.norm_squared(),
+            0.5 * self.moving_mass() * self.velocity.norm_squared(),
             0.5 * self.angular_momentum.dot(&self.spin()),
         ]
     }
@@ -202,6 +208,11 @@ impl RigidBody {
         (placement.inverse_mass, placement.inertia) = (0.0, f64::INFINITY);
     }
 
+    /// Its mass and that of the fluid that moves with it (kg).
+    fn moving_mass(&self) -> f64 {
+        self.mass + self.added_mass
+    }
+
     fn angular_momentum_of(&self, spin: Vec3) -> Vec3 {
         let body = self.orientation.inverse_transform_vector(&spin);
         self.orientation * self.inertia.component_mul(&body)
@@ -228,7 +239,7 @@ impl RigidBody {
 impl Mechanism for RigidBody {
     fn kick_drift(&mut self, dt: f64) {
         let half = 0.5 * dt;
-        let dv = (self.contact.force + self.weight) * (half / self.mass);
+        let dv = (self.contact.force + self.weight) * (half / self.moving_mass());
         let dl = self.contact.torque * half;
         self.velocity += dv;
         self.angular_momentum += dl;
@@ -252,7 +263,7 @@ impl Mechanism for RigidBody {
 
     fn kick(&mut self, dt: f64) {
         let half = 0.5 * dt;
-        self.velocity += (self.contact.force + self.weight) * (half / self.mass);
+        self.velocity += (self.contact.force + self.weight) * (half / self.moving_mass());
         self.angular_momentum += self.contact.torque * half;
     }
 

@@ -13,7 +13,9 @@ use crate::contacts::{Contacts, Memory, SavedBlock, Tally};
 use crate::dimension::{Dimension, Planar, Spatial, Stride};
 use crate::error::StepError;
 use crate::footprint::Footprint;
-use crate::grain_force::{self, GrainForce, GrainForces};
+use crate::grain_force::{
+    self, GrainForce, GrainForces, Surrounding, TakenByForces, sphere_radius,
+};
 use crate::grain_pass::{GrainPass, SumsOfGrains};
 use crate::grains::{Grain, Grains};
 use crate::ledger::{ChannelKind, Term, TermKind};
@@ -44,6 +46,8 @@ pub struct GrainBed {
     container: Container,
     absorber: Option<Absorber>,
     forces: GrainForces,
+    /// What those of a fluid took from the intruder in the last step (J).
+    taken_of_intruder: TakenByForces,
     walls: Vec<Part>,
     recessive: RecessiveWork,
     contacts: Contacts,
@@ -136,6 +140,7 @@ impl GrainBed {
             absorber: container.absorber(resting.space),
             container,
             forces: GrainForces::new(),
+            taken_of_intruder: TakenByForces::default(),
             recessive: RecessiveWork::new(n_intruder_parts),
             sums: contacts.no_sums(),
             at_walls: ContactsAtWalls::new(&contacts, grains.space, n_intruder_parts, walls.len()),
@@ -304,9 +309,18 @@ impl GrainBed {
         self.recessive.book(intruder.parts(), &self.sums.unfelt[self.walls.len()..], dt);
     }
 
-    /// Hands the load of the bed and of gravity to the intruder.
-    pub(crate) fn load_intruder(&self, intruder: &mut dyn Mechanism) {
-        intruder.load(&self.sums.wrenches[self.walls.len()..], self.gravity);
+    /// The fluid that the forces of this bed put around a body of `volume` (m³).
+    #[must_use]
+    pub fn fluid_around(&self, volume: f64) -> Surrounding {
+        grain_force::surrounding(&self.forces, sphere_radius(volume))
+    }
+
+    /// Hands the load of the bed, of the fluid in it and of gravity to the intruder, at the end of a step of `dt` (s).
+    pub(crate) fn load_intruder(&mut self, intruder: &mut dyn Mechanism, dt: f64) {
+        let wrenches = &mut self.sums.wrenches[self.walls.len()..];
+        self.taken_of_intruder =
+            grain_force::immerse(intruder, wrenches, &self.forces, self.gravity, dt);
+        intruder.load(wrenches, self.gravity);
     }
 
     /// Completes the force on each grain with the parts from other blocks and gravity, gives it half a kick
@@ -385,7 +399,8 @@ impl GrainBed {
             let [translation, rotation] = body.kinetic_energy();
             bodies[0] += translation;
             bodies[1] += rotation;
-            bodies[2] -= body.mass * self.gravity.dot(&body.position);
+            let borne = self.fluid_around(body.volume).displaced_mass;
+            bodies[2] -= (body.mass - borne) * self.gravity.dot(&body.position);
         }
         let grains =
             self.sums_of_grains.iter().fold(SumsOfGrains::default(), |sum, block| SumsOfGrains {
@@ -418,7 +433,8 @@ impl GrainBed {
         if self.absorber.is_some() {
             entries.push(grains.absorbed);
         }
-        entries.extend(&grains.taken[..self.forces.len()]);
+        let taken = grains.taken.iter().zip(&self.taken_of_intruder);
+        entries.extend(taken.take(self.forces.len()).map(|(grains, intruder)| grains + intruder));
         if self.has_recessive(intruder) {
             entries.push(self.recessive.work());
         }

@@ -3,7 +3,7 @@
 use crate::boundary::{Absorber, Period};
 use crate::contacts::Loads;
 use crate::dimension::{Components, Dimension, Load, Motion, Quads, Stride};
-use crate::grain_force::{ForceOnGrain, GrainForces, MovingGrain, TakenByForces};
+use crate::grain_force::{self, ForceOnGrain, GrainForces, MovingGrain, TakenByForces};
 use crate::grains::BlockOfGrains;
 use crate::math::Vec3;
 
@@ -38,6 +38,13 @@ pub(crate) struct GrainPass<'a> {
     pub(crate) stride: Stride,
 }
 
+/// What acts on a grain besides contacts and gravity.
+struct Besides {
+    load: Load,
+    /// Mass of a fluid that moves with it (kg).
+    added_mass: f64,
+}
+
 impl GrainPass<'_> {
     /// Completes the force on each grain with what acts besides contacts, gives it half a kick for the step
     /// that ends, takes its energy, and sends it half a kick and a drift into the next.
@@ -49,7 +56,7 @@ impl GrainPass<'_> {
         match self.absorber.is_none() && self.forces.is_empty() {
             true => self.with::<D, N>(block, loads, |_, _, _| None),
             false => self.with::<D, N>(block, loads, |grain, mass, sums| {
-                Some(self.drags(grain, mass, sums))
+                Some(self.besides(grain, mass, sums))
             }),
         }
     }
@@ -59,7 +66,7 @@ impl GrainPass<'_> {
         &self,
         block: BlockOfGrains<'_>,
         mut loads: Loads<'_>,
-        drags: impl Fn(&Motion, f64, &mut SumsOfGrains) -> Option<Load>,
+        besides: impl Fn(&Motion, f64, &mut SumsOfGrains) -> Option<Besides>,
     ) -> SumsOfGrains {
         let mut sums = SumsOfGrains::default();
         let pull = D::load(&Load { force: self.gravity, torque: Vec3::zeros() });
@@ -72,16 +79,21 @@ impl GrainPass<'_> {
             let grain = D::unpack(place, motion);
             let mut load = loads.of::<D, N>(k);
             load.add(&pull.times(mass));
-            if let Some(drag) = drags(&grain, mass, &mut sums) {
-                load.add(&D::load(&drag));
+            let mut inverse_inertia = over_mobility * grain.rolling_mobility;
+            let mut moving_mass = mass;
+            if let Some(besides) = besides(&grain, mass, &mut sums) {
+                load.add(&D::load(&besides.load));
+                moving_mass += besides.added_mass;
+                // A kick is a force over the mass of the grain alone; a fluid does not turn with it.
+                load = load.times(mass / moving_mass);
+                inverse_inertia *= moving_mass / mass;
             }
-            let inverse_inertia = over_mobility * grain.rolling_mobility;
             let squares = D::kick_drift(place, motion, &load, &self.stride, inverse_inertia);
             D::wrap(place, &self.period);
             // Twice the energy over the mass.
             let rotation = coefficient * (grain.radius * grain.radius) * squares.spin;
             sums.moving += u32::from(squares.speed + rotation > lift * grain.radius);
-            sums.translation += mass * squares.speed;
+            sums.translation += moving_mass * squares.speed;
             sums.rotation += mass * rotation;
             sums.potential -= mass * self.gravity.dot(&grain.position);
             sums.fastest_2 = sums.fastest_2.max(squares.drift_speed);
@@ -92,8 +104,8 @@ impl GrainPass<'_> {
     }
 
     /// What absorbing layers and forces on single grains do to one of `mass` (kg); what they took in the
-    /// step that ends goes to `sums`.
-    fn drags(&self, grain: &Motion, mass: f64, sums: &mut SumsOfGrains) -> Load {
+    /// step that ends, and what a fluid bears, goes to `sums`.
+    fn besides(&self, grain: &Motion, mass: f64, sums: &mut SumsOfGrains) -> Besides {
         let Motion { position, velocity, velocity_now, .. } = *grain;
         let step = 2.0 * self.stride.before;
         let mut load = Load { force: Vec3::zeros(), torque: Vec3::zeros() };
@@ -111,6 +123,9 @@ impl GrainPass<'_> {
             load.force += force;
             load.torque += torque;
         }
-        load
+        let fluid = grain_force::surrounding(self.forces, grain.radius);
+        load.force -= self.gravity * fluid.displaced_mass;
+        sums.potential += fluid.displaced_mass * self.gravity.dot(&position);
+        Besides { load, added_mass: fluid.added_mass }
     }
 }

@@ -42,7 +42,7 @@ pub(crate) fn step(
     bed.check_way(intruder, step, dt)?;
     bed.refresh_neighbours(intruder, dt);
     bed.evaluate_contacts(intruder, dt);
-    bed.load_intruder(intruder);
+    bed.load_intruder(intruder, dt);
     bed.kick_drift(&Stride { before: 0.5 * dt, after: 0.5 * dt, drift: dt });
     intruder.kick(dt);
     books.close(bed, intruder);
@@ -54,7 +54,7 @@ pub(crate) fn step(
 pub(crate) fn prime(bed: &mut GrainBed, intruder: &mut dyn Mechanism, books: &mut Books, dt: f64) {
     bed.refresh_neighbours(intruder, 0.0);
     bed.evaluate_contacts(intruder, 0.0);
-    bed.load_intruder(intruder);
+    bed.load_intruder(intruder, 0.0);
     bed.kick_drift(&Stride { before: 0.0, after: 0.5 * dt, drift: dt });
     books.open(bed, intruder);
 }

@@ -68,6 +68,8 @@ impl Dimension {
     pub const FORCE: Self = Self::of(1, 1, -2, 0);
     /// Pressure or elastic modulus (Pa).
     pub const PRESSURE: Self = Self::of(1, -1, -2, 0);
+    /// Dynamic viscosity (Pa s).
+    pub const VISCOSITY: Self = Self::of(1, -1, -1, 0);
     /// Energy (J).
     pub const ENERGY: Self = Self::of(1, 2, -2, 0);
 
@@ -193,6 +195,7 @@ const KINDS: &[Kind] = &[
     Kind { dimension: Dimension::AREA_DENSITY, name: "a density per area", units: &["kg/m^2"] },
     Kind { dimension: Dimension::FORCE, name: "a force", units: &["mN", "N"] },
     Kind { dimension: Dimension::PRESSURE, name: "a pressure", units: &["kPa", "MPa", "Pa"] },
+    Kind { dimension: Dimension::VISCOSITY, name: "a viscosity", units: &["mPa s", "Pa s"] },
     Kind { dimension: Dimension::ENERGY, name: "an energy", units: &["mJ", "J"] },
 ];
 

@@ -141,7 +141,8 @@ impl Assembly for Compact {
         let [vx, vz, spin, _] = state.rate;
         let shape = &*self.silhouette;
         let frontal_area = self.frontal_area;
-        let depth = -z;
+        // Not `-z`: at contact the depth is 0, not −0.
+        let depth = 0.0 - z;
         let below = depth.max(0.0);
         let velocity = Vec3::new(vx, 0.0, vz);
         let section = shape.section(below);

@@ -266,7 +266,11 @@ fn speed(sh: &Shell, mut args: Vec<OsString>) -> Result<ExitCode> {
 
 /// Runs a program of `validation`.
 fn study(sh: &Shell, name: &str, args: &[OsString]) -> Result<ExitCode> {
-    start(cmd!(sh, "cargo run --quiet --release --locked -p validation --bin {name} -- {args...}"))
+    // Selected beside `plunge`, it shares the crates that are compiled for it: the same features are asked of them.
+    start(cmd!(
+        sh,
+        "cargo run --quiet --release --locked -p plunge -p validation --bin {name} -- {args...}"
+    ))
 }
 
 /// Runs a program from where the user stands and hands its exit status on.

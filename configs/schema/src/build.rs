@@ -236,6 +236,11 @@ impl GrainForceChoice {
     pub(crate) fn build(&self) -> Box<dyn GrainForce> {
         (self.entry.build)(&self.params)
     }
+
+    /// Whether it is that of a fluid, which acts on the intruder too.
+    pub(crate) fn is_of_a_fluid(&self) -> bool {
+        self.build().surrounding(1.0).displaced_mass > 0.0
+    }
 }
 
 impl LawChoice {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use engine::body::{Mechanism, RigidBody};
 use engine::driven::Driven;
 use engine::grain_bed::GrainBed;
+use engine::grains::Space;
 use engine::launch::height_in_touch;
 use engine::math::{Quat, Vec3, turned_about_y};
 use engine::surface::Surface;
@@ -66,6 +67,10 @@ impl GrainModel<'_> {
         };
         let inertia = shape.inertia_per_mass * intruder.mass;
         let mut body = RigidBody::new(&intruder.name, surface, intruder.mass, inertia);
+        if space == Space::Spatial {
+            body.volume = (intruder.shape.volume)(&intruder.params, space);
+            body.added_mass = bed.fluid_around(body.volume).added_mass;
+        }
         body.launch(start, turned_about_y(self.attitude()), launch.velocity(), launch.spin);
         Ok(match launch.pushed_to {
             Some(_) => Box::new(Driven::new(body)),

@@ -1,6 +1,8 @@
 //! How fast contacts can change, and the time step that follows from it.
 
 use engine::contact::{Encounter, Partner};
+use engine::grain_force::MovingGrain;
+use engine::math::Vec3;
 use engine::stage::ContactStage;
 
 use crate::absorbing;
@@ -204,11 +206,16 @@ impl Scene {
 /// quarter of one layer's time still bears. So are forces that brake single grains.
 #[must_use]
 pub fn times(model: GrainModel<'_>) -> Times {
-    let mut times = Scene::of_run(model).times();
+    let scene = Scene::of_run(model);
+    let mut times = scene.times();
     let layers = absorbing::largest_rate(model).map(|rate| 1.0 / rate);
-    let gravity = model.medium.gravity;
+    let Lightest { radius, mass } = scene.lightest;
+    let velocity = Vec3::x() * scene.encounters[0].1.speed;
+    let weight = mass * model.medium.gravity;
+    let fastest = MovingGrain { velocity, spin: Vec3::zeros(), radius, mass, weight };
     let forces = model.medium.grain_forces.iter().map(|choice| choice.build());
-    let forces = forces.map(|force| force.relaxation_time(gravity)).filter(|time| time.is_finite());
+    let forces =
+        forces.map(|force| force.relaxation_time(&fastest)).filter(|time| time.is_finite());
     times.damping = layers.into_iter().chain(forces).chain(times.damping).reduce(f64::min);
     times
 }

@@ -1,9 +1,11 @@
 //! Forces on single grains, each in a file of its own and one line of [`GRAIN_FORCES`].
 
+mod fluid;
 mod pore_air;
 mod side_wall;
 
 use engine::grain_force::GrainForce;
+use engine::grains::Space;
 use engine::params::{ParamSpec, ParamTable};
 
 use crate::candidate::Candidacy;
@@ -12,8 +14,8 @@ use crate::candidate::Candidacy;
 pub struct GrainForceEntry {
     /// The name in TOML, kebab-case; the ledger has a dissipated channel of this name.
     pub name: &'static str,
-    /// Whether it acts on discs alone.
-    pub planar: bool,
+    /// The space in which alone it acts; `None` for both.
+    pub only_in: Option<Space>,
     /// What it is, in one sentence.
     pub summary: &'static str,
     /// The law as a formula, in plain text.
@@ -31,7 +33,8 @@ pub struct GrainForceEntry {
 }
 
 /// Every force on single grains, in the order of the docs.
-pub static GRAIN_FORCES: &[&GrainForceEntry] = &[&pore_air::ENTRY, &side_wall::ENTRY];
+pub static GRAIN_FORCES: &[&GrainForceEntry] =
+    &[&pore_air::ENTRY, &fluid::ENTRY, &side_wall::ENTRY];
 
 /// The force called `name`.
 #[must_use]
@@ -66,7 +69,7 @@ mod tests {
             let inertia = 0.5 * creeping.mass * creeping.radius * creeping.radius;
             let fastest = rate.max(torque.norm() / (inertia * 1e-6));
             // The square root of the smoothed speed costs a few roundings.
-            assert!((fastest * force.relaxation_time(9.81) - 1.0).abs() < 1e-9, "{fastest}");
+            assert!((fastest * force.relaxation_time(&creeping) - 1.0).abs() < 1e-9, "{fastest}");
             for k in 0..50 {
                 let angle = 0.1 * f64::from(k);
                 let velocity = Vec3::new(libm::cos(angle), 0.0, libm::sin(3.0 * angle));

@@ -33,7 +33,7 @@ impl GrainForce for PoreAir {
         ForceOnGrain { force, torque: Vec3::zeros() }
     }
 
-    fn relaxation_time(&self, _: f64) -> f64 {
+    fn relaxation_time(&self, _: &MovingGrain) -> f64 {
         1.0 / self.drag_rate
     }
 }
@@ -48,7 +48,7 @@ const PARAMS: &[ParamSpec] = &[ParamSpec::required(
 /// The registry's line.
 pub(super) const ENTRY: GrainForceEntry = GrainForceEntry {
     name: "pore-air",
-    planar: false,
+    only_in: None,
     summary: "The air between grains: a drag on each grain in proportion to its velocity.",
     formula: "F = −m γ v;  γ = 150 η (1 − ε)/(ε² ρ_s d²)",
     signature: "A bed that gives way later: fast impacts are stopped earlier, slow ones hardly.",

@@ -1,6 +1,7 @@
 //! Friction of discs with the plates that hold them in their plane.
 
 use engine::grain_force::{ForceOnGrain, GrainForce, MovingGrain};
+use engine::grains::Space;
 use engine::params::{ParamSpec, ParamTable};
 
 use super::GrainForceEntry;
@@ -39,8 +40,8 @@ impl GrainForce for SideWall {
     }
 
     /// Of a creeping disc; the spin, with I = ½ m r², is braked by ⅔ · 2 of the same rate.
-    fn relaxation_time(&self, gravity: f64) -> f64 {
-        0.75 * CREEP / (self.plate_friction * gravity)
+    fn relaxation_time(&self, grain: &MovingGrain) -> f64 {
+        0.75 * CREEP * grain.mass / (self.plate_friction * grain.weight)
     }
 }
 
@@ -51,7 +52,7 @@ const PARAMS: &[ParamSpec] =
 /// The registry's line.
 pub(super) const ENTRY: GrainForceEntry = GrainForceEntry {
     name: "side-wall",
-    planar: true,
+    only_in: Some(Space::Planar),
     summary: "Plates beside a planar bed: dry friction of every disc that moves.",
     formula: "F = −μ m g v/√(v² + v_c²);  T = −⅔ μ m g r · r ω/√((r ω)² + v_c²)",
     signature: "A stiffer bed: depth and stopping time fall together, more where more grains move.",

@@ -45,7 +45,7 @@ pub(super) const ATOMS: &[Atom] = &[
     atom("°", Dimension::ANGLE, DEGREE, 0, ""),
     atom("rpm", Dimension::SPIN, TURN_PER_MINUTE, 0, ""),
     atom("N", Dimension::FORCE, 1.0, 0, "numkM"),
-    atom("Pa", Dimension::PRESSURE, 1.0, 0, "kMG"),
+    atom("Pa", Dimension::PRESSURE, 1.0, 0, "umkMG"),
     atom("J", Dimension::ENERGY, 1.0, 0, "numk"),
 ];
 

@@ -1,19 +1,26 @@
 //! Forces on single grains do what their formulas say, and their energy is accounted for.
 
-use engine::body::NoIntruder;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use engine::body::{NoIntruder, RigidBody};
 use engine::boundary::Container;
 use engine::grain_force::GrainForce;
 use engine::grains::Space;
-use engine::math::Vec3;
+use engine::math::{Quat, Vec3};
 use engine::params::ParamTable;
 use engine::world::World;
-use validation::rig::{MIDDLE, ROOM, S1, SMALL, bed, run};
+use validation::rig::{MIDDLE, ROOM, S1, SMALL, Size, bed, run};
 
 use crate::closure::discs_in_flight;
 
-fn force(name: &str, (key, value): (&'static str, f64)) -> Box<dyn GrainForce> {
+fn force(name: &str, value: (&'static str, f64)) -> Box<dyn GrainForce> {
+    force_of(name, &[value])
+}
+
+fn force_of(name: &str, values: &[(&'static str, f64)]) -> Box<dyn GrainForce> {
     let mut params = ParamTable::new();
-    params.set(key, value);
+    values.iter().for_each(|&(key, value)| params.set(key, value));
     (contact_laws::find_grain_force(name).expect("the force is registered").build)(&params)
 }
 
@@ -93,4 +100,77 @@ fn what_forces_on_grains_take_is_accounted_for_among_collisions() {
     assert!(closure < 2.0 * without, "{closure:e} against {without:e}");
     // Each takes so much that the ledger would not close without it.
     assert!(taken.iter().all(|&share| share > 10.0 * closure), "{taken:?}");
+}
+
+const WATER: f64 = 998.0;
+
+fn water() -> Box<dyn GrainForce> {
+    force_of("fluid", &[("density", WATER), ("viscosity", 1e-3), ("hindrance", 1.0)])
+}
+
+/// Speed (m/s) at which the drag of water on a sphere balances what its weight and buoyancy leave, from
+/// (0.63 √v + c)² v = (4/3) |ρ/ρ_f − 1| g d, a square in √v.
+fn terminal_speed(density: f64, radius: f64) -> f64 {
+    let diameter = 2.0 * radius;
+    let viscous = 4.8 * (1e-3 / (WATER * diameter)).sqrt();
+    let drive = (4.0 / 3.0 * (density / WATER - 1.0).abs() * 9.81 * diameter).sqrt();
+    let root = ((viscous * viscous + 4.0 * 0.63 * drive).sqrt() - viscous) / (2.0 * 0.63);
+    root * root
+}
+
+fn sphere_mass(density: f64, radius: f64) -> f64 {
+    4.0 / 3.0 * PI * radius * radius * radius * density
+}
+
+#[test]
+fn a_bead_sinks_in_water_from_its_reduced_acceleration_to_its_terminal_velocity() {
+    const DT: f64 = 1e-4;
+    let (radius, density) = (1e-3, 2500.0);
+    let high = Vec3::new(0.4, 0.4, 0.9);
+    let bead = Size { radius, mass: sphere_mass(density, radius) }.grain(high, Vec3::zeros());
+    let gravity = Vec3::new(0.0, 0.0, -9.81);
+    let bed = bed((Space::Spatial, ROOM), gravity, &[bead], Vec::new(), 0);
+    let mut world = World::new(bed.with_forces([water()]), Box::new(NoIntruder), DT);
+    run(&mut world, 1);
+    let first = -world.bed().grains.velocity(0).z / DT;
+    let reduced = 9.81 * (density - WATER) / (density + 0.5 * WATER);
+    // Drag has taken a part of the order of the step over the relaxation time, 1/300.
+    assert!((first / reduced - 1.0).abs() < 0.01, "{first} against {reduced}");
+    run(&mut world, 10_000);
+    let speed = -world.bed().grains.velocity(0).z;
+    let terminal = terminal_speed(density, radius);
+    assert!((speed / terminal - 1.0).abs() < 1e-9, "{speed} against {terminal}");
+    let taken = world.ledger().value("dissipated_fluid_J").expect("the fluid has an account");
+    let unaccounted = world.ledger().balance().worst;
+    assert!(taken > 0.0 && unaccounted < 1e-4 * taken, "{unaccounted:e} of {taken:e}");
+}
+
+#[test]
+fn an_intruder_that_is_lighter_than_water_rises_to_its_terminal_velocity() {
+    const DT: f64 = 1e-4;
+    let (radius, density) = (5e-3, 250.0);
+    let mut params = ParamTable::new();
+    params.set("diameter", 2.0 * radius);
+    let shape = intruders::find("sphere").expect("the sphere is registered");
+    let body = (shape.build)(&params, Space::Spatial);
+    let mass = sphere_mass(density, radius);
+    let gravity = Vec3::new(0.0, 0.0, -9.81);
+    let far = SMALL.grain(Vec3::new(0.9, 0.9, 0.05), Vec3::zeros());
+    let bed = bed((Space::Spatial, ROOM), gravity, &[far], Vec::new(), 1).with_forces([water()]);
+    let inertia = body.inertia_per_mass * mass;
+    let mut ball = RigidBody::new("ball", Arc::clone(&body.surface), mass, inertia);
+    ball.volume = (shape.volume)(&params, Space::Spatial);
+    ball.added_mass = bed.fluid_around(ball.volume).added_mass;
+    ball.launch(Vec3::new(0.4, 0.4, 0.2), Quat::identity(), Vec3::zeros(), Vec3::zeros());
+    let mut world = World::new(bed, Box::new(ball), DT);
+    let rise = |world: &World| world.intruder().bodies()[0].velocity.z;
+    run(&mut world, 1);
+    let reduced = 9.81 * (WATER - density) / (density + 0.5 * WATER);
+    assert!((rise(&world) / DT / reduced - 1.0).abs() < 0.01, "{}", rise(&world) / DT);
+    run(&mut world, 10_000);
+    let terminal = terminal_speed(density, radius);
+    assert!((rise(&world) / terminal - 1.0).abs() < 1e-9, "{} {terminal}", rise(&world));
+    let taken = world.ledger().value("dissipated_fluid_J").expect("the fluid has an account");
+    let unaccounted = world.ledger().balance().worst;
+    assert!(taken > 0.0 && unaccounted < 1e-4 * taken, "{unaccounted:e} of {taken:e}");
 }

@@ -189,6 +189,15 @@ impl GrainChecks<'_> {
                     .help("write its spin as one number, counter-clockwise positive"),
             );
         }
+        let forces = self.grains.medium.grain_forces.iter();
+        let mut fluids = forces.filter(|force| force.is_of_a_fluid());
+        if let (Some(fluid), true) = (fluids.next(), intruder.shape.links.is_some()) {
+            self.common.reader.report(
+                Diagnostic::error("no chain is modelled in a fluid")
+                    .at(fluid.span, "the drag of spheres does not fit a slender link")
+                    .help("leave it out, or take an intruder of one piece: sphere, cylinder, hemisphere, cone"),
+            );
+        }
     }
 
     fn derived_quantities(&self) {

@@ -78,11 +78,15 @@ fn grain_force(table: &TableReader<'_>, space: Space) -> Option<GrainForceChoice
     let known: Vec<&'static str> = GRAIN_FORCES.iter().map(|force| force.name).collect();
     let name = table.name("name", &known, "the effect")?;
     let (entry, span) = (find_grain_force(&name.value)?, name.span?);
-    if entry.planar && space == Space::Spatial {
+    if let Some(only) = entry.only_in.filter(|only| *only != space) {
+        let (kind, why, dimension) = match only {
+            Space::Planar => ("discs", "spheres are not held between two plates", 2),
+            Space::Spatial => ("spheres", "the density of a fluid is that of a volume", 3),
+        };
         table.reader.report(
-            Diagnostic::error(format!("`{}` acts on discs alone", entry.name))
-                .at(span, "spheres are not held between two plates")
-                .help("leave it out, or make the bed one of discs: dimension = 2"),
+            Diagnostic::error(format!("`{}` acts on {kind} alone", entry.name)).at(span, why).help(
+                format!("leave it out, or make the bed one of {kind}: dimension = {dimension}"),
+            ),
         );
         return None;
     }
