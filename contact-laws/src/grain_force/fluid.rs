@@ -18,8 +18,8 @@ use crate::candidate::Candidacy;
 /// F = −¾ ρ_f V/d (0.63 √|v| + 4.8 √(η/(ρ_f d)))² v   (N)
 ///
 /// which is ½ ρ_f C_D A v² with C_D = (0.63 + 4.8/√Re)²: within 15 % of the standard curve of spheres up to Re = 100, 30 %
-/// above it at 1000, and again near it beyond. Between grains the drag is larger: by `hindrance` on grains; of
-/// Di Felice, ε^(1 − χ) at a porosity ε, with χ from 3.4 to 3.7, 10 at ε = 0.4.
+/// above it at 1000 and 15 % at 10 000. Between grains the drag is larger: by `hindrance` on grains; of Di Felice,
+/// ε^(1 − χ) at a porosity ε, with χ from 3.4 to 3.7, 10 at ε = 0.4.
 ///
 /// The fluid does not flow: it takes no momentum from grain to grain, and no pressure builds up in the pores of a bed that
 /// shears. Lubrication and the torque on a sphere that turns are left out. On the bed as it settles nothing of it acts.
@@ -125,7 +125,7 @@ mod tests {
             (10.0, 4.26, 0.15),
             (100.0, 1.09, 0.15),
             (1000.0, 0.471, 0.3),
-            (10_000.0, 0.405, 0.05),
+            (10_000.0, 0.405, 0.15),
         ] {
             let radius = 2e-3;
             let speed = reynolds * WATER.viscosity / (WATER.density * 2.0 * radius);

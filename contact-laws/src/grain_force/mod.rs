@@ -65,7 +65,8 @@ mod tests {
             // No motion is braked faster than it says: this one creeps and turns slowly.
             let creeping = disc(Vec3::x() * 1e-9, Vec3::y() * 1e-6);
             let ForceOnGrain { force: drag, torque } = force.on(&creeping);
-            let rate = drag.norm() / (creeping.mass * 1e-9);
+            let moving_mass = creeping.mass + force.surrounding(creeping.radius).added_mass;
+            let rate = drag.norm() / (moving_mass * 1e-9);
             let inertia = 0.5 * creeping.mass * creeping.radius * creeping.radius;
             let fastest = rate.max(torque.norm() / (inertia * 1e-6));
             // The square root of the smoothed speed costs a few roundings.
