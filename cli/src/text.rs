@@ -10,14 +10,19 @@ use terminal_size::{Width, terminal_size_of};
 /// Where the errors come from, in words.
 pub(crate) fn noise_words(noise: &Value) -> String {
     let percent = |key: &str| 100.0 * noise[key].as_f64().unwrap_or(0.0);
-    match noise["source"].as_str() {
-        Some("repeats") => format!(
+    match (noise["source"].as_str(), noise["run_sd_rel"].is_number()) {
+        (Some("repeats"), true) => format!(
+            "from repeats: runs scatter by {:.1} %, readings by {}",
+            percent("run_sd_rel"),
+            reading(noise)
+        ),
+        (Some("repeats"), false) => format!(
             "from repeats: coefficients {:.1} %, force along the path {:.1} %, readings {}",
             percent("coefficient_sd"),
             percent("path_force_sd"),
             reading(noise)
         ),
-        Some("stated") => "as stated by the set".to_owned(),
+        (Some("stated"), _) => "as stated by the set".to_owned(),
         _ => "not known".to_owned(),
     }
 }

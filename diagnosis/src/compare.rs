@@ -142,8 +142,10 @@ pub fn compare(
             compare_one(&revision.bench(set, observed), revision.name, (fitted, &holdout), seed);
         models.push(model.map_err(of(revision))?);
     }
-    let best = models.iter().min_by(|a, b| a.chi2_per_n.total_cmp(&b.chi2_per_n));
-    let noise = best.map_or(Value::Null, |best| best.fitted.noise.to_json(set));
+    let best =
+        models.iter().zip(revisions).min_by(|(a, _), (b, _)| a.chi2_per_n.total_cmp(&b.chi2_per_n));
+    let noise = best
+        .map_or(Value::Null, |(best, revision)| best.fitted.noise.to_json(set, revision.forward));
     let unpredicted = not_predicted.iter().map(|one| {
         let Unpredicted { model, condition, why } = one;
         let name = revisions[*model].name;

@@ -387,7 +387,7 @@ impl Judge<'_> {
             p1: (!ranking.scores.is_empty()).then_some(ranking.p),
             p_lof,
             p_lof_with,
-            noise: proposed.noise.to_json(bench.set),
+            noise: proposed.noise.to_json(bench.set, bench.forward),
             holdout: Some(held_out),
             unexplained,
             missing_force,
@@ -515,7 +515,7 @@ pub(crate) fn withdraw(
         parameters: parameters(bench.forward, &baseline.fit),
         apparatus: ApparatusError::all(bench.forward, baseline),
         preparation: ApparatusError::of_preparation(bench.forward, &baseline.fit),
-        noise: baseline.noise.to_json(bench.set),
+        noise: baseline.noise.to_json(bench.set, bench.forward),
         proposed: Some(baseline.clone()),
         ..diagnosis
     })

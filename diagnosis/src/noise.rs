@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 
 use crate::between::Between;
 use crate::curves::reading_error;
+use crate::forward::Forward;
 use crate::observed::{Observed, ObservedCondition, least_position_error, position_error};
 use crate::rounding::rounded;
 use crate::sensitivity::{Sensitivity, Spread};
@@ -166,23 +167,29 @@ impl Noise {
         all
     }
 
-    /// As JSON for a report on `set`.
+    /// As JSON for a report on `set`, by `forward`.
     #[must_use]
-    pub fn to_json(&self, set: &MeasurementSet) -> Value {
+    pub fn to_json(&self, set: &MeasurementSet, forward: &dyn Forward) -> Value {
         let (key, reading) = match set.kind.curve() {
             Some(curve) => (curve.sigma_key, reading_error(set, curve)),
             None => ("position_sigma_m", position_error(&set.instrument)),
         };
-        json!({
+        let mut all = json!({
             "source": self.source,
             (key): rounded(self.reading * reading),
-            "coefficient_sd": rounded(self.spread.coefficient),
-            "path_force_sd": rounded(self.spread.path),
             "speed_sd": rounded(self.spread.speed),
             "level_sd_m": rounded(self.spread.level),
             "clock_sd_s": rounded(self.spread.clock),
             "between_conditions_sd": rounded(self.sessions.sd),
-        })
+        });
+        // Where the model has runs of its own, those of the set scatter as they do, by this share of their numbers.
+        if forward.ways_of_scatter(0).is_some() {
+            all["run_sd_rel"] = rounded(self.spread.path);
+        } else {
+            all["coefficient_sd"] = rounded(self.spread.coefficient);
+            all["path_force_sd"] = rounded(self.spread.path);
+        }
+        all
     }
 
     /// Covariance of the numbers of one run.
