@@ -266,11 +266,7 @@ fn speed(sh: &Shell, mut args: Vec<OsString>) -> Result<ExitCode> {
 
 /// Runs a program of `validation`.
 fn study(sh: &Shell, name: &str, args: &[OsString]) -> Result<ExitCode> {
-    // Selected beside `plunge`, it shares the crates that are compiled for it: the same features are asked of them.
-    start(cmd!(
-        sh,
-        "cargo run --quiet --release --locked -p plunge -p validation --bin {name} -- {args...}"
-    ))
+    start(cmd!(sh, "cargo run --quiet --release --locked -p validation --bin {name} -- {args...}"))
 }
 
 /// Runs a program from where the user stands and hands its exit status on.
