@@ -130,7 +130,7 @@ impl From<&GrainForceEntry> for Described {
         Self {
             name: force.name,
             medium: "grains",
-            acts_on: match force.only_in {
+            acts_on: match force.only_in.map(|(space, _)| space) {
                 Some(Space::Planar) => "discs",
                 Some(Space::Spatial) => "spheres",
                 None => "grains",

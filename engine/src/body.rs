@@ -105,7 +105,7 @@ pub struct RigidBody {
     pub name: String,
     /// (kg).
     pub mass: f64,
-    /// Volume that a fluid around it asks for (m³): 0 where there is none, and of a body in a plane.
+    /// Volume (m³), by which a fluid acts on it; 0 for a disc and for a link, on which none acts.
     pub volume: f64,
     /// Mass of a fluid that moves with it (kg).
     pub added_mass: f64,

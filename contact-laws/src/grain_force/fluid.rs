@@ -18,8 +18,8 @@ use crate::candidate::Candidacy;
 /// F = −¾ ρ_f V/d (0.63 √|v| + 4.8 √(η/(ρ_f d)))² v   (N)
 ///
 /// which is ½ ρ_f C_D A v² with C_D = (0.63 + 4.8/√Re)²: within 15 % of the standard curve of spheres up to Re = 100, 30 %
-/// above it at 1000 and 15 % at 10 000. Between grains the drag is larger: by `hindrance` on grains; of Di Felice,
-/// ε^(1 − χ) at a porosity ε, with χ from 3.4 to 3.7, 10 at ε = 0.4.
+/// above it at 1000 and 15 % at 10 000. Neighbours raise the drag on a grain, by the factor
+/// `hindrance`: at a porosity ε it is ε^(1 − χ) with χ from 3.05 to 3.7 (Di Felice), which is 7 to 12 at ε = 0.4.
 ///
 /// The fluid does not flow: it takes no momentum from grain to grain, and no pressure builds up in the pores of a bed that
 /// shears. Lubrication and the torque on a sphere that turns are left out. On the bed as it settles nothing of it acts.
@@ -43,6 +43,11 @@ impl Fluid {
         let root = 0.63 * speed.sqrt() + viscous;
         0.75 * self.density * sphere_volume(radius) / diameter * root * root
     }
+
+    /// The same on a grain among others.
+    fn resistance_on(&self, grain: &MovingGrain) -> f64 {
+        self.hindrance * self.resistance(grain.radius, grain.velocity.norm())
+    }
 }
 
 fn sphere_volume(radius: f64) -> f64 {
@@ -55,13 +60,11 @@ impl GrainForce for Fluid {
     }
 
     fn on(&self, grain: &MovingGrain) -> ForceOnGrain {
-        let resistance = self.hindrance * self.resistance(grain.radius, grain.velocity.norm());
-        ForceOnGrain { force: grain.velocity * -resistance, torque: Vec3::zeros() }
+        ForceOnGrain { force: grain.velocity * -self.resistance_on(grain), torque: Vec3::zeros() }
     }
 
     fn relaxation_time(&self, grain: &MovingGrain) -> f64 {
-        let resistance = self.hindrance * self.resistance(grain.radius, grain.velocity.norm());
-        (grain.mass + self.surrounding(grain.radius).added_mass) / resistance
+        (grain.mass + self.surrounding(grain.radius).added_mass) / self.resistance_on(grain)
     }
 
     fn surrounding(&self, radius: f64) -> Surrounding {
@@ -88,13 +91,13 @@ const PARAMS: &[ParamSpec] = &[
 /// The registry's line.
 pub(super) const ENTRY: GrainForceEntry = GrainForceEntry {
     name: "fluid",
-    only_in: Some(Space::Spatial),
+    only_in: Some((Space::Spatial, "the density of a fluid is that of a volume")),
     summary: "A fluid at rest in the bed and above it: buoyancy, drag and added mass of grains and intruder.",
     formula: "F = ρ_f V g − ½ ρ_f V dv/dt − ¾ ρ_f V/d (0.63 √|v| + 4.8 √(η/(ρ_f d)))² v",
     signature: "Grains weigh less, so that friction grows less with depth; fast impacts are braked before contact too.",
     source: "Dallavalle, Micromeritics (1948); Di Felice, Int. J. Multiphase Flow 20, 153 (1994); Lamb, Hydrodynamics (1932)",
     params: PARAMS,
-    candidacy: Candidacy::None("a fluid is known to whoever measures, and is stated in the model"),
+    candidacy: Candidacy::None("the model states its fluid, which an experimenter knows"),
     build: |params: &ParamTable| {
         Box::new(Fluid {
             density: params.get("density"),
@@ -118,7 +121,7 @@ mod tests {
 
     #[test]
     fn the_drag_is_that_of_the_standard_curve_within_its_fit() {
-        // Re and C_D of a sphere: Clift, Grace & Weber, Bubbles, Drops, and Particles (1978), table 5.1.
+        // Re and C_D of a sphere: Clift, Grace & Weber, Bubbles, Drops, and Particles (1978), chapter 5.
         for (reynolds, standard, within) in [
             (0.1, 244.0, 0.15),
             (1.0, 27.2, 0.15),

@@ -14,8 +14,8 @@ use crate::candidate::Candidacy;
 pub struct GrainForceEntry {
     /// The name in TOML, kebab-case; the ledger has a dissipated channel of this name.
     pub name: &'static str,
-    /// The space in which alone it acts; `None` for both.
-    pub only_in: Option<Space>,
+    /// The only space in which it acts, and why; `None` if it acts in both.
+    pub only_in: Option<(Space, &'static str)>,
     /// What it is, in one sentence.
     pub summary: &'static str,
     /// The law as a formula, in plain text.

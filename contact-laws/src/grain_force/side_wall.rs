@@ -45,6 +45,9 @@ impl GrainForce for SideWall {
     }
 }
 
+/// Why spheres do not have it.
+const DISCS_ALONE: &str = "spheres are not held between two plates";
+
 const PARAMS: &[ParamSpec] =
     &[ParamSpec::number("plate_friction", "μ, friction of a disc with the plates over its weight")
         .usual(0.01, 1.0)];
@@ -52,7 +55,7 @@ const PARAMS: &[ParamSpec] =
 /// The registry's line.
 pub(super) const ENTRY: GrainForceEntry = GrainForceEntry {
     name: "side-wall",
-    only_in: Some(Space::Planar),
+    only_in: Some((Space::Planar, DISCS_ALONE)),
     summary: "Plates beside a planar bed: dry friction of every disc that moves.",
     formula: "F = −μ m g v/√(v² + v_c²);  T = −⅔ μ m g r · r ω/√((r ω)² + v_c²)",
     signature: "A stiffer bed: depth and stopping time fall together, more where more grains move.",
@@ -64,7 +67,7 @@ pub(super) const ENTRY: GrainForceEntry = GrainForceEntry {
         range: (0.0, 1.0),
         separable_from: "from grain-friction: slow impacts, or plates of another roughness",
         alike_below: &[],
-        needs: &[Need::Discs("spheres are not held between two plates"), Need::Gravity],
+        needs: &[Need::Discs(DISCS_ALONE), Need::Gravity],
         params: |_, q| vec![("plate_friction", q)],
     }),
     build: |params: &ParamTable| {

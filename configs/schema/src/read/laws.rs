@@ -78,10 +78,10 @@ fn grain_force(table: &TableReader<'_>, space: Space) -> Option<GrainForceChoice
     let known: Vec<&'static str> = GRAIN_FORCES.iter().map(|force| force.name).collect();
     let name = table.name("name", &known, "the effect")?;
     let (entry, span) = (find_grain_force(&name.value)?, name.span?);
-    if let Some(only) = entry.only_in.filter(|only| *only != space) {
-        let (kind, why, dimension) = match only {
-            Space::Planar => ("discs", "spheres are not held between two plates", 2),
-            Space::Spatial => ("spheres", "the density of a fluid is that of a volume", 3),
+    if let Some((only, why)) = entry.only_in.filter(|(only, _)| *only != space) {
+        let (kind, dimension) = match only {
+            Space::Planar => ("discs", 2),
+            Space::Spatial => ("spheres", 3),
         };
         table.reader.report(
             Diagnostic::error(format!("`{}` acts on {kind} alone", entry.name)).at(span, why).help(
