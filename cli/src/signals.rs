@@ -12,6 +12,7 @@ use std::thread;
 use std::time::Duration;
 
 use anyhow::Context as _;
+use nix::sys::signal::{SigSet, SigmaskHow, Signal};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use signal_hook::{flag, low_level};
@@ -48,6 +49,8 @@ pub(crate) fn listen(consequence: &'static str) -> anyhow::Result<()> {
         .into_iter()
         .filter(|number| ignored >> (number - 1) & 1 == 0)
         .collect();
+    // Until every handler is there they wait: one that comes while the first is installed would be lost.
+    let before = held_back(&heeded)?;
     // First, so that a signal which any handler catches reaches the thread, however early it comes.
     let mut signals = Signals::new(&heeded).context("cannot listen for signals")?;
     for number in heeded {
@@ -59,6 +62,7 @@ pub(crate) fn listen(consequence: &'static str) -> anyhow::Result<()> {
             })
             .context("cannot listen for signals")?;
     }
+    before.thread_set_mask().context("cannot listen for signals")?;
     let wait = move || {
         if let Some(number) = signals.forever().next() {
             // One that came before the flags were registered has not set it. `asked` stays its handler's alone:
@@ -127,6 +131,13 @@ fn end(number: i32, consequence: &str) {
 /// What a command says that a signal has stopped.
 pub(crate) fn words(consequence: &str) -> String {
     format!("stopped by a signal; {consequence}\n")
+}
+
+/// Holds `signals` back from this thread, the only one there is; gives what it held back before.
+fn held_back(signals: &[i32]) -> anyhow::Result<SigSet> {
+    let numbers = signals.iter().map(|&number| Signal::try_from(number));
+    let set: SigSet = numbers.collect::<Result<_, _>>().context("cannot listen for signals")?;
+    set.thread_swap_mask(SigmaskHow::SIG_BLOCK).context("cannot hold signals back")
 }
 
 /// The signals that the program was started to ignore, signal n as bit n − 1, where the system says so.
