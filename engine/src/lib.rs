@@ -20,6 +20,7 @@ mod dimension;
 pub mod driven;
 pub mod error;
 pub mod feature;
+pub mod fluid;
 pub mod footprint;
 pub mod grain_bed;
 pub mod grain_force;

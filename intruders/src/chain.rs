@@ -1,5 +1,6 @@
 //! The equations of two equal links on a joint without friction at their tops.
 
+use engine::grains::Space;
 use engine::math::{Vec3, Vec4};
 use engine::params::ParamTable;
 use resistive::assembly::{COORDINATES, PARTS};
@@ -107,6 +108,11 @@ impl Assembly for Chain {
     fn weight_at(&self, index: usize, state: &State) -> (f64, f64) {
         let link = &self.links[index];
         (link.centre(&pose(index, state)).z, link.mass)
+    }
+
+    fn volume(&self, index: usize) -> f64 {
+        let link = &self.links[index];
+        Rod::volume(link.length, link.diameter, Space::Spatial)
     }
 
     fn placement(&self, index: usize, state: &State) -> (Vec3, f64) {

@@ -21,6 +21,7 @@ pub(crate) const CYLINDER: ShapeEntry = ShapeEntry {
     planar: true,
     spatial: true,
     planar_in_resistance: true,
+    slender: false,
     params: PARAMS,
     build: |params, space| {
         let shape = Flat::new(params, space);

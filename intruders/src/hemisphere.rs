@@ -22,6 +22,7 @@ pub(crate) const HEMISPHERE: ShapeEntry = ShapeEntry {
     planar: true,
     spatial: true,
     planar_in_resistance: true,
+    slender: false,
     params: PARAMS,
     build: |params, space| {
         let shape = Dome::new(params, space);

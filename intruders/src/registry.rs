@@ -26,6 +26,8 @@ pub struct ShapeEntry {
     pub spatial: bool,
     /// Whether a planar resistive medium knows it too; a spatial one knows every spatial shape.
     pub planar_in_resistance: bool,
+    /// Whether it is of slender links, whose drag and added mass in a fluid are not those of a compact body.
+    pub slender: bool,
     /// The parameters it takes, besides the mass or density that every intruder has.
     pub params: &'static [ParamSpec],
     /// Makes a body of it from SI values that fill `params`; of a chain, one of its equal links.

@@ -16,6 +16,7 @@ pub(crate) const TWO_LINK_CHAIN: ShapeEntry = ShapeEntry {
     planar: true,
     spatial: true,
     planar_in_resistance: false,
+    slender: true,
     params: PARAMS,
     build: |params, space| Chain::new(params, 1.0).links[0].body(space),
     links: Some(HingedLinks::new),

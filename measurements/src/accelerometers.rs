@@ -74,7 +74,8 @@ fn check_signs(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut 
     let before = || set.runs.iter().flat_map(|run| &run.samples).filter(|one| one.at < 0.0);
     let n = before().count();
     let mean = before().map(|one| one.value).sum::<f64>() / n.max(1) as f64;
-    if n > 0 && mean.abs() > FALLING * gravity {
+    let falls_freely = set.all_beds().all(|bed| bed.stated.fluid.is_none());
+    if n > 0 && falls_freely && mean.abs() > FALLING * gravity {
         findings.report(
             Diagnostic::error(format!(
                 "the readings before contact are {mean:.2} m/s^2, and those of a body in free fall are 0"

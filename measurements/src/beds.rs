@@ -127,7 +127,16 @@ fn bed(table: TableReader<'_>, (path, planar): (&str, bool), unstated: &mut Unst
         Geometry::Planar => optional(&table, &keys::AREA_DENSITY_SIGMA),
         Geometry::Spatial => optional(&table, &keys::BULK_DENSITY_SIGMA),
     };
+    let fluid = configs::fluid(&table).flatten();
+    if let (Some(_), Geometry::Planar) = (fluid, geometry) {
+        table.reader.report(
+            Diagnostic::error("a planar bed has no fluid")
+                .at(table.span_of("fluid_density"), "the density of a fluid is that of a volume")
+                .help("leave the fluid out, or write geometry = \"3d\""),
+        );
+    }
     let stated = StatedBed {
+        fluid,
         packing_fraction: optional(&table, &keys::PACKING_FRACTION),
         packing_fraction_sigma: optional(&table, &keys::PACKING_FRACTION_SIGMA),
         surface_height: optional(&table, &keys::SURFACE_HEIGHT),

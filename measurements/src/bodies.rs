@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use configs::Diagnostic;
 use configs::reader::Reader;
+use engine::fluid::Fluid;
 
 use super::Condition;
 use super::conditions::ConditionPlaces;
@@ -105,6 +106,17 @@ fn shaft(reader: &Reader<'_>, condition: &Condition, places: &ConditionPlaces) {
 /// A number as it is written, without the noise of a multiplication.
 fn significant(value: f64) -> f64 {
     format!("{value:.9e}").parse().unwrap_or(value)
+}
+
+/// Acceleration (m/s²) with which the body of `condition` falls in `fluid` at its speed at contact; `None` where its volume
+/// is not known.
+pub(super) fn fall(condition: &Condition, gravity: f64, fluid: &Fluid) -> Option<f64> {
+    let Condition { diameter, mass, speed, .. } = *condition;
+    let volume = volume(condition)?;
+    let drag = fluid.resistance(diameter, PI / 4.0 * diameter * diameter, speed) * speed;
+    let weight = (mass - fluid.density * volume) * gravity;
+    let sine = libm::sin(condition.angle_deg.to_radians());
+    Some((weight - drag * sine) / (mass + fluid.added_mass(diameter, volume)))
 }
 
 /// (m³); `None` where the shape or the set does not say it.

@@ -128,6 +128,9 @@ fn describe_bed(name: &str, bed: &Bed) -> String {
     let mut parts = vec![format!("{name}{kind} bed")];
     parts.extend(bed.bulk_density.map(|density| format!("{density} {unit}")));
     parts.extend(bed.grain_diameter.map(|diameter| format!("grains of {diameter} m")));
+    parts.extend(bed.stated.fluid.map(|fluid| {
+        format!("under a fluid of {} kg/m^3 and {} Pa s", fluid.density, fluid.viscosity)
+    }));
     parts.push(format!("gravity {} m/s^2", bed.gravity));
     format!("{}\n", parts.join(", "))
 }

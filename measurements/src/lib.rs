@@ -64,6 +64,8 @@ mod unstated;
 mod write;
 mod zeros;
 
+use engine::fluid::Fluid;
+
 pub use agreement::Agreement;
 pub use contact::Contact;
 pub use contradictions::{Contradiction, ContradictionKind};
@@ -131,6 +133,15 @@ impl MeasurementSet {
     #[must_use]
     pub fn gravity_of(&self, run: &Run) -> f64 {
         self.bed_of(&self.conditions[run.condition]).gravity
+    }
+
+    /// Acceleration (m/s²) with which the body of `condition` falls at its speed at contact, just above the bed.
+    #[must_use]
+    pub fn fall_of(&self, condition: &Condition) -> f64 {
+        let bed = self.bed_of(condition);
+        let in_fluid =
+            bed.stated.fluid.and_then(|fluid| bodies::fall(condition, bed.gravity, &fluid));
+        in_fluid.unwrap_or(bed.gravity)
     }
 
     /// Mean diameter (m) of the coarsest grains that are stated; 0 where none is.
@@ -246,6 +257,8 @@ pub struct NamedBed {
 /// What a set states of its bed, and how well: a model of grains is held against it, and prepared to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StatedBed {
+    /// The fluid in the bed and above it, unless it is air.
+    pub fluid: Option<Fluid>,
     /// Area (volume) of the grains over base times mean height of the surface (–).
     pub packing_fraction: Option<f64>,
     /// Standard error of that.

@@ -31,6 +31,7 @@ pub(super) fn check(
     for (condition, place) in set.conditions.iter().zip(places) {
         check_condition(condition, place, findings);
     }
+    check_fluid(set, findings);
     let stops = |run: &&Run| [run.stop_time, run.final_z, run.final_x].iter().any(Option::is_some);
     if let Some(run) = set.runs.iter().find(stops) {
         let name = shorten(&run.name);
@@ -47,6 +48,18 @@ pub(super) fn check(
     match findings.errors() {
         0 => check_units(set, places).into_iter().collect(),
         _ => Vec::new(),
+    }
+}
+
+/// The drive and the zero of its force know nothing of a fluid.
+fn check_fluid(set: &MeasurementSet, findings: &mut Findings) {
+    if set.all_beds().any(|bed| bed.stated.fluid.is_some()) {
+        findings.report(
+            Diagnostic::error("[bed]: a push is not modelled in a fluid").help(
+                "leave `fluid_density` and `fluid_viscosity` out: forces are counted from what the drive reads above \
+                 the bed",
+            ),
+        );
     }
 }
 

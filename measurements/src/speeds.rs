@@ -47,7 +47,7 @@ fn read(set: &MeasurementSet, condition: usize) -> Vec<Reading> {
     let of = super::Condition { speed: 0.0, ..set.conditions[condition].clone() };
     let own = set.runs.iter().filter(|run| run.condition == condition);
     let speed = |run: &super::Run| {
-        let known = (set.gravity_of(run), contact::FREE, zeros::position(set, run));
+        let known = (set.fall_of(&of), contact::FREE, zeros::position(set, run));
         let contact = contact::read(run, &of, known, 0.0)?;
         // Without frames before the contact the bed has braked already.
         let is_seen = contact.first < contact.time.value - contact.step;

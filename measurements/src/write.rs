@@ -275,6 +275,8 @@ impl Toml {
         self.number("grain_diameter", bed.grain_diameter);
         let stated = &bed.stated;
         for (key, value) in [
+            ("fluid_density", stated.fluid.map(|fluid| fluid.density)),
+            ("fluid_viscosity", stated.fluid.map(|fluid| fluid.viscosity)),
             ("packing_fraction", stated.packing_fraction),
             ("packing_fraction_sigma", stated.packing_fraction_sigma),
             ("surface_height", stated.surface_height),

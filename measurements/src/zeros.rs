@@ -168,7 +168,7 @@ fn contacts(set: &MeasurementSet, level: f64, zero: f64) -> Vec<RunContact> {
     let read = |doubt: f64, run: usize| {
         let of = &set.runs[run];
         let condition = &set.conditions[of.condition];
-        let known = (set.gravity_of(of), doubt, position(set, of));
+        let known = (set.fall_of(condition), doubt, position(set, of));
         let contact = contact::read(of, condition, known, zero)?;
         let is_off = clock_is_off(&contact) || depth_is_off(&contact, level);
         Some(RunContact { run, contact, is_off, is_slowed: false })

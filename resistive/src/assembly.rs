@@ -75,6 +75,9 @@ pub trait Assembly: Send + Sync {
     /// (kg).
     fn weight_at(&self, index: usize, state: &State) -> (f64, f64);
 
+    /// Volume of part `index`, immersed or not (m³, planar m²).
+    fn volume(&self, index: usize) -> f64;
+
     /// Where part `index` is drawn: the centre of its shape (m) and its rotation about y (rad).
     fn placement(&self, index: usize, state: &State) -> (Vec3, f64);
 
@@ -192,6 +195,10 @@ impl Assembly for Compact {
 
     fn weight_at(&self, _: usize, state: &State) -> (f64, f64) {
         (state.position[1] + self.reach, self.mass)
+    }
+
+    fn volume(&self, _: usize) -> f64 {
+        self.silhouette.volume(self.silhouette.height())
     }
 
     fn placement(&self, _: usize, state: &State) -> (Vec3, f64) {

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::assembly::{Assembly, COORDINATES, PARTS, State};
 use super::error::ImpactError;
+use super::fluid;
 use super::holding::{accelerate, is_held};
 use super::modes::{AXES, Modes};
 use super::motion::System;
@@ -124,14 +125,17 @@ struct Progress {
 }
 
 impl Impact {
-    /// `assembly` in the state `start`, in contact or above, on `bed` under `laws`.
+    /// `assembly` in the state `start`, in contact or above, on `bed` under `laws` and the fluid of the bed.
     #[must_use]
     pub fn new(
         assembly: Box<dyn Assembly>,
-        laws: Vec<Box<dyn ResistanceLaw>>,
+        mut laws: Vec<Box<dyn ResistanceLaw>>,
         bed: Surroundings,
         start: State,
     ) -> Self {
+        laws.extend(
+            bed.fluid.into_iter().flat_map(|fluid| fluid::around(fluid, &*assembly, &start)),
+        );
         Self {
             assembly,
             laws,

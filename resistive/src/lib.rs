@@ -9,6 +9,7 @@ pub mod assembly;
 mod driven;
 mod error;
 mod felt;
+mod fluid;
 pub mod formula;
 mod holding;
 pub mod impact;
@@ -20,6 +21,7 @@ mod record;
 pub mod silhouette;
 mod solver;
 
+use engine::fluid::Fluid;
 use engine::ledger::Channel;
 use engine::math::Vec3;
 
@@ -49,6 +51,8 @@ pub struct Surroundings {
     pub packing: Option<f64>,
     /// Depth of the bed (m), where it is known.
     pub bed_depth: Option<f64>,
+    /// The fluid in the bed and above it, if it is none to be left out, such as air.
+    pub fluid: Option<Fluid>,
 }
 
 /// How far a part is in the medium, and what of it the medium feels.

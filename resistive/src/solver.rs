@@ -376,7 +376,13 @@ mod tests {
     fn backward_in_time_a_flight_is_a_parabola_between_steps_too() {
         let body = Compact::new(Arc::new(Shapeless), 0.01, 0.1, 1e-5);
         let gravity = 9.81;
-        let bed = Surroundings { bulk_density: 1500.0, gravity, packing: None, bed_depth: None };
+        let bed = Surroundings {
+            bulk_density: 1500.0,
+            gravity,
+            packing: None,
+            bed_depth: None,
+            fluid: None,
+        };
         let start = Compact::at_surface(Vec3::new(1.5, 0.0, -2.0), 0.0);
         let impact = Impact::new(Box::new(body), Vec::new(), bed, start);
         let times = [-1e-4, -1.1e-3, -3.7e-3, -9.2e-3, -0.04];

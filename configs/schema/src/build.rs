@@ -238,7 +238,8 @@ impl GrainForceChoice {
     }
 
     /// Whether it is that of a fluid, which acts on the intruder too.
-    pub(crate) fn is_of_a_fluid(&self) -> bool {
+    #[must_use]
+    pub fn is_of_a_fluid(&self) -> bool {
         self.build().surrounding(1.0).displaced_mass > 0.0
     }
 }

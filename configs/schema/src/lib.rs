@@ -46,6 +46,7 @@ pub use model::{
     RunSettings, Settle, SidesKind, StartPositions, StartX, Stepping, TimeStep,
 };
 pub use paths::PathError;
+pub use read::fluid;
 pub use reader::interval as describe_range;
 pub use resolved::quoted as toml_string;
 pub use shipped::{SHIPPED, Shipped, find as find_shipped};

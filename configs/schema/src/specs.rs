@@ -231,6 +231,22 @@ pub(crate) const PACKING: ParamSpec = required(
 pub(crate) const BED_DEPTH: ParamSpec =
     required("bed_depth", LENGTH, POSITIVE, Range::closed(1e-3, 100.0), "the depth of the bed");
 
+pub(crate) const FLUID_DENSITY: ParamSpec = required(
+    "fluid_density",
+    Dimension::DENSITY,
+    POSITIVE,
+    Range::closed(0.1, 2e3),
+    "the density of the fluid in the bed and above it",
+);
+
+pub(crate) const FLUID_VISCOSITY: ParamSpec = required(
+    "fluid_viscosity",
+    Dimension::VISCOSITY,
+    POSITIVE,
+    Range::closed(1e-6, 10.0),
+    "the viscosity of the fluid in the bed and above it",
+);
+
 pub(crate) const LOG_INTERVAL: ParamSpec = required(
     "interval",
     Dimension::TIME,

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use engine::fluid::Fluid;
 use engine::grain_force::{ForceOnGrain, GrainForce, MovingGrain, Surrounding};
 use engine::grains::Space;
 use engine::math::Vec3;
@@ -17,8 +18,7 @@ use crate::candidate::Candidacy;
 ///
 /// F = −¾ ρ_f V/d (0.63 √|v| + 4.8 √(η/(ρ_f d)))² v   (N)
 ///
-/// which is ½ ρ_f C_D A v² with C_D = (0.63 + 4.8/√Re)²: within 15 % of the standard curve of spheres up to Re = 100, 30 %
-/// above it at 1000 and 15 % at 10 000. Neighbours raise the drag on a grain, by the factor
+/// ([`Fluid::resistance`]). Neighbours raise the drag on a grain, by the factor
 /// `hindrance`: at a porosity ε it is ε^(1 − χ) with χ from 3.05 to 3.7 (Di Felice), which is 7 to 12 at ε = 0.4.
 ///
 /// The fluid does not flow: it takes no momentum from grain to grain, and no pressure builds up in the pores of a bed that
@@ -26,22 +26,15 @@ use crate::candidate::Candidacy;
 ///
 /// Source: Dallavalle, Micromeritics (1948), for C_D; Di Felice, Int. J. Multiphase Flow 20, 153 (1994); Lamb,
 /// Hydrodynamics, §92 (1932), for the added mass of a sphere.
-struct Fluid {
-    density: f64,
-    viscosity: f64,
+struct Surrounds {
+    fluid: Fluid,
     hindrance: f64,
 }
 
-/// The added mass of a sphere over the mass that it displaces.
-const ADDED_MASS: f64 = 0.5;
-
-impl Fluid {
+impl Surrounds {
     /// Force over velocity (kg/s) on a sphere of `radius` (m) at `speed` (m/s), far from others.
     fn resistance(&self, radius: f64, speed: f64) -> f64 {
-        let diameter = 2.0 * radius;
-        let viscous = 4.8 * (self.viscosity / (self.density * diameter)).sqrt();
-        let root = 0.63 * speed.sqrt() + viscous;
-        0.75 * self.density * sphere_volume(radius) / diameter * root * root
+        self.fluid.resistance(2.0 * radius, PI * radius * radius, speed)
     }
 
     /// The same on a grain among others.
@@ -54,7 +47,7 @@ fn sphere_volume(radius: f64) -> f64 {
     4.0 / 3.0 * PI * radius * radius * radius
 }
 
-impl GrainForce for Fluid {
+impl GrainForce for Surrounds {
     fn name(&self) -> &'static str {
         ENTRY.name
     }
@@ -68,8 +61,11 @@ impl GrainForce for Fluid {
     }
 
     fn surrounding(&self, radius: f64) -> Surrounding {
-        let displaced_mass = self.density * sphere_volume(radius);
-        Surrounding { displaced_mass, added_mass: ADDED_MASS * displaced_mass }
+        let volume = sphere_volume(radius);
+        Surrounding {
+            displaced_mass: self.fluid.density * volume,
+            added_mass: self.fluid.added_mass(2.0 * radius, volume),
+        }
     }
 
     fn on_intruder(&self, part: &MovingGrain) -> Option<Vec3> {
@@ -99,9 +95,8 @@ pub(super) const ENTRY: GrainForceEntry = GrainForceEntry {
     params: PARAMS,
     candidacy: Candidacy::None("the model states its fluid, which an experimenter knows"),
     build: |params: &ParamTable| {
-        Box::new(Fluid {
-            density: params.get("density"),
-            viscosity: params.get("viscosity"),
+        Box::new(Surrounds {
+            fluid: Fluid { density: params.get("density"), viscosity: params.get("viscosity") },
             hindrance: params.get("hindrance"),
         })
     },
@@ -111,7 +106,8 @@ pub(super) const ENTRY: GrainForceEntry = GrainForceEntry {
 mod tests {
     use super::*;
 
-    const WATER: Fluid = Fluid { density: 998.0, viscosity: 1.002e-3, hindrance: 1.0 };
+    const WATER: Surrounds =
+        Surrounds { fluid: Fluid { density: 998.0, viscosity: 1.002e-3 }, hindrance: 1.0 };
 
     /// A sphere with this speed (m/s) along x.
     fn moving(radius: f64, speed: f64) -> MovingGrain {
@@ -131,10 +127,10 @@ mod tests {
             (10_000.0, 0.405, 0.15),
         ] {
             let radius = 2e-3;
-            let speed = reynolds * WATER.viscosity / (WATER.density * 2.0 * radius);
+            let speed = reynolds * WATER.fluid.viscosity / (WATER.fluid.density * 2.0 * radius);
             let force = -WATER.on(&moving(radius, speed)).force.x;
             let area = PI * radius * radius;
-            let coefficient = force / (0.5 * WATER.density * area * speed * speed);
+            let coefficient = force / (0.5 * WATER.fluid.density * area * speed * speed);
             assert!((coefficient / standard - 1.0).abs() < within, "{reynolds}: {coefficient}");
         }
     }
@@ -143,14 +139,14 @@ mod tests {
     fn a_slow_sphere_meets_a_force_in_proportion_to_its_speed_close_to_that_of_stokes() {
         let (radius, speed) = (1e-4, 1e-8);
         let force = WATER.on_intruder(&moving(radius, speed)).expect("it acts there").x;
-        let stokes = -6.0 * PI * WATER.viscosity * radius * speed;
+        let stokes = -6.0 * PI * WATER.fluid.viscosity * radius * speed;
         // 4.8² for 24.
         assert!((force / stokes - 0.96).abs() < 1e-3, "{}", force / stokes);
     }
 
     #[test]
     fn neighbours_raise_the_drag_on_grains_alone_and_it_displaces_its_volume() {
-        let crowded = Fluid { hindrance: 10.0, ..WATER };
+        let crowded = Surrounds { hindrance: 10.0, ..WATER };
         let grain = moving(1e-3, 0.1);
         let ratio = crowded.on(&grain).force.x / WATER.on(&grain).force.x;
         assert!((ratio - 10.0).abs() < 1e-12);

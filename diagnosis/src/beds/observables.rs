@@ -6,13 +6,13 @@ use runner::beds::Record;
 
 use crate::observable::Layout;
 
-/// Depth and range (m) at `time` (s): before contact those of the free fall under `condition`,
-/// behind the end the last ones.
+/// Depth and range (m) at `time` (s): before contact those of the fall under `condition` with `acceleration` (m/s²), behind
+/// the end the last ones.
 #[must_use]
-pub fn at(record: &Record, time: f64, condition: &Condition, gravity: f64) -> (f64, f64) {
+pub fn at(record: &Record, time: f64, condition: &Condition, acceleration: f64) -> (f64, f64) {
     if time < 0.0 {
         let (sine, cosine) = libm::sincos(condition.angle_deg.to_radians());
-        let down = condition.speed * sine * time + 0.5 * gravity * time * time;
+        let down = condition.speed * sine * time + 0.5 * acceleration * time * time;
         // Contact is with the highest grains, above the mean surface.
         let at_contact = record.depth.first().copied().unwrap_or(0.0);
         return (at_contact + down, condition.speed * cosine * time);
@@ -28,8 +28,9 @@ pub fn observables(
     condition: &Condition,
     set: &MeasurementSet,
 ) -> DVector<f64> {
+    let fall = set.fall_of(condition);
     let frames: Vec<(f64, f64)> =
-        layout.times.iter().map(|&time| at(record, time, condition, set.bed.gravity)).collect();
+        layout.times.iter().map(|&time| at(record, time, condition, fall)).collect();
     let mut numbers: Vec<f64> = frames.iter().map(|(depth, _)| *depth).collect();
     if layout.along_x {
         numbers.extend(frames.iter().map(|(_, range)| *range));
@@ -43,7 +44,7 @@ pub fn observables(
     };
     let (depth, range) = match set.last {
         FinalDefinition::Deepest => (record.deepest, record.reached),
-        FinalDefinition::Resting => at(record, record.end, condition, set.bed.gravity),
+        FinalDefinition::Resting => at(record, record.end, condition, fall),
     };
     let scalars = [
         (layout.stop_time, stop.unwrap_or(record.end)),

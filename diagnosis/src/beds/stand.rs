@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use configs::{Change, ConfigError, GrainMedium, GrainModel, Medium, Model};
+use configs::{Change, ConfigError, GrainForceChoice, GrainMedium, GrainModel, Medium, Model};
 use engine::bed::random;
+use engine::fluid::Fluid;
 use engine::grains::Space;
 use measurements::{Condition, Geometry, Kind, MeasurementSet};
 use rand::RngExt;
@@ -232,6 +233,17 @@ impl<'a> Stand<'a> {
         (n * conditions).div_ceil(self.n_places).clamp(n, MOST_BEDS * n)
     }
 
+    /// The fluid of the set, for a model that states none of its own.
+    fn fluid(&self) -> Option<Change> {
+        let mut own = self.medium.grain_forces.iter();
+        if own.any(GrainForceChoice::is_of_a_fluid) {
+            return None;
+        }
+        let Fluid { density, viscosity } = self.set.bed.stated.fluid?;
+        let values = vec![("density", density), ("viscosity", viscosity)];
+        Some(Change::Effect("fluid", values))
+    }
+
     /// The impact of condition `condition` of the set at `draw`, with `variation`.
     ///
     /// # Errors
@@ -247,6 +259,7 @@ impl<'a> Stand<'a> {
         let mut during = before.clone();
         during.extend(variation.during.iter().cloned());
         let of_condition = &self.set.conditions[condition];
+        during.extend(self.fluid());
         during.extend(self.changes_of(of_condition));
         during.extend(self.depths[condition].map(Change::PushedTo));
         during.push(Change::X(self.x(draw)));
@@ -354,6 +367,26 @@ mod tests {
 
     use super::*;
     use crate::test_sets::{condition, set};
+
+    #[test]
+    fn the_fluid_of_a_set_acts_on_impacts_and_not_while_beds_settle() {
+        let shipped = ModelSource::Shipped(find_shipped("sphere-3d").unwrap());
+        let model = Model::load(shipped, &LoadOptions::default()).unwrap().model;
+        let mut set = set(Kind::Scalar, vec![condition(1.0, 90.0)], Vec::new());
+        let fluid = Fluid { density: 998.0, viscosity: 1e-3 };
+        let draw = Draw { seed: 1, place: 0 };
+        let fluids = |set: &MeasurementSet| {
+            let stand = Stand::new(&model, set).unwrap();
+            let job = stand.job(0, draw, &Variation::default()).unwrap();
+            [&job.model, &job.bed].map(|model| {
+                let Medium::Grains(medium) = &model.medium else { panic!("no grains") };
+                medium.grain_forces.iter().filter(|force| force.is_of_a_fluid()).count()
+            })
+        };
+        assert_eq!(fluids(&set), [0, 0]);
+        set.bed.stated.fluid = Some(fluid);
+        assert_eq!(fluids(&set), [1, 0]);
+    }
 
     #[test]
     fn a_model_of_one_bed_takes_no_set_of_two() {

@@ -29,6 +29,14 @@ pub enum ForwardError {
         /// Name of the shape.
         shape: &'static str,
     },
+    /// A body whose drag in a fluid is not modelled.
+    #[error("condition {condition}: no {shape} is modelled in a fluid; leave the fluid out")]
+    InFluid {
+        /// Id of the condition.
+        condition: String,
+        /// Name of the shape.
+        shape: &'static str,
+    },
     /// A size of a shape is not given.
     #[error("condition {condition}: a {shape} needs `{key}`, which the set does not give")]
     MissingSize {

@@ -249,12 +249,19 @@ impl Prepared {
             let condition = condition.id.clone();
             return Err(ForwardError::NotPushed { condition, shape: shape.name });
         }
+        // What the set states stands above what the model says, as its gravity does.
+        let fluid = bed.stated.fluid.or(medium.fluid);
+        if fluid.is_some() && shape.slender {
+            let condition = condition.id.clone();
+            return Err(ForwardError::InFluid { condition, shape: shape.name });
+        }
         let angle = condition.angle_deg.to_radians();
         let bed = Surroundings {
             bulk_density: bed.bulk_density.unwrap_or(medium.bulk_density),
             gravity: bed.gravity,
             packing: condition.packing.or(medium.packing),
             bed_depth: condition.bed_depth.or(medium.bed_depth),
+            fluid,
         };
         let there = ResistiveMedium { bulk_density: bed.bulk_density, ..medium.clone() };
         Ok(Self {

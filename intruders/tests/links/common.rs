@@ -14,7 +14,13 @@ pub(crate) const MASS: f64 = 0.0684;
 
 /// Dry sand.
 pub(crate) fn sand() -> Surroundings {
-    Surroundings { bulk_density: 1600.0, gravity: 9.81, packing: None, bed_depth: None }
+    Surroundings {
+        bulk_density: 1600.0,
+        gravity: 9.81,
+        packing: None,
+        bed_depth: None,
+        fluid: None,
+    }
 }
 
 /// The link at `angle` (rad) whose tip meets the surface with `velocity` (m/s).

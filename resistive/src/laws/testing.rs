@@ -57,5 +57,5 @@ pub(super) fn sinking(speed: f64) -> Motion {
 
 /// Glass beads.
 pub(super) fn surroundings() -> Surroundings {
-    Surroundings { bulk_density: 1520.0, gravity: 9.8, packing: None, bed_depth: None }
+    Surroundings { bulk_density: 1520.0, gravity: 9.8, packing: None, bed_depth: None, fluid: None }
 }

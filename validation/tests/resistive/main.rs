@@ -3,6 +3,7 @@
 mod accelerations;
 mod closed_forms;
 mod effects;
+mod fluid;
 mod forces;
 mod formulas;
 #[path = "../../examples/late_drag/effect.rs"]

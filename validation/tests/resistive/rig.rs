@@ -9,8 +9,13 @@ use resistive::{Ending, Impact, Recorder, ResistanceLaw, Surroundings};
 
 pub(crate) const MASS: f64 = 0.0692;
 pub(crate) const DIAMETER: f64 = 0.0254;
-pub(crate) const BED: Surroundings =
-    Surroundings { bulk_density: 1520.0, gravity: 9.8, packing: Some(0.61), bed_depth: Some(0.12) };
+pub(crate) const BED: Surroundings = Surroundings {
+    bulk_density: 1520.0,
+    gravity: 9.8,
+    packing: Some(0.61),
+    bed_depth: Some(0.12),
+    fluid: None,
+};
 
 /// The law called `name` with these coefficients, and the defaults for the others.
 pub(crate) fn law(name: &str, values: &[(&'static str, f64)]) -> Box<dyn ResistanceLaw> {

@@ -191,10 +191,10 @@ impl GrainChecks<'_> {
         }
         let forces = self.grains.medium.grain_forces.iter();
         let mut fluids = forces.filter(|force| force.is_of_a_fluid());
-        if let (Some(fluid), true) = (fluids.next(), intruder.shape.links.is_some()) {
+        if let (Some(fluid), true) = (fluids.next(), intruder.shape.slender) {
             self.common.reader.report(
-                Diagnostic::error("no chain is modelled in a fluid")
-                    .at(fluid.span, "the drag of spheres does not fit a slender link")
+                Diagnostic::error("no link is modelled in a fluid")
+                    .at(fluid.span, "its drag is that of a sphere")
                     .help("leave it out, or take an intruder of one piece: sphere, cylinder, hemisphere, cone"),
             );
         }

@@ -1,5 +1,6 @@
 //! What only a model of a resistive force is checked for.
 
+use engine::grains::Space;
 use engine::params::ParamSpec;
 use engine::units::{Dimension, format_si};
 use resistive::{Expression, Needs};
@@ -20,6 +21,7 @@ impl ResistiveChecks<'_> {
         self.derived_quantities();
         self.common.number_of_conditions();
         self.samples();
+        self.fluid();
         self.effects();
         if !self.common.reader.failed() {
             self.coefficients();
@@ -55,6 +57,27 @@ impl ResistiveChecks<'_> {
                     .help(format!("at most {:.0e} are accepted", limits::STEPS)),
             );
         }
+    }
+
+    /// A fluid that a plane does not have, or whose force on the intruder is not modelled.
+    fn fluid(&self) {
+        let Common { model, places, reader } = self.common;
+        if self.resistive.medium.fluid.is_none() {
+            return;
+        }
+        let (message, label, help) = if self.resistive.medium.space == Space::Planar {
+            let help = "leave the fluid out, or take a bed of space: dimension = 3";
+            ("a planar bed has no fluid", "the density of a fluid is that of a volume", help)
+        } else if model.intruder.shape.slender {
+            let help = "leave it out, or take an intruder of one piece: sphere, cylinder, hemisphere, cone";
+            ("no link is modelled in a fluid", "its drag is that of a compact body", help)
+        } else if model.impact.pushed_to.is_some() {
+            let help = "leave it out: forces are counted from what the drive reads above the bed";
+            ("a push is not modelled in a fluid", "at the speeds of drives it does little", help)
+        } else {
+            return;
+        };
+        reader.report(Diagnostic::error(message).at(places.fluid, label).help(help));
     }
 
     /// Effects that cannot act, for want of what the medium does not say.

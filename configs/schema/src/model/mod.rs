@@ -73,7 +73,7 @@ pub enum Medium {
     /// Grains in a container.
     Grains(Box<GrainMedium>),
     /// A force law.
-    Resistive(ResistiveMedium),
+    Resistive(Box<ResistiveMedium>),
 }
 
 impl Medium {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use engine::fluid::Fluid;
 use engine::params::{ParamSpec, ParamTable};
 use intruders::Casting;
 use resistive::{Assembly, Driven, Impact, ResistanceLaw, Space, Surroundings};
@@ -23,6 +24,8 @@ pub struct ResistiveMedium {
     pub packing: Option<f64>,
     /// Depth of the bed (m), where it is known.
     pub bed_depth: Option<f64>,
+    /// The fluid in the bed and above it, unless it is air.
+    pub fluid: Option<Fluid>,
     /// `[resistance]`.
     pub resistance: ResistanceChoice,
     /// `[[effect]]`, in the order of the file.
@@ -117,8 +120,8 @@ impl ResistiveMedium {
     /// What laws are told of the medium.
     #[must_use]
     pub fn surroundings(&self) -> Surroundings {
-        let Self { bulk_density, gravity, packing, bed_depth, .. } = *self;
-        Surroundings { bulk_density, gravity, packing, bed_depth }
+        let Self { bulk_density, gravity, packing, bed_depth, fluid, .. } = *self;
+        Surroundings { bulk_density, gravity, packing, bed_depth, fluid }
     }
 
     /// The baseline for an impact at `angle_rad`, then the effects in their order.

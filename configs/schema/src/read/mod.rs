@@ -12,6 +12,7 @@ mod bed;
 mod bed_file;
 mod container;
 mod fit;
+mod fluid;
 mod foreign;
 mod grains;
 mod impact;
@@ -22,6 +23,7 @@ mod sizes;
 mod step;
 
 pub(crate) use bed_file::DataFolder;
+pub use fluid::fluid;
 pub(crate) use own_effect::{KEYS_OF_PARAMETER, PARAMETERS, formula_fault};
 
 /// Where the values stand that semantic checks compare.
@@ -33,6 +35,7 @@ pub(crate) struct Places {
     pub(crate) time_step_factor: Option<Span>,
     pub(crate) preparation_time_step: Option<Span>,
     pub(crate) gravity: Option<Span>,
+    pub(crate) fluid: Option<Span>,
     pub(crate) width: Option<Span>,
     pub(crate) depth: Option<Span>,
     pub(crate) target_packing_fraction: Option<Span>,

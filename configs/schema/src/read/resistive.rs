@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
+use engine::fluid::Fluid;
 use engine::grains::Space;
 use resistive::{Effect, OwnEffect, RESISTANCE_LAWS, ResistanceEntry, Role};
 
 use super::fit::free;
+use super::fluid::fluid;
 use super::foreign::Foreign;
 use super::impact::Pushed::IntoResistance;
 use super::laws::given_twice;
@@ -62,23 +64,24 @@ pub(super) fn model(
     let conditions = impact::conditions(&conditions_table, places);
     conditions_table.finish();
     let (log, log_interval) = log?;
-    let Bed { space, bulk_density, gravity, packing, bed_depth } = bed?;
+    let Bed { space, bulk_density, gravity, packing, bed_depth, fluid } = bed?;
     Some(Model {
         run: run?,
         log,
         energy: energy?,
-        medium: Medium::Resistive(ResistiveMedium {
+        medium: Medium::Resistive(Box::new(ResistiveMedium {
             space,
             bulk_density,
             gravity,
             packing,
             bed_depth,
+            fluid,
             resistance: resistance?,
             effects: effects?,
             candidates: candidates?,
             free: free?,
             log_interval,
-        }),
+        })),
         intruder: intruder?,
         impact: impact?,
         conditions: conditions?,
@@ -113,6 +116,7 @@ struct Bed {
     gravity: f64,
     packing: Option<f64>,
     bed_depth: Option<f64>,
+    fluid: Option<Fluid>,
 }
 
 fn bed(table: TableReader<'_>, places: &mut Places) -> Option<Bed> {
@@ -129,7 +133,9 @@ fn bed(table: TableReader<'_>, places: &mut Places) -> Option<Bed> {
     let gravity = table.number(&specs::GRAVITY);
     let packing = table.optional_number(&specs::PACKING);
     let bed_depth = table.optional_number(&specs::BED_DEPTH);
+    let fluid = fluid(&table);
     places.gravity = table.span_of("gravity");
+    places.fluid = table.span_of(specs::FLUID_DENSITY.key);
     table.finish();
     Some(Bed {
         space: space?,
@@ -137,6 +143,7 @@ fn bed(table: TableReader<'_>, places: &mut Places) -> Option<Bed> {
         gravity: gravity?.value,
         packing: packing?.map(|found| found.value),
         bed_depth: bed_depth?.map(|found| found.value),
+        fluid: fluid?,
     })
 }
 
