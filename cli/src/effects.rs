@@ -9,7 +9,7 @@ use configs::engine::grains::Space;
 use configs::engine::ledger::{Channel, ChannelKind};
 use configs::engine::params::{Default, ParamSpec, Range};
 use configs::engine::units::format_si;
-use configs::resistive::{RESISTANCE_LAWS, ResistanceEntry, Role, Twin, twins};
+use configs::resistive::{OtherForm, RESISTANCE_LAWS, ResistanceEntry, Role, Twin, twins};
 use configs::{describe_range, nearest};
 use serde_json::{Value, json};
 
@@ -44,7 +44,7 @@ struct Described {
     source: &'static str,
     params: &'static [ParamSpec],
     /// The values of other parameters that a diagnosis tries.
-    forms: &'static [&'static [(&'static str, f64)]],
+    forms: &'static [OtherForm],
     channels: Vec<Channel>,
     /// What an expression in place of a parameter may depend on.
     variables: &'static [&'static str],
@@ -301,7 +301,7 @@ fn as_text(law: &Described) -> String {
     line("diagnosis", &law.on_beds.text());
     for (index, form) in law.forms.iter().enumerate() {
         let values: Vec<String> =
-            form.iter().map(|(key, value)| format!("{key} = {value}")).collect();
+            form.values.iter().map(|(key, value)| format!("{key} = {value}")).collect();
         line(if index == 0 { "forms" } else { "" }, &format!("also with {}", values.join(", ")));
     }
     text.push_str("\nparameters\n");
@@ -364,7 +364,7 @@ fn as_json(law: &Described) -> Value {
     });
     object["diagnosis_of_beds"] = law.on_beds.json();
     if !law.forms.is_empty() {
-        let form = |values: &&[(&str, f64)]| -> Value { values.iter().copied().collect() };
+        let form = |form: &OtherForm| -> Value { form.values.iter().copied().collect() };
         object["forms"] = law.forms.iter().map(form).collect();
     }
     if !law.variables.is_empty() {

@@ -73,7 +73,8 @@ impl Ranking {
         let (signatures, failed) = signatures(bench, fitted, candidates);
         let mut scores: Vec<Score> =
             signatures.into_par_iter().map(|signature| refit(bench, fitted, signature)).collect();
-        if bench.data(&fitted.weights).is_strained(&fitted.fit.point) {
+        let is_strained = bench.data(&fitted.weights).is_strained(&fitted.fit.point);
+        if is_strained {
             scores.par_iter_mut().for_each(|score| start_over(bench, fitted, score));
         }
         let id = |score: &Score| &bench.forward.candidates()[score.candidate()].id;
@@ -93,6 +94,7 @@ impl Ranking {
                 scores[row].take(fitted.fit.chi2, fit);
             }
         }
+        start_from_best_form(bench, fitted, &mut scores, &rows);
         Self::ranked(bench, fitted, scores, failed, seed)
     }
 
@@ -264,6 +266,30 @@ fn start_over(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) {
     let Ok(fit) = data.fit_as_listed_from_start(score.candidate()) else { return };
     if fitted.fit.chi2 - fit.chi2 > score.delta {
         score.take(fitted.fit.chi2, fit);
+    }
+}
+
+/// The other forms among `rows` of the effect that explains most, from the parameters of its best form, if that explains
+/// more: around a strained fit each form may end in a minimum of its own.
+fn start_from_best_form(bench: &Bench<'_>, fitted: &Fitted, scores: &mut [Score], rows: &[usize]) {
+    let id = |score: &Score| &bench.forward.candidates()[score.candidate()].id;
+    let Some(best) =
+        rows.iter().copied().max_by(|&a, &b| scores[a].delta.total_cmp(&scores[b].delta))
+    else {
+        return;
+    };
+    let parameters = scores[best].point.parameters.clone();
+    let others = rows.iter().filter(|&&row| row != best && id(&scores[row]) == id(&scores[best]));
+    let fits: Vec<(usize, Option<Fit>)> = others
+        .map(|&row| {
+            let start = Point { parameters: parameters.clone(), ..scores[row].point.clone() };
+            (row, bench.data(&fitted.weights).fit_as_listed(&start).ok())
+        })
+        .collect();
+    for (row, fit) in fits {
+        if let Some(fit) = fit.filter(|fit| fitted.fit.chi2 - fit.chi2 > scores[row].delta) {
+            scores[row].take(fitted.fit.chi2, fit);
+        }
     }
 }
 

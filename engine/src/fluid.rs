@@ -27,15 +27,21 @@ impl Fluid {
 
     /// Mass of the fluid that moves with a body of `diameter` (m) and `volume` (m³) along its axis (kg): that of the
     /// spheroid of the same diameter and volume. A sphere has half of the mass that it displaces, a thin disc 8/3 ρ R³.
-    ///
-    /// Source: Lamb, Hydrodynamics (1932), §114 and §373.
     #[must_use]
     pub fn added_mass(&self, diameter: f64, volume: f64) -> f64 {
-        let radius = 0.5 * diameter;
-        let half_length = volume / (4.0 / 3.0 * std::f64::consts::PI * radius * radius);
-        let alpha = alpha(1.0 - (radius / half_length) * (radius / half_length));
-        self.density * volume * alpha / (2.0 - alpha)
+        let sphere = std::f64::consts::PI / 6.0 * diameter * diameter * diameter;
+        self.density * volume * added_mass_of_spheroid(volume / sphere)
     }
+}
+
+/// Added mass of a spheroid that moves along its axis, over the mass that it displaces; it is `slenderness` times as long
+/// as wide.
+///
+/// Source: Lamb, Hydrodynamics (1932), §114 and §373.
+#[must_use]
+pub fn added_mass_of_spheroid(slenderness: f64) -> f64 {
+    let alpha = alpha(1.0 - 1.0 / (slenderness * slenderness));
+    alpha / (2.0 - alpha)
 }
 
 /// Lamb's α₀ of a spheroid of half-length a and radius b along its axis, with t = 1 − b²/a²: 2/3 of a sphere, 2 of a disc,
@@ -81,7 +87,8 @@ mod tests {
             (6.01, 0.045),
             (9.97, 0.021),
         ] {
-            assert!((coefficient(slenderness) - listed).abs() < 6e-4, "{slenderness}");
+            // Slendernesses are rounded to two decimals: 0.005 of them is 0.0014 at 1.5.
+            assert!((coefficient(slenderness) - listed).abs() < 1.5e-3, "{slenderness}");
         }
     }
 

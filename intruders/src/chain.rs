@@ -1,6 +1,5 @@
 //! The equations of two equal links on a joint without friction at their tops.
 
-use engine::grains::Space;
 use engine::math::{Vec3, Vec4};
 use engine::params::ParamTable;
 use resistive::assembly::{COORDINATES, PARTS};
@@ -108,11 +107,6 @@ impl Assembly for Chain {
     fn weight_at(&self, index: usize, state: &State) -> (f64, f64) {
         let link = &self.links[index];
         (link.centre(&pose(index, state)).z, link.mass)
-    }
-
-    fn volume(&self, index: usize) -> f64 {
-        let link = &self.links[index];
-        Rod::volume(link.length, link.diameter, Space::Spatial)
     }
 
     fn placement(&self, index: usize, state: &State) -> (Vec3, f64) {

@@ -1,6 +1,5 @@
 //! One free link: a round rod that enters at an angle.
 
-use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::{Default, ParamSpec, ParamTable, Range};
 use resistive::assembly::{COORDINATES, PARTS};
@@ -97,10 +96,6 @@ impl Assembly for Link {
 
     fn weight_at(&self, _: usize, state: &State) -> (f64, f64) {
         (state.position[1], self.0.mass)
-    }
-
-    fn volume(&self, _: usize) -> f64 {
-        Rod::volume(self.0.length, self.0.diameter, Space::Spatial)
     }
 
     fn placement(&self, _: usize, state: &State) -> (Vec3, f64) {

@@ -153,6 +153,7 @@ impl Rod {
                 volume: end * portion.length,
                 section: end * portion.growth,
                 volume_rate: end * portion.intake,
+                body_volume: end * self.length,
                 mass: self.mass,
                 // Powers of it are taken, and a step that ends at the surface looks beyond it.
                 effective_depth: depth.max(0.0),

@@ -75,9 +75,6 @@ pub trait Assembly: Send + Sync {
     /// (kg).
     fn weight_at(&self, index: usize, state: &State) -> (f64, f64);
 
-    /// Volume of part `index`, immersed or not (m³, planar m²).
-    fn volume(&self, index: usize) -> f64;
-
     /// Where part `index` is drawn: the centre of its shape (m) and its rotation about y (rad).
     fn placement(&self, index: usize, state: &State) -> (Vec3, f64);
 
@@ -104,9 +101,10 @@ pub trait Assembly: Send + Sync {
 /// shows in no force but those that ask for the spin.
 pub struct Compact {
     silhouette: Arc<dyn Silhouette>,
-    /// Of the silhouette, which are asked for at every evaluation of a force (m; m², planar m).
+    /// Of the silhouette, which are asked for at every evaluation of a force (m; m², planar m; m³, planar m²).
     diameter: f64,
     frontal_area: f64,
+    volume: f64,
     /// Of the lowest point below the centre of the shape (m).
     reach: f64,
     mass: f64,
@@ -119,7 +117,8 @@ impl Compact {
     #[must_use]
     pub fn new(silhouette: Arc<dyn Silhouette>, reach: f64, mass: f64, inertia: f64) -> Self {
         let (diameter, frontal_area) = (silhouette.diameter(), silhouette.frontal_area());
-        Self { silhouette, diameter, frontal_area, reach, mass, inertia }
+        let volume = silhouette.volume(silhouette.height());
+        Self { silhouette, diameter, frontal_area, volume, reach, mass, inertia }
     }
 
     /// The state with the lowest point at the surface at x = 0, moving with `velocity` (m/s) and
@@ -161,6 +160,7 @@ impl Assembly for Compact {
                 volume: shape.volume(below),
                 section,
                 volume_rate: -section * vz,
+                body_volume: self.volume,
                 mass: self.mass,
                 effective_depth: below,
                 loaded_area: frontal_area,
@@ -195,10 +195,6 @@ impl Assembly for Compact {
 
     fn weight_at(&self, _: usize, state: &State) -> (f64, f64) {
         (state.position[1] + self.reach, self.mass)
-    }
-
-    fn volume(&self, _: usize) -> f64 {
-        self.silhouette.volume(self.silhouette.height())
     }
 
     fn placement(&self, _: usize, state: &State) -> (Vec3, f64) {

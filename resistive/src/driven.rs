@@ -43,10 +43,6 @@ impl Assembly for Driven {
         self.0.weight_at(index, state)
     }
 
-    fn volume(&self, index: usize) -> f64 {
-        self.0.volume(index)
-    }
-
     fn placement(&self, index: usize, state: &State) -> (Vec3, f64) {
         self.0.placement(index, state)
     }

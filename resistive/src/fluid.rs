@@ -14,8 +14,7 @@ pub(super) fn around(
     assembly: &dyn Assembly,
     start: &State,
 ) -> [Box<dyn ResistanceLaw>; 2] {
-    let volume = assembly.volume(0);
-    let diameter = assembly.part(0, start).immersion.diameter;
+    let Immersion { diameter, body_volume: volume, .. } = assembly.part(0, start).immersion;
     let added_mass = fluid.added_mass(diameter, volume);
     let displaced_mass = fluid.density * volume;
     [Box::new(Displaced { displaced_mass, added_mass }), Box::new(Drag { fluid })]

@@ -32,7 +32,7 @@ pub use felt::Accelerometer;
 pub use impact::{Effort, Ending, Impact, PartStop};
 pub use laws::{
     Acts, Coefficients, Direction, Draft, Effect, Expression, Facts, ForceError, Kind, Needs,
-    OwnEffect, OwnEffectError, OwnParameter, RESISTANCE_LAWS, ResistanceEntry, Role,
+    OtherForm, OwnEffect, OwnEffectError, OwnParameter, RESISTANCE_LAWS, ResistanceEntry, Role,
     STATE_VARIABLES, StateVariable, Twin, find_resistance, twins,
 };
 pub use observe::{Observer, Stretch, Trajectory};
@@ -81,6 +81,8 @@ pub struct Immersion {
     /// Rate at which the immersed volume grows now (m³/s, planar m²/s); of a body that turns, more or
     /// less than the section times its speed.
     pub volume_rate: f64,
+    /// Volume of the body, immersed or not, without a shaft (m³, planar m²).
+    pub body_volume: f64,
     /// Mass of the body (kg).
     pub mass: f64,
 

@@ -28,6 +28,9 @@ done
 /// Two impacts of the disc of the small model.
 const SET: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/runs/two-impacts");
 
+/// A bed of few grains: who runs an impact is in question, not what it does.
+const FEW_GRAINS: [&str; 2] = ["bed.grains.0.count=40", "bed.grains.1.count=8"];
+
 /// A folder with a scheduler called `name`.
 fn here(name: &str) -> TempDir {
     let here = folder();
@@ -39,6 +42,7 @@ fn here(name: &str) -> TempDir {
 fn compare(here: &Path, cache: &str, on: &str) -> Call {
     Call::new(["compare", "--json", "--quiet", "--model"])
         .arg(small_model())
+        .set(&FEW_GRAINS)
         .arg("--cache")
         .arg(here.join(cache))
         .arg("--out")
@@ -97,7 +101,8 @@ fn comparisons_at_the_same_time_on_one_cold_cache_all_end_and_run_each_impact_on
     let here = folder();
     let start = |name: &str| {
         let call = Call::new(["compare", "--json", "--quiet", "--threads", "1", "--model"]);
-        let call = call.arg(small_model()).arg("--cache").arg(here.path().join("shared"));
+        let call = call.arg(small_model()).set(&FEW_GRAINS);
+        let call = call.arg("--cache").arg(here.path().join("shared"));
         call.arg("--out").arg(here.path().join(name)).arg(SET).start()
     };
     let children = ["a", "b", "c", "d"].map(start);
@@ -117,7 +122,7 @@ fn diagnoses_on_beds_differ_in_their_cost_alone() {
     let here = folder();
     let diagnosed = |name: &str, threads: &str| {
         let call = Call::new(["diagnose", "--quiet", "--threads", threads]);
-        let call = call.set(&["bed.grains.0.count=40", "bed.grains.1.count=8"]);
+        let call = call.set(&FEW_GRAINS);
         let call = call.args(["--candidate", "rolling-resistance", "--model"]).arg(small_model());
         let call = call.arg("--cache").arg(here.path().join(name));
         let out = here.path().join(format!("out-{name}"));

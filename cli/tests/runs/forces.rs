@@ -147,7 +147,7 @@ fn a_bed_of_grains_that_is_pushed_answers_forces_over_depth() {
     let toml = "schema = 1\n[measurement]\nid = \"small-plate\"\nkind = \"force-depth\"\n\
                 [instrument]\nforce_sigma_N = 0.01\n[model]\nbaseline = \"two-term-vector\"\n\
                 [files]\nruns = \"runs.csv\"\nforces = \"forces.csv\"\n\
-                [[condition]]\nid = \"plate\"\nspeed = \"1 mm/s\"\nangle_deg = 90\n\
+                [[condition]]\nid = \"plate\"\nspeed = \"1 cm/s\"\nangle_deg = 90\n\
                 shape = \"cylinder\"\ndiameter = \"12 mm\"\nheight = \"6 mm\"\n";
     let mut forces = String::from("run,z,force\n");
     for (run, more) in [("a", 0.9), ("b", 1.0), ("c", 1.1)] {

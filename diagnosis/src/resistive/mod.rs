@@ -74,7 +74,10 @@ impl ResistiveForward {
             |name: &str| medium.effects.iter().any(|choice| choice.effect.name() == name);
         let listed = RESISTANCE_LAWS.iter().filter_map(|entry| Effect::listed(entry.name));
         let listed = listed.flat_map(|effect| {
-            let others = effect.other_forms();
+            // A form that these data cannot tell from another would be fitted for nothing.
+            let others = effect.other_forms().into_iter();
+            let others = others.filter(|(_, needs)| needs::missing(needs, set).is_empty());
+            let others: Vec<Effect> = others.map(|(form, _)| form).collect();
             std::iter::once(effect).chain(others)
         });
         let own = medium.candidates.iter().map(|own| Effect::Own(Arc::clone(own)));

@@ -36,6 +36,9 @@ pub(super) fn contains(set: &MeasurementSet, need: Needs) -> bool {
         Needs::Shallow => data.final_depths().any(|depth| depth < DEEP),
         Needs::Masses => data.distinct(|one| Some(one.mass)) > 1,
         Needs::Diameters => data.distinct(|one| Some(one.diameter)) > 1,
+        Needs::Shapes => {
+            data.conditions().any(|one| data.conditions().any(|other| !is_similar(one, other)))
+        }
         Needs::FramesBeforeImpact => data.runs().any(|(_, run)| {
             let frames = run.frames.iter().map(|frame| frame.t);
             let felt = run.samples.iter().filter(|_| set.kind == Kind::Acceleration);
@@ -43,6 +46,14 @@ pub(super) fn contains(set: &MeasurementSet, need: Needs) -> bool {
         }),
         Needs::Conditions => data.conditions().count() > 1,
     }
+}
+
+/// Whether the intruders of `one` and `other` have one shape, if not one size.
+fn is_similar(one: &Condition, other: &Condition) -> bool {
+    // Far below what bodies are made to.
+    const SAME: f64 = 1e-3;
+    let slenderness = |of: &Condition| of.height.map_or(0.0, |height| height / of.diameter);
+    one.shape == other.shape && (slenderness(one) - slenderness(other)).abs() <= SAME
 }
 
 /// The conditions of a set that may be fitted to.
@@ -181,7 +192,7 @@ mod tests {
     #[test]
     fn a_need_is_met_by_conditions_that_differ_in_it_and_by_no_others() {
         let alike = pair(|_| {});
-        let met: [(Needs, MeasurementSet); 9] = [
+        let met: [(Needs, MeasurementSet); 11] = [
             (Needs::Oblique, pair(|one| one.angle_deg = 60.0)),
             (Needs::Spin, pair(|one| one.spin = -5.0)),
             (Needs::Packings, {
@@ -198,6 +209,8 @@ mod tests {
             (Needs::Speeds, pair(|one| one.speed = 3.0)),
             (Needs::Masses, pair(|one| one.mass = 0.06)),
             (Needs::Diameters, pair(|one| one.diameter = 0.03)),
+            (Needs::Shapes, pair(|one| one.shape = "hemisphere".into())),
+            (Needs::Shapes, pair(|one| one.height = Some(0.02))),
             (Needs::SpinBothWays, {
                 let mut both = pair(|one| one.spin = -5.0);
                 both.conditions[0].spin = 5.0;

@@ -1,13 +1,17 @@
 //! Grains that move with the intruder.
 
 use crate::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings};
+use engine::fluid::added_mass_of_spheroid;
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{ParamSpec, Range};
 
 use super::facts::{Facts, Kind, Needs, Twin};
-use super::registry::{ResistanceEntry, Role, amplitude};
+use super::registry::{OtherForm, ResistanceEntry, Role, amplitude};
 
-/// (m + m_a) a = … − r dm_a/dt v,  m_a = q ρ V(z)   (kg)
+/// (m + m_a) a = … − r dm_a/dt v,  m_a = q ρ V(z) (2 k)^s   (kg)
+///
+/// k is the coefficient of the spheroid with the diameter and the volume of the body, 1/2 of a sphere
+/// ([`added_mass_of_spheroid`]): with s = 1 a blunt cone moves more than a sharp one of as much volume.
 ///
 /// With r = 1 grains come in at rest and the body gives them their momentum: their kinetic energy is held, as much
 /// again is lost in setting them in motion. With r = 1/2 nothing is lost, as in a fluid without viscosity; with less
@@ -18,6 +22,7 @@ use super::registry::{ResistanceEntry, Role, amplitude};
 struct AddedMass {
     q: f64,
     recruitment: f64,
+    shape_exponent: f64,
 }
 
 const ACCOUNTS: &[Account] = &[
@@ -44,7 +49,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         ],
     }),
     summary: "Grains that move with the intruder and add to its inertia.",
-    formula: "(m + q rho V) dv/dt = ... - r q rho dV/dt v",
+    formula: "(m + q rho V (2k)^s) dv/dt = ... - r q rho dV/dt (2k)^s v",
     signature: "lower deceleration, longer and deeper path; a jerk at entry",
     source: "Aguilar & Goldman, Nature Phys. 12, 278 (2016)",
     params: &[
@@ -60,12 +65,43 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         .or(1.0)
         .allowed(Range::closed(0.0, 1.0))
         .plausible(Range::closed(0.0, 1.0)),
+        ParamSpec::number(
+            "shape_exponent",
+            "power s of twice the added mass of a spheroid: 0 for the displaced volume alone, 1 for blunt and sharp bodies in a fluid",
+        )
+        .or(0.0)
+        .allowed(Range::closed(0.0, 2.0))
+        .plausible(Range::closed(0.0, 1.0)),
     ],
-    forms: &[&[("recruitment", 0.5)], &[("recruitment", 0.0)]],
+    forms: &[
+        OtherForm { values: &[("recruitment", 0.5)], needs: &[] },
+        OtherForm { values: &[("recruitment", 0.0)], needs: &[] },
+        OtherForm {
+            values: &[("recruitment", 0.5), ("shape_exponent", 1.0)],
+            needs: &[Needs::Shapes],
+        },
+    ],
     variables: &[],
     accounts: ACCOUNTS,
-    build: |given| Box::new(AddedMass { q: given.get("q"), recruitment: given.get("recruitment") }),
+    build: |given| {
+        Box::new(AddedMass {
+            q: given.get("q"),
+            recruitment: given.get("recruitment"),
+            shape_exponent: given.get("shape_exponent"),
+        })
+    },
 };
+
+impl AddedMass {
+    fn shape_factor(&self, at: &Immersion) -> f64 {
+        if self.shape_exponent <= 0.0 {
+            return 1.0;
+        }
+        // Of a body of revolution the half-axes of the spheroid; of a planar one a number of its shape all the same.
+        let slenderness = 1.5 * at.body_volume / (at.frontal_area * at.diameter);
+        libm::pow(2.0 * added_mass_of_spheroid(slenderness), self.shape_exponent)
+    }
+}
 
 impl ResistanceLaw for AddedMass {
     fn accounts(&self) -> &'static [Account] {
@@ -73,7 +109,7 @@ impl ResistanceLaw for AddedMass {
     }
 
     fn act(&self, at: &Immersion, _: &Motion, bed: &Surroundings, load: &mut Load) {
-        let density = self.q * bed.bulk_density;
+        let density = self.q * bed.bulk_density * self.shape_factor(at);
         load.added_mass += density * at.volume;
         load.growth += density * at.volume_rate;
         load.recruitment += self.recruitment * density * at.volume_rate;
@@ -89,7 +125,7 @@ mod tests {
     fn mass_is_recruited_as_fast_as_the_volume_grows() {
         let bed = surroundings();
         let (mut here, mut deeper) = (Load::default(), Load::default());
-        let law = AddedMass { q: 2.0, recruitment: 1.0 };
+        let law = AddedMass { q: 2.0, recruitment: 1.0, shape_exponent: 0.0 };
         let at = SPHERE.at(0.01);
         let at = Immersion { volume_rate: 3.0 * at.section, ..at };
         law.act(&at, &sinking(3.0), &bed, &mut here);
@@ -99,13 +135,37 @@ mod tests {
     }
 
     #[test]
+    fn a_blunt_body_moves_more_than_a_sphere_of_its_volume_would_and_a_sphere_the_same() {
+        let bed = surroundings();
+        let mass = |body_volume: f64, shape_exponent: f64| {
+            let mut load = Load::default();
+            let at = Immersion { body_volume, ..SPHERE.at(0.01) };
+            let law = AddedMass { q: 2.0, recruitment: 0.5, shape_exponent };
+            law.act(&at, &sinking(3.0), &bed, &mut load);
+            load.added_mass
+        };
+        let sphere = SPHERE.at(0.01).body_volume;
+        assert!((mass(sphere, 1.0) / mass(sphere, 0.0) - 1.0).abs() < 1e-9);
+        // Half as long as wide: α₀ by the eccentricity e (Lamb, Hydrodynamics, 1932, §373), k = α₀/(2 − α₀).
+        let e = 0.75_f64.sqrt();
+        let alpha = 2.0 / (e * e * e) * (e - 0.5 * libm::asin(e));
+        let blunt = mass(0.5 * sphere, 1.0) / mass(0.5 * sphere, 0.0);
+        assert!((blunt - 2.0 * alpha / (2.0 - alpha)).abs() < 1e-9, "{blunt}");
+    }
+
+    #[test]
     fn of_the_momentum_of_new_grains_the_body_gives_its_share() {
         let bed = surroundings();
         let at = SPHERE.at(0.01);
         let at = Immersion { volume_rate: 3.0 * at.section, ..at };
         let load = |recruitment| {
             let mut load = Load::default();
-            AddedMass { q: 2.0, recruitment }.act(&at, &sinking(3.0), &bed, &mut load);
+            AddedMass { q: 2.0, recruitment, shape_exponent: 0.0 }.act(
+                &at,
+                &sinking(3.0),
+                &bed,
+                &mut load,
+            );
             load
         };
         let [all, half, none] = [1.0, 0.5, 0.0].map(load);

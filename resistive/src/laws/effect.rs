@@ -41,13 +41,15 @@ impl Effect {
         Self::Listed(entry, given)
     }
 
-    /// The other forms of it that its entry names.
+    /// The other forms of it that its entry names, each with what data must contain to tell it from the others.
     #[must_use]
-    pub fn other_forms(&self) -> Vec<Self> {
+    pub fn other_forms(&self) -> Vec<(Self, &'static [Needs])> {
         match self {
-            Self::Listed(entry, _) => {
-                entry.forms.iter().map(|values| Self::with(entry, values)).collect()
-            }
+            Self::Listed(entry, _) => entry
+                .forms
+                .iter()
+                .map(|form| (Self::with(entry, form.values), form.needs))
+                .collect(),
             Self::Own(_) => Vec::new(),
         }
     }

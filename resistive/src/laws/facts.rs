@@ -74,6 +74,8 @@ pub enum Needs {
     Masses,
     /// Two diameters of the intruder.
     Diameters,
+    /// Intruders that are not similar: of two shapes, or of two slendernesses.
+    Shapes,
     /// Frames before first contact.
     FramesBeforeImpact,
     /// Two conditions.
@@ -98,6 +100,7 @@ impl Needs {
             Self::Shallow => "final depths below two diameters",
             Self::Masses => "two masses",
             Self::Diameters => "two diameters",
+            Self::Shapes => "two shapes",
             Self::FramesBeforeImpact => "frames before impact",
             Self::Conditions => "two conditions",
         }

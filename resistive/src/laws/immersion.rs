@@ -4,7 +4,7 @@ use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::{ParamSpec, Range};
 
 use super::facts::{Facts, Kind};
-use super::registry::{ResistanceEntry, Role, amplitude};
+use super::registry::{OtherForm, ResistanceEntry, Role, amplitude};
 
 /// A → A + q (A_i − A)   (m², planar m)
 ///
@@ -45,7 +45,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         .allowed(Range::closed(0.0, 10.0))
         .plausible(Range::closed(0.0, 2.0)),
     ],
-    forms: &[&[("reach", 0.5)]],
+    forms: &[OtherForm { values: &[("reach", 0.5)], needs: &[] }],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| Box::new(ImmersedArea { q: given.get("q"), reach: given.get("reach") }),

@@ -42,7 +42,7 @@ pub use expression::{
     StateVariable,
 };
 pub use facts::{Facts, Kind, Needs, Twin};
-pub use registry::{ResistanceEntry, Role};
+pub use registry::{OtherForm, ResistanceEntry, Role};
 
 /// Every baseline and every effect, in the order of the docs, of the sum and of a diagnosis.
 pub static RESISTANCE_LAWS: &[&ResistanceEntry] = &[

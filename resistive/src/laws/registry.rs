@@ -4,7 +4,7 @@ use crate::{Account, ResistanceLaw};
 use engine::params::{ParamSpec, Range};
 
 use super::coefficients::Coefficients;
-use super::facts::Facts;
+use super::facts::{Facts, Needs};
 
 /// One baseline or effect: its line in [`super::RESISTANCE_LAWS`] makes it exist for `run`, `compare`,
 /// `diagnose`, `effects`, the docs and the shared tests.
@@ -24,13 +24,22 @@ pub struct ResistanceEntry {
     /// The parameters it takes.
     pub params: &'static [ParamSpec],
     /// Other forms of an effect, which a diagnosis tries beside the one of the defaults: what they set beside the amplitude.
-    pub forms: &'static [&'static [(&'static str, f64)]],
+    pub forms: &'static [OtherForm],
     /// What an expression in place of a parameter may depend on.
     pub variables: &'static [&'static str],
     /// The accounts it books energy to.
     pub accounts: &'static [Account],
     /// Makes it from SI values that fill `params`.
     pub build: fn(&Coefficients) -> Box<dyn ResistanceLaw>,
+}
+
+/// A form of an effect beside that of the defaults.
+#[derive(Clone, Copy, Debug)]
+pub struct OtherForm {
+    /// What it sets beside the amplitude.
+    pub values: &'static [(&'static str, f64)],
+    /// What data must contain to tell it from the others.
+    pub needs: &'static [Needs],
 }
 
 /// What a law is to a model.

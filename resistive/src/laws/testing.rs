@@ -32,6 +32,7 @@ impl Sphere {
             volume: PI * z * z * (r - z / 3.0),
             section,
             volume_rate: 0.0,
+            body_volume: 4.0 / 3.0 * PI * r * r * r,
             mass: 0.0692,
             effective_depth: depth,
             loaded_area: self.frontal_area(),

@@ -5,7 +5,7 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::params::{ParamSpec, Range};
 
 use super::facts::{Facts, Kind, Needs, Twin};
-use super::registry::{ResistanceEntry, Role, amplitude};
+use super::registry::{OtherForm, ResistanceEntry, Role, amplitude};
 
 /// F = −q ρ A √(g D) (D/D₀)^(n − 1/2) (z/D₀)^p v in the bed, D₀ = 25 mm   (N)
 ///
@@ -65,8 +65,8 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         .plausible(Range::closed(0.0, 0.5)),
     ],
     forms: &[
-        &[("size_exponent", -1.0)],
-        &[("size_exponent", -1.0), ("depth_exponent", 0.5)],
+        OtherForm { values: &[("size_exponent", -1.0)], needs: &[Needs::Diameters] },
+        OtherForm { values: &[("size_exponent", -1.0), ("depth_exponent", 0.5)], needs: &[] },
     ],
     variables: &[],
     accounts: ACCOUNTS,

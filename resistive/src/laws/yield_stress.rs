@@ -6,7 +6,7 @@ use engine::math::Vec3;
 use engine::params::{ParamSpec, Range};
 
 use super::facts::{Facts, Kind, Needs, Twin};
-use super::registry::{ResistanceEntry, Role, amplitude};
+use super::registry::{OtherForm, ResistanceEntry, Role, amplitude};
 
 /// F = −q ρ g A D (D/D₀)^(n − 1) v̂ in the bed, D₀ = 25 mm   (N)
 ///
@@ -57,7 +57,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
         .allowed(Range::closed(0.0, 2.0))
         .plausible(Range::closed(0.0, 1.0)),
     ],
-    forms: &[&[("size_exponent", 0.0)]],
+    forms: &[OtherForm { values: &[("size_exponent", 0.0)], needs: &[Needs::Diameters] }],
     variables: &[],
     accounts: ACCOUNTS,
     build: |given| {

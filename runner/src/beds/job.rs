@@ -103,15 +103,18 @@ impl Job {
     ) -> Result<Option<(Record, bool)>, CampaignError> {
         let lock_path = Self::path(cache, key).with_extension("lock");
         let Some(lock) = lock(&lock_path, heed)? else { return Ok(None) };
-        if let Some(record) = Self::kept(cache, key) {
-            return Ok(Some((record, false)));
-        }
-        let Some(record) = self.run(cache, heed)? else { return Ok(None) };
-        Self::keep(cache, key, &record)?;
+        let (record, is_new) = match Self::kept(cache, key) {
+            Some(record) => (record, false),
+            None => {
+                let Some(record) = self.run(cache, heed)? else { return Ok(None) };
+                Self::keep(cache, key, &record)?;
+                (record, true)
+            }
+        };
         // A process that waits for this lock, or makes a new one, finds the record.
         drop(fs::remove_file(&lock_path));
         drop(lock);
-        Ok(Some((record, true)))
+        Ok(Some((record, is_new)))
     }
 
     /// Its record, if `cache` has it.
