@@ -73,8 +73,7 @@ impl Ranking {
         let (signatures, failed) = signatures(bench, fitted, candidates);
         let mut scores: Vec<Score> =
             signatures.into_par_iter().map(|signature| refit(bench, fitted, signature)).collect();
-        let is_strained = bench.data(&fitted.weights).is_strained(&fitted.fit.point);
-        if is_strained {
+        if bench.data(&fitted.weights).is_strained(&fitted.fit.point) {
             scores.par_iter_mut().for_each(|score| start_over(bench, fitted, score));
         }
         let id = |score: &Score| &bench.forward.candidates()[score.candidate()].id;
@@ -270,7 +269,7 @@ fn start_over(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) {
 }
 
 /// The other forms among `rows` of the effect that explains most, from the parameters of its best form, if that explains
-/// more: around a strained fit each form may end in a minimum of its own.
+/// more: each form may end in a minimum of its own, where errors of the apparatus make up for it.
 fn start_from_best_form(bench: &Bench<'_>, fitted: &Fitted, scores: &mut [Score], rows: &[usize]) {
     let id = |score: &Score| &bench.forward.candidates()[score.candidate()].id;
     let Some(best) =

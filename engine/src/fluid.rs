@@ -87,7 +87,7 @@ mod tests {
             (6.01, 0.045),
             (9.97, 0.021),
         ] {
-            // Slendernesses are rounded to two decimals: 0.005 of them is 0.0014 at 1.5.
+            // Slendernesses are rounded to two decimals: 0.005 of one is 0.0013 at 1.5.
             assert!((coefficient(slenderness) - listed).abs() < 1.5e-3, "{slenderness}");
         }
     }
