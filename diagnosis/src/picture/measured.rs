@@ -48,7 +48,7 @@ fn paths(set: &MeasurementSet) -> Result<String, PictureError> {
         (Sign::Line(colour(0)), format!("depth, a line per run; {n} of {all} conditions")),
         (
             Sign::Dashed(colour(1)),
-            "free fall to first contact at the stated speed, and straight on: every run follows it \
+            "fall to first contact at the stated speed, and straight on: every run follows it \
              before t = 0"
                 .to_owned(),
         ),
@@ -59,13 +59,13 @@ fn paths(set: &MeasurementSet) -> Result<String, PictureError> {
         let panels = charts.split_evenly((rows, COLUMNS));
         for (at, (condition, panel)) in set.conditions.iter().zip(&panels).take(n).enumerate() {
             let own: Vec<&Run> = set.runs.iter().filter(|run| run.condition == at).collect();
-            draw_paths(panel, condition, set.bed_of(condition).gravity, &own)?;
+            draw_paths(panel, condition, set.fall_of(condition), &own)?;
         }
         legend::draw(&below, &signs)
     })
 }
 
-fn draw_paths(area: &Area<'_>, condition: &Condition, gravity: f64, runs: &[&Run]) -> Drawn {
+fn draw_paths(area: &Area<'_>, condition: &Condition, falling: f64, runs: &[&Run]) -> Drawn {
     let Condition { id, speed, angle_deg, .. } = condition;
     let title =
         format!("{id}: {} m/s, {}\u{b0}, {} runs", short(*speed), short(*angle_deg), runs.len());
@@ -80,7 +80,7 @@ fn draw_paths(area: &Area<'_>, condition: &Condition, gravity: f64, runs: &[&Run
         framed(area, [padded(first, last), down.end..down.start], ["time (ms)", "depth (mm)"])?;
     let sinking = speed * libm::sin(angle_deg.to_radians());
     let frame = [padded(first, last), down];
-    let line = fall(sinking, gravity, [first, EARLY * last], &frame);
+    let line = fall(sinking, falling, [first, EARLY * last], &frame);
     chart.draw_series(DashedLineSeries::new(line, 5, 4, colour(1).stroke_width(2)))?;
     for run in runs {
         let line = run.frames.iter().map(|frame| (1e3 * frame.t, 1e3 * frame.z));
@@ -97,17 +97,17 @@ fn draw_paths(area: &Area<'_>, condition: &Condition, gravity: f64, runs: &[&Run
 /// Points of the free fall before contact that are joined by straight lines.
 const FALL_POINTS: usize = 24;
 
-/// Free fall before contact at `speed` (m/s) downwards, and straight on behind it, as times (ms) and depths (mm)
+/// Fall before contact at `speed` (m/s) and `falling` (m/s²) downwards, and straight on behind it, as times (ms) and depths (mm)
 /// between the times `from` and `to`, cut off where it leaves the frame of times and depths.
 fn fall(
     speed: f64,
-    gravity: f64,
+    falling: f64,
     [from, to]: [f64; 2],
     [times, depths]: &[std::ops::Range<f64>; 2],
 ) -> Vec<(f64, f64)> {
     let before = (0..FALL_POINTS).map(|k| from * (1.0 - k as f64 / FALL_POINTS as f64));
     // In ms and mm, 1 m/s is 1 and 1 m/s² is 1/1000.
-    let depth = |t: f64| speed * t + 0.5e-3 * gravity * t.min(0.0).powi(2);
+    let depth = |t: f64| speed * t + 0.5e-3 * falling * t.min(0.0).powi(2);
     let points: Vec<(f64, f64)> = before.chain([0.0, to]).map(|time| (time, depth(time))).collect();
     let mut line: Vec<(f64, f64)> = Vec::new();
     for (a, b) in points.iter().zip(&points[1..]) {
