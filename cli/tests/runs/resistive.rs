@@ -10,6 +10,10 @@ use crate::log::Log;
 
 const SHIPPED: [&str; 4] = ["two-term-vector", "two-term-components", "poncelet", "link"];
 
+/// A cylinder under water, which moves with it from the start.
+const UNDER_WATER: &str =
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/schema/tests/good/resistive-under-water.toml");
+
 /// A chain of two equal links, one more inclined than the other.
 const CHAIN: &str = r#"
 [run]
@@ -54,8 +58,8 @@ fn chain(here: &Path) -> PathBuf {
 }
 
 #[test]
-fn every_shipped_model_stops_with_a_closed_ledger() {
-    for model in SHIPPED {
+fn every_shipped_model_and_one_under_water_stops_with_a_closed_ledger() {
+    for model in SHIPPED.into_iter().chain([UNDER_WATER]) {
         let out = folder();
         let summary = run(model, out.path(), &[]).json();
         assert_eq!(summary["medium"], "resistive-force");

@@ -252,23 +252,21 @@ impl Ended {
 
     fn energy(&self, scale: f64) -> EnergySummary {
         let ledger = &self.ledger;
-        let [before, after]: [f64; 2] =
+        let held = |kind: TermKind| -> [f64; 2] {
             [&self.watched.at_start, &ledger.balance().values].map(|values| {
                 let terms = ledger.terms().iter().zip(values);
-                terms
-                    .filter(|(term, _)| term.kind == TermKind::Kinetic)
-                    .map(|(_, value)| value)
-                    .sum()
-            });
+                terms.filter(|(term, _)| term.kind == kind).map(|(_, value)| value).sum()
+            })
+        };
+        let [before, after] = held(TermKind::Kinetic);
+        // Of a fluid some moves with the body from the start.
+        let [stored_before, stored] = held(TermKind::Channel(ChannelKind::Stored));
         EnergySummary {
             initial: before,
             at_end: FinalEnergy {
                 intruder: after - self.lost(TermKind::Potential, None),
                 grains: 0.0,
-                // An empty sum is −0.
-                elastic: Some(
-                    0.0 + ledger.sum(|term| term.kind == TermKind::Channel(ChannelKind::Stored)),
-                ),
+                elastic: Some(stored - stored_before),
             },
             dissipated: by_channel(ledger, ChannelKind::Dissipated),
             input: by_channel(ledger, ChannelKind::Input),
