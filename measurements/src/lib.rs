@@ -257,7 +257,7 @@ pub struct NamedBed {
 /// What a set states of its bed, and how well: a model of grains is held against it, and prepared to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StatedBed {
-    /// The fluid in the bed and above it, unless it is air.
+    /// The fluid in the bed and above it; `None` where it is air.
     pub fluid: Option<Fluid>,
     /// Area (volume) of the grains over base times mean height of the surface (–).
     pub packing_fraction: Option<f64>,

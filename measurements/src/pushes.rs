@@ -51,7 +51,7 @@ pub(super) fn check(
     }
 }
 
-/// The drive and the zero of its force know nothing of a fluid.
+/// Refuses a fluid: no model of a push has one.
 fn check_fluid(set: &MeasurementSet, findings: &mut Findings) {
     if set.all_beds().any(|bed| bed.stated.fluid.is_some()) {
         findings.report(

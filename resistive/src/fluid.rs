@@ -7,8 +7,8 @@ use engine::ledger::{Channel, ChannelKind};
 
 /// Its laws for `assembly` at `start`: buoyancy and added mass, and drag.
 ///
-/// The body is under the fluid all of the time, in the bed and above: the fluid lies higher over the bed than the body
-/// falls. Of several parts all are as the first.
+/// The surface of the fluid is so high above the bed that the body is under it at all times. The laws take diameter and
+/// volume from the first part.
 pub(super) fn around(
     fluid: Fluid,
     assembly: &dyn Assembly,

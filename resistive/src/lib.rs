@@ -51,7 +51,7 @@ pub struct Surroundings {
     pub packing: Option<f64>,
     /// Depth of the bed (m), where it is known.
     pub bed_depth: Option<f64>,
-    /// The fluid in the bed and above it, if it is none to be left out, such as air.
+    /// The fluid in the bed and above it; `None` where it is air.
     pub fluid: Option<Fluid>,
 }
 

@@ -97,7 +97,7 @@ impl AddedMass {
         if self.shape_exponent <= 0.0 {
             return 1.0;
         }
-        // Of a body of revolution the half-axes of the spheroid; of a planar one a number of its shape all the same.
+        // In space this is the ratio of the axes of the spheroid; in a plane it is a measure of the shape.
         let slenderness = 1.5 * at.body_volume / (at.frontal_area * at.diameter);
         libm::pow(2.0 * added_mass_of_spheroid(slenderness), self.shape_exponent)
     }

@@ -1,23 +1,13 @@
 //! Accelerometers in spheres that fall into a medium of a known law: their readings have closed forms, and name what
 //! is hidden.
 
-use std::f64::consts::PI;
-
-use configs::{LoadOptions, Model, ModelSource, find_shipped};
-use diagnosis::bench::{Bench, DEFAULT_SEED};
-use diagnosis::diagnose::diagnose;
-use diagnosis::observed::Observed;
-use diagnosis::resistive::ResistiveForward;
-use diagnosis::verdict::{Diagnosis, Verdict};
-use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role,
-    Run, Sample, StatedBed, StatedError, StopDefinition,
-};
-use rand::RngExt;
+use diagnosis::verdict::Verdict;
+use measurements::{Condition, Instrument, Kind, MeasurementSet, Run, Sample, StopDefinition};
 use rand_pcg::Pcg64;
 use resistive::Accelerometer;
 
-use super::rig::{BED, DIAMETER, MASS, law, sphere};
+use super::rig::{BED, MASS, law, sphere};
+use super::sets::{condition, diagnosed, normal, of_spheres};
 
 /// Readings per second.
 const RATE: f64 = 2000.0;
@@ -65,33 +55,6 @@ fn what_is_read_adds_up_to_the_speed_that_is_lost() {
     assert!((lost - 2.0).abs() < 1e-3, "{lost} m/s");
 }
 
-fn condition(speed: f64) -> Condition {
-    Condition {
-        id: format!("v{speed}"),
-        role: Role::Fit,
-        speed,
-        angle_deg: 90.0,
-        shape: "sphere".into(),
-        diameter: DIAMETER,
-        mass: MASS,
-        spin: 0.0,
-        packing: None,
-        bed_depth: None,
-        bed: None,
-        length: None,
-        height: None,
-        shaft_diameter: None,
-        apex_deg: None,
-        link_angle_deg: None,
-    }
-}
-
-/// A normal number (Box & Muller).
-fn normal(random: &mut Pcg64) -> f64 {
-    let [a, b] = [(); 2].map(|()| random.random::<f64>());
-    (-2.0 * libm::log(1.0 - a)).sqrt() * libm::cos(2.0 * PI * b)
-}
-
 /// What an accelerometer reads of a fall into drag, friction and the effect `hidden`.
 fn fall(speed: f64, hidden: Option<(&str, f64)>, random: &mut Pcg64) -> Vec<Sample> {
     let [drag, friction] = [1.2, 18.0].map(|of| of * (1.0 + COEFFICIENTS * normal(random)));
@@ -124,53 +87,20 @@ fn measured(hidden: Option<(&str, f64)>, seed: u64) -> MeasurementSet {
         samples: fall(conditions[at].speed, hidden, &mut random),
     });
     let runs = runs.collect();
-    MeasurementSet {
-        id: "accelerometers".into(),
-        source: None,
-        kind: Kind::Acceleration,
-        instrument: Instrument {
-            rate: Some(RATE),
-            acceleration_sigma: Some(READING),
-            speed_sigma_rel: Some(1e-3),
-            speed_bias_sigma_rel: Some(2e-3),
-            scale_sigma_rel: Some(2e-3),
-            mass_sigma_rel: Some(1e-3),
-            ..Instrument::default()
-        },
-        bed: Bed {
-            geometry: Geometry::Spatial,
-            bulk_density: Some(BED.bulk_density),
-            gravity: BED.gravity,
-            grain_diameter: None,
-            stated: StatedBed::default(),
-        },
-        beds: Vec::new(),
-        baseline: None,
-        stated: StatedError::default(),
-        stop: StopDefinition::SpeedFivePercent,
-        last: FinalDefinition::Resting,
-        feasible: Feasible::default(),
-        priors: Vec::new(),
-        conditions,
-        runs,
-        keep: Vec::new(),
-        notes: Vec::new(),
-    }
-}
-
-fn diagnosed(set: &MeasurementSet) -> Diagnosis {
-    let observed = Observed::of(set);
-    let shipped = find_shipped("two-term-vector").expect("a shipped model");
-    let source = ModelSource::Text {
-        name: "two-term-vector.toml".to_owned(),
-        text: shipped.text.to_owned(),
-        folder: ".".into(),
+    let instrument = Instrument {
+        rate: Some(RATE),
+        acceleration_sigma: Some(READING),
+        speed_sigma_rel: Some(1e-3),
+        speed_bias_sigma_rel: Some(2e-3),
+        scale_sigma_rel: Some(2e-3),
+        mass_sigma_rel: Some(1e-3),
+        ..Instrument::default()
     };
-    let model = Model::load(source, &LoadOptions::default()).expect("a model").model;
-    let forward =
-        ResistiveForward::new(&model, set, &observed.layouts()).expect("a model for spheres");
-    diagnose(&Bench { set, observed: &observed, forward: &forward }, DEFAULT_SEED)
-        .expect("spheres stop")
+    MeasurementSet {
+        stop: StopDefinition::SpeedFivePercent,
+        runs,
+        ..of_spheres("accelerometers", (Kind::Acceleration, instrument), conditions)
+    }
 }
 
 #[test]

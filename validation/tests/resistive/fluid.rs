@@ -2,26 +2,15 @@
 
 use std::f64::consts::PI;
 
-use configs::{LoadOptions, Model, ModelSource, find_shipped};
-use diagnosis::bench::{Bench, DEFAULT_SEED};
-use diagnosis::diagnose::diagnose;
-use diagnosis::observed::Observed;
-use diagnosis::resistive::ResistiveForward;
-use diagnosis::verdict::{Diagnosis, Verdict};
+use diagnosis::verdict::Verdict;
 use engine::fluid::Fluid;
-use engine::grains::Space;
 use engine::math::Vec3;
-use engine::params::ParamTable;
-use intruders::Casting;
-use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedBed, StatedError, StopDefinition,
-};
-use rand::RngExt;
+use measurements::{Frame, Instrument, Kind, MeasurementSet, Run};
 use rand_pcg::Pcg64;
 use resistive::{Impact, Recorder, ResistanceLaw, Surroundings, Trajectory};
 
-use super::rig::{BED, DIAMETER, MASS, law};
+use super::rig::{BED, DIAMETER, MASS, launched, law};
+use super::sets::{condition, diagnosed, normal, of_spheres};
 
 const WATER: Fluid = Fluid { density: 998.0, viscosity: 1.0e-3 };
 
@@ -43,14 +32,8 @@ const COEFFICIENTS: f64 = 0.01;
 
 /// A sphere that falls straight down at `speed` (m/s), under `fluid`.
 fn sphere_in(fluid: Fluid, laws: Vec<Box<dyn ResistanceLaw>>, speed: f64) -> Impact {
-    let mut params = ParamTable::new();
-    params.set("diameter", DIAMETER);
-    let velocity = Vec3::new(0.0, 0.0, -speed);
-    let casting =
-        Casting { params: &params, space: Space::Spatial, mass: MASS, velocity, spin: 0.0 };
-    let made = (intruders::find("sphere").expect("the sphere is registered").assembly)(&casting);
     let bed = Surroundings { fluid: Some(fluid), ..BED };
-    Impact::new(made.assembly, laws, bed, made.start)
+    launched(bed, laws, Vec3::new(0.0, 0.0, -speed), 0.0)
 }
 
 #[test]
@@ -103,12 +86,6 @@ fn the_ledger_closes_with_the_fluid_in_accounts_of_its_own() {
     assert!(value("dissipated_fluid_drag_J") > 0.0);
 }
 
-/// A normal number (Box & Muller).
-fn normal(random: &mut Pcg64) -> f64 {
-    let [a, b] = [(); 2].map(|()| random.random::<f64>());
-    (-2.0 * libm::log(1.0 - a)).sqrt() * libm::cos(2.0 * PI * b)
-}
-
 /// Depths (m) at frames from 20 ms before contact until the sphere rests, by equations of motion and a step of 2 µs.
 fn frames(speed: f64, random: &mut Pcg64) -> Vec<Frame> {
     let [drag, friction] = [DRAG, FRICTION].map(|of| of * (1.0 + COEFFICIENTS * normal(random)));
@@ -155,24 +132,6 @@ fn frames(speed: f64, random: &mut Pcg64) -> Vec<Frame> {
 fn measured(stated: Option<Fluid>) -> MeasurementSet {
     let mut random = Pcg64::new(7, 11);
     let speeds = [0.4, 0.7, 1.1, 1.6, 2.2];
-    let condition = |speed: f64| Condition {
-        id: format!("v{speed}"),
-        role: Role::Fit,
-        speed,
-        angle_deg: 90.0,
-        shape: "sphere".into(),
-        diameter: DIAMETER,
-        mass: MASS,
-        spin: 0.0,
-        packing: None,
-        bed_depth: None,
-        bed: None,
-        length: None,
-        height: None,
-        shaft_diameter: None,
-        apex_deg: None,
-        link_angle_deg: None,
-    };
     let places = (0..speeds.len()).flat_map(|at| (0..4).map(move |repeat| (at, repeat)));
     let runs = places.map(|(at, repeat)| Run {
         name: format!("{at}-{repeat}"),
@@ -186,50 +145,14 @@ fn measured(stated: Option<Fluid>) -> MeasurementSet {
         frames: frames(speeds[at], &mut random),
         samples: Vec::new(),
     });
-    let runs = runs.collect();
-    MeasurementSet {
-        id: "under-water".into(),
-        source: None,
-        kind: Kind::Trajectory,
-        instrument: Instrument {
-            rate: Some(RATE),
-            position_sigma: Some(READING),
-            ..Instrument::default()
-        },
-        bed: Bed {
-            geometry: Geometry::Spatial,
-            bulk_density: Some(BED.bulk_density),
-            gravity: BED.gravity,
-            grain_diameter: None,
-            stated: StatedBed { fluid: stated, ..StatedBed::default() },
-        },
-        beds: Vec::new(),
-        baseline: None,
-        stated: StatedError::default(),
-        stop: StopDefinition::ComponentZero,
-        last: FinalDefinition::Resting,
-        feasible: Feasible::default(),
-        priors: Vec::new(),
-        conditions: speeds.map(condition).into(),
-        runs,
-        keep: Vec::new(),
-        notes: Vec::new(),
-    }
-}
-
-fn diagnosed(set: &MeasurementSet) -> Diagnosis {
-    let observed = Observed::of(set);
-    let shipped = find_shipped("two-term-vector").expect("a shipped model");
-    let source = ModelSource::Text {
-        name: "two-term-vector.toml".to_owned(),
-        text: shipped.text.to_owned(),
-        folder: ".".into(),
+    let instrument =
+        Instrument { rate: Some(RATE), position_sigma: Some(READING), ..Instrument::default() };
+    let mut set = MeasurementSet {
+        runs: runs.collect(),
+        ..of_spheres("under-water", (Kind::Trajectory, instrument), speeds.map(condition).into())
     };
-    let model = Model::load(source, &LoadOptions::default()).expect("a model").model;
-    let forward =
-        ResistiveForward::new(&model, set, &observed.layouts()).expect("a model for spheres");
-    diagnose(&Bench { set, observed: &observed, forward: &forward }, DEFAULT_SEED)
-        .expect("spheres stop")
+    set.bed.stated.fluid = stated;
+    set
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Plates that are pushed into a medium of a known law: the force over depth names what is hidden, and nothing else.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f64::consts::FRAC_PI_4;
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
 use diagnosis::added_force::Size;
@@ -18,11 +18,11 @@ use measurements::{
     Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role,
     Run, Sample, StatedBed, StatedError, StopDefinition,
 };
-use rand::RngExt;
 use rand_pcg::Pcg64;
 use resistive::{Driven, Impact, Recorder};
 
 use super::rig::{BED, law};
+use super::sets::normal;
 
 /// Sizes (m) and speeds (m/s) of the plates.
 const DIAMETERS: [f64; 3] = [0.03, 0.045, 0.06];
@@ -96,12 +96,6 @@ fn push(condition: &Condition, hidden: Option<(&str, f64)>, random: &mut Pcg64) 
         Sample { at, value: force * factor + READING * normal(random), sigma: None }
     };
     samples.into_iter().map(read).collect()
-}
-
-/// A normal number (Box & Muller).
-fn normal(random: &mut Pcg64) -> f64 {
-    let [a, b] = [(); 2].map(|()| random.random::<f64>());
-    (-2.0 * libm::log(1.0 - a)).sqrt() * libm::cos(4.0 * FRAC_PI_2 * b)
 }
 
 fn measured(hidden: Option<(&str, f64)>, seed: u64) -> MeasurementSet {

@@ -14,3 +14,4 @@ mod own_effects;
 mod pushed;
 mod rest;
 mod rig;
+mod sets;

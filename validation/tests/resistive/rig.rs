@@ -56,16 +56,26 @@ pub(crate) fn spinning_sphere(
     angle: f64,
     spin: f64,
 ) -> Impact {
-    let mut params = ParamTable::new();
-    params.set("diameter", DIAMETER);
     let radians = angle.to_radians();
     let (down, across) =
         if angle >= 90.0 { (1.0, 0.0) } else { (libm::sin(radians), libm::cos(radians)) };
     let velocity = Vec3::new(speed * across, 0.0, -speed * down);
+    launched(BED, laws, velocity, spin)
+}
+
+/// A sphere with this `velocity` (m/s) and `spin` (rad/s) at the surface of `bed`.
+pub(crate) fn launched(
+    bed: Surroundings,
+    laws: Vec<Box<dyn ResistanceLaw>>,
+    velocity: Vec3,
+    spin: f64,
+) -> Impact {
+    let mut params = ParamTable::new();
+    params.set("diameter", DIAMETER);
     let casting = Casting { params: &params, space: Space::Spatial, mass: MASS, velocity, spin };
     let shape = intruders::find("sphere").expect("the sphere is registered");
     let made = (shape.assembly)(&casting);
-    Impact::new(made.assembly, laws, BED, made.start)
+    Impact::new(made.assembly, laws, bed, made.start)
 }
 
 /// Runs to rest and says how well the ledger closes.

@@ -59,7 +59,7 @@ impl ResistiveChecks<'_> {
         }
     }
 
-    /// A fluid that a plane does not have, or whose force on the intruder is not modelled.
+    /// Refuses a fluid in a plane, and one whose force on the intruder is not modelled.
     fn fluid(&self) {
         let Common { model, places, reader } = self.common;
         if self.resistive.medium.fluid.is_none() {

@@ -24,7 +24,7 @@ pub struct ResistiveMedium {
     pub packing: Option<f64>,
     /// Depth of the bed (m), where it is known.
     pub bed_depth: Option<f64>,
-    /// The fluid in the bed and above it, unless it is air.
+    /// The fluid in the bed and above it; `None` where it is air.
     pub fluid: Option<Fluid>,
     /// `[resistance]`.
     pub resistance: ResistanceChoice,

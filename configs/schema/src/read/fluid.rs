@@ -6,8 +6,8 @@ use crate::diagnostics::Diagnostic;
 use crate::reader::TableReader;
 use crate::specs::{FLUID_DENSITY, FLUID_VISCOSITY};
 
-/// The fluid that `fluid_density` and `fluid_viscosity` of `table` state, none where neither is there; the outer `None` is
-/// an error that was reported.
+/// The fluid that `fluid_density` and `fluid_viscosity` of `table` state; the inner `None` means that neither key is there,
+/// the outer one that an error was reported.
 pub fn fluid(table: &TableReader<'_>) -> Option<Option<Fluid>> {
     let density = table.optional_number(&FLUID_DENSITY);
     let viscosity = table.optional_number(&FLUID_VISCOSITY);

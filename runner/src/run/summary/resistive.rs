@@ -259,7 +259,7 @@ impl Ended {
             })
         };
         let [before, after] = held(TermKind::Kinetic);
-        // Of a fluid some moves with the body from the start.
+        // A body in a fluid moves some of it from the start.
         let [stored_before, stored] = held(TermKind::Channel(ChannelKind::Stored));
         EnergySummary {
             initial: before,
