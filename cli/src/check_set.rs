@@ -109,7 +109,7 @@ fn as_text(loaded: &Loaded, out: Option<&Path>) -> String {
     let lines: Vec<String> = moving.map(line).collect();
     if !lines.is_empty() {
         let what = match curve {
-            Some(curve) => format!("{} over {}", curve.value.name, curve.along.name),
+            Some(curve) => format!("{} over {}", curve.value.name, curve.along.axis().name),
             None => "depth over time, from first contact".to_owned(),
         };
         text.push_str(&format!("\n{what}\n{}", lines.concat()));
@@ -135,17 +135,20 @@ fn path(run: &Run) -> String {
     format!("  {name:<12} {curve}  {deepest:.2} mm in {last:.1} ms\n")
 }
 
-/// A run of a curve as one line likewise: its greatest reading, and how far it goes.
+/// A run of a curve as one line likewise: its reading farthest from zero, and how far it goes.
 fn course(run: &Run, curve: &Curve) -> String {
+    let farthest = run.samples.iter().map(|one| one.value);
+    let farthest =
+        farthest.fold(0.0_f64, |most, one| if one.abs() > most.abs() { one } else { most });
+    let forward = |value: f64| (value * farthest.signum()).max(0.0);
     let points: Vec<(f64, f64)> =
-        run.samples.iter().map(|one| (one.at, one.value.max(0.0))).collect();
-    let most = points.iter().fold(0.0_f64, |most, point| most.max(point.1));
+        run.samples.iter().map(|one| (one.at, forward(one.value))).collect();
     let last = points.iter().fold(0.0_f64, |last, point| last.max(point.0));
     let line = reports::sparkline(&points, SPARKLINE);
-    let (name, along, value) = (&run.name, curve.along, curve.value);
+    let (name, along, value) = (&run.name, curve.along.axis(), curve.value);
     format!(
         "  {name:<12} {line}  {:.2} {} in {:.1} {}\n",
-        value.scale * most,
+        value.scale * farthest,
         value.unit,
         along.scale * last,
         along.unit

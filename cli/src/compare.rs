@@ -125,17 +125,25 @@ pub(crate) fn run(args: &Args) -> CommandResult {
 /// Most numbers that are listed one by one.
 const MOST_NUMBERS: usize = 24;
 
-/// An error of a table: its key, its heading, and what it is multiplied with.
-const ERRORS: [(&str, &str, f64); 8] = [
-    ("z_m", "z (mm)", 1e3),
-    ("x_m", "x (mm)", 1e3),
-    ("force_N", "force (N)", 1.0),
-    ("acceleration_m_s2", "acceleration (m/s²)", 1.0),
-    ("stop_time_s", "stop time (ms)", 1e3),
-    ("final_z_m", "depth (mm)", 1e3),
-    ("final_x_m", "range (mm)", 1e3),
-    ("rms_relative", "relative (%)", 1e2),
-];
+/// The errors of a table: key, heading, and what each is multiplied with.
+fn error_columns() -> Vec<(&'static str, String, f64)> {
+    let of_kind = |observable: Observable| {
+        let axis = match observable {
+            Observable::Depth => ("z", "mm", 1e3),
+            Observable::Range => ("x", "mm", 1e3),
+            Observable::StopTime => ("stop time", "ms", 1e3),
+            Observable::FinalDepth => ("depth", "mm", 1e3),
+            Observable::FinalRange => ("range", "mm", 1e3),
+            of_curve => {
+                let [_, axis, _] = of_curve.axes();
+                (axis.name, axis.unit, axis.scale)
+            }
+        };
+        (observable.key(), format!("{} ({})", axis.0, axis.1), axis.2)
+    };
+    let relative = ("rms_relative", "relative (%)".to_owned(), 1e2);
+    Observable::ALL.map(of_kind).into_iter().chain([relative]).collect()
+}
 
 fn as_text(
     set: &MeasurementSet,
@@ -157,12 +165,13 @@ fn as_text(
 }
 
 fn errors(comparison: &Comparison) -> String {
-    let measured: Vec<_> = ERRORS
+    let columns = error_columns();
+    let measured: Vec<_> = columns
         .iter()
         .filter(|(key, ..)| comparison.models.iter().any(|model| !model.rms.fit[*key].is_null()))
         .collect();
     let mut header = vec!["model", ""];
-    header.extend(measured.iter().map(|(_, heading, _)| *heading));
+    header.extend(measured.iter().map(|(_, heading, _)| heading.as_str()));
     header.extend(["chi2/n", "p (lack of fit)"]);
     let mut table = table(&header);
     for model in &comparison.models {

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, ContentArrangement, Table};
+use measurements::curves;
 use serde_json::Value;
 use terminal_size::{Width, terminal_size_of};
 
@@ -30,11 +31,13 @@ pub(crate) fn noise_words(noise: &Value) -> String {
 /// The error of a reading in its own unit.
 fn reading(noise: &Value) -> String {
     let number = |key: &str| noise[key].as_f64();
-    match (number("force_sigma_N"), number("acceleration_sigma_m_s2")) {
-        (Some(force), _) => format!("{force:.3} N"),
-        (_, Some(acceleration)) => format!("{acceleration:.3} m/s²"),
-        _ => format!("{:.2} mm", 1e3 * number("position_sigma_m").unwrap_or(0.0)),
-    }
+    let mut of_curves = curves().filter_map(|curve| {
+        let axis = curve.value;
+        number(curve.sigma_key).map(|error| format!("{:.3} {}", axis.scale * error, axis.unit))
+    });
+    of_curves
+        .next()
+        .unwrap_or_else(|| format!("{:.2} mm", 1e3 * number("position_sigma_m").unwrap_or(0.0)))
 }
 
 /// An empty table with right-aligned numbers behind the first column, as wide as a terminal at most.

@@ -1,8 +1,9 @@
 //! A diagnosis as `plunge diagnose` prints it.
 
 use diagnosis::calibrate::Calibration;
+use diagnosis::error_unit::Unit;
 use diagnosis::forward::Bound;
-use diagnosis::held_out::{Fails, LeftOut, Unit};
+use diagnosis::held_out::{Fails, LeftOut};
 use diagnosis::missing_force::MissingForce;
 use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Verdict};
 use serde_json::Value;
@@ -99,6 +100,8 @@ fn shown(unit: Unit, error: f64) -> String {
         Unit::Relative => format!("{:.1} %", 1e2 * error),
         Unit::Force => format!("{error:.3} N"),
         Unit::Acceleration => format!("{error:.3} m/s²"),
+        Unit::Velocity => format!("{error:.4} m/s"),
+        Unit::Spin => format!("{error:.3} rad/s"),
     }
 }
 

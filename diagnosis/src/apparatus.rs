@@ -4,7 +4,7 @@
 //! deviation, or one of [`defaults`]. An effect therefore gets no credit for what a wrong clock, scale or mass explains
 //! (Kennedy & O'Hagan 2001, J. R. Stat. Soc. B 63, 425, on calibration with discrepancies that have priors).
 
-use measurements::{Condition, Kind, MeasurementSet, Role};
+use measurements::{Along, Condition, Kind, MeasurementSet, Role};
 
 use crate::forward::{Parameter, ParameterKind, Prior, Scatter};
 use crate::observable::Layout;
@@ -81,7 +81,8 @@ impl Apparatus {
             each.filter(|(_, condition)| condition.role == Role::Fit).map(|(layout, _)| layout)
         };
         let is_felt = set.kind == Kind::Acceleration;
-        let is_timed = fitted().any(|one| one.stop_time || !one.times.is_empty() || is_felt);
+        let is_along_time = set.kind.curve().is_some_and(|curve| curve.along == Along::Time);
+        let is_timed = fitted().any(|one| one.stop_time || !one.times.is_empty() || is_along_time);
         if let Some(sigma) = clock_sigma(set).filter(|_| is_timed) {
             all.add(Fault::Clock, "time-zero", "s", sigma);
             if let Some(frame) = frame(set).filter(|_| is_felt) {
@@ -297,11 +298,11 @@ fn frame(set: &MeasurementSet) -> Option<f64> {
             let steps = set.runs.iter().flat_map(|run| run.frames.windows(2));
             middle(steps.map(|pair| pair[1].t - pair[0].t).collect())
         }),
-        Kind::Acceleration => frame.or_else(|| {
+        Kind::Scalar | Kind::ForceDepth => frame,
+        Kind::Acceleration | Kind::Velocity | Kind::Spin => frame.or_else(|| {
             let steps = set.runs.iter().flat_map(|run| run.samples.windows(2));
             middle(steps.map(|pair| pair[1].at - pair[0].at).collect())
         }),
-        Kind::Scalar | Kind::ForceDepth => frame,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Curves of several runs at common places: forces over depth, accelerations over time.
 
-use measurements::{Condition, Curve, Frame, Kind, MeasurementSet, Run, Sample};
+use measurements::{Along, Condition, Curve, Frame, Kind, MeasurementSet, Run, Sample};
 
 use crate::resampling::{common_grid, depth_and_range};
 
@@ -41,15 +41,14 @@ pub(crate) struct CommonCurve {
 impl CommonCurve {
     /// Of `runs` under `condition`, as the kind of `set` has them.
     pub(crate) fn of(set: &MeasurementSet, condition: &Condition, runs: &[&Run]) -> Self {
-        match set.kind {
-            Kind::Acceleration => Self::over_time(set, condition, runs),
+        match set.kind.curve().map(|curve| curve.along) {
+            Some(Along::Time) => Self::over_time(set, condition, runs),
             _ => Self::over_depth(runs),
         }
     }
 
-    /// Of `runs` with an accelerometer, at common times: some before contact, and up to the stop less a tenth of the way
-    /// there. Left out are times at which any run is beyond the range of its accelerometer, and those beside the contact,
-    /// where a reading may jump.
+    /// Of `runs` over time, at common times: some before contact, and up to the stop less a tenth of the way there. Left
+    /// out are times at which any accelerometer is beyond its range, and those beside the contact, where it may jump.
     fn over_time(set: &MeasurementSet, condition: &Condition, runs: &[&Run]) -> Self {
         let frame = |one: &Sample| Frame { t: one.at, z: one.value, x: 0.0, sigma: one.sigma };
         let tracks: Vec<Vec<Frame>> =
@@ -67,13 +66,14 @@ impl CommonCurve {
         let mean: Vec<f64> =
             (0..grid.len()).map(|at| values.iter().map(|run| run[at]).sum::<f64>() / n).collect();
         let step = grid.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
-        let range = set.instrument.acceleration_range.unwrap_or(f64::INFINITY);
+        let is_felt = set.kind == Kind::Acceleration;
+        let range = set.instrument.acceleration_range.filter(|_| is_felt).unwrap_or(f64::INFINITY);
         let is_kept = |at: &usize| {
             let is_seen = values.iter().all(|run| run[*at].abs() < WITHIN * range);
-            is_seen && grid[*at].abs() > BESIDE * step
+            is_seen && (!is_felt || grid[*at].abs() > BESIDE * step)
         };
         let known = (condition.speed, set.bed_of(condition).gravity);
-        let stop = BEFORE_STOP * stopped(&grid, &mean, known);
+        let stop = BEFORE_STOP * stopped(set.kind, &grid, &mean, known);
         let (before, after): (Vec<usize>, Vec<usize>) = (0..grid.len())
             .filter(is_kept)
             .filter(|&at| grid[at] <= stop)
@@ -190,16 +190,37 @@ fn fallen(at: &[f64], felt: &[f64], (speed, gravity): (f64, f64)) -> Vec<[f64; 3
     all
 }
 
-/// When (s) the velocity falls below 5 % of the speed at contact; infinite where it does not.
-fn stopped(at: &[f64], felt: &[f64], known: (f64, f64)) -> f64 {
-    let path = fallen(at, felt, known);
+/// The way of a body at a speed (m/s) and in gravity (m/s²) whose `kind` of curve is `read` at the times `at` (s), as
+/// [`fallen`]; `None` where it does not tell.
+fn path(kind: Kind, at: &[f64], read: &[f64], known: (f64, f64)) -> Option<Vec<[f64; 3]>> {
+    match kind {
+        Kind::Acceleration => Some(fallen(at, read, known)),
+        Kind::Velocity => {
+            let (mut time, mut velocity, mut way) = (0.0, known.0, 0.0);
+            let seen = at.iter().zip(read).filter(|(t, _)| **t > 0.0);
+            let path = seen.map(|(&t, &next)| {
+                way += 0.5 * (t - time) * (velocity + next);
+                (time, velocity) = (t, next);
+                [time, velocity, way]
+            });
+            Some(path.collect())
+        }
+        _ => None,
+    }
+}
+
+/// When (s) the velocity falls below 5 % of the speed at contact; infinite where it does not, or is not known.
+fn stopped(kind: Kind, at: &[f64], read: &[f64], known: (f64, f64)) -> f64 {
+    let path = path(kind, at, read, known).unwrap_or_default();
     path.iter().find(|[_, v, _]| *v < STOPPED * known.0).map_or(f64::INFINITY, |[t, ..]| *t)
 }
 
-/// How deep (m) a body comes that reads `felt` (m/s²) at the times `at` (s) from a speed and in gravity.
-pub(crate) fn way(at: &[f64], felt: &[f64], known: (f64, f64)) -> f64 {
-    let deepest = fallen(at, felt, known).iter().fold(0.0_f64, |most, [.., way]| most.max(*way));
-    deepest.max(f64::MIN_POSITIVE)
+/// How deep (m) a body comes whose `kind` of curve is `read` at the times `at` (s), from a speed (m/s) and in gravity
+/// (m/s²); `None` where it does not tell.
+pub(crate) fn way(kind: Kind, at: &[f64], read: &[f64], known: (f64, f64)) -> Option<f64> {
+    let path = path(kind, at, read, known)?;
+    let deepest = path.iter().fold(0.0_f64, |most, [.., way]| most.max(*way));
+    Some(deepest.max(f64::MIN_POSITIVE))
 }
 
 /// Root mean square error of one reading of `curve` (SI).
@@ -259,8 +280,9 @@ mod tests {
         let felt = vec![30.0; at.len()];
         // 2 m/s less 20 m/s² from 1 ms on, on average: after 95 ms 5 % are left, on a way of 0.1 m to rest.
         let known = (2.0, 10.0);
-        assert!((stopped(&at, &felt, known) - 0.0958).abs() < 1.5e-3);
-        assert!((way(&at, &felt, known) / 0.1 - 1.0).abs() < 0.03);
+        let way = way(Kind::Acceleration, &at, &felt, known).expect("a way");
+        assert!((stopped(Kind::Acceleration, &at, &felt, known) - 0.0958).abs() < 1.5e-3);
+        assert!((way / 0.1 - 1.0).abs() < 0.03);
     }
 
     #[test]

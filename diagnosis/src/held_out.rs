@@ -1,16 +1,15 @@
 //! Errors on conditions that were not fitted to.
 
-use measurements::Kind;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use serde::Serialize;
 
 use rand::RngExt;
 
 use crate::bench::{Bench, BenchError, DEFAULT_SEED, Fitted};
+use crate::error_unit::Unit;
 use crate::errors::{Errors, Sums};
 use crate::fit::Data;
 use crate::noise::log_determinant;
-use crate::observable::Observable;
 use crate::observed::{Observed, ObservedCondition};
 use crate::random::{Purpose, stream};
 use crate::rounding::{six_digits, six_digits_or_null};
@@ -70,47 +69,6 @@ pub enum Fails {
     After,
     /// Either.
     Both,
-}
-
-/// Unit of an error over several kinds of numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Unit {
-    /// Positions (m).
-    #[serde(rename = "m")]
-    Position,
-    /// Scalars, relative (1 = 100 %).
-    #[serde(rename = "1")]
-    Relative,
-    /// Forces (N).
-    #[serde(rename = "N")]
-    Force,
-    /// Accelerations (m/s²).
-    #[serde(rename = "m/s^2")]
-    Acceleration,
-}
-
-impl Unit {
-    /// Of errors on a set of this kind.
-    #[must_use]
-    pub fn of(kind: Kind) -> Self {
-        match kind {
-            Kind::Trajectory => Self::Position,
-            Kind::Scalar => Self::Relative,
-            Kind::ForceDepth => Self::Force,
-            Kind::Acceleration => Self::Acceleration,
-        }
-    }
-
-    /// The one of `errors` that is in this unit, where there is one.
-    #[must_use]
-    pub fn pick(self, errors: &Errors) -> Option<f64> {
-        match self {
-            Self::Position => errors.position,
-            Self::Relative => errors.relative,
-            Self::Force => errors.of(Observable::Force),
-            Self::Acceleration => errors.of(Observable::Acceleration),
-        }
-    }
 }
 
 /// Which conditions were left out of a fit.
@@ -533,6 +491,7 @@ pub(crate) fn standard_errors(observed: &ObservedCondition) -> DVector<f64> {
 mod tests {
     use super::*;
     use crate::test_sets::{condition, scalar_run, set};
+    use measurements::Kind;
 
     #[test]
     fn a_condition_that_only_one_model_predicts_is_left_out_of_both_and_reported() {

@@ -25,8 +25,7 @@ pub struct Layout {
 pub struct Curve {
     /// What is read.
     pub observable: Observable,
-    /// Where: of a force, the depth below the undisturbed surface as it is read (m); of an acceleration, the time since
-    /// first contact (s).
+    /// Where: of a force, the depth below the undisturbed surface as it is read (m); else the time since first contact (s).
     pub at: Vec<f64>,
 }
 
@@ -41,6 +40,10 @@ pub enum Observable {
     Force,
     /// Reading of an accelerometer at a time (m/s²).
     Acceleration,
+    /// Downward velocity at a time (m/s).
+    Velocity,
+    /// Angular velocity at a time (rad/s).
+    Spin,
     /// Stopping time (s).
     StopTime,
     /// Final depth (m).
@@ -97,11 +100,13 @@ impl Layout {
 
 impl Observable {
     /// Every kind, in the order of a vector.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Depth,
         Self::Range,
         Self::Force,
         Self::Acceleration,
+        Self::Velocity,
+        Self::Spin,
         Self::StopTime,
         Self::FinalDepth,
         Self::FinalRange,
@@ -115,6 +120,8 @@ impl Observable {
             Self::Range => "x_m",
             Self::Force => "force_N",
             Self::Acceleration => "acceleration_m_s2",
+            Self::Velocity => "velocity_m_s",
+            Self::Spin => "spin_rad_s",
             Self::StopTime => "stop_time_s",
             Self::FinalDepth => "final_z_m",
             Self::FinalRange => "final_x_m",
@@ -124,7 +131,7 @@ impl Observable {
     /// Whether it is a number of the whole impact rather than of a time.
     #[must_use]
     pub fn is_scalar(self) -> bool {
-        !matches!(self, Self::Depth | Self::Range | Self::Force | Self::Acceleration)
+        matches!(self, Self::StopTime | Self::FinalDepth | Self::FinalRange)
     }
 
     /// Whether it is a place, whose errors are lengths.
@@ -146,6 +153,16 @@ impl Observable {
                 axis("acceleration", "m/s²", 1.0),
                 axis("change", "m/s² per ms", 1e-3),
             ],
+            Self::Velocity => [
+                axis("time", "ms", 1e3),
+                axis("velocity", "m/s", 1.0),
+                axis("acceleration", "m/s²", 1.0),
+            ],
+            Self::Spin => [
+                axis("time", "ms", 1e3),
+                axis("spin", "rad/s", 1.0),
+                axis("change", "rad/s per ms", 1e-3),
+            ],
             Self::StopTime => {
                 [axis("time", "ms", 1e3), axis("time", "ms", 1e3), axis("change", "1", 1.0)]
             }
@@ -162,6 +179,8 @@ impl Observable {
             Kind::Trajectory | Kind::Scalar => None,
             Kind::ForceDepth => Some(Self::Force),
             Kind::Acceleration => Some(Self::Acceleration),
+            Kind::Velocity => Some(Self::Velocity),
+            Kind::Spin => Some(Self::Spin),
         }
     }
 }

@@ -415,12 +415,11 @@ pub(crate) fn reach(
     mean: &DVector<f64>,
     condition: &Condition,
 ) -> f64 {
-    if let (Kind::Acceleration, Some(curve)) = (set.kind, &layout.curve) {
-        return curves::way(
-            &curve.at,
-            mean.as_slice(),
-            (condition.speed, set.bed_of(condition).gravity),
-        );
+    if let Some(curve) = &layout.curve {
+        let known = (condition.speed, set.bed_of(condition).gravity);
+        if let Some(way) = curves::way(set.kind, &curve.at, mean.as_slice(), known) {
+            return way;
+        }
     }
     let kinds = layout.kinds();
     let depths = kinds.iter().zip(mean.iter());
@@ -459,9 +458,10 @@ pub(crate) fn reading(
         kinds.len(),
         kinds.iter().enumerate().map(|(at, kind)| match kind {
             Observable::Depth | Observable::Range => frame(at % n),
-            Observable::Force | Observable::Acceleration => {
-                own(places, at - tracks).unwrap_or(of_curve)
-            }
+            Observable::Force
+            | Observable::Acceleration
+            | Observable::Velocity
+            | Observable::Spin => own(places, at - tracks).unwrap_or(of_curve),
             Observable::StopTime => time,
             Observable::FinalDepth | Observable::FinalRange => position,
         }),
@@ -474,7 +474,9 @@ pub(crate) fn stated(stated: &StatedError, kind: Observable) -> Option<f64> {
         Observable::StopTime => stated.stop_time,
         Observable::Depth | Observable::FinalDepth => stated.final_z,
         Observable::Range | Observable::FinalRange => stated.final_x,
-        Observable::Force | Observable::Acceleration => None,
+        Observable::Force | Observable::Acceleration | Observable::Velocity | Observable::Spin => {
+            None
+        }
     }
 }
 

@@ -2,9 +2,9 @@
 
 use engine::units::Dimension;
 
-use super::Kind;
 use super::columns::{ColumnSpec, Content, column};
-use super::curve::{Axis, Curve};
+use super::curve::{Along, Axis, Curve};
+use super::{Kind, accelerometers};
 
 const fn columns(run: bool) -> [ColumnSpec; 4] {
     [
@@ -24,10 +24,13 @@ pub(super) static CURVE: Curve = Curve {
     word: "acceleration",
     plural: "accelerations over time",
     function: "a(t)",
-    along: Axis { name: "time", unit: "ms", scale: 1e3 },
+    along: Along::Time,
     value: Axis { name: "acceleration", unit: "m/s²", scale: 1.0 },
     files: "accelerations",
     columns: [&OF_MANY, &OF_ONE],
     sigma_key: "acceleration_sigma_m_s2",
     sigma: |instrument| instrument.acceleration_sigma,
+    lacks_speed: "a set of accelerations has to state it",
+    shown_speed: |_, _, _| None,
+    check: accelerometers::check,
 };

@@ -1,11 +1,11 @@
 //! What no accelerometer in a falling body reads: order, signs, zeros and units.
 
-use configs::{Diagnostic, shorten};
+use configs::Diagnostic;
 
 use super::conditions::ConditionPlaces;
-use super::contradictions::{Contradiction, ContradictionKind};
+use super::contradiction::{Contradiction, ContradictionKind};
 use super::findings::Findings;
-use super::{MeasurementSet, Run};
+use super::{MeasurementSet, Run, over_time};
 
 /// Share of gravity by which a reading before contact may miss that of free fall.
 const FALLING: f64 = 0.5;
@@ -19,26 +19,9 @@ pub(super) fn check(
     places: &[ConditionPlaces],
     findings: &mut Findings,
 ) -> Vec<Contradiction> {
-    for (condition, place) in set.conditions.iter().zip(places) {
-        let id = shorten(&condition.id);
-        if condition.angle_deg < 90.0 || condition.shape.contains("link") {
-            let message =
-                format!("the accelerations of `{id}` are not of a vertical impact of one body");
-            let help =
-                "an accelerometer reads along its own axis, which has to be that of the motion";
-            findings.report(Diagnostic::error(message).at(place.angle, "expected 90").help(help));
-        }
-    }
-    for run in &set.runs {
-        if !findings.full() && run.samples.windows(2).any(|pair| pair[0].at >= pair[1].at) {
-            let name = shorten(&run.name);
-            findings.report(
-                Diagnostic::error(format!("the time does not go on in the run `{name}`"))
-                    .at(places[run.condition].id, "measured under this condition")
-                    .help("the times of a run rise from row to row"),
-            );
-        }
-    }
+    let why = "an accelerometer reads along its own axis, which has to be that of the motion";
+    over_time::check_vertical(set, places, ("accelerations", why), findings);
+    over_time::check_times(set, places, findings);
     if findings.errors() == 0 {
         check_signs(set, places, findings);
     }

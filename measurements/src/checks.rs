@@ -1,9 +1,9 @@
 //! What only the whole set shows: signs, magnitudes, whether its errors can be known.
 
-use super::contradictions::Contradiction;
+use super::contradiction::Contradiction;
 use super::document::Document;
 use super::findings::Findings;
-use super::{Kind, MeasurementSet, accelerometers, confounded, magnitudes, pushes, ranges, signs};
+use super::{Kind, MeasurementSet, confounded, magnitudes, ranges, signs};
 
 impl MeasurementSet {
     /// Whether the set states the error of any number that it compares: of readings, if it has
@@ -20,9 +20,7 @@ impl MeasurementSet {
                 let one = frames.any(|frame| frame.sigma.is_some());
                 self.instrument.position_sigma.is_some() || one
             }
-            Kind::ForceDepth | Kind::Acceleration => {
-                self.kind.curve().is_some_and(|curve| curve.has_stated_errors(self))
-            }
+            _ => self.kind.curve().is_some_and(|curve| curve.has_stated_errors(self)),
         }
     }
 }
@@ -37,10 +35,9 @@ pub(super) fn check(
     if findings.errors() > 0 {
         return Vec::new();
     }
-    let contradictions = match set.kind {
-        Kind::ForceDepth => pushes::check(set, &document.places, findings),
-        Kind::Acceleration => accelerometers::check(set, &document.places, findings),
-        Kind::Trajectory | Kind::Scalar => {
+    let contradictions = match set.kind.curve() {
+        Some(curve) => (curve.check)(set, &document.places, findings),
+        None => {
             signs::check(set, &document.places, findings);
             magnitudes::check(set, &document.places, findings)
         }

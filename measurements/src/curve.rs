@@ -1,7 +1,11 @@
 //! Readings along one axis that are no positions, such as a force over depth.
 
 use super::columns::ColumnSpec;
-use super::{Instrument, Kind, MeasurementSet};
+use super::conditions::ConditionPlaces;
+use super::contradiction::Contradiction;
+use super::findings::Findings;
+use super::reading::Reading;
+use super::{Condition, Instrument, Kind, MeasurementSet, Run};
 
 /// A kind of set whose runs are curves.
 pub struct Curve {
@@ -14,7 +18,7 @@ pub struct Curve {
     /// What of a condition was measured, as a function.
     pub function: &'static str,
     /// What the readings lie along.
-    pub along: Axis,
+    pub along: Along,
     /// What is read.
     pub value: Axis,
     /// Key of its tables below `[files]`.
@@ -25,6 +29,36 @@ pub struct Curve {
     pub sigma_key: &'static str,
     /// What the set states of it.
     pub(super) sigma: fn(&Instrument) -> Option<f64>,
+    /// What is told of a condition whose speed at contact neither the set nor any reading shows.
+    pub(super) lacks_speed: &'static str,
+    /// The speed at contact (m/s) that the readings of a run before it show.
+    pub(super) shown_speed: fn(&MeasurementSet, &Condition, &Run) -> Option<Reading>,
+    /// Refuses what no such reading is; gives magnitudes that contradict each other.
+    pub(super) check: Check,
+}
+
+/// Checks of a set whose tables were read.
+pub(super) type Check =
+    fn(&MeasurementSet, &[ConditionPlaces], &mut Findings) -> Vec<Contradiction>;
+
+/// What readings lie along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Along {
+    /// The time since first contact (s).
+    Time,
+    /// The depth below the undisturbed surface (m).
+    Depth,
+}
+
+impl Along {
+    /// As it is drawn.
+    #[must_use]
+    pub fn axis(self) -> Axis {
+        match self {
+            Self::Time => Axis { name: "time", unit: "ms", scale: 1e3 },
+            Self::Depth => Axis { name: "depth", unit: "mm", scale: 1e3 },
+        }
+    }
 }
 
 /// An axis of a drawing.

@@ -2,10 +2,16 @@
 
 use super::Kind;
 use super::curve::Curve;
-use super::{acceleration, force_depth};
+use super::{acceleration, angular_velocity, force_depth, velocity};
 
 /// Every kind; a line here makes one known.
-static CURVES: [&Curve; 2] = [&force_depth::CURVE, &acceleration::CURVE];
+static CURVES: [&Curve; 4] =
+    [&force_depth::CURVE, &acceleration::CURVE, &velocity::CURVE, &angular_velocity::CURVE];
+
+/// Every kind of curve.
+pub fn curves() -> impl Iterator<Item = &'static Curve> {
+    CURVES.into_iter()
+}
 
 impl Kind {
     /// What is known of the kind, if its runs are curves.

@@ -189,9 +189,9 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
     let stop = stop.or_else(|| {
         let (stop, word) = match kind? {
             Kind::Scalar => (StopDefinition::ComponentZero, words[0]),
-            Kind::Trajectory | Kind::Acceleration => (StopDefinition::SpeedFivePercent, words[1]),
             // What is pushed does not stop.
             Kind::ForceDepth => return Some(StopDefinition::ComponentZero),
+            _ => (StopDefinition::SpeedFivePercent, words[1]),
         };
         unstated.assume(format!("measurement.stop_definition = \"{word}\""));
         Some(stop)
@@ -228,14 +228,18 @@ fn instrument(
         unstated.positive(value, path)
     };
     let is_forces = curve.is_some_and(|curve| curve.kind == Kind::ForceDepth);
-    let is_felt = curve.is_some_and(|curve| curve.kind == Kind::Acceleration);
-    let acceleration = "instrument.acceleration_sigma_m_s2";
+    let is_read = |spec: &ParamSpec| curve.is_some_and(|curve| curve.sigma_key == spec.key);
+    let [force, acceleration, velocity, spin] =
+        [&keys::FORCE_SIGMA, &keys::ACCELERATION_SIGMA, &keys::VELOCITY_SIGMA, &keys::SPIN_SIGMA];
+    let acceleration_path = "instrument.acceleration_sigma_m_s2";
     let position = "instrument.position_sigma_m";
     let instrument = Instrument {
         rate: number(&keys::RATE, "instrument.rate_hz", !is_forces),
         position_sigma: number(&keys::POSITION_SIGMA, position, curve.is_none()),
-        force_sigma: number(&keys::FORCE_SIGMA, "instrument.force_sigma_N", is_forces),
-        acceleration_sigma: number(&keys::ACCELERATION_SIGMA, acceleration, is_felt),
+        force_sigma: number(force, "instrument.force_sigma_N", is_read(force)),
+        acceleration_sigma: number(acceleration, acceleration_path, is_read(acceleration)),
+        velocity_sigma: number(velocity, "instrument.velocity_sigma_m_s", is_read(velocity)),
+        spin_sigma: number(spin, "instrument.spin_sigma_rad_s", is_read(spin)),
         acceleration_range: optional(&table, &keys::ACCELERATION_RANGE),
         speed_sigma_rel: number(&keys::SPEED_SIGMA, "instrument.speed_sigma_rel", !is_forces),
         level_sigma: number(&keys::LEVEL_SIGMA, "instrument.level_sigma_m", true),

@@ -2,9 +2,9 @@
 
 use engine::units::Dimension;
 
-use super::Kind;
 use super::columns::{ColumnSpec, Content, column};
-use super::curve::{Axis, Curve};
+use super::curve::{Along, Axis, Curve};
+use super::{Kind, pushes};
 
 const fn columns(run: bool) -> [ColumnSpec; 4] {
     [
@@ -24,10 +24,13 @@ pub(super) static CURVE: Curve = Curve {
     word: "force-depth",
     plural: "forces over depth",
     function: "force(z)",
-    along: Axis { name: "depth", unit: "mm", scale: 1e3 },
+    along: Along::Depth,
     value: Axis { name: "force", unit: "N", scale: 1.0 },
     files: "forces",
     columns: [&OF_MANY, &OF_ONE],
     sigma_key: "force_sigma_N",
     sigma: |instrument| instrument.force_sigma,
+    lacks_speed: "a set of forces over depth has to state it: the speed of the push",
+    shown_speed: |_, _, _| None,
+    check: pushes::check,
 };

@@ -46,6 +46,20 @@ pub(super) const ACCELERATION_SIGMA: ParamSpec = key(
     (0.0, 1e3),
     "the root mean square error of one reading of an acceleration",
 );
+pub(super) const VELOCITY_SIGMA: ParamSpec = key(
+    "velocity_sigma_m_s",
+    Dimension::SPEED,
+    NOT_NEGATIVE,
+    (0.0, 10.0),
+    "the root mean square error of one reading of a velocity",
+);
+pub(super) const SPIN_SIGMA: ParamSpec = key(
+    "spin_sigma_rad_s",
+    Dimension::SPIN,
+    NOT_NEGATIVE,
+    (0.0, 1e3),
+    "the root mean square error of one reading of a spin",
+);
 pub(super) const ACCELERATION_RANGE: ParamSpec = key(
     "acceleration_range_m_s2",
     Dimension::ACCELERATION,

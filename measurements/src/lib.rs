@@ -13,6 +13,7 @@
 mod acceleration;
 mod accelerometers;
 mod agreement;
+mod angular_velocity;
 mod beds;
 mod bodies;
 mod cells;
@@ -21,6 +22,7 @@ mod columns;
 mod conditions;
 mod confounded;
 mod contact;
+mod contradiction;
 mod contradictions;
 mod curve;
 mod curve_table;
@@ -43,6 +45,7 @@ mod load;
 mod magnitudes;
 mod optional;
 mod order;
+mod over_time;
 mod priors;
 mod pushes;
 mod ranges;
@@ -61,6 +64,7 @@ mod table;
 mod template;
 mod trajectories;
 mod unstated;
+mod velocity;
 mod write;
 mod zeros;
 
@@ -68,8 +72,9 @@ use engine::fluid::Fluid;
 
 pub use agreement::Agreement;
 pub use contact::Contact;
-pub use contradictions::{Contradiction, ContradictionKind};
-pub use curve::{Axis, Curve};
+pub use contradiction::{Contradiction, ContradictionKind};
+pub use curve::{Along, Axis, Curve};
+pub use curves::curves;
 pub use definitions::{Held, Miss, Outcome, Scalar, hold};
 pub use departure::Departure;
 pub use fall::{Fall, reading_noise};
@@ -168,6 +173,10 @@ pub enum Kind {
     ForceDepth,
     /// Acceleration over time, as an accelerometer in the body reads it: 0 in free fall, gravity at rest.
     Acceleration,
+    /// Downward velocity over time.
+    Velocity,
+    /// Angular velocity over time, positive when the body rolls forward.
+    Spin,
 }
 
 /// What is known of the instrument.
@@ -181,6 +190,10 @@ pub struct Instrument {
     pub force_sigma: Option<f64>,
     /// Root mean square of one reading of an acceleration (m/s²).
     pub acceleration_sigma: Option<f64>,
+    /// Root mean square of one reading of a velocity (m/s).
+    pub velocity_sigma: Option<f64>,
+    /// Root mean square of one reading of an angular velocity (rad/s).
+    pub spin_sigma: Option<f64>,
     /// Size of accelerations beyond which the accelerometer reads nothing (m/s²).
     pub acceleration_range: Option<f64>,
     /// How well the set impact speed is known, relative, per run.
@@ -390,7 +403,8 @@ impl Run {
 pub struct Sample {
     /// Where along it (SI): a depth below the undisturbed surface, or a time since first contact.
     pub at: f64,
-    /// What was read (SI): the force of the bed against the motion, or an acceleration upward.
+    /// What was read (SI): the force of the bed against the motion, an acceleration upward, a velocity downward, or an
+    /// angular velocity forward.
     pub value: f64,
     /// Root mean square error of this reading (SI), where the table says it.
     pub sigma: Option<f64>,

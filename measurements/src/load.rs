@@ -11,7 +11,8 @@ use configs::{Color, Diagnostic, Sources, document as toml, limits, nearest, ren
 use thiserror::Error;
 
 use super::agreement::Agreement;
-use super::contradictions::{self, Contradiction, ContradictionKind};
+use super::contradiction::{Contradiction, ContradictionKind};
+use super::contradictions;
 use super::document::{self, Document, FileName, Missing};
 use super::findings::Findings;
 use super::row::file_name;

@@ -3,7 +3,7 @@
 use configs::Diagnostic;
 
 use super::conditions::ConditionPlaces;
-use super::contradictions::{Contradiction, ContradictionKind};
+use super::contradiction::{Contradiction, ContradictionKind};
 use super::findings::Findings;
 use super::smooth::greatest_velocity;
 use super::start::Start;

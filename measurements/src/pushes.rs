@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use configs::{Diagnostic, shorten};
 
 use super::conditions::ConditionPlaces;
-use super::contradictions::{Contradiction, ContradictionKind};
+use super::contradiction::{Contradiction, ContradictionKind};
 use super::findings::Findings;
 use super::{Condition, Geometry, MeasurementSet, Run, Sample};
 

@@ -3,6 +3,7 @@
 use configs::{Diagnostic, shorten};
 
 use super::conditions::ConditionPlaces;
+use super::curve::Curve;
 use super::findings::Findings;
 use super::reading::Reading;
 use super::{Kind, MeasurementSet, contact, zeros};
@@ -15,16 +16,16 @@ pub(super) fn fill(set: &mut MeasurementSet, places: &[ConditionPlaces], finding
             continue;
         }
         let id = shorten(&set.conditions[index].id);
-        let read = read(set, index);
+        let read = match set.kind.curve() {
+            Some(curve) => shown(set, index, curve),
+            None => read(set, index),
+        };
         let speed = zeros::mean(read.iter().copied());
-        if read.is_empty() || set.kind != Kind::Trajectory {
-            let why = match set.kind {
-                Kind::Scalar => "a set of scalars has to state it",
-                Kind::ForceDepth => {
-                    "a set of forces over depth has to state it: the speed of the push"
-                }
-                Kind::Acceleration => "a set of accelerations has to state it",
-                Kind::Trajectory => "no run has the frames before contact that would show it",
+        if read.is_empty() {
+            let why = match set.kind.curve() {
+                Some(curve) => curve.lacks_speed,
+                None if set.kind == Kind::Scalar => "a set of scalars has to state it",
+                None => "no run has the frames before contact that would show it",
             };
             findings.report(
                 Diagnostic::error(format!("the condition `{id}` lacks `speed`"))
@@ -35,14 +36,20 @@ pub(super) fn fill(set: &mut MeasurementSet, places: &[ConditionPlaces], finding
         }
         let (n, noun) = (read.len(), if read.len() == 1 { "run" } else { "runs" });
         findings.note(format!(
-            "The speed of `{id}` is {:.4} ± {:.4} m/s, from the frames before contact of {n} {noun}.",
+            "The speed of `{id}` is {:.4} ± {:.4} m/s, from the readings before contact of {n} {noun}.",
             speed.value, speed.se
         ));
         set.conditions[index].speed = speed.value;
     }
 }
 
-/// The speeds at contact (m/s) of the runs of one condition that show it.
+/// The speeds at contact (m/s) that the curves of the runs of one condition show.
+fn shown(set: &MeasurementSet, condition: usize, curve: &Curve) -> Vec<Reading> {
+    let own = set.runs.iter().filter(|run| run.condition == condition);
+    own.filter_map(|run| (curve.shown_speed)(set, &set.conditions[condition], run)).collect()
+}
+
+/// The speeds at contact (m/s) of the runs of one condition whose frames show it.
 fn read(set: &MeasurementSet, condition: usize) -> Vec<Reading> {
     let of = super::Condition { speed: 0.0, ..set.conditions[condition].clone() };
     let own = set.runs.iter().filter(|run| run.condition == condition);

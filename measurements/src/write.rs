@@ -94,6 +94,8 @@ impl MeasurementSet {
         file.number("position_sigma_m", self.instrument.position_sigma);
         file.number("force_sigma_N", self.instrument.force_sigma);
         file.number("acceleration_sigma_m_s2", self.instrument.acceleration_sigma);
+        file.number("velocity_sigma_m_s", self.instrument.velocity_sigma);
+        file.number("spin_sigma_rad_s", self.instrument.spin_sigma);
         file.number("acceleration_range_m_s2", self.instrument.acceleration_range);
         file.number("speed_sigma_rel", self.instrument.speed_sigma_rel);
         file.number("level_sigma_m", self.instrument.level_sigma);

@@ -18,10 +18,8 @@ pub fn of_set(loaded: &Loaded) -> Result<String, ReportError> {
             "Every reading of every run, in SI and counted downward. A run that does not start along \
              the dashed line has another sign, unit or zero than the set says."
         }
-        Kind::ForceDepth | Kind::Acceleration => {
-            "Every reading of every run, in SI and counted downward."
-        }
         Kind::Scalar => "Every number of every run over the stated impact speed.",
+        _ => "Every reading of every run, in SI, as it is counted.",
     };
     let held_out = set.conditions.iter().filter(|one| one.role == Role::Holdout).count();
     let readings: usize = set.runs.iter().map(|run| run.frames.len() + run.samples.len()).sum();

@@ -55,7 +55,8 @@ pub(super) fn is_beaten(rival: &HeldOut, leader: &HeldOut) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::held_out::{LeftOut, Unit};
+    use crate::error_unit::Unit;
+    use crate::held_out::LeftOut;
 
     fn with(after: f64) -> HeldOut {
         HeldOut {

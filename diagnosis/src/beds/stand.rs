@@ -6,7 +6,7 @@ use configs::{Change, ConfigError, GrainForceChoice, GrainMedium, GrainModel, Me
 use engine::bed::random;
 use engine::fluid::Fluid;
 use engine::grains::Space;
-use measurements::{Condition, Geometry, Kind, MeasurementSet};
+use measurements::{Along, Condition, Geometry, Kind, MeasurementSet};
 use rand::RngExt;
 use runner::beds::Job;
 use thiserror::Error;
@@ -47,11 +47,13 @@ pub enum StandError {
         /// How many.
         beds: usize,
     },
-    /// Accelerations, which beds do not answer.
-    #[error("`{model}` is a bed of grains; accelerations are compared with resistive models alone")]
-    Accelerations {
+    /// Curves over time, which beds do not answer.
+    #[error("`{model}` is a bed of grains; {what} are compared with resistive models alone")]
+    OverTime {
         /// Name of the model.
         model: String,
+        /// What the set measured.
+        what: &'static str,
     },
     /// Pushes before a model of impacts, or the other way round.
     #[error("the set holds {set_holds}, and `{model}` has [{table}]; it needs [{wanted}]")]
@@ -139,12 +141,13 @@ impl<'a> Stand<'a> {
             let (model, beds) = (model.run.name.clone(), set.beds.len());
             return Err(StandError::SeveralBeds { model, beds });
         }
-        let (set_holds, wanted) = match set.kind {
-            Kind::Acceleration => {
-                return Err(StandError::Accelerations { model: model.run.name.clone() });
+        let (set_holds, wanted) = match set.kind.curve() {
+            Some(curve) if curve.along == Along::Time => {
+                let (model, what) = (model.run.name.clone(), curve.plural);
+                return Err(StandError::OverTime { model, what });
             }
-            Kind::ForceDepth => ("pushes", "intrusion"),
-            Kind::Trajectory | Kind::Scalar => ("impacts", "impact"),
+            Some(_) => ("pushes", "intrusion"),
+            None => ("impacts", "impact"),
         };
         let table = model.impact.table();
         if table != wanted {

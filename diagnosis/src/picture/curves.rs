@@ -39,7 +39,7 @@ fn draw(area: &Area<'_>, curve: &Curve, condition: &Condition, runs: &[&Run]) ->
     let (diameter, speed) = (short(1e3 * diameter), short(*speed));
     let title = format!("{id}: {diameter} mm, {speed} m/s, {} runs", runs.len());
     area.draw(&Text::new(fitting(&title, PANEL.0 - 60), (52, 5), letters()))?;
-    let (along, value) = (curve.along, curve.value);
+    let (along, value) = (curve.along.axis(), curve.value);
     let samples = || runs.iter().flat_map(|run| &run.samples);
     let ends = |numbers: &mut dyn Iterator<Item = f64>| {
         numbers.fold((0.0_f64, 1e-9_f64), |(least, most), x| (least.min(x), most.max(x)))

@@ -67,6 +67,8 @@ fn panels<'a>(found: &'a WhereItFails<'_>) -> Vec<Panel<'a>> {
         kind("range over time (mm)", 1e3, Some(Observable::Range)),
         kind("force over depth (N)", 1.0, Some(Observable::Force)),
         kind("acceleration over time (m/s²)", 1.0, Some(Observable::Acceleration)),
+        kind("velocity over time (m/s)", 1.0, Some(Observable::Velocity)),
+        kind("spin over time (rad/s)", 1.0, Some(Observable::Spin)),
         kind("stopping time (ms)", 1e3, Some(Observable::StopTime)),
         kind("final depth (mm)", 1e3, Some(Observable::FinalDepth)),
         kind("final range (mm)", 1e3, Some(Observable::FinalRange)),

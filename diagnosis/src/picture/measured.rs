@@ -36,7 +36,7 @@ pub fn measured(set: &MeasurementSet) -> Result<String, PictureError> {
     match set.kind {
         Kind::Trajectory => paths(set),
         Kind::Scalar => scalars(set),
-        Kind::ForceDepth | Kind::Acceleration => curves(set),
+        Kind::ForceDepth | Kind::Acceleration | Kind::Velocity | Kind::Spin => curves(set),
     }
 }
 

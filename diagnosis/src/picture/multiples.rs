@@ -59,6 +59,8 @@ impl Track {
             Observable::Depth => "z",
             Observable::Force => "force",
             Observable::Acceleration => "acceleration",
+            Observable::Velocity => "velocity",
+            Observable::Spin => "spin",
             _ => "x",
         };
         let (id, speed, angle) =

@@ -6,8 +6,8 @@ use plots::legend::{self, Sign};
 use plots::{Area, COLOURS, Drawn, Hover, PictureError, centred, fitting, short, svg};
 use plotters::prelude::*;
 
+use crate::error_unit::Unit;
 use crate::errors::Errors;
-use crate::held_out::Unit;
 use crate::where_it_fails::WhereItFails;
 
 /// Height (pixels), least width, and least width of a step.
@@ -57,6 +57,8 @@ impl Stairs {
             Kind::Scalar => ("scalars, relative (%)", 1e2),
             Kind::ForceDepth => ("forces (N)", 1.0),
             Kind::Acceleration => ("accelerations (m/s²)", 1.0),
+            Kind::Velocity => ("velocities (m/s)", 1.0),
+            Kind::Spin => ("spins (rad/s)", 1.0),
         };
         let unit = Unit::of(found.set.kind);
         let pick = |errors: &Errors| unit.pick(errors).map(|error| scale * error);

@@ -4,9 +4,9 @@ mod bent;
 mod candidates;
 mod error;
 mod extended;
-mod felt;
 mod field;
 mod needs;
+mod over_time;
 mod prepared;
 mod pushed;
 mod scatter;
@@ -140,7 +140,7 @@ impl ResistiveForward {
                     let both = after.as_ref().zip(before.as_ref());
                     both.is_some_and(|(a, b)| slow::differs(b, a, PROBE * slow::SEEN))
                 }),
-                Kind::Trajectory | Kind::Scalar | Kind::Acceleration => after != before,
+                _ => after != before,
             }
         };
         let (active, idle): (Vec<usize>, Vec<usize>) =

@@ -41,7 +41,7 @@ pub(super) fn contains(set: &MeasurementSet, need: Needs) -> bool {
         }
         Needs::FramesBeforeImpact => data.runs().any(|(_, run)| {
             let frames = run.frames.iter().map(|frame| frame.t);
-            let felt = run.samples.iter().filter(|_| set.kind == Kind::Acceleration);
+            let felt = run.samples.iter().filter(|_| set.kind != Kind::ForceDepth);
             frames.chain(felt.map(|sample| sample.at)).any(|time| time < 0.0)
         }),
         Needs::Conditions => data.conditions().count() > 1,

@@ -19,8 +19,8 @@ use resistive::{
 
 use super::bent::Bent;
 use super::error::ForwardError;
-use super::felt::{self, DURATION};
 use super::field::FieldForce;
+use super::over_time::{self, DURATION};
 use super::pushed;
 use super::scatter::PathScatter;
 use crate::forward::{Bend, Moment, Scatter};
@@ -398,7 +398,7 @@ impl Prepared {
             return Ok(Seen { frames: Vec::new(), stop, last, curve, laws });
         }
         if let Some(curve) = &self.layout.curve {
-            let curve = felt::readings(&impact, &curve.at, scatter)?;
+            let curve = over_time::readings(&impact, curve, scatter)?;
             let (stop, last, laws) = (0.0, (0.0, 0.0), impact.into_laws());
             return Ok(Seen { frames: Vec::new(), stop, last, curve, laws });
         }

@@ -221,7 +221,6 @@ fn film(sphere: &Sphere<'_>, design: &Design, chance: &mut Chance) -> Result<Run
     };
     let last = ((path.stop_time + AFTERWARDS) * RATE) as i32;
     let frames = match design.kind {
-        Kind::Scalar | Kind::ForceDepth | Kind::Acceleration => Vec::new(),
         Kind::Trajectory => (-FLIGHT_FRAMES..=last)
             .map(|frame| {
                 let t = f64::from(frame) / RATE;
@@ -229,6 +228,7 @@ fn film(sphere: &Sphere<'_>, design: &Design, chance: &mut Chance) -> Result<Run
                 Frame { t, z, x, sigma: None }
             })
             .collect(),
+        _ => Vec::new(),
     };
     let [final_x, final_z] = read(path.rest);
     let oblique = sphere.setting.angle_deg < 90.0;

@@ -2,21 +2,11 @@
 //! is hidden.
 
 use diagnosis::verdict::Verdict;
-use measurements::{Condition, Instrument, Kind, MeasurementSet, Run, Sample, StopDefinition};
-use rand_pcg::Pcg64;
-use resistive::Accelerometer;
+use measurements::{Instrument, Kind, MeasurementSet, Sample};
+use resistive::{Accelerometer, Impact};
 
 use super::rig::{BED, MASS, law, sphere};
-use super::sets::{condition, diagnosed, normal, of_spheres};
-
-/// Readings per second.
-const RATE: f64 = 2000.0;
-
-const REPEATS: usize = 4;
-
-/// Error of a reading (m/s²), and scatter of the coefficients from run to run, relative.
-const READING: f64 = 0.2;
-const COEFFICIENTS: f64 = 0.02;
+use super::sets::{self, Reader, diagnosed};
 
 #[test]
 fn a_constant_resistance_is_read_as_its_deceleration_and_rest_as_gravity() {
@@ -55,52 +45,22 @@ fn what_is_read_adds_up_to_the_speed_that_is_lost() {
     assert!((lost - 2.0).abs() < 1e-3, "{lost} m/s");
 }
 
-/// What an accelerometer reads of a fall into drag, friction and the effect `hidden`.
-fn fall(speed: f64, hidden: Option<(&str, f64)>, random: &mut Pcg64) -> Vec<Sample> {
-    let [drag, friction] = [1.2, 18.0].map(|of| of * (1.0 + COEFFICIENTS * normal(random)));
-    let mut laws = vec![law("two-term-vector", &[("drag", drag), ("friction", friction)])];
-    laws.extend(hidden.map(|(name, q)| law(name, &[("q", q)])));
-    let impact = sphere(laws, speed, 90.0);
-    let times: Vec<f64> = (0..200).map(|k| f64::from(k) / RATE).collect();
-    let mut seen = Accelerometer::at(&times, BED.gravity);
+/// What an accelerometer of an error of 0.2 m/s² reads of `impact` at rising times (s).
+fn felt(impact: &Impact, times: &[f64]) -> Vec<f64> {
+    let (before, after) = times.split_at(times.partition_point(|&time| time < 0.0));
+    let backward: Vec<f64> = before.iter().rev().copied().collect();
+    let mut readings = impact.felt_in_flight(&backward).expect("a fall");
+    readings.reverse();
+    let mut seen = Accelerometer::at(after, BED.gravity);
     impact.run(10.0, &mut seen).expect("it stops");
-    let before = (1..10).rev().map(|k| (-f64::from(k) / RATE, 0.0));
-    let all = before.chain(times.iter().copied().zip(seen.into_readings()));
-    all.map(|(at, felt)| Sample { at, value: felt + READING * normal(random), sigma: None })
-        .collect()
+    readings.extend(seen.into_readings());
+    readings
 }
 
 fn measured(hidden: Option<(&str, f64)>, seed: u64) -> MeasurementSet {
-    let mut random = Pcg64::new(u128::from(seed), 11);
-    let conditions: Vec<Condition> = [0.7, 1.2, 2.0, 3.2, 4.5].map(condition).into();
-    let places = (0..conditions.len()).flat_map(|at| (0..REPEATS).map(move |repeat| (at, repeat)));
-    let runs = places.map(|(at, repeat)| Run {
-        name: format!("{at}-{repeat}"),
-        condition: at,
-        repeat: Some(repeat as i64),
-        order: None,
-        session: None,
-        stop_time: None,
-        final_z: None,
-        final_x: None,
-        frames: Vec::new(),
-        samples: fall(conditions[at].speed, hidden, &mut random),
-    });
-    let runs = runs.collect();
-    let instrument = Instrument {
-        rate: Some(RATE),
-        acceleration_sigma: Some(READING),
-        speed_sigma_rel: Some(1e-3),
-        speed_bias_sigma_rel: Some(2e-3),
-        scale_sigma_rel: Some(2e-3),
-        mass_sigma_rel: Some(1e-3),
-        ..Instrument::default()
-    };
-    MeasurementSet {
-        stop: StopDefinition::SpeedFivePercent,
-        runs,
-        ..of_spheres("accelerometers", (Kind::Acceleration, instrument), conditions)
-    }
+    let reader = Reader { kind: Kind::Acceleration, error: 0.2, read: felt };
+    let instrument = Instrument { acceleration_sigma: Some(reader.error), ..sets::INSTRUMENT };
+    sets::read_over_time("accelerometers", (&reader, instrument), hidden, (seed, 11))
 }
 
 #[test]
@@ -128,11 +88,7 @@ fn accelerations_of_the_model_itself_show_nothing() {
 #[test]
 fn a_set_of_accelerations_that_is_written_is_read_back() {
     let set = measured(None, 3);
-    let folder = tempfile::tempdir().expect("a folder");
-    set.write(folder.path()).expect("files");
-    let loaded = MeasurementSet::load(folder.path()).expect("a set");
-    assert!(loaded.contradictions.is_empty(), "{:?}", loaded.contradictions);
-    assert_eq!(MeasurementSet { notes: Vec::new(), ..loaded.set }, set);
+    assert_eq!(sets::read_back(&set), Ok(set));
 }
 
 #[test]
@@ -147,13 +103,7 @@ fn wrong_signs_zeros_and_units_of_accelerations_are_refused() {
     for (change, message) in cases {
         let mut set = measured(None, 5);
         set.runs.iter_mut().flat_map(|run| &mut run.samples).for_each(change);
-        let folder = tempfile::tempdir().expect("a folder");
-        set.write(folder.path()).expect("files");
-        let told = match MeasurementSet::load(folder.path()) {
-            Ok(loaded) => loaded
-                .render_contradictions(&measurements::ContradictionKind::ALL, configs::Color::Off),
-            Err(error) => error.to_string(),
-        };
+        let told = sets::refusal(&set);
         assert!(told.contains(message), "{message}: {told}");
     }
 }

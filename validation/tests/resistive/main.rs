@@ -15,3 +15,5 @@ mod pushed;
 mod rest;
 mod rig;
 mod sets;
+mod spins;
+mod velocities;

@@ -9,13 +9,48 @@ use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::verdict::Diagnosis;
 use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role,
-    StatedBed, StatedError, StopDefinition,
+    Bed, Condition, ContradictionKind, Feasible, FinalDefinition, Geometry, Instrument, Kind,
+    MeasurementSet, Role, Run, Sample, StatedBed, StatedError, StopDefinition,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
+use resistive::Impact;
 
-use super::rig::{BED, DIAMETER, MASS};
+use super::rig::{BED, DIAMETER, MASS, law, sphere};
+
+/// Readings per second, falls per condition, and scatter of the coefficients from run to run, relative.
+const RATE: f64 = 2000.0;
+const REPEATS: usize = 4;
+const COEFFICIENTS: f64 = 0.02;
+
+/// How well all else is known where readings lie over time.
+pub(crate) const INSTRUMENT: Instrument = Instrument {
+    rate: Some(RATE),
+    position_sigma: None,
+    force_sigma: None,
+    acceleration_sigma: None,
+    velocity_sigma: None,
+    spin_sigma: None,
+    acceleration_range: None,
+    speed_sigma_rel: Some(1e-3),
+    level_sigma: None,
+    time_sigma: None,
+    zero_sigma: None,
+    speed_bias_sigma_rel: Some(2e-3),
+    scale_sigma_rel: Some(2e-3),
+    mass_sigma_rel: Some(1e-3),
+    tilt_sigma_deg: None,
+    session_sigma_rel: None,
+};
+
+/// What reads along the time.
+pub(crate) struct Reader {
+    pub(crate) kind: Kind,
+    /// Standard deviation of a reading (SI).
+    pub(crate) error: f64,
+    /// The readings without error, at rising times (s) before and after contact.
+    pub(crate) read: fn(&Impact, &[f64]) -> Vec<f64>,
+}
 
 /// Straight down at `speed` (m/s).
 pub(crate) fn condition(speed: f64) -> Condition {
@@ -79,10 +114,15 @@ pub(crate) fn of_spheres(
 
 /// What is said of `set` from the two-term law.
 pub(crate) fn diagnosed(set: &MeasurementSet) -> Diagnosis {
+    diagnosed_from("two-term-vector", set)
+}
+
+/// What is said of `set` from a shipped model.
+pub(crate) fn diagnosed_from(model: &str, set: &MeasurementSet) -> Diagnosis {
     let observed = Observed::of(set);
-    let shipped = find_shipped("two-term-vector").expect("a shipped model");
+    let shipped = find_shipped(model).expect("a shipped model");
     let source = ModelSource::Text {
-        name: "two-term-vector.toml".to_owned(),
+        name: format!("{model}.toml"),
         text: shipped.text.to_owned(),
         folder: ".".into(),
     };
@@ -91,4 +131,67 @@ pub(crate) fn diagnosed(set: &MeasurementSet) -> Diagnosis {
         ResistiveForward::new(&model, set, &observed.layouts()).expect("a model for spheres");
     diagnose(&Bench { set, observed: &observed, forward: &forward }, DEFAULT_SEED)
         .expect("spheres stop")
+}
+
+/// Falls into drag, friction and the effect `hidden` at five speeds, as `reader` reads them.
+pub(crate) fn read_over_time(
+    id: &str,
+    (reader, instrument): (&Reader, Instrument),
+    hidden: Option<(&str, f64)>,
+    (seed, stream): (u64, u128),
+) -> MeasurementSet {
+    let mut random = Pcg64::new(u128::from(seed), stream);
+    let conditions: Vec<Condition> = [0.7, 1.2, 2.0, 3.2, 4.5].map(condition).into();
+    let times: Vec<f64> = (-9..200).map(|k| f64::from(k) / RATE).collect();
+    let mut fall = |speed: f64| -> Vec<Sample> {
+        let [drag, friction] =
+            [1.2, 18.0].map(|of| of * (1.0 + COEFFICIENTS * normal(&mut random)));
+        let mut laws = vec![law("two-term-vector", &[("drag", drag), ("friction", friction)])];
+        laws.extend(hidden.map(|(name, q)| law(name, &[("q", q)])));
+        let read = (reader.read)(&sphere(laws, speed, 90.0), &times);
+        let noisy = |value: f64| value + reader.error * normal(&mut random);
+        let values: Vec<f64> = read.into_iter().map(noisy).collect();
+        times.iter().zip(values).map(|(&at, value)| Sample { at, value, sigma: None }).collect()
+    };
+    let places = (0..conditions.len()).flat_map(|at| (0..REPEATS).map(move |repeat| (at, repeat)));
+    let runs = places.map(|(at, repeat)| Run {
+        name: format!("{at}-{repeat}"),
+        condition: at,
+        repeat: Some(repeat as i64),
+        order: None,
+        session: None,
+        stop_time: None,
+        final_z: None,
+        final_x: None,
+        frames: Vec::new(),
+        samples: fall(conditions[at].speed),
+    });
+    let runs = runs.collect();
+    MeasurementSet {
+        stop: StopDefinition::SpeedFivePercent,
+        runs,
+        ..of_spheres(id, (reader.kind, instrument), conditions)
+    }
+}
+
+/// `set` as it is read after it was written, without what is noted of it.
+///
+/// # Errors
+/// What is told of its faults and contradictions.
+pub(crate) fn read_back(set: &MeasurementSet) -> Result<MeasurementSet, String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    set.write(folder.path()).expect("files");
+    let loaded = MeasurementSet::load(folder.path()).map_err(|error| error.to_string())?;
+    match loaded.contradictions.is_empty() {
+        true => Ok(MeasurementSet { notes: Vec::new(), ..loaded.set }),
+        false => Err(loaded.render_contradictions(&ContradictionKind::ALL, configs::Color::Off)),
+    }
+}
+
+/// What is told of a `set` that is refused.
+pub(crate) fn refusal(set: &MeasurementSet) -> String {
+    match read_back(set) {
+        Ok(_) => panic!("nothing was refused"),
+        Err(told) => told,
+    }
 }

@@ -1,0 +1,113 @@
+//! Downward velocity over time, as a Doppler velocimeter or a light gate reads it.
+
+use configs::Diagnostic;
+use engine::units::Dimension;
+
+use super::columns::{ColumnSpec, Content, column};
+use super::conditions::ConditionPlaces;
+use super::contradiction::{Contradiction, ContradictionKind};
+use super::curve::{Along, Axis, Curve};
+use super::findings::Findings;
+use super::reading::Reading;
+use super::{Condition, Kind, MeasurementSet, Run, over_time, zeros};
+
+const fn columns(run: bool) -> [ColumnSpec; 4] {
+    [
+        column("run", Content::Name, run),
+        column("t", Content::Quantity(Dimension::TIME), true),
+        column("velocity", Content::Quantity(Dimension::SPEED), true),
+        column("sigma_velocity", Content::Quantity(Dimension::SPEED), false),
+    ]
+}
+
+static OF_MANY: [ColumnSpec; 4] = columns(true);
+static OF_ONE: [ColumnSpec; 4] = columns(false);
+
+/// The line of the kind.
+pub(super) static CURVE: Curve = Curve {
+    kind: Kind::Velocity,
+    word: "velocity",
+    plural: "velocities over time",
+    function: "v(t)",
+    along: Along::Time,
+    value: Axis { name: "velocity", unit: "m/s", scale: 1.0 },
+    files: "velocities",
+    columns: [&OF_MANY, &OF_ONE],
+    sigma_key: "velocity_sigma_m_s",
+    sigma: |instrument| instrument.velocity_sigma,
+    lacks_speed: "no run has velocities before contact, counted downward, that would show it",
+    shown_speed,
+    check,
+};
+
+/// Greatest velocity over the largest that the stated speed and a fall by a diameter allow, and its inverse, beyond
+/// which a unit is wrong.
+const MOST: f64 = 2.0;
+
+/// From the readings before contact, each brought forward to it in free fall.
+fn shown_speed(set: &MeasurementSet, condition: &Condition, run: &Run) -> Option<Reading> {
+    // How fast a body falls in a fluid depends on the speed that is looked for: there a set states it.
+    let is_dry = set.bed_of(condition).stated.fluid.is_none();
+    let fall = set.bed_of(condition).gravity;
+    let before = run.samples.iter().filter(|one| one.at < 0.0);
+    let each: Vec<Reading> = before
+        .map(|one| Reading {
+            value: one.value - fall * one.at,
+            se: one.sigma.or(set.instrument.velocity_sigma).unwrap_or(0.0),
+        })
+        .collect();
+    let speed = zeros::mean(each.iter().copied());
+    (is_dry && !each.is_empty() && speed.value > 0.0).then_some(speed)
+}
+
+fn check(
+    set: &MeasurementSet,
+    places: &[ConditionPlaces],
+    findings: &mut Findings,
+) -> Vec<Contradiction> {
+    let why = "a velocity is read along one axis, which has to be that of the motion";
+    over_time::check_vertical(set, places, ("velocities", why), findings);
+    over_time::check_times(set, places, findings);
+    if findings.errors() > 0 {
+        return Vec::new();
+    }
+    let largest = |run: &Run| {
+        let values = run.samples.iter().map(|one| one.value);
+        values.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
+    };
+    let all = set.runs.len();
+    let contrary: Vec<&Run> = set.runs.iter().filter(|run| largest(run) < 0.0).collect();
+    if 2 * contrary.len() > all {
+        let n = contrary.len();
+        findings.report(
+            Diagnostic::error(format!(
+                "the velocity is negative where it is largest in {n} of {all} runs"
+            ))
+            .at(places[contrary[0].condition].id, "a velocity counts downward")
+            .help(
+                "does it count upward? then say below [columns]: \
+                     velocity = { name = \"velocity\", unit = \"m/s\", sign = -1 }",
+            ),
+        );
+        return Vec::new();
+    }
+    let ratio = |run: &Run| {
+        let condition = &set.conditions[run.condition];
+        let fall = (2.0 * set.gravity_of(run) * condition.diameter).sqrt();
+        largest(run) / (condition.speed + fall)
+    };
+    let mut ratios: Vec<(f64, usize)> =
+        set.runs.iter().map(|run| (ratio(run), run.condition)).collect();
+    ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let middle = ratios.get(ratios.len() / 2).filter(|(ratio, _)| *ratio > MOST);
+    let named = middle.map(|&(ratio, condition)| {
+        let message = format!(
+            "the largest velocities are {ratio:.1} times those of the stated speed and a fall by a diameter"
+        );
+        let diagnostic = Diagnostic::error(message)
+            .at(places[condition].speed, "the stated speed")
+            .help("are they in mm/s or cm/s? [columns] gives the units of a table");
+        Contradiction { kind: ContradictionKind::Speeds, diagnostic }
+    });
+    named.into_iter().collect()
+}
