@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use comfy_table::CellAlignment;
 use diagnosis::compare::{Comparison, ModelComparison, Revision, compare};
+use diagnosis::error_columns::columns;
 use diagnosis::forward::Forward;
 use diagnosis::observable::Observable;
 use diagnosis::picture;
@@ -125,26 +126,6 @@ pub(crate) fn run(args: &Args) -> CommandResult {
 /// Most numbers that are listed one by one.
 const MOST_NUMBERS: usize = 24;
 
-/// The errors of a table: key, heading, and what each is multiplied with.
-fn error_columns() -> Vec<(&'static str, String, f64)> {
-    let of_kind = |observable: Observable| {
-        let axis = match observable {
-            Observable::Depth => ("z", "mm", 1e3),
-            Observable::Range => ("x", "mm", 1e3),
-            Observable::StopTime => ("stop time", "ms", 1e3),
-            Observable::FinalDepth => ("depth", "mm", 1e3),
-            Observable::FinalRange => ("range", "mm", 1e3),
-            of_curve => {
-                let [_, axis, _] = of_curve.axes();
-                (axis.name, axis.unit, axis.scale)
-            }
-        };
-        (observable.key(), format!("{} ({})", axis.0, axis.1), axis.2)
-    };
-    let relative = ("rms_relative", "relative (%)".to_owned(), 1e2);
-    Observable::ALL.map(of_kind).into_iter().chain([relative]).collect()
-}
-
 fn as_text(
     set: &MeasurementSet,
     comparison: &Comparison,
@@ -165,13 +146,13 @@ fn as_text(
 }
 
 fn errors(comparison: &Comparison) -> String {
-    let columns = error_columns();
+    let columns = columns();
     let measured: Vec<_> = columns
         .iter()
-        .filter(|(key, ..)| comparison.models.iter().any(|model| !model.rms.fit[*key].is_null()))
+        .filter(|one| comparison.models.iter().any(|model| !model.rms.fit[one.key].is_null()))
         .collect();
     let mut header = vec!["model", ""];
-    header.extend(measured.iter().map(|(_, heading, _)| heading.as_str()));
+    header.extend(measured.iter().map(|one| one.heading.as_str()));
     header.extend(["chi2/n", "p (lack of fit)"]);
     let mut table = table(&header);
     for model in &comparison.models {
@@ -182,10 +163,10 @@ fn errors(comparison: &Comparison) -> String {
             let fit = role == "fit";
             let mut row =
                 vec![if fit { model.model.clone() } else { String::new() }, role.to_owned()];
-            row.extend(measured.iter().map(|(key, _, scale)| {
-                errors[*key]
+            row.extend(measured.iter().map(|one| {
+                errors[one.key]
                     .as_f64()
-                    .map_or("-".to_owned(), |error| format!("{:.3}", scale * error))
+                    .map_or("-".to_owned(), |error| format!("{:.3}", one.scale * error))
             }));
             row.push(if fit { format!("{:.2}", model.chi2_per_n) } else { String::new() });
             row.push(match model.p_lof {

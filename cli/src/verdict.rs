@@ -1,7 +1,6 @@
 //! A diagnosis as `plunge diagnose` prints it.
 
 use diagnosis::calibrate::Calibration;
-use diagnosis::error_unit::Unit;
 use diagnosis::forward::Bound;
 use diagnosis::held_out::{Fails, LeftOut};
 use diagnosis::missing_force::MissingForce;
@@ -84,25 +83,12 @@ fn missing_force(force: &MissingForce) -> String {
     if let (Some(before), Some(after), Some(floor)) =
         (held_out.before, held_out.after, held_out.noise_floor)
     {
-        let [before, after, floor] =
-            [before, after, floor].map(|error| shown(held_out.unit, error));
+        let [before, after, floor] = [before, after, floor].map(|error| held_out.unit.told(error));
         text.push_str(&format!(
             "Error on conditions that were not fitted to: {before} without it, {after} with it (noise of the means {floor}).\n"
         ));
     }
     text + "`plunge add MODEL --from diagnosis.json --effect found -o NEW.toml` makes it a part of the model.\n"
-}
-
-/// An error with its unit.
-fn shown(unit: Unit, error: f64) -> String {
-    match unit {
-        Unit::Position => format!("{:.3} mm", 1e3 * error),
-        Unit::Relative => format!("{:.1} %", 1e2 * error),
-        Unit::Force => format!("{error:.3} N"),
-        Unit::Acceleration => format!("{error:.3} m/s²"),
-        Unit::Velocity => format!("{error:.4} m/s"),
-        Unit::Spin => format!("{error:.3} rad/s"),
-    }
 }
 
 /// The name of an effect, with the unit of its amplitude where that is no pure number.
@@ -190,7 +176,7 @@ fn held_out(diagnosis: &Diagnosis) -> String {
     let (Some(held_out), false) = (&diagnosis.holdout, diagnosis.amplitudes.is_empty()) else {
         return String::new();
     };
-    let shown = |error: f64| shown(held_out.unit, error);
+    let shown = |error: f64| held_out.unit.told(error);
     let which = match held_out.conditions {
         LeftOut::Holdout => "held-out conditions",
         LeftOut::OneAtATime => "conditions left out one at a time (the set holds out none)",

@@ -1,13 +1,13 @@
 //! In which unit the errors of a set are.
 
 use measurements::Kind;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::errors::Errors;
 use crate::observable::Observable;
 
 /// Unit of an error over several kinds of numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Unit {
     /// Positions (m).
     #[serde(rename = "m")]
@@ -40,6 +40,19 @@ impl Unit {
             Kind::Acceleration => Self::Acceleration,
             Kind::Velocity => Self::Velocity,
             Kind::Spin => Self::Spin,
+        }
+    }
+
+    /// An error (SI) as it is told.
+    #[must_use]
+    pub fn told(self, error: f64) -> String {
+        match self {
+            Self::Position => format!("{:.3} mm", 1e3 * error),
+            Self::Relative => format!("{:.1} %", 1e2 * error),
+            Self::Force => format!("{error:.3} N"),
+            Self::Acceleration => format!("{error:.3} m/s²"),
+            Self::Velocity => format!("{error:.4} m/s"),
+            Self::Spin => format!("{error:.3} rad/s"),
         }
     }
 

@@ -1,5 +1,6 @@
 //! The claim of a diagnosis: one sentence, and one picture beside it.
 
+use diagnosis::error_unit::Unit;
 use plots::sheet::{Anchor, Layer, Mark, Sheet};
 use serde_json::Value;
 
@@ -113,14 +114,10 @@ pub(crate) fn form(effect: &Value) -> Option<String> {
 
 /// Errors on what was `held_out`: before, after, and the noise.
 pub(crate) fn errors(held_out: &Value) -> Option<[String; 3]> {
+    let unit: Unit = serde_json::from_value(held_out["unit"].clone()).ok()?;
     let shown = |key: &str| {
         let error = held_out[key].as_f64()?;
-        Some(match held_out["unit"].as_str() {
-            Some("m") => format!("{:.3} mm", 1e3 * error),
-            Some("N") => format!("{error:.3} N"),
-            Some("m/s^2") => format!("{error:.3} m/s²"),
-            _ => format!("{:.1} %", 100.0 * error),
-        })
+        Some(unit.told(error))
     };
     Some([shown("before")?, shown("after")?, shown("noise_floor")?])
 }

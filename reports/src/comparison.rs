@@ -1,5 +1,6 @@
 //! The report of a comparison: how wrong each revision of a model is, and where.
 
+use diagnosis::error_columns::{Column, columns};
 use serde_json::{Map, Value};
 
 use crate::figure::figure;
@@ -9,18 +10,6 @@ use crate::{ReportError, Texts, object};
 
 /// The file whose presence means a comparison.
 pub(crate) const RESULT: &str = "comparison.json";
-
-/// Errors of a table: their key, heading, and what they are multiplied with.
-const ERRORS: [(&str, &str, f64); 8] = [
-    ("z_m", "z (mm)", 1e3),
-    ("x_m", "x (mm)", 1e3),
-    ("force_N", "force (N)", 1.0),
-    ("acceleration_m_s2", "acceleration (m/s²)", 1.0),
-    ("stop_time_s", "stop time (ms)", 1e3),
-    ("final_z_m", "depth (mm)", 1e3),
-    ("final_x_m", "range (mm)", 1e3),
-    ("rms_relative", "relative (%)", 1e2),
-];
 
 /// Views of a comparison or diagnosis, each with its heading and what it shows.
 const VIEWS: [(&str, &str, &str); 7] = [
@@ -108,8 +97,8 @@ pub(crate) fn by_kind(texts: &Texts) -> Vec<Part> {
 
 fn headline(models: &[Value]) -> Vec<Number> {
     let of = |model: &Value, role: &str| {
-        let (_, heading, scale, value) = main_error(&model["rms"][role])?;
-        Some((format!("{:.3}", scale * value), heading.to_owned()))
+        let (column, error) = main_error(&model["rms"][role])?;
+        Some((format!("{:.3}", column.scale * error), column.heading))
     };
     let (first, last) = (&models[0], &models[models.len() - 1]);
     let mut numbers = Vec::new();
@@ -135,22 +124,22 @@ fn headline(models: &[Value]) -> Vec<Number> {
     numbers
 }
 
-/// The error that a headline shows: key, heading, scale and value.
-fn main_error(errors: &Value) -> Option<(&'static str, &'static str, f64, f64)> {
-    let find = |&(key, heading, scale): &(&'static str, &'static str, f64)| {
-        Some((key, heading, scale, errors[key].as_f64()?))
-    };
+/// The error that a headline shows, with its column.
+fn main_error(errors: &Value) -> Option<(Column, f64)> {
+    let find = |column: Column| errors[column.key].as_f64().map(|error| (column, error));
     // Along the path where there is one, else relative.
-    ERRORS.iter().take(1).chain(ERRORS.iter().rev()).find_map(find)
+    let first = columns().into_iter().take(1);
+    first.chain(columns().into_iter().rev()).find_map(find)
 }
 
 fn errors(models: &[Value]) -> Table {
-    let measured: Vec<_> = ERRORS
+    let columns = columns();
+    let measured: Vec<&Column> = columns
         .iter()
-        .filter(|(key, ..)| models.iter().any(|model| !model["rms"]["fit"][*key].is_null()))
+        .filter(|one| models.iter().any(|model| !model["rms"]["fit"][one.key].is_null()))
         .collect();
     let mut head = vec!["model", ""];
-    head.extend(measured.iter().map(|(_, heading, _)| *heading));
+    head.extend(measured.iter().map(|one| one.heading.as_str()));
     head.extend(["\u{3c7}\u{b2}/n", "p (lack of fit)"]);
     let mut table = Table::new(&head);
     for model in models {
@@ -163,9 +152,9 @@ fn errors(models: &[Value]) -> Table {
             let mut row = vec![if fit { text(&model["model"]) } else { String::new() }];
             row.push(shown.to_owned());
             row.extend(
-                measured.iter().map(|(key, _, scale)| {
-                    fixed(errors[*key].as_f64().map(|error| scale * error), 3)
-                }),
+                measured
+                    .iter()
+                    .map(|one| fixed(errors[one.key].as_f64().map(|error| one.scale * error), 3)),
             );
             row.push(if fit { fixed(model["chi2_per_n"].as_f64(), 2) } else { String::new() });
             row.push(if fit { probability(model["p_lof"].as_f64()) } else { String::new() });
