@@ -26,7 +26,8 @@ const RANGE: Kind = kind("final range", "m", LENGTHS);
 const STOPPING_TIME: Kind = kind("stopping time", "s", [1e-6, 1e3]);
 // A reading is a position less the zero of a camera: it may be as small as rounding leaves it.
 const READING: Kind = kind("position", "m", [0.0, 1e3]);
-const FORCE: Kind = kind("force", "N", [0.0, 1e12]);
+/// Of a curve, whatever it reads.
+const VALUE: Kind = kind("reading", "in SI units", [0.0, 1e12]);
 const TIME: Kind = kind("time", "s", [0.0, 1e3]);
 /// Faster than any gun shoots.
 const SPEED: Kind = kind("speed", "m/s", [1e-6, 1e4]);
@@ -101,7 +102,7 @@ fn of_set(set: &MeasurementSet) -> impl Iterator<Item = Number> {
     let numbers = [
         (&RATE, instrument.rate),
         (&READING_ERROR, instrument.position_sigma),
-        (&FORCE, instrument.force_sigma),
+        (&VALUE, instrument.force_sigma),
         (&READING_ERROR, instrument.level_sigma),
         (&READING_ERROR, instrument.zero_sigma),
         (&SHARE, instrument.speed_bias_sigma_rel),
@@ -142,7 +143,7 @@ fn of_run(run: &Run) -> impl Iterator<Item = Number> {
     let scalars = [(&DEPTH, run.final_z), (&RANGE, run.final_x), (&STOPPING_TIME, run.stop_time)];
     let scalars = scalars.into_iter().filter_map(|(kind, value)| Some((kind, value?)));
     let reading = |frame: &Frame| [(&TIME, frame.t), (&READING, frame.z), (&READING, frame.x)];
-    let sample = |sample: &Sample| [(&READING, sample.at), (&FORCE, sample.value)];
+    let sample = |sample: &Sample| [(&READING, sample.at), (&VALUE, sample.value)];
     scalars.chain(run.frames.iter().flat_map(reading)).chain(run.samples.iter().flat_map(sample))
 }
 
