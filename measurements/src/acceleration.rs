@@ -2,21 +2,14 @@
 
 use engine::units::Dimension;
 
-use super::columns::{ColumnSpec, Content, column};
+use super::columns::ColumnSpec;
 use super::curve::{Along, Axis, Curve};
-use super::{Kind, accelerometers};
+use super::{Kind, accelerometers, over_time};
 
-const fn columns(run: bool) -> [ColumnSpec; 4] {
-    [
-        column("run", Content::Name, run),
-        column("t", Content::Quantity(Dimension::TIME), true),
-        column("acceleration", Content::Quantity(Dimension::ACCELERATION), true),
-        column("sigma_acceleration", Content::Quantity(Dimension::ACCELERATION), false),
-    ]
-}
-
-static OF_MANY: [ColumnSpec; 4] = columns(true);
-static OF_ONE: [ColumnSpec; 4] = columns(false);
+static OF_MANY: [ColumnSpec; 4] =
+    over_time::columns("acceleration", "sigma_acceleration", Dimension::ACCELERATION, true);
+static OF_ONE: [ColumnSpec; 4] =
+    over_time::columns("acceleration", "sigma_acceleration", Dimension::ACCELERATION, false);
 
 /// The line of the kind.
 pub(super) static CURVE: Curve = Curve {

@@ -3,7 +3,7 @@
 use configs::Diagnostic;
 
 use super::conditions::ConditionPlaces;
-use super::contradiction::{Contradiction, ContradictionKind};
+use super::contradiction::Contradiction;
 use super::findings::Findings;
 use super::{MeasurementSet, Run, over_time};
 
@@ -84,15 +84,7 @@ fn check_units(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contr
         let possible = condition.speed + (gravity * condition.diameter).sqrt();
         change.sum::<f64>() / possible
     };
-    let mut ratios: Vec<(f64, usize)> =
-        set.runs.iter().map(|run| (ratio(run), run.condition)).collect();
-    ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let &(ratio, condition) = ratios.get(ratios.len() / 2)?;
-    (ratio > MOST).then(|| {
-        let message = format!("the accelerations take {ratio:.1} times the speed at contact away");
-        let diagnostic = Diagnostic::error(message)
-            .at(places[condition].speed, "the stated speed")
-            .help("are they in g, or the times in ms? [columns] gives the units of a table");
-        Contradiction { kind: ContradictionKind::Speeds, diagnostic }
-    })
+    let told = |ratio| format!("the accelerations take {ratio:.1} times the speed at contact away");
+    let help = "are they in g, or the times in ms?";
+    over_time::check_unit(set, places, (MOST, ratio), (told, help))
 }

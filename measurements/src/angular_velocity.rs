@@ -1,26 +1,16 @@
 //! Angular velocity over time, as a gyroscope in the body or marks on it show it.
 
-use configs::Diagnostic;
 use engine::units::Dimension;
 
-use super::columns::{ColumnSpec, Content, column};
+use super::columns::ColumnSpec;
 use super::conditions::ConditionPlaces;
-use super::contradiction::{Contradiction, ContradictionKind};
+use super::contradiction::Contradiction;
 use super::curve::{Along, Axis, Curve};
 use super::findings::Findings;
 use super::{Kind, MeasurementSet, Run, over_time};
 
-const fn columns(run: bool) -> [ColumnSpec; 4] {
-    [
-        column("run", Content::Name, run),
-        column("t", Content::Quantity(Dimension::TIME), true),
-        column("spin", Content::Quantity(Dimension::SPIN), true),
-        column("sigma_spin", Content::Quantity(Dimension::SPIN), false),
-    ]
-}
-
-static OF_MANY: [ColumnSpec; 4] = columns(true);
-static OF_ONE: [ColumnSpec; 4] = columns(false);
+static OF_MANY: [ColumnSpec; 4] = over_time::columns("spin", "sigma_spin", Dimension::SPIN, true);
+static OF_ONE: [ColumnSpec; 4] = over_time::columns("spin", "sigma_spin", Dimension::SPIN, false);
 
 /// The line of the kind.
 pub(super) static CURVE: Curve = Curve {
@@ -60,18 +50,9 @@ fn check(
             condition.speed + radius * condition.spin.abs() + (set.gravity_of(run) * radius).sqrt();
         radius * fastest / possible
     };
-    let mut ratios: Vec<(f64, usize)> =
-        set.runs.iter().map(|run| (ratio(run), run.condition)).collect();
-    ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let middle = ratios.get(ratios.len() / 2).filter(|(ratio, _)| *ratio > MOST);
-    let named = middle.map(|&(ratio, condition)| {
-        let message = format!(
-            "the surface of the body turns {ratio:.1} times as fast as its impact can make it"
-        );
-        let diagnostic = Diagnostic::error(message)
-            .at(places[condition].speed, "the stated speed")
-            .help("are the spins in deg/s or rpm? [columns] gives the units of a table");
-        Contradiction { kind: ContradictionKind::Speeds, diagnostic }
-    });
-    named.into_iter().collect()
+    let told = |ratio| {
+        format!("the surface of the body turns {ratio:.1} times as fast as its impact can make it")
+    };
+    let help = "are the spins in deg/s or rpm?";
+    over_time::check_unit(set, places, (MOST, ratio), (told, help)).into_iter().collect()
 }

@@ -1,10 +1,28 @@
 //! What readings of any kind over time have to be: of one body, and in order.
 
 use configs::{Diagnostic, shorten};
+use engine::units::Dimension;
 
-use super::MeasurementSet;
+use super::columns::{ColumnSpec, Content, column};
 use super::conditions::ConditionPlaces;
+use super::contradiction::{Contradiction, ContradictionKind};
 use super::findings::Findings;
+use super::{MeasurementSet, Run};
+
+/// The columns of a table of what the column `value` holds, with its error in `sigma`; `run` is required or not.
+pub(super) const fn columns(
+    value: &'static str,
+    sigma: &'static str,
+    dimension: Dimension,
+    run: bool,
+) -> [ColumnSpec; 4] {
+    [
+        column("run", Content::Name, run),
+        column("t", Content::Quantity(Dimension::TIME), true),
+        column(value, Content::Quantity(dimension), true),
+        column(sigma, Content::Quantity(dimension), false),
+    ]
+}
 
 /// Refuses impacts that are not straight down, and bodies of two parts; `what` was read, and `why` tells the reason.
 pub(super) fn check_vertical(
@@ -38,4 +56,24 @@ pub(super) fn check_times(
             );
         }
     }
+}
+
+/// Names a unit with which the `ratio` of what a run reads to what it can read is above `most`; the middle run decides.
+/// `told` says the ratio in words, and `help` which unit may be wrong.
+pub(super) fn check_unit(
+    set: &MeasurementSet,
+    places: &[ConditionPlaces],
+    (most, ratio): (f64, impl Fn(&Run) -> f64),
+    (told, help): (impl Fn(f64) -> String, &str),
+) -> Option<Contradiction> {
+    let mut ratios: Vec<(f64, usize)> =
+        set.runs.iter().map(|run| (ratio(run), run.condition)).collect();
+    ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let &(middle, condition) = ratios.get(ratios.len() / 2)?;
+    (middle > most).then(|| Contradiction {
+        kind: ContradictionKind::Speeds,
+        diagnostic: Diagnostic::error(told(middle))
+            .at(places[condition].speed, "the stated speed")
+            .help(format!("{help} [columns] gives the units of a table")),
+    })
 }

@@ -3,25 +3,18 @@
 use configs::Diagnostic;
 use engine::units::Dimension;
 
-use super::columns::{ColumnSpec, Content, column};
+use super::columns::ColumnSpec;
 use super::conditions::ConditionPlaces;
-use super::contradiction::{Contradiction, ContradictionKind};
+use super::contradiction::Contradiction;
 use super::curve::{Along, Axis, Curve};
 use super::findings::Findings;
 use super::reading::Reading;
 use super::{Condition, Kind, MeasurementSet, Run, over_time, zeros};
 
-const fn columns(run: bool) -> [ColumnSpec; 4] {
-    [
-        column("run", Content::Name, run),
-        column("t", Content::Quantity(Dimension::TIME), true),
-        column("velocity", Content::Quantity(Dimension::SPEED), true),
-        column("sigma_velocity", Content::Quantity(Dimension::SPEED), false),
-    ]
-}
-
-static OF_MANY: [ColumnSpec; 4] = columns(true);
-static OF_ONE: [ColumnSpec; 4] = columns(false);
+static OF_MANY: [ColumnSpec; 4] =
+    over_time::columns("velocity", "sigma_velocity", Dimension::SPEED, true);
+static OF_ONE: [ColumnSpec; 4] =
+    over_time::columns("velocity", "sigma_velocity", Dimension::SPEED, false);
 
 /// The line of the kind.
 pub(super) static CURVE: Curve = Curve {
@@ -40,8 +33,7 @@ pub(super) static CURVE: Curve = Curve {
     check,
 };
 
-/// Greatest velocity over the largest that the stated speed and a fall by a diameter allow, and its inverse, beyond
-/// which a unit is wrong.
+/// Greatest velocity over that of the stated speed and a fall by a diameter, beyond which a unit is wrong.
 const MOST: f64 = 2.0;
 
 /// From the readings before contact, each brought forward to it in free fall.
@@ -96,18 +88,11 @@ fn check(
         let fall = (2.0 * set.gravity_of(run) * condition.diameter).sqrt();
         largest(run) / (condition.speed + fall)
     };
-    let mut ratios: Vec<(f64, usize)> =
-        set.runs.iter().map(|run| (ratio(run), run.condition)).collect();
-    ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let middle = ratios.get(ratios.len() / 2).filter(|(ratio, _)| *ratio > MOST);
-    let named = middle.map(|&(ratio, condition)| {
-        let message = format!(
+    let told = |ratio| {
+        format!(
             "the largest velocities are {ratio:.1} times those of the stated speed and a fall by a diameter"
-        );
-        let diagnostic = Diagnostic::error(message)
-            .at(places[condition].speed, "the stated speed")
-            .help("are they in mm/s or cm/s? [columns] gives the units of a table");
-        Contradiction { kind: ContradictionKind::Speeds, diagnostic }
-    });
-    named.into_iter().collect()
+        )
+    };
+    let help = "are they in mm/s or cm/s?";
+    over_time::check_unit(set, places, (MOST, ratio), (told, help)).into_iter().collect()
 }

@@ -1,12 +1,11 @@
 //! Accelerometers in spheres that fall into a medium of a known law: their readings have closed forms, and name what
 //! is hidden.
 
-use diagnosis::verdict::Verdict;
-use measurements::{Instrument, Kind, MeasurementSet, Sample};
+use measurements::{Instrument, Kind, MeasurementSet};
 use resistive::{Accelerometer, Impact};
 
 use super::rig::{BED, MASS, law, sphere};
-use super::sets::{self, Reader, diagnosed};
+use super::sets::{self, Reader, Wrong};
 
 #[test]
 fn a_constant_resistance_is_read_as_its_deceleration_and_rest_as_gravity() {
@@ -65,24 +64,12 @@ fn measured(hidden: Option<(&str, f64)>, seed: u64) -> MeasurementSet {
 
 #[test]
 fn a_hidden_effect_is_named_by_accelerations_with_its_amplitude() {
-    for (name, hidden) in [("viscous-drag", 3.0), ("yield-stress", 3.0)] {
-        let found = diagnosed(&measured(Some((name, hidden)), 1));
-        assert_eq!(found.verdict, Verdict::Supported, "{name}: {:?}", found.unexplained);
-        assert_eq!(found.effects, [name]);
-        let effect = found.ranking.iter().find(|one| one.id == name).expect("it is ranked");
-        let (q, se) = (effect.q.expect("an amplitude"), effect.se.expect("an error"));
-        // Four standard errors: chance takes one in fifteen thousand.
-        assert!((q - hidden).abs() < 4.0 * se, "{name}: {q} ± {se}");
-    }
+    sets::assert_hidden_effects_are_named(measured);
 }
 
 #[test]
 fn accelerations_of_the_model_itself_show_nothing() {
-    let named = (0..4)
-        .filter(|seed| diagnosed(&measured(None, 20 + seed)).verdict != Verdict::NothingDetected)
-        .count();
-    // Each set is rejected with a probability of 2 % at most: two of four happen once in four hundred.
-    assert!(named <= 1, "{named} of 4");
+    sets::assert_the_model_shows_nothing(measured);
 }
 
 #[test]
@@ -93,17 +80,11 @@ fn a_set_of_accelerations_that_is_written_is_read_back() {
 
 #[test]
 fn wrong_signs_zeros_and_units_of_accelerations_are_refused() {
-    type Change = fn(&mut Sample);
-    let cases: [(Change, &str); 4] = [
+    let cases: &[Wrong] = &[
         (|one| one.value = -one.value, "the acceleration is negative where it is largest"),
         (|one| one.value -= BED.gravity, "those of a body in free fall are 0"),
         (|one| one.value *= 9.8, "times the speed at contact away"),
         (|one| one.at = -one.at, "the time does not go on"),
     ];
-    for (change, message) in cases {
-        let mut set = measured(None, 5);
-        set.runs.iter_mut().flat_map(|run| &mut run.samples).for_each(change);
-        let told = sets::refusal(&set);
-        assert!(told.contains(message), "{message}: {told}");
-    }
+    sets::assert_refused(measured, cases);
 }

@@ -7,7 +7,7 @@ use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::diagnose::diagnose;
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
-use diagnosis::verdict::Diagnosis;
+use diagnosis::verdict::{Diagnosis, Verdict};
 use measurements::{
     Bed, Condition, ContradictionKind, Feasible, FinalDefinition, Geometry, Instrument, Kind,
     MeasurementSet, Role, Run, Sample, StatedBed, StatedError, StopDefinition,
@@ -193,5 +193,43 @@ pub(crate) fn refusal(set: &MeasurementSet) -> String {
     match read_back(set) {
         Ok(_) => panic!("nothing was refused"),
         Err(told) => told,
+    }
+}
+
+/// Draws a set with an effect hidden in it, or with none, from a seed.
+type Measured = fn(Option<(&str, f64)>, u64) -> MeasurementSet;
+
+/// Two hidden effects are named, each with its amplitude.
+pub(crate) fn assert_hidden_effects_are_named(measured: Measured) {
+    for (name, hidden) in [("viscous-drag", 3.0), ("yield-stress", 3.0)] {
+        let found = diagnosed(&measured(Some((name, hidden)), 1));
+        assert_eq!(found.verdict, Verdict::Supported, "{name}: {:?}", found.unexplained);
+        assert_eq!(found.effects, [name]);
+        let effect = found.ranking.iter().find(|one| one.id == name).expect("it is ranked");
+        let (q, se) = (effect.q.expect("an amplitude"), effect.se.expect("an error"));
+        // Four standard errors: chance takes one in fifteen thousand.
+        assert!((q - hidden).abs() < 4.0 * se, "{name}: {q} ± {se}");
+    }
+}
+
+/// Sets of the model itself show nothing.
+pub(crate) fn assert_the_model_shows_nothing(measured: Measured) {
+    let named = (0..4)
+        .filter(|seed| diagnosed(&measured(None, 20 + seed)).verdict != Verdict::NothingDetected)
+        .count();
+    // Each set is rejected with a probability of 2 % at most: two of four happen once in four hundred.
+    assert!(named <= 1, "{named} of 4");
+}
+
+/// A change of every reading, and what is told of it.
+pub(crate) type Wrong = (fn(&mut Sample), &'static str);
+
+/// Every change of a set without hidden effects is refused with its message.
+pub(crate) fn assert_refused(measured: Measured, cases: &[Wrong]) {
+    for (change, message) in cases {
+        let mut set = measured(None, 5);
+        set.runs.iter_mut().flat_map(|run| &mut run.samples).for_each(change);
+        let told = refusal(&set);
+        assert!(told.contains(message), "{message}: {told}");
     }
 }

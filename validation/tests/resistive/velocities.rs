@@ -1,11 +1,10 @@
 //! Velocities of spheres over time: what they tell without any position.
 
-use diagnosis::verdict::Verdict;
-use measurements::{Instrument, Kind, MeasurementSet, Sample};
+use measurements::{Instrument, Kind, MeasurementSet};
 use resistive::{Impact, State, Trajectory};
 
 use super::rig::{BED, MASS, law, sphere};
-use super::sets::{self, Reader, diagnosed};
+use super::sets::{self, Reader, Wrong};
 
 /// Downward velocities (m/s) of `impact` at rising times (s).
 fn velocities(impact: &Impact, times: &[f64]) -> Vec<f64> {
@@ -27,24 +26,12 @@ fn measured(hidden: Option<(&str, f64)>, seed: u64) -> MeasurementSet {
 
 #[test]
 fn a_hidden_effect_is_named_by_velocities_with_its_amplitude() {
-    for (name, hidden) in [("viscous-drag", 3.0), ("yield-stress", 3.0)] {
-        let found = diagnosed(&measured(Some((name, hidden)), 1));
-        assert_eq!(found.verdict, Verdict::Supported, "{name}: {:?}", found.unexplained);
-        assert_eq!(found.effects, [name]);
-        let effect = found.ranking.iter().find(|one| one.id == name).expect("it is ranked");
-        let (q, se) = (effect.q.expect("an amplitude"), effect.se.expect("an error"));
-        // Four standard errors: chance takes one in fifteen thousand.
-        assert!((q - hidden).abs() < 4.0 * se, "{name}: {q} ± {se}");
-    }
+    sets::assert_hidden_effects_are_named(measured);
 }
 
 #[test]
 fn velocities_of_the_model_itself_show_nothing() {
-    let named = (0..4)
-        .filter(|seed| diagnosed(&measured(None, 20 + seed)).verdict != Verdict::NothingDetected)
-        .count();
-    // Each set is rejected with a probability of 2 % at most: two of four happen once in four hundred.
-    assert!(named <= 1, "{named} of 4");
+    sets::assert_the_model_shows_nothing(measured);
 }
 
 #[test]
@@ -73,18 +60,12 @@ fn speeds_that_a_set_leaves_out_are_read_from_the_velocities_before_contact() {
 
 #[test]
 fn wrong_signs_units_and_times_of_velocities_are_refused() {
-    type Change = fn(&mut Sample);
-    let cases: [(Change, &str); 3] = [
+    let cases: &[Wrong] = &[
         (|one| one.value = -one.value, "the velocity is negative where it is largest"),
         (|one| one.value *= 100.0, "times those of the stated speed"),
         (|one| one.at = -one.at, "the time does not go on"),
     ];
-    for (change, message) in cases {
-        let mut set = measured(None, 5);
-        set.runs.iter_mut().flat_map(|run| &mut run.samples).for_each(change);
-        let told = sets::refusal(&set);
-        assert!(told.contains(message), "{message}: {told}");
-    }
+    sets::assert_refused(measured, cases);
 }
 
 #[test]
