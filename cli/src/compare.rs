@@ -4,12 +4,11 @@ use std::path::PathBuf;
 
 use comfy_table::CellAlignment;
 use diagnosis::compare::{Comparison, ModelComparison, Revision, compare};
-use diagnosis::error_columns::columns;
+use diagnosis::error_columns::{columns, named};
 use diagnosis::forward::Forward;
-use diagnosis::observable::Observable;
 use diagnosis::picture;
 use diagnosis::residual::Residual;
-use measurements::MeasurementSet;
+use measurements::{Axis, MeasurementSet};
 use serde_json::json;
 
 use crate::beds::{self, Beds, Workshop};
@@ -68,6 +67,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     }
     let measured = flags.measured(&args.first)?;
     let models = flags.models(&args.models, &measured)?;
+    let measured = flags.answerable(measured, &models)?;
     let mut workshop = Workshop::new(&args.beds, flags)?;
     if args.beds.plan {
         return workshop.plan_of_comparison(&models, &measured);
@@ -194,19 +194,12 @@ fn numbers(set: &MeasurementSet, models: &[ModelComparison]) -> String {
     for (place, one) in first.failing.residuals.iter().enumerate().filter(|(_, one)| is_scalar(one))
     {
         let condition = &set.conditions[one.condition];
-        let (unit, scale) = match one.observable {
-            Observable::StopTime => ("ms", 1e3),
-            _ => ("mm", 1e3),
-        };
+        let Axis { name, unit, scale } = named(one.observable);
         let mut row = vec![
             condition.id.clone(),
             format!("{}", condition.speed),
             format!("{}", condition.angle_deg),
-            match one.observable {
-                Observable::StopTime => "stop time".to_owned(),
-                Observable::FinalDepth => "depth".to_owned(),
-                _ => "range".to_owned(),
-            },
+            name.to_owned(),
             format!("{:.1} {unit}", scale * one.measured),
         ];
         row.extend(models.iter().map(|model| {

@@ -48,6 +48,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     table_file::refuse(&args.set)?;
     let measured = flags.measured(&args.set)?;
     let models = flags.models(args.model.as_slice(), &measured)?;
+    let measured = flags.answerable(measured, &models)?;
     let model = &models[0];
     if model.loaded.model.grains().is_some() && args.calibrate {
         return Err(CommandError::BadInput(

@@ -124,6 +124,36 @@ impl Flags {
         Ok(Measured { observed: Observed::of(&set), set, folder })
     }
 
+    /// `measured` as all of `models` can answer it: force laws say nothing of craters.
+    ///
+    /// # Errors
+    /// If craters are all that it holds.
+    pub(crate) fn answerable(
+        &self,
+        measured: Measured,
+        models: &[Candidate],
+    ) -> Result<Measured, CommandError> {
+        let Some(law) = models.iter().find(|model| model.loaded.model.grains().is_none()) else {
+            return Ok(measured);
+        };
+        let (set, had) = measured.set.without_craters();
+        if !had {
+            return Ok(Measured { set, ..measured });
+        }
+        let observed = Observed::of(&set);
+        if observed.conditions.iter().all(|condition| condition.layout.is_empty()) {
+            return Err(CommandError::bad_input(format!(
+                "{} holds craters alone, of which the force law {} says nothing; a bed of grains does, or add depths or stopping times",
+                set.id, law.loaded.model.run.name
+            )));
+        }
+        self.notes(&[
+            "The craters of the set are left out: a force law says nothing of them, a bed of grains does"
+                .to_owned(),
+        ]);
+        Ok(Measured { observed, set, ..measured })
+    }
+
     /// Kinds of contradictions that a flag overrules, and the others.
     fn trusted(&self) -> (Vec<ContradictionKind>, Vec<ContradictionKind>) {
         ContradictionKind::ALL.into_iter().partition(|kind| match kind {

@@ -18,6 +18,10 @@ pub struct Layout {
     pub final_z: bool,
     /// Whether the final range is.
     pub final_x: bool,
+    /// Whether the depth of the crater is.
+    pub crater_depth: bool,
+    /// Whether the diameter of its rim is.
+    pub rim_diameter: bool,
 }
 
 /// Readings of one kind, and where they are.
@@ -50,6 +54,10 @@ pub enum Observable {
     FinalDepth,
     /// Final horizontal distance (m).
     FinalRange,
+    /// Depth of the crater when the bed lies still (m).
+    CraterDepth,
+    /// Distance from rim to rim (m).
+    RimDiameter,
 }
 
 impl Layout {
@@ -64,13 +72,32 @@ impl Layout {
         if let Some(curve) = &self.curve {
             kinds.resize(kinds.len() + curve.at.len(), curve.observable);
         }
-        let scalars = [
+        kinds.extend(self.scalars());
+        kinds
+    }
+
+    /// The kinds of its scalars, in their order.
+    pub fn scalars(&self) -> impl Iterator<Item = Observable> + use<> {
+        let all = [
             (self.stop_time, Observable::StopTime),
             (self.final_z, Observable::FinalDepth),
             (self.final_x, Observable::FinalRange),
+            (self.crater_depth, Observable::CraterDepth),
+            (self.rim_diameter, Observable::RimDiameter),
         ];
-        kinds.extend(scalars.iter().filter(|(there, _)| *there).map(|(_, kind)| *kind));
-        kinds
+        all.into_iter().filter(|(there, _)| *there).map(|(_, kind)| kind)
+    }
+
+    /// How many sizes of craters are compared, which force laws have none of.
+    #[must_use]
+    pub fn craters(&self) -> usize {
+        usize::from(self.crater_depth) + usize::from(self.rim_diameter)
+    }
+
+    /// The layout less the sizes of craters.
+    #[must_use]
+    pub fn without_craters(&self) -> Self {
+        Self { crater_depth: false, rim_diameter: false, ..self.clone() }
     }
 
     /// The kind of every entry, with the time (s) or depth (m) of its reading.
@@ -86,9 +113,8 @@ impl Layout {
     #[must_use]
     pub fn len(&self) -> usize {
         let frames = self.times.len() * (1 + usize::from(self.along_x));
-        let scalars = [self.stop_time, self.final_z, self.final_x];
         let curve = self.curve.as_ref().map_or(0, |curve| curve.at.len());
-        frames + curve + scalars.iter().filter(|&&there| there).count()
+        frames + curve + self.scalars().count()
     }
 
     /// Whether nothing is compared.
@@ -100,7 +126,7 @@ impl Layout {
 
 impl Observable {
     /// Every kind, in the order of a vector.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::Depth,
         Self::Range,
         Self::Force,
@@ -110,6 +136,8 @@ impl Observable {
         Self::StopTime,
         Self::FinalDepth,
         Self::FinalRange,
+        Self::CraterDepth,
+        Self::RimDiameter,
     ];
 
     /// Its key in JSON, with the unit.
@@ -125,13 +153,22 @@ impl Observable {
             Self::StopTime => "stop_time_s",
             Self::FinalDepth => "final_z_m",
             Self::FinalRange => "final_x_m",
+            Self::CraterDepth => "crater_depth_m",
+            Self::RimDiameter => "rim_diameter_m",
         }
     }
 
     /// Whether it is a number of the whole impact rather than of a time.
     #[must_use]
     pub fn is_scalar(self) -> bool {
-        matches!(self, Self::StopTime | Self::FinalDepth | Self::FinalRange)
+        matches!(
+            self,
+            Self::StopTime
+                | Self::FinalDepth
+                | Self::FinalRange
+                | Self::CraterDepth
+                | Self::RimDiameter
+        )
     }
 
     /// Whether it is a place, whose errors are lengths.
@@ -166,7 +203,12 @@ impl Observable {
             Self::StopTime => {
                 [axis("time", "ms", 1e3), axis("time", "ms", 1e3), axis("change", "1", 1.0)]
             }
-            Self::Depth | Self::Range | Self::FinalDepth | Self::FinalRange => {
+            Self::Depth
+            | Self::Range
+            | Self::FinalDepth
+            | Self::FinalRange
+            | Self::CraterDepth
+            | Self::RimDiameter => {
                 [axis("time", "ms", 1e3), axis("position", "mm", 1e3), axis("velocity", "m/s", 1.0)]
             }
         }
@@ -198,6 +240,7 @@ mod tests {
             stop_time: true,
             final_z: false,
             final_x: true,
+            ..Layout::default()
         };
         use Observable::{Depth, FinalRange, Force, Range, StopTime};
         assert_eq!(layout.kinds(), [Depth, Depth, Range, Range, Force, StopTime, FinalRange]);

@@ -225,6 +225,8 @@ impl ObservedCondition {
             stop_time: weighed(common(|run| run.stop_time), Observable::StopTime),
             final_z: weighed(common(|run| run.final_z), Observable::FinalDepth),
             final_x: weighed(common(|run| run.final_x), Observable::FinalRange),
+            crater_depth: weighed(common(|run| run.crater.depth), Observable::CraterDepth),
+            rim_diameter: weighed(common(|run| run.crater.rim_diameter), Observable::RimDiameter),
         };
         let mut numbered: Vec<(DVector<f64>, Option<i64>)> = (0..runs.len())
             .map(|at| {
@@ -394,12 +396,14 @@ fn vector(
         numbers.extend(range.into_iter().flatten());
     }
     numbers.extend(curve.into_iter().flatten());
-    let scalars = [
-        (layout.stop_time, run.stop_time),
-        (layout.final_z, run.final_z),
-        (layout.final_x, run.final_x),
-    ];
-    numbers.extend(scalars.iter().filter(|(there, _)| *there).filter_map(|(_, value)| *value));
+    numbers.extend(layout.scalars().filter_map(|kind| match kind {
+        Observable::StopTime => run.stop_time,
+        Observable::FinalDepth => run.final_z,
+        Observable::FinalRange => run.final_x,
+        Observable::CraterDepth => run.crater.depth,
+        Observable::RimDiameter => run.crater.rim_diameter,
+        _ => None,
+    }));
     DVector::from_vec(numbers)
 }
 
@@ -463,7 +467,10 @@ pub(crate) fn reading(
             | Observable::Velocity
             | Observable::Spin => own(places, at - tracks).unwrap_or(of_curve),
             Observable::StopTime => time,
-            Observable::FinalDepth | Observable::FinalRange => position,
+            Observable::FinalDepth
+            | Observable::FinalRange
+            | Observable::CraterDepth
+            | Observable::RimDiameter => position,
         }),
     )
 }
@@ -474,9 +481,7 @@ pub(crate) fn stated(stated: &StatedError, kind: Observable) -> Option<f64> {
         Observable::StopTime => stated.stop_time,
         Observable::Depth | Observable::FinalDepth => stated.final_z,
         Observable::Range | Observable::FinalRange => stated.final_x,
-        Observable::Force | Observable::Acceleration | Observable::Velocity | Observable::Spin => {
-            None
-        }
+        _ => None,
     }
 }
 

@@ -1,8 +1,8 @@
 //! Small measurement sets for the tests of this crate.
 
 use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Crater, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind,
+    MeasurementSet, Role, Run, StatedBed, StatedError, StopDefinition,
 };
 
 /// A sphere of an inch at `speed` (m/s) and `angle_deg` (deg), to be fitted to.
@@ -40,6 +40,7 @@ pub(crate) fn scalar_run(condition: usize, [stop_time, final_z, final_x]: [Optio
         stop_time,
         final_z,
         final_x,
+        crater: Crater::default(),
         frames,
         samples: Vec::new(),
     }

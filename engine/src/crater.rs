@@ -57,6 +57,35 @@ pub fn crater(grains: &Grains, lies: &[bool], (x, y): (f64, f64)) -> Vec<CraterP
         .collect()
 }
 
+/// How large a crater is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CraterSize {
+    /// Depth of its lowest point below the undisturbed surface (m); negative where all of it lies above.
+    pub depth: f64,
+    /// Distance between the highest points of its rim (m), across the axis.
+    pub rim_diameter: f64,
+}
+
+/// Depth and width of the crater with this `profile`, in a bed whose undisturbed surface is at the height `surface` (m);
+/// `None` of a profile without a rim on every side of its lowest point.
+#[must_use]
+pub fn crater_size(profile: &[CraterPoint], surface: f64, space: Space) -> Option<CraterSize> {
+    let height = |at: &CraterPoint| at.position.z;
+    let lowest = profile.iter().min_by(|a, b| height(a).total_cmp(&height(b)))?;
+    let highest = |side: &mut dyn Iterator<Item = &CraterPoint>| {
+        side.max_by(|a, b| height(a).total_cmp(&height(b))).map(|at| at.distance)
+    };
+    let right = highest(&mut profile.iter().filter(|at| at.distance > lowest.distance))?;
+    let rim_diameter = match space {
+        // Rings: the rim is as far on every side.
+        Space::Spatial => 2.0 * right,
+        Space::Planar => {
+            right - highest(&mut profile.iter().filter(|at| at.distance < lowest.distance))?
+        }
+    };
+    Some(CraterSize { depth: surface - height(lowest), rim_diameter })
+}
+
 /// The highest point of every column that a grain covers.
 struct Columns {
     low: [f64; 2],
@@ -187,6 +216,27 @@ mod tests {
             let outer = profile.iter().map(|at| at.position.z).fold(f64::NEG_INFINITY, f64::max);
             assert!((outer - inner - 0.01).abs() < 1.2 * RADIUS, "{inner} {outer}");
         }
+    }
+
+    #[test]
+    fn a_bowl_with_a_rim_is_as_deep_and_as_wide_as_it_was_made() {
+        // A parabola of 2 cm depth below the surface, a ridge 1 cm high at 5 cm, and a fall behind it.
+        let height = |r: f64| match r < 0.05 {
+            true => -0.02 + 0.03 * (r / 0.05).powi(2),
+            false => 0.01 - 0.2 * (r - 0.05),
+        };
+        let at = |distance: f64| CraterPoint {
+            position: Vec3::new(distance, 0.0, 0.3 + height(distance.abs())),
+            distance,
+        };
+        let half: Vec<CraterPoint> = (0..20).map(|k| at(0.005 * f64::from(k))).collect();
+        let whole: Vec<CraterPoint> = (-19..20).map(|k| at(0.005 * f64::from(k))).collect();
+        for (profile, space) in [(&half, Space::Spatial), (&whole, Space::Planar)] {
+            let size = crater_size(profile, 0.3, space).expect("a crater");
+            assert!((size.depth - 0.02).abs() < 1e-12, "{size:?}");
+            assert!((size.rim_diameter - 0.1).abs() < 1e-12, "{size:?}");
+        }
+        assert_eq!(crater_size(&whole[19..], 0.3, Space::Planar), None);
     }
 
     #[test]

@@ -33,7 +33,7 @@ const LENGTH: Content = Content::Quantity(Dimension::LENGTH);
 const TIME: Content = Content::Quantity(Dimension::TIME);
 
 /// The columns of `runs.csv`.
-pub(super) const RUNS: [ColumnSpec; 10] = [
+pub(super) const RUNS: [ColumnSpec; 12] = [
     column("run", Content::Name, true),
     column("condition", Content::Name, true),
     column("repeat", Content::Count, false),
@@ -44,6 +44,8 @@ pub(super) const RUNS: [ColumnSpec; 10] = [
     column("final_x", LENGTH, false),
     column("t_zero", TIME, false),
     column("z_zero", LENGTH, false),
+    column("crater_depth", LENGTH, false),
+    column("rim_diameter", LENGTH, false),
 ];
 
 /// The columns of a table of trajectories, which has to have `run` and `x`, or not.

@@ -83,6 +83,8 @@ fn row(condition: &Condition, runs: &[&Run], function: &str) -> Vec<String> {
         ("stop_time", any(|run| run.stop_time.is_some())),
         ("final_z", any(|run| run.final_z.is_some())),
         ("final_x", any(|run| run.final_x.is_some())),
+        ("crater_depth", any(|run| run.crater.depth.is_some())),
+        ("rim_diameter", any(|run| run.crater.rim_diameter.is_some())),
         (function, any(|run| run.has_readings())),
     ];
     let measured: Vec<&str> =

@@ -149,6 +149,14 @@ impl MeasurementSet {
         in_fluid.unwrap_or(bed.gravity)
     }
 
+    /// The set without the craters of its runs, and whether it had any: a force law says nothing of them.
+    #[must_use]
+    pub fn without_craters(mut self) -> (Self, bool) {
+        let had = self.runs.iter().any(|run| run.crater != Crater::default());
+        self.runs.iter_mut().for_each(|run| run.crater = Crater::default());
+        (self, had)
+    }
+
     /// Mean diameter (m) of the coarsest grains that are stated; 0 where none is.
     #[must_use]
     pub fn coarsest_grains(&self) -> f64 {
@@ -384,6 +392,8 @@ pub struct Run {
     pub final_z: Option<f64>,
     /// Final horizontal distance from first contact (m).
     pub final_x: Option<f64>,
+    /// What the impact left in the surface.
+    pub crater: Crater,
     /// Frames in the order of time; empty for other kinds than trajectories.
     pub frames: Vec<Frame>,
     /// Readings of a [`Curve`], in the order of the file; empty for other kinds.
@@ -396,6 +406,15 @@ impl Run {
     pub fn has_readings(&self) -> bool {
         !self.frames.is_empty() || !self.samples.is_empty()
     }
+}
+
+/// A crater, when the bed lies still.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Crater {
+    /// Depth of its lowest point below the undisturbed surface (m).
+    pub depth: Option<f64>,
+    /// Distance from rim to rim, at the highest points (m).
+    pub rim_diameter: Option<f64>,
 }
 
 /// One reading of a curve.

@@ -24,6 +24,8 @@ fn compare(a: &Run, b: &Run) -> Ordering {
         .then_with(|| numbers(a.stop_time, b.stop_time))
         .then_with(|| numbers(a.final_z, b.final_z))
         .then_with(|| numbers(a.final_x, b.final_x))
+        .then_with(|| numbers(a.crater.depth, b.crater.depth))
+        .then_with(|| numbers(a.crater.rim_diameter, b.crater.rim_diameter))
         .then_with(frames)
         .then_with(samples)
         // Runs that are equal but for their name: nothing but the name is at stake.

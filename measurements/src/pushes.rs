@@ -32,10 +32,15 @@ pub(super) fn check(
         check_condition(condition, place, findings);
     }
     check_fluid(set, findings);
-    let stops = |run: &&Run| [run.stop_time, run.final_z, run.final_x].iter().any(Option::is_some);
+    let stops = |run: &&Run| {
+        let of_stop = [run.stop_time, run.final_z, run.final_x];
+        let of_crater = [run.crater.depth, run.crater.rim_diameter];
+        of_stop.iter().chain(&of_crater).any(Option::is_some)
+    };
     if let Some(run) = set.runs.iter().find(stops) {
         let name = shorten(&run.name);
-        let message = format!("the run `{name}` has a stopping time, final depth or final range");
+        let message =
+            format!("the run `{name}` has a stopping time, final depth, final range or crater");
         let help = "a body that is pushed does not stop: remove these columns of the table of runs";
         findings.report(Diagnostic::error(message).help(help));
     }

@@ -34,6 +34,7 @@ const SPEED: Kind = kind("speed", "m/s", [1e-6, 1e4]);
 const DIAMETER: Kind = kind("diameter", "m", LENGTHS);
 const MASS: Kind = kind("mass", "kg", [1e-12, 1e9]);
 const SPIN: Kind = kind("spin", "rad/s", [0.0, 1e7]);
+const CRATER: Kind = kind("size of a crater", "m", LENGTHS);
 const SIZE: Kind = kind("size", "m", LENGTHS);
 const BED_DEPTH: Kind = kind("depth of a bed", "m", [1e-6, 1e5]);
 /// From the surface of a small asteroid to a fast centrifuge.
@@ -140,7 +141,13 @@ fn of_condition(condition: &Condition) -> impl Iterator<Item = Number> {
 }
 
 fn of_run(run: &Run) -> impl Iterator<Item = Number> {
-    let scalars = [(&DEPTH, run.final_z), (&RANGE, run.final_x), (&STOPPING_TIME, run.stop_time)];
+    let scalars = [
+        (&DEPTH, run.final_z),
+        (&RANGE, run.final_x),
+        (&STOPPING_TIME, run.stop_time),
+        (&CRATER, run.crater.depth),
+        (&CRATER, run.crater.rim_diameter),
+    ];
     let scalars = scalars.into_iter().filter_map(|(kind, value)| Some((kind, value?)));
     let reading = |frame: &Frame| [(&TIME, frame.t), (&READING, frame.z), (&READING, frame.x)];
     let sample = |sample: &Sample| [(&READING, sample.at), (&VALUE, sample.value)];

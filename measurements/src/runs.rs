@@ -11,7 +11,7 @@ use super::document::Missing;
 use super::findings::{Findings, lines_in_words, nearest_name};
 use super::row::{Row, file_name};
 use super::table::{Format, Table};
-use super::{Condition, Run};
+use super::{Condition, Crater, Run};
 
 /// Most runs of a set.
 const MOST: usize = 100_000;
@@ -27,6 +27,8 @@ const FINAL_Z: usize = 6;
 const FINAL_X: usize = 7;
 const T_ZERO: usize = 8;
 const Z_ZERO: usize = 9;
+const CRATER_DEPTH: usize = 10;
+const RIM_DIAMETER: usize = 11;
 
 /// Runs, and what is understood of their table.
 pub(super) struct Runs {
@@ -76,6 +78,7 @@ pub(super) fn read(
             Cell::Empty | Cell::Wrong => None,
         };
         let [stop_time, final_z, final_x] = [STOP_TIME, FINAL_Z, FINAL_X].map(&mut number);
+        let [depth, rim_diameter] = [CRATER_DEPTH, RIM_DIAMETER].map(&mut number);
         let [t_zero, z_zero] = [T_ZERO, Z_ZERO].map(|key| number(key).unwrap_or(0.0));
         if let Some(first) = lines.get(&run) {
             let span = table.place(&row, RUN, findings);
@@ -108,6 +111,7 @@ pub(super) fn read(
             stop_time,
             final_z,
             final_x,
+            crater: Crater { depth, rim_diameter },
             frames,
             samples: Vec::new(),
         });

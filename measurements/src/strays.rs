@@ -263,6 +263,7 @@ mod tests {
             stop_time: None,
             final_z: None,
             final_x: None,
+            crater: crate::Crater::default(),
             frames: (-15..60).map(frame).collect(),
             samples: Vec::new(),
         }

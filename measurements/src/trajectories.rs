@@ -215,6 +215,7 @@ mod tests {
             stop_time: None,
             final_z: None,
             final_x: None,
+            crater: crate::Crater::default(),
             frames: Vec::new(),
             samples: Vec::new(),
         };

@@ -11,8 +11,8 @@ use thiserror::Error;
 
 use super::curve::Curve;
 use super::{
-    Bed, Condition, Feasible, FinalDefinition, Geometry, Kind, MeasurementSet, ParameterPrior,
-    Role, Run, StopDefinition,
+    Bed, Condition, Crater, Feasible, FinalDefinition, Geometry, Kind, MeasurementSet,
+    ParameterPrior, Role, Run, StopDefinition,
 };
 
 /// Why a set cannot be written.
@@ -147,11 +147,29 @@ impl MeasurementSet {
 
     fn runs_table(&self) -> io::Result<Vec<u8>> {
         let count = |value: Option<i64>| value.map_or(String::new(), |value| value.to_string());
-        let columns = if self.runs.iter().any(|run| run.session.is_some()) { 8 } else { 7 };
+        const HEADER: [&str; 10] = [
+            "run",
+            "condition",
+            "repeat",
+            "order",
+            "stop_time",
+            "final_z",
+            "final_x",
+            "session",
+            "crater_depth",
+            "rim_diameter",
+        ];
+        let any = |has: fn(&Run) -> bool| self.runs.iter().any(has);
+        let has_craters = any(|run| run.crater != Crater::default());
+        let columns: Vec<usize> = (0..HEADER.len())
+            .filter(|at| match at {
+                7 => any(|run| run.session.is_some()),
+                8 | 9 => has_craters,
+                _ => true,
+            })
+            .collect();
         let mut table = csv_writer();
-        let header =
-            ["run", "condition", "repeat", "order", "stop_time", "final_z", "final_x", "session"];
-        table.write_record(&header[..columns])?;
+        table.write_record(columns.iter().map(|&at| HEADER[at]))?;
         for run in &self.runs {
             let cells = [
                 run.name.as_str(),
@@ -162,8 +180,10 @@ impl MeasurementSet {
                 &cell(run.final_z),
                 &cell(run.final_x),
                 run.session.as_deref().unwrap_or_default(),
+                &cell(run.crater.depth),
+                &cell(run.crater.rim_diameter),
             ];
-            table.write_record(&cells[..columns])?;
+            table.write_record(columns.iter().map(|&at| cells[at]))?;
         }
         table.into_inner().map_err(|error| error.into_error())
     }

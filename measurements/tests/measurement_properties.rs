@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use configs::Color;
-use measurements::{Frame, Kind, MeasurementSet, Run};
+use measurements::{Crater, Frame, Kind, MeasurementSet, Run};
 use proptest::prelude::*;
 use proptest::sample::Index;
 
@@ -84,6 +84,7 @@ fn run(condition: usize) -> impl Strategy<Value = Run> {
             stop_time,
             final_z,
             final_x,
+            crater: Crater::default(),
             frames: onward(&frames),
             samples: Vec::new(),
         },

@@ -3,7 +3,8 @@
 //!
 //! The force law (two terms, see `configs/two-term-vector.toml`) stands in where only small changes are
 //! asked for: how observables answer to a force around a depth, to another impact speed, to the friction of
-//! a rail. How runs scatter is learned from the runs themselves (`modes`).
+//! a rail. Of craters it says nothing: to first order they stay as they are. How runs scatter is learned
+//! from the runs themselves (`modes`).
 
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
 use measurements::{Instrument, MeasurementSet};
@@ -51,6 +52,8 @@ pub enum BaselineError {
 pub(super) struct StandIn {
     pub(super) forward: ResistiveForward,
     point: Point,
+    /// Per condition: how many numbers of the set it answers, and how many there are; craters come last.
+    answered: Vec<(usize, usize)>,
 }
 
 /// The runs of a model as it stands.
@@ -77,21 +80,19 @@ impl Baseline {
     ) -> Result<Self, BaselineError> {
         let instrument = Instrument::default().without_shared_errors();
         let set = MeasurementSet { instrument, ..stand.set.clone() };
-        let mut conditions = Vec::with_capacity(layouts.len());
-        for (at, (layout, runs)) in layouts.iter().zip(runs).enumerate() {
-            if runs.len() == 1 {
-                let condition = set.conditions[at].id.clone();
-                return Err(BaselineError::TooFew { condition, found: runs.len() });
-            }
-            conditions.push(observed(&set, at, layout, runs));
+        if let Some(at) = runs.iter().position(|runs| runs.len() == 1) {
+            let condition = set.conditions[at].id.clone();
+            return Err(BaselineError::TooFew { condition, found: 1 });
         }
-        let fit = (0..conditions.len()).filter(|&at| !conditions[at].runs.is_empty()).collect();
-        let observed = Observed { conditions, fit, holdout: Vec::new(), notes: Vec::new() };
+        let observed = as_measured(&set, layouts, runs);
         let shipped = find_shipped(STAND_IN)
             .map_or_else(|| ModelSource::Path(STAND_IN.into()), ModelSource::Shipped);
         let law = Model::load(shipped, &LoadOptions::default())?.model;
-        let forward = ResistiveForward::new(&law, &set, layouts)?;
-        let bench = Bench { set: &set, observed: &observed, forward: &forward };
+        let of_law: Vec<Layout> = layouts.iter().map(of_a_force_law).collect();
+        let forward = ResistiveForward::new(&law, &set, &of_law)?;
+        let answered = layouts.iter().map(|one| (one.len() - one.craters(), one.len())).collect();
+        let paths = as_measured(&set, &of_law, runs);
+        let bench = Bench { set: &set, observed: &paths, forward: &forward };
         let fitted = bench.fit_from(&Point::start(&forward), &Noise::guess(&instrument))?;
         let modes = Modes::of(&observed);
         let mut spread = vec![DMatrix::zeros(0, 0); observed.conditions.len()];
@@ -104,12 +105,30 @@ impl Baseline {
         let relative = (scatter / whole).sqrt();
         let ways = (0..spread.len()).map(|at| modes.ways(at) / relative).collect();
         let point = fitted.fit.point.clone();
-        Ok(Self { observed, stand_in: StandIn { forward, point }, fitted, modes, ways, spread })
+        let stand_in = StandIn { forward, point, answered };
+        Ok(Self { observed, stand_in, fitted, modes, ways, spread })
     }
 }
 
+/// What of `layout` a force law answers: all but craters. Of a set of nothing else it is fitted to the final depths, which
+/// every run has.
+fn of_a_force_law(layout: &Layout) -> Layout {
+    let mut path = layout.without_craters();
+    path.final_z |= path.is_empty();
+    path
+}
+
+/// What a set of `runs` would hold, one list per condition, of the numbers in `layouts`.
+fn as_measured(set: &MeasurementSet, layouts: &[Layout], runs: &[Vec<Record>]) -> Observed {
+    let each = layouts.iter().zip(runs).enumerate();
+    let conditions: Vec<ObservedCondition> =
+        each.map(|(at, (layout, runs))| observed_condition(set, at, layout, runs)).collect();
+    let fit = (0..conditions.len()).filter(|&at| !conditions[at].runs.is_empty()).collect();
+    Observed { conditions, fit, holdout: Vec::new(), notes: Vec::new() }
+}
+
 /// The observables of `runs` under condition `at`; of none, where there are no runs.
-fn observed(
+fn observed_condition(
     set: &MeasurementSet,
     at: usize,
     layout: &Layout,
@@ -157,7 +176,13 @@ impl StandIn {
         if !scatter.is_still() {
             response += 0.5 * (predict(&[], scatter)? - predict(&[], &opposite(scatter))?);
         }
-        Ok(response)
+        let (answered, all) = self.answered[condition];
+        Ok(response.rows(0, answered).into_owned().resize_vertically(all, 0.0))
+    }
+
+    /// Whether it answers any number of the set.
+    pub(super) fn answers_any(&self) -> bool {
+        self.answered.iter().any(|(answered, _)| *answered > 0)
     }
 
     /// Keys of the coefficients that scatter.

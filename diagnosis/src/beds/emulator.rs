@@ -122,7 +122,11 @@ impl BedForward {
             Source::Switch(at) => self.screened[at].candidate(),
             Source::Apparatus(at) => {
                 let of_law = self.baseline.stand_in.forward.candidates()[at].clone();
-                Candidate { unresolved: Vec::new(), ..of_law }
+                let not_testable = match self.baseline.stand_in.answers_any() {
+                    true => of_law.not_testable.clone(),
+                    false => Some("a crater alone does not tell: add depths or times".to_owned()),
+                };
+                Candidate { unresolved: Vec::new(), not_testable, ..of_law }
             }
         };
         let parameters = self.free.iter().map(parameter);

@@ -192,6 +192,7 @@ mod tests {
             deepest: 1e-3 * depth_mm,
             reached: 0.0,
             end: 0.1,
+            crater: None,
             impact_energy: 1.0,
             closure: 0.0,
             ledger: Vec::new(),

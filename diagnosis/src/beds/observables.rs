@@ -4,7 +4,7 @@ use measurements::{Condition, FinalDefinition, MeasurementSet, StopDefinition};
 use nalgebra::DVector;
 use runner::beds::Record;
 
-use crate::observable::Layout;
+use crate::observable::{Layout, Observable};
 
 /// Depth and range (m) at `time` (s): before contact those of the fall under `condition` with `acceleration` (m/s²), behind
 /// the end the last ones.
@@ -46,19 +46,22 @@ pub fn observables(
         FinalDefinition::Deepest => (record.deepest, record.reached),
         FinalDefinition::Resting => at(record, record.end, condition, fall),
     };
-    let scalars = [
-        (layout.stop_time, stop.unwrap_or(record.end)),
-        (layout.final_z, depth),
-        (layout.final_x, range),
-    ];
-    numbers.extend(scalars.iter().filter(|(there, _)| *there).map(|(_, value)| *value));
+    // A bed that is flat to its walls has a crater of no size.
+    let [crater_depth, rim_diameter] = record.crater.unwrap_or_default();
+    numbers.extend(layout.scalars().map(|kind| match kind {
+        Observable::StopTime => stop.unwrap_or(record.end),
+        Observable::FinalRange => range,
+        Observable::CraterDepth => crater_depth,
+        Observable::RimDiameter => rim_diameter,
+        _ => depth,
+    }));
     DVector::from_vec(numbers)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observable::{Curve, Observable};
+    use crate::observable::Curve;
     use crate::test_sets::{condition, set};
     use measurements::Kind;
 
@@ -73,6 +76,7 @@ mod tests {
             deepest: 0.0181,
             reached: 0.0061,
             end: 0.03,
+            crater: None,
             impact_energy: 1.0,
             closure: 0.0,
             ledger: vec![("dissipated_sliding_J".into(), 0.4), ("elastic_spring_J".into(), 0.1)],

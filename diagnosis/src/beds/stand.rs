@@ -6,7 +6,7 @@ use configs::{Change, ConfigError, GrainForceChoice, GrainMedium, GrainModel, Me
 use engine::bed::random;
 use engine::fluid::Fluid;
 use engine::grains::Space;
-use measurements::{Along, Condition, Geometry, Kind, MeasurementSet};
+use measurements::{Along, Condition, Crater, Geometry, Kind, MeasurementSet, Run};
 use rand::RngExt;
 use runner::beds::Job;
 use thiserror::Error;
@@ -272,7 +272,13 @@ impl<'a> Stand<'a> {
                 .map(Arc::new)
                 .map_err(|source| StandError::Config { condition: of_condition.id.clone(), source })
         };
-        Ok(Job { model: with(&during)?, bed: with(&before)?, expected: self.expected[condition] })
+        let of_set = |run: &Run| run.condition == condition && run.crater != Crater::default();
+        Ok(Job {
+            model: with(&during)?,
+            bed: with(&before)?,
+            expected: self.expected[condition],
+            settles: self.set.runs.iter().any(of_set),
+        })
     }
 
     /// The impacts under `conditions`, each on its own of `draws`, with `variation`: condition after

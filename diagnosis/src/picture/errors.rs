@@ -72,6 +72,8 @@ fn panels<'a>(found: &'a WhereItFails<'_>) -> Vec<Panel<'a>> {
         kind("stopping time (ms)", 1e3, Some(Observable::StopTime)),
         kind("final depth (mm)", 1e3, Some(Observable::FinalDepth)),
         kind("final range (mm)", 1e3, Some(Observable::FinalRange)),
+        kind("crater depth (mm)", 1e3, Some(Observable::CraterDepth)),
+        kind("rim diameter (mm)", 1e3, Some(Observable::RimDiameter)),
         kind("scalars, relative (%)", 1e2, None),
     ];
     let floors = found.noise_floors();

@@ -21,10 +21,12 @@ const EARLY: f64 = 0.3;
 /// What is drawn of sets without paths: a title, a factor, and the number of a run.
 type Scalar = (&'static str, f64, fn(&Run) -> Option<f64>);
 
-const SCALARS: [Scalar; 3] = [
+const SCALARS: [Scalar; 5] = [
     ("stopping time (ms)", 1e3, |run| run.stop_time),
     ("final depth (mm)", 1e3, |run| run.final_z),
     ("final range (mm)", 1e3, |run| run.final_x),
+    ("crater depth (mm)", 1e3, |run| run.crater.depth),
+    ("rim diameter (mm)", 1e3, |run| run.crater.rim_diameter),
 ];
 
 /// Depth over time of every run beside the stated impact speed, or its curve, a panel per condition; of a set of

@@ -11,6 +11,14 @@ pub enum ForwardError {
         /// Name of the model.
         model: String,
     },
+    /// A crater, of which the surface is no part.
+    #[error(
+        "`{model}` is a force law, which says nothing of craters; `MeasurementSet::without_craters` leaves them out"
+    )]
+    Craters {
+        /// Name of the model.
+        model: String,
+    },
     /// The set asks for a shape that is not there.
     #[error("condition {condition}: there is no shape `{shape}`; known: {}", known.join(", "))]
     UnknownShape {

@@ -65,6 +65,9 @@ impl ResistiveForward {
         let Medium::Resistive(medium) = &model.medium else {
             return Err(ForwardError::Grains { model: model.run.name.clone() });
         };
+        if layouts.iter().any(|one| one.craters() > 0) {
+            return Err(ForwardError::Craters { model: model.run.name.clone() });
+        }
         let free = medium.free_parameters();
         let extent = extent(set);
         let conditions = (0..set.conditions.len())

@@ -150,6 +150,7 @@ mod tests {
             stop_time: None,
             final_z,
             final_x: None,
+            crater: measurements::Crater::default(),
             frames,
             samples: Vec::new(),
         }

@@ -24,7 +24,7 @@ use super::over_time::{self, DURATION};
 use super::pushed;
 use super::scatter::PathScatter;
 use crate::forward::{Bend, Moment, Scatter};
-use crate::observable::Layout;
+use crate::observable::{Layout, Observable};
 
 /// Errors near 1e-9 m, far below any camera and small beside every difference that is taken.
 const TOLERANCE: Tolerance = Tolerance { relative: 1e-8, absolute: 1e-10 };
@@ -370,12 +370,11 @@ impl Prepared {
         }
         observables.extend(&seen.curve);
         let (depth, range) = read(&seen.last);
-        let scalars = [
-            (self.layout.stop_time, seen.stop),
-            (self.layout.final_z, depth),
-            (self.layout.final_x, range),
-        ];
-        observables.extend(scalars.iter().filter(|(there, _)| *there).map(|(_, value)| *value));
+        observables.extend(self.layout.scalars().map(|kind| match kind {
+            Observable::StopTime => seen.stop,
+            Observable::FinalRange => range,
+            _ => depth,
+        }));
         match observables.iter().all(|value| value.is_finite()) {
             true => Ok(observables),
             false => Err("an observable is not finite".to_owned()),

@@ -1,8 +1,8 @@
 //! A laboratory of its own: spheres that fall into sand before a camera, well or badly read.
 
 use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Crater, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind,
+    MeasurementSet, Role, Run, StatedBed, StatedError, StopDefinition,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -192,6 +192,7 @@ impl Laboratory {
             stop_time: Some(stop_time + late),
             final_z: Some(rest[0] + level + self.camera * normal(random)),
             final_x: (angle < 90.0).then_some(rest[1]),
+            crater: Crater::default(),
             frames,
             samples: Vec::new(),
         }

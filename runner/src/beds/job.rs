@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use configs::{Condition, Model, StartX};
 use engine::checkpoint;
+use engine::simulation::Simulation;
 
 use super::record::{Record, Recorder};
 use crate::error::CampaignError;
@@ -18,7 +19,10 @@ use crate::run::{Control, bed_key, prepare, result_key};
 const WAIT: Duration = Duration::from_millis(50);
 
 /// Counts the changes of what is kept of an impact.
-const KEPT: u32 = 2;
+const KEPT: u32 = 3;
+
+/// Share of the grains in motion below which a bed lies still.
+const STILL: f64 = 0.01;
 
 /// One impact: a model of grains, with the speed, the angle and the place of its `[impact]`.
 #[derive(Clone, Debug)]
@@ -30,6 +34,8 @@ pub struct Job {
     pub bed: Arc<Model>,
     /// How long it is expected to take, as simulated time (s).
     pub expected: f64,
+    /// Whether it goes on until the bed lies still, as its crater is measured.
+    pub settles: bool,
 }
 
 impl Job {
@@ -45,7 +51,8 @@ impl Job {
     /// The key of its record: whatever the impact and its bed depend on, and the engine.
     pub(super) fn key(&self) -> Result<[u8; 32], CampaignError> {
         let bed = hexadecimal(&self.bed_key()?);
-        Ok(result_key(&format!("impact {KEPT}\n{}\n{bed}", self.model.hash())))
+        let settled = if self.settles { " settled" } else { "" };
+        Ok(result_key(&format!("impact {KEPT}{settled}\n{}\n{bed}", self.model.hash())))
     }
 
     /// Work that it takes (grain-steps), if it lasts as long as expected.
@@ -84,7 +91,10 @@ impl Job {
         let is_pushed = self.model.impact.pushed_to.is_some();
         let mut recorder = Recorder::new(&simulation, is_pushed);
         recorder.observe(&simulation);
-        while !simulation.is_over() {
+        let has_time = |now: &Simulation| now.clock().step < now.last_step();
+        let settles =
+            |now: &Simulation| self.settles && has_time(now) && now.bed().moving_share() > STILL;
+        while !simulation.is_over() || settles(&simulation) {
             simulation.advance()?;
             recorder.observe(&simulation);
             if heed.wants_to_stop() {

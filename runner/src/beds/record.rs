@@ -1,5 +1,7 @@
 //! What is kept of one impact on a bed of grains.
 
+use engine::crater::{crater, crater_size};
+use engine::grains::Space;
 use engine::simulation::Simulation;
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +31,8 @@ pub struct Record {
     pub deepest: f64,
     /// Distance when the horizontal velocity first came to zero (m).
     pub reached: f64,
+    /// Depth of the crater below the undisturbed surface at the end, and the diameter of its rim (m), where it has one.
+    pub crater: Option<[f64; 2]>,
     /// Simulated time (s).
     pub end: f64,
     /// Energy of the impact (J).
@@ -117,6 +121,7 @@ impl Recorder {
             slow_time: self.slow,
             deepest: stopping.depth(),
             reached: stopping.range(),
+            crater: crater_of(simulation),
             end: clock.time(),
             impact_energy: simulation.impact_energy(),
             closure: simulation.closure(),
@@ -126,6 +131,16 @@ impl Recorder {
             wall,
         }
     }
+}
+
+/// Depth and rim of the crater about the intruder as it is now.
+fn crater_of(simulation: &Simulation) -> Option<[f64; 2]> {
+    let (bed, body) = (simulation.bed(), &simulation.intruder().bodies()[0]);
+    let (grains, at) = (&bed.grains, bed.image_inside(body.position));
+    let y = if grains.space == Space::Planar { 0.0 } else { at.y };
+    let profile = crater(grains, &bed.lying(), (at.x, y));
+    let size = crater_size(&profile, simulation.surface(), grains.space)?;
+    Some([size.depth, size.rim_diameter])
 }
 
 impl Record {

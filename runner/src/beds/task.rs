@@ -31,6 +31,8 @@ pub enum BedTask {
         bed: ModelText,
         /// How long it is expected to take, as simulated time (s).
         expected: f64,
+        /// Whether it goes on until the bed lies still.
+        settles: bool,
     },
 }
 
@@ -47,6 +49,7 @@ impl BedTask {
             model: ModelText::of(&job.model),
             bed: ModelText::of(&job.bed),
             expected: job.expected,
+            settles: job.settles,
         }
     }
 }
@@ -56,11 +59,12 @@ impl Task for BedTask {
         with_threads(1, || match self {
             Self::Bed { model } => {
                 let model = model.load()?;
-                let job = Job { bed: Arc::clone(&model), model, expected: 0.0 };
+                let job = Job { bed: Arc::clone(&model), model, expected: 0.0, settles: false };
                 job.prepare_bed(cache, &mut Heed::unattended()).map(drop)
             }
-            Self::Impact { key, model, bed, expected } => {
-                let job = Job { model: model.load()?, bed: bed.load()?, expected: *expected };
+            Self::Impact { key, model, bed, expected, settles } => {
+                let (model, bed) = (model.load()?, bed.load()?);
+                let job = Job { model, bed, expected: *expected, settles: *settles };
                 impact(&job, key, cache)
             }
         })?

@@ -83,7 +83,7 @@ impl Fall {
         let options = LoadOptions { sets, ..LoadOptions::default() };
         let model = Arc::new(Model::load(source, &options)?.model);
         // A tenth of a second and more, at every speed.
-        Ok(Job { bed: Arc::clone(&model), model, expected: 0.15 })
+        Ok(Job { bed: Arc::clone(&model), model, expected: 0.15, settles: false })
     }
 }
 

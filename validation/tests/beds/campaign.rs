@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use configs::Change;
 use diagnosis::beds::{Stand, Variation};
-use measurements::Role;
+use measurements::{Crater, Role, Run};
 use runner::beds::{Impacts, Job, Place, Record};
 use runner::{CampaignError, Progress, Unattended, Watch};
 
@@ -40,6 +40,55 @@ fn jobs() -> Vec<Job> {
     let rough = Variation::during(rolling);
     let rough = stand.job(0, draws[0], &rough).unwrap();
     plain.chain([rough]).collect()
+}
+
+/// A run of the one condition that left this crater.
+fn run_with(crater: Crater) -> Run {
+    Run {
+        name: "a".into(),
+        condition: 0,
+        repeat: None,
+        order: None,
+        session: None,
+        stop_time: Some(0.05),
+        final_z: None,
+        final_x: None,
+        crater,
+        frames: Vec::new(),
+        samples: Vec::new(),
+    }
+}
+
+#[test]
+fn an_impact_leaves_a_crater_that_is_measured_when_the_bed_lies_still() {
+    let (model, mut set) = (model(&[]), empty_set(vec![condition(1.5, Role::Fit)]));
+    let cache = tempfile::tempdir().unwrap();
+    let place = Place {
+        cache: cache.path(),
+        workers: NonZero::new(1),
+        watch: &Unattended as &dyn Watch,
+        elsewhere: None,
+    };
+    let mut measured = |crater: Crater| {
+        set.runs = vec![run_with(crater)];
+        let stand = Stand::new(&model, &set).unwrap();
+        let draw = stand.draws(0, 1, 1).concat()[0];
+        let job = stand.job(0, draw, &Variation::default()).unwrap();
+        (job.settles, place.run(&[job]).unwrap()[0].clone().unwrap())
+    };
+    let crater = Crater { depth: Some(0.01), rim_diameter: None };
+    let [(waits, at_rest), (does_not, at_stop)] = [crater, Crater::default()].map(&mut measured);
+    assert_eq!([waits, does_not], [true, false]);
+    assert!(at_rest.end > at_stop.end, "the bed moves for longer than the intruder");
+    let n = at_stop.depth.len();
+    let rested = &at_rest;
+    assert_eq!(rested.depth[..n], at_stop.depth, "up to the stop they are one impact");
+    let [depth, rim] = at_rest.crater.expect("a crater");
+    // Below the intruder the surface lies in the gaps of the grains that carry it.
+    let grain = set.bed.grain_diameter.unwrap();
+    let beside = (depth - at_rest.deepest).abs();
+    assert!(beside < 2.0 * grain, "a crater of {depth} m, an intruder {} m deep", at_rest.deepest);
+    assert!(rim > set.conditions[0].diameter, "{rim} m from rim to rim");
 }
 
 /// What does not depend on how long it took.

@@ -2,10 +2,10 @@
 
 use diagnosis::beds::{Plan, Stand, Variation, Wish, diagnose_bed};
 use diagnosis::observed::Observed;
-use measurements::MeasurementSet;
+use measurements::{Crater, Kind, MeasurementSet, Run};
 use validation::benchmark::beds::{Case, Hidden, Outcome, Prepared, campaign, measure, model};
 
-use crate::imitation::Imitation;
+use crate::imitation::{Imitation, crater};
 
 /// On beds that scatter by 5 %, and runs on one bed by `runs`.
 fn outcome(hidden: Hidden, runs: f64) -> Outcome {
@@ -127,15 +127,52 @@ fn the_force_of_a_named_effect_is_what_the_depths_with_and_without_it_say() {
     let fall = body.speed * libm::sin(body.angle_deg.to_radians());
     let depth = |set: &MeasurementSet| {
         let depths = set.runs.iter().filter(|run| run.condition == at);
-        let deepest = depths.map(|run| {
-            let frames = run.frames.iter().map(|frame| frame.z);
-            frames.chain(run.final_z).fold(0.0, f64::max)
-        });
-        let deepest: Vec<f64> = deepest.collect();
+        let deepest: Vec<f64> = depths.map(deepest).collect();
         deepest.iter().sum::<f64>() / deepest.len() as f64
     };
     // What stops a fall over another way: the weight is the same.
     let more = 0.5 * body.mass * fall * fall * (1.0 / depth(&set) - 1.0 / depth(&plain));
     assert!(more > 0.0 && (number("mean") / more - 1.0).abs() < 0.25, "{more} {force}");
     assert!((number("depth") / depth(&set) - 1.0).abs() < 0.1, "{force}");
+}
+
+#[test]
+fn craters_beside_depths_name_what_is_hidden_and_alone_they_name_what_might_be() {
+    let impacts = Imitation { beds: 0.05, runs: 0.02, fades: false };
+    let hidden = Hidden::Switch("rolling-resistance", 0.2);
+    let case = Case { is_weighed: true, ..Case::alike(hidden, 0) };
+    let (model, mut set) = case.measured(&impacts, None).unwrap();
+    for run in &mut set.runs {
+        let [depth, rim_diameter] = crater(deepest(run)).map(Some);
+        run.crater = Crater { depth, rim_diameter };
+    }
+    let diagnosed = |set: &MeasurementSet| {
+        let (stand, observed) = (Stand::new(&model, set).unwrap(), Observed::of(set));
+        assert!(observed.conditions.iter().all(|one| one.layout.craters() == 2));
+        let plan = Plan::new(&stand, &observed, &impacts, &Wish::default()).unwrap();
+        let found = diagnose_bed(&stand, &observed, &impacts, plan, 1).unwrap();
+        found.to_json(&stand).unwrap()
+    };
+    let both = diagnosed(&set);
+    assert_eq!(both["verdict"], "supported", "{}", both["ranking"]);
+    assert_eq!(both["effects"][0], "rolling-resistance", "{}", both["ranking"]);
+
+    set.kind = Kind::Scalar;
+    for run in &mut set.runs {
+        run.frames.clear();
+        (run.final_z, run.final_x, run.stop_time) = (None, None, None);
+    }
+    // Craters of the imitation follow from the depth alone, which friction of grains changes alike.
+    let alone = diagnosed(&set);
+    assert_eq!(alone["verdict"], "not-separable", "{}", alone["ranking"]);
+    let might_be = alone["not_separable"].to_string();
+    assert!(might_be.contains("rolling-resistance"), "{might_be}");
+    let ranking = alone["ranking"].as_array().unwrap();
+    let rail = ranking.iter().find(|one| one["id"] == "rail-friction").unwrap();
+    assert_eq!(rail["status"], "not-testable", "{rail}");
+}
+
+/// The depth to which a run came (m).
+fn deepest(run: &Run) -> f64 {
+    run.frames.iter().map(|frame| frame.z).chain(run.final_z).fold(0.0, f64::max)
 }

@@ -33,6 +33,11 @@ struct Law {
     constant: f64,
 }
 
+/// Depth and rim diameter of the crater of an impact to this depth (m).
+pub(crate) fn crater(depth: f64) -> [f64; 2] {
+    [0.6 * depth, 0.03 + 1.5 * depth]
+}
+
 impl Imitation {
     fn law(&self, job: &Job) -> Law {
         let of_impact = job.model.grains().expect("a bed");
@@ -108,6 +113,7 @@ impl Imitation {
             deepest: z,
             reached: 0.0,
             end,
+            crater: Some(crater(z)),
             impact_energy: 1.0,
             closure: 0.0,
             ledger: vec![("dissipated_sliding_J".to_owned(), 1.0)],

@@ -8,8 +8,8 @@ use diagnosis::forward::{Forward, Request, Scatter};
 use diagnosis::observable::Layout;
 use diagnosis::resistive::ResistiveForward;
 use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Crater, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind,
+    MeasurementSet, Role, Run, StatedBed, StatedError, StopDefinition,
 };
 
 use super::rig::{BED, DIAMETER, MASS};
@@ -72,6 +72,7 @@ fn set(conditions: Vec<Condition>) -> MeasurementSet {
         stop_time: None,
         final_z: Some(depth),
         final_x: None,
+        crater: Crater::default(),
         frames: vec![Frame { t: -0.02, z: -0.03, x: 0.0, sigma: None }],
         samples: Vec::new(),
     };
@@ -119,6 +120,7 @@ fn forward(set: &MeasurementSet) -> ResistiveForward {
         stop_time: true,
         final_z: true,
         final_x: true,
+        ..Layout::default()
     };
     let layouts = vec![layout; set.conditions.len()];
     ResistiveForward::new(&loaded.model, set, &layouts).expect("a model for the set")

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use diagnosis::verdict::Verdict;
 use engine::fluid::Fluid;
 use engine::math::Vec3;
-use measurements::{Frame, Instrument, Kind, MeasurementSet, Run};
+use measurements::{Crater, Frame, Instrument, Kind, MeasurementSet, Run};
 use rand_pcg::Pcg64;
 use resistive::{Impact, Recorder, ResistanceLaw, Surroundings, Trajectory};
 
@@ -142,6 +142,7 @@ fn measured(stated: Option<Fluid>) -> MeasurementSet {
         stop_time: None,
         final_z: None,
         final_x: None,
+        crater: Crater::default(),
         frames: frames(speeds[at], &mut random),
         samples: Vec::new(),
     });

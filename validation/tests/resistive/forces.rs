@@ -15,8 +15,8 @@ use engine::math::Vec3;
 use engine::params::ParamTable;
 use intruders::Casting;
 use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role,
-    Run, Sample, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Crater, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet,
+    Role, Run, Sample, StatedBed, StatedError, StopDefinition,
 };
 use rand_pcg::Pcg64;
 use resistive::{Driven, Impact, Recorder};
@@ -114,6 +114,7 @@ fn measured(hidden: Option<(&str, f64)>, seed: u64) -> MeasurementSet {
         stop_time: None,
         final_z: None,
         final_x: None,
+        crater: Crater::default(),
         frames: Vec::new(),
         samples: push(&conditions[at], hidden, &mut random),
     });

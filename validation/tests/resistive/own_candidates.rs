@@ -8,7 +8,7 @@ use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::verdict::Verdict;
 use measurements::{
-    Bed, Condition, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role, Run,
+    Bed, Condition, Crater, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role, Run,
     StatedBed, StatedError, StopDefinition,
 };
 use rand::RngExt;
@@ -66,6 +66,7 @@ fn empty_set() -> MeasurementSet {
             stop_time: Some(0.1),
             final_z: Some(0.1),
             final_x: (conditions[condition].angle_deg < 90.0).then_some(0.1),
+            crater: Crater::default(),
             frames: Vec::new(),
             samples: Vec::new(),
         }

@@ -9,8 +9,8 @@ use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::verdict::{Diagnosis, Verdict};
 use measurements::{
-    Bed, Condition, ContradictionKind, Feasible, FinalDefinition, Geometry, Instrument, Kind,
-    MeasurementSet, Role, Run, Sample, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, ContradictionKind, Crater, Feasible, FinalDefinition, Geometry, Instrument,
+    Kind, MeasurementSet, Role, Run, Sample, StatedBed, StatedError, StopDefinition,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -163,6 +163,7 @@ pub(crate) fn read_over_time(
         stop_time: None,
         final_z: None,
         final_x: None,
+        crater: Crater::default(),
         frames: Vec::new(),
         samples: fall(conditions[at].speed),
     });

@@ -5,7 +5,9 @@ use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::ParamTable;
 use intruders::Casting;
-use measurements::{Condition, Instrument, Kind, MeasurementSet, Run, Sample, StopDefinition};
+use measurements::{
+    Condition, Crater, Instrument, Kind, MeasurementSet, Run, Sample, StopDefinition,
+};
 use rand_pcg::Pcg64;
 use resistive::{Impact, State, Trajectory};
 
@@ -82,6 +84,7 @@ fn measured() -> MeasurementSet {
                 stop_time: None,
                 final_z: None,
                 final_x: None,
+                crater: Crater::default(),
                 frames: Vec::new(),
                 samples: times.iter().zip(read).map(&mut sample).collect(),
             });

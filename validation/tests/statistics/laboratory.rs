@@ -1,8 +1,8 @@
 //! Measurements in the world: repeats whose beds differ, seen by a camera.
 
 use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Crater, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind,
+    MeasurementSet, Role, Run, StatedBed, StatedError, StopDefinition,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -155,6 +155,7 @@ impl Laboratory {
             stop_time: Some(path.stop_time + late),
             final_z: Some(final_z),
             final_x: (setting.angle < 90.0).then_some(final_x),
+            crater: Crater::default(),
             frames,
             samples: Vec::new(),
         }

@@ -336,6 +336,7 @@ impl<'a> World<'a> {
             deepest: depths().take(until).fold(f64::NEG_INFINITY, f64::max),
             reached: 0.0,
             end: path.last()?[0],
+            crater: None,
             impact_energy: 0.5 * self.model.model.intruder.mass * speed * speed,
             closure: 0.0,
             ledger: Vec::new(),

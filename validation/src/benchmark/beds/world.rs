@@ -4,8 +4,8 @@ use configs::{ConfigError, LoadOptions, Model, ModelSource};
 use engine::bed::random;
 use engine::grains::Space;
 use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Crater, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind,
+    MeasurementSet, Role, Run, StatedBed, StatedError, StopDefinition,
 };
 use rand::Rng;
 use runner::beds::{Impacts, Lie, Record};
@@ -238,6 +238,7 @@ pub(super) fn seen(
         stop_time: None,
         final_z: Some(deepest),
         final_x: None,
+        crater: Crater::default(),
         frames: seen.collect(),
         samples: Vec::new(),
     }

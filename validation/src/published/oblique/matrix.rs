@@ -239,7 +239,7 @@ fn job(effort: Effort, cell: &Cell, position: usize) -> Result<Job, ConfigError>
     let model = Arc::new(Model::load(source, &options)?.model);
     // Between 0.15 and 0.6 s; at 30 deg, where none is published, about as long as at 45.
     let time = published.stopping_time.map_or(0.25, |time| time.at(*speed));
-    Ok(Job { bed: Arc::clone(&model), model, expected: LONGER * time })
+    Ok(Job { bed: Arc::clone(&model), model, expected: LONGER * time, settles: false })
 }
 
 #[cfg(test)]

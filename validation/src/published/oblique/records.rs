@@ -18,6 +18,7 @@ pub(crate) fn record(interval: f64, range: Vec<f64>, depth: Vec<f64>) -> Record 
         force: Vec::new(),
         depth,
         end,
+        crater: None,
         impact_energy: 0.0,
         closure: 0.0,
         ledger: Vec::new(),

@@ -224,7 +224,7 @@ impl Push {
         ];
         let options = LoadOptions { sets, seed: Some(self.seed), ..LoadOptions::default() };
         let model = Arc::new(Model::load(source, &options)?.model);
-        Ok(Job { bed: Arc::clone(&model), model, expected: TO / self.speed })
+        Ok(Job { bed: Arc::clone(&model), model, expected: TO / self.speed, settles: false })
     }
 }
 
