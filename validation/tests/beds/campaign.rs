@@ -10,7 +10,7 @@ use measurements::{Crater, Role, Run};
 use runner::beds::{Impacts, Job, Place, Record};
 use runner::{CampaignError, Progress, Unattended, Watch};
 
-use crate::world::{condition, empty_set, model};
+use crate::world::{condition, empty_set, model, run};
 
 /// Counts what ends, and wants to stop after so many.
 struct Patience {
@@ -42,23 +42,6 @@ fn jobs() -> Vec<Job> {
     plain.chain([rough]).collect()
 }
 
-/// A run of the one condition that left this crater.
-fn run_with(crater: Crater) -> Run {
-    Run {
-        name: "a".into(),
-        condition: 0,
-        repeat: None,
-        order: None,
-        session: None,
-        stop_time: Some(0.05),
-        final_z: None,
-        final_x: None,
-        crater,
-        frames: Vec::new(),
-        samples: Vec::new(),
-    }
-}
-
 #[test]
 fn an_impact_leaves_a_crater_that_is_measured_when_the_bed_lies_still() {
     let (model, mut set) = (model(&[]), empty_set(vec![condition(1.5, Role::Fit)]));
@@ -70,7 +53,7 @@ fn an_impact_leaves_a_crater_that_is_measured_when_the_bed_lies_still() {
         elsewhere: None,
     };
     let mut measured = |crater: Crater| {
-        set.runs = vec![run_with(crater)];
+        set.runs = vec![Run { stop_time: Some(0.05), crater, ..run("a".to_owned(), 0) }];
         let stand = Stand::new(&model, &set).unwrap();
         let draw = stand.draws(0, 1, 1).concat()[0];
         let job = stand.job(0, draw, &Variation::default()).unwrap();

@@ -1,11 +1,14 @@
 //! The diagnosis of a bed, with impacts that take no time.
 
+use configs::engine::bed::random;
 use diagnosis::beds::{Plan, Stand, Variation, Wish, diagnose_bed};
 use diagnosis::observed::Observed;
-use measurements::{Crater, Kind, MeasurementSet, Run};
+use measurements::{Condition, Crater, Instrument, Kind, MeasurementSet, Role, Run, Sample};
+use serde_json::json;
 use validation::benchmark::beds::{Case, Hidden, Outcome, Prepared, campaign, measure, model};
 
-use crate::imitation::{Imitation, crater};
+use crate::imitation::{Imitation, crater, pushed, standard_normal};
+use crate::world;
 
 /// On beds that scatter by 5 %, and runs on one bed by `runs`.
 fn outcome(hidden: Hidden, runs: f64) -> Outcome {
@@ -170,6 +173,55 @@ fn craters_beside_depths_name_what_is_hidden_and_alone_they_name_what_might_be()
     let ranking = alone["ranking"].as_array().unwrap();
     let rail = ranking.iter().find(|one| one["id"] == "rail-friction").unwrap();
     assert_eq!(rail["status"], "not-testable", "{rail}");
+}
+
+/// Pushes to 2 cm of discs of two diameters, against grains of this rolling friction, eight times each.
+fn pushes(rolling: f64) -> MeasurementSet {
+    let conditions = [0.02, 0.015].map(|diameter| Condition {
+        id: format!("{diameter} m"),
+        diameter,
+        ..world::condition(0.2, Role::Fit)
+    });
+    let mut random = random(1, "pushes");
+    let mut read = |name: usize, condition: usize| {
+        let friction = 4.0 * (1.0 + 4.0 * rolling) * libm::exp(0.03 * standard_normal(&mut random));
+        let sample = |at: u32| {
+            let at = 1e-3 * f64::from(at);
+            let value = pushed(friction, rolling, at) + 2e-4 * standard_normal(&mut random);
+            Sample { at, value, sigma: None }
+        };
+        let samples = (1..=20).map(sample).collect();
+        Run { samples, ..world::run(name.to_string(), condition) }
+    };
+    let runs = (0..16).map(|name| read(name, name % 2)).collect();
+    let set = world::empty_set(conditions.into());
+    let instrument = Instrument { force_sigma: Some(2e-4), ..set.instrument.clone() };
+    MeasurementSet { kind: Kind::ForceDepth, runs, instrument, ..set }
+}
+
+#[test]
+fn pushes_into_a_bed_name_what_is_hidden_and_nothing_where_nothing_is() {
+    let impacts = Imitation { beds: 0.05, runs: 0.02, fades: false };
+    let model = world::pushed();
+    for (rolling, effects) in [(0.0, vec![]), (0.2, vec!["rolling-resistance"])] {
+        let set = pushes(rolling);
+        let (stand, observed) = (Stand::new(&model, &set).unwrap(), Observed::of(&set));
+        let plan = Plan::new(&stand, &observed, &impacts, &Wish::default()).unwrap();
+        let found = diagnose_bed(&stand, &observed, &impacts, plan, 1).unwrap();
+        let object = found.to_json(&stand).unwrap();
+        assert_eq!(
+            object["effects"],
+            json!(effects),
+            "{} {}",
+            object["verdict"],
+            object["ranking"]
+        );
+        if let [_] = effects[..] {
+            let left_out = &object["holdout"];
+            let [before, after] = ["before", "after"].map(|key| left_out[key].as_f64().unwrap());
+            assert!(after < 0.1 * before && left_out["unit"] == "N", "{left_out}");
+        }
+    }
 }
 
 /// The depth to which a run came (m).

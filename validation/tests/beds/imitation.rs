@@ -26,11 +26,22 @@ pub(crate) struct Imitation {
     pub(crate) fades: bool,
 }
 
-/// Inertial drag (kg/m), friction per depth (N/m), constant resistance (N).
+/// Inertial drag (kg/m), friction per depth (N/m), constant resistance (N), rolling friction of the grains.
 struct Law {
     drag: f64,
     friction: f64,
     constant: f64,
+    rolling: f64,
+}
+
+pub(crate) fn standard_normal(random: &mut impl RngExt) -> f64 {
+    let radius = (-2.0 * libm::log(1.0 - random.random::<f64>())).sqrt();
+    radius * libm::cos(std::f64::consts::TAU * random.random::<f64>())
+}
+
+/// Force (N) on what is pushed to a depth (m) against `friction` per depth (N/m) and rolling resistance.
+pub(crate) fn pushed(friction: f64, rolling: f64, depth: f64) -> f64 {
+    friction * depth * (1.0 + 100.0 * rolling * depth)
 }
 
 /// Depth and rim diameter of the crater of an impact to this depth (m).
@@ -74,16 +85,42 @@ impl Imitation {
                 * mass
                 * scatter(b + d),
             constant: 1.0 * cohesion + 0.8 * wet,
+            rolling,
         }
     }
 
     fn normal(&self, seed: u64, purpose: &str) -> f64 {
-        let mut random = random(seed, purpose);
-        let radius = (-2.0 * libm::log(1.0 - random.random::<f64>())).sqrt();
-        radius * libm::cos(std::f64::consts::TAU * random.random::<f64>())
+        standard_normal(&mut random(seed, purpose))
+    }
+
+    /// A push, which rolling resistance hinders the more the deeper it is.
+    fn push(&self, job: &Job, to: f64) -> Record {
+        let law = self.law(job);
+        let (samples, speed) = (100, job.model.impact.speed);
+        let depth: Vec<f64> =
+            (0..=samples).map(|at| to * f64::from(at) / f64::from(samples)).collect();
+        let force =
+            depth.iter().map(|z| pushed(law.friction, law.rolling, *z) + law.constant).collect();
+        let end = to / speed;
+        Record {
+            interval: end / f64::from(samples),
+            range: vec![0.0; depth.len()],
+            force,
+            depth,
+            deepest: to,
+            end,
+            ..self.fall(job)
+        }
     }
 
     fn record(&self, job: &Job) -> Record {
+        match job.model.impact.pushed_to {
+            Some(depth) => self.push(job, depth),
+            None => self.fall(job),
+        }
+    }
+
+    fn fall(&self, job: &Job) -> Record {
         let law = self.law(job);
         let (mass, gravity) = (job.model.intruder.mass, 9.81);
         let (mut z, mut v) = (0.0_f64, job.model.impact.speed);

@@ -2,8 +2,8 @@
 
 use configs::{LoadOptions, Model, ModelSource};
 use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role,
-    StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Crater, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet,
+    Role, Run, StatedBed, StatedError, StopDefinition,
 };
 
 /// 360 discs of two sizes, twelve wide and fourteen deep, and a disc of four of them.
@@ -51,7 +51,20 @@ x_range = ["1 mm", "12 cm"]
 
 /// The model, changed by `sets`.
 pub(crate) fn model(sets: &[&str]) -> Model {
-    let source = ModelSource::Text { name: "small".into(), text: MODEL.into(), folder: ".".into() };
+    load(MODEL.into(), sets)
+}
+
+/// The model, whose disc is pushed 2 cm down.
+pub(crate) fn pushed() -> Model {
+    let text = MODEL.replace(
+        "[impact]\nspeed = \"1 m/s\"",
+        "[intrusion]\nspeed = \"20 cm/s\"\ndepth = \"2 cm\"",
+    );
+    load(text, &[])
+}
+
+fn load(text: String, sets: &[&str]) -> Model {
+    let source = ModelSource::Text { name: "small".into(), text, folder: ".".into() };
     let sets = sets.iter().map(|set| (*set).to_owned()).collect();
     let options = LoadOptions { sets, ..LoadOptions::default() };
     Model::load(source, &options).expect("the model is sound").model
@@ -110,5 +123,22 @@ pub(crate) fn empty_set(conditions: Vec<Condition>) -> MeasurementSet {
         runs: Vec::new(),
         keep: Vec::new(),
         notes: Vec::new(),
+    }
+}
+
+/// A run under `condition` of which nothing is measured.
+pub(crate) fn run(name: String, condition: usize) -> Run {
+    Run {
+        name,
+        condition,
+        repeat: None,
+        order: None,
+        session: None,
+        stop_time: None,
+        final_z: None,
+        final_x: None,
+        crater: Crater::default(),
+        frames: Vec::new(),
+        samples: Vec::new(),
     }
 }
