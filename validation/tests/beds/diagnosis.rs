@@ -195,7 +195,7 @@ fn pushes(rolling: f64) -> MeasurementSet {
     };
     let runs = (0..16).map(|name| read(name, name % 2)).collect();
     let set = world::empty_set(conditions.into());
-    let instrument = Instrument { force_sigma: Some(2e-4), ..set.instrument.clone() };
+    let instrument = Instrument { force_sigma: Some(2e-4), ..set.instrument };
     MeasurementSet { kind: Kind::ForceDepth, runs, instrument, ..set }
 }
 
