@@ -6,11 +6,21 @@ use crate::bench::Bench;
 use crate::covariate::OF_CONDITIONS;
 use crate::projection::Basis;
 
+/// What is looked at of each condition, as whitened columns: changes by forces around depths against the motion, likewise
+/// normal to it, and the sizes of craters, which no force on the intruder tells.
+pub(crate) type Looked = [DMatrix<f64>; 3];
+
+/// Every column instead of modes.
+const ALL: usize = usize::MAX;
+
+/// A change of the whole force, or of the size of a crater.
+const WHOLE: [usize; 3] = [1, 0, ALL];
+
 /// Modes of a smooth change over depth against the motion, and normal to it.
-const MODES: [usize; 2] = [4, 2];
+const MODES: [usize; 3] = [4, 2, ALL];
 
 /// Modes over depth of a change that one condition has for itself.
-const OWN_MODES: [usize; 2] = [2, 1];
+const OWN_MODES: [usize; 3] = [2, 1, ALL];
 
 /// Directions over all conditions and within each; what the parameters of the model can do is no
 /// lack of fit, and is left out of all of them.
@@ -46,29 +56,24 @@ pub(crate) struct Along {
 }
 
 impl Directions {
-    /// Beside the columns of `imitated`, which the model can do; `responses` are, for every condition,
-    /// the whitened changes by forces around depths against the motion and normal to it.
-    pub(crate) fn new(
-        bench: &Bench<'_>,
-        imitated: &DMatrix<f64>,
-        responses: &[[DMatrix<f64>; 2]],
-    ) -> Self {
+    /// Beside the columns of `imitated`, which the model can do; `looked` has what is looked at of every condition.
+    pub(crate) fn new(bench: &Bench<'_>, imitated: &DMatrix<f64>, looked: &[Looked]) -> Self {
         let rows = imitated.nrows();
         let parameters = Basis::of(imitated);
         let mut coherent =
-            Basis::beside(&stacked(responses, rows, &varied(bench), [1, 0]), &parameters);
+            Basis::beside(&stacked(looked, rows, &varied(bench), WHOLE), &parameters);
         let plain = coherent.len();
-        coherent.extend(&stacked(responses, rows, &factors(bench), MODES), &parameters);
+        coherent.extend(&stacked(looked, rows, &factors(bench), MODES), &parameters);
         let n_smooth = coherent.len();
-        coherent.extend(&stacked(responses, rows, &factors(bench), [usize::MAX; 2]), &parameters);
+        coherent.extend(&stacked(looked, rows, &factors(bench), [ALL; 3]), &parameters);
         let (coherent, parameters) = (coherent.to_matrix(rows), parameters.to_matrix(rows));
         let mut start = 0;
-        let conditions = responses.iter().map(|response| {
-            let rows = (start, response[0].nrows());
+        let conditions = looked.iter().map(|looked| {
+            let rows = (start, looked[0].nrows());
             start += rows.1;
-            let mut own = Basis::of(&modes(response, OWN_MODES));
+            let mut own = Basis::of(&modes(looked, OWN_MODES));
             let smooth = own.len();
-            own.extend(&modes(response, [usize::MAX; 2]), &Basis::none());
+            own.extend(&modes(looked, [ALL; 3]), &Basis::none());
             let own = own.to_matrix(rows.1);
             let parameters = parameters.rows(rows.0, rows.1).into_owned();
             let coherent = coherent.rows(rows.0, rows.1).into_owned();
@@ -127,14 +132,14 @@ impl Within {
 
 /// For every factor, a block of columns: the modes of every condition times its factor.
 fn stacked(
-    responses: &[[DMatrix<f64>; 2]],
+    looked: &[Looked],
     rows: usize,
     factors: &[Vec<f64>],
-    count: [usize; 2],
+    count: [usize; 3],
 ) -> DMatrix<f64> {
     let mut columns = Vec::new();
     for factor in factors {
-        let blocks: Vec<DMatrix<f64>> = responses.iter().map(|r| modes(r, count)).collect();
+        let blocks: Vec<DMatrix<f64>> = looked.iter().map(|one| modes(one, count)).collect();
         let mut all = DMatrix::zeros(rows, blocks.first().map_or(0, DMatrix::ncols));
         let mut start = 0;
         for (block, factor) in blocks.iter().zip(factor) {
@@ -150,11 +155,11 @@ fn stacked(
     }
 }
 
-/// Changes of the force over depth as cosines, the smoothest `count` against the motion and normal to
-/// it; where all are asked for, the nodes themselves.
-fn modes(response: &[DMatrix<f64>; 2], count: [usize; 2]) -> DMatrix<f64> {
+/// Changes of the force over depth as cosines, the smoothest `count` of each block; where all are asked for, the columns
+/// themselves.
+fn modes(looked: &Looked, count: [usize; 3]) -> DMatrix<f64> {
     let mut columns = Vec::new();
-    for (response, count) in response.iter().zip(count) {
+    for (response, count) in looked.iter().zip(count) {
         let nodes = response.ncols();
         if count >= nodes {
             columns.extend(response.column_iter().map(|column| column.into_owned()));

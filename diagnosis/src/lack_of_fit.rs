@@ -1,7 +1,8 @@
 //! Whether a fitted model leaves something behind that is not noise.
 //!
 //! The residual is held against changes of the force over depth, against the motion and normal to it:
-//! smooth and sharp ones, coherent over conditions and free in every one (`directions`). How
+//! smooth and sharp ones, coherent over conditions and free in every one (`directions`); craters are held
+//! against changes of their size. How
 //! large noise alone makes each is learned by resampling the deviations of runs within conditions
 //! (`redraw`); a theoretical distribution with one pooled scale rejects too many true models.
 //! The smallest of their probabilities is held against the smallest of every resampled residual, so
@@ -13,6 +14,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::directions::Directions;
 use crate::noise::NoiseSource;
+use crate::observable::Layout;
 use crate::redraw::Redraw;
 use crate::sensitivity::{Direction, force_response};
 
@@ -55,7 +57,7 @@ pub fn lack_of_fit(
     let (least, most) = NODES;
     let nodes = ((reach / SPACING.max(GRAINS * grain)).ceil() as usize + 1).clamp(least, most);
 
-    let mut responses = Vec::with_capacity(observed.fit.len());
+    let mut looked = Vec::with_capacity(observed.fit.len());
     for (&condition, weight) in observed.fit.iter().zip(&fitted.weights) {
         let response = |direction, nodes| {
             let point = &fitted.fit.point;
@@ -63,16 +65,25 @@ pub fn lack_of_fit(
         };
         let along = response(Direction::Along, nodes)?;
         let sideways = response(Direction::Sideways, nodes.div_ceil(2))?;
-        responses.push([along, sideways].map(|response| weight.whiten_columns(&response)));
+        let craters = crater_sizes(&observed.conditions[condition].layout);
+        looked.push([along, sideways, craters].map(|change| weight.whiten_columns(&change)));
     }
     let measured = bench.data(&fitted.weights).measured();
     let residual = whole.rows(0, measured).into_owned();
     let imitated = imitated(bench, fitted);
-    let directions = Directions::new(bench, &imitated, &responses);
+    let directions = Directions::new(bench, &imitated, &looked);
     let mut noise = Redraw::new(bench, fitted, &directions, seed);
     let drawn: Vec<Vec<f64>> = (0..DRAWS).map(|_| directions.sizes(&noise.draw())).collect();
     let measured = directions.sizes(&directions.of(&residual));
     Ok(Some(smallest_probability(&measured, &drawn)))
+}
+
+/// A column for the size of each crater: craters come last in `layout`.
+fn crater_sizes(layout: &Layout) -> DMatrix<f64> {
+    let first = layout.len() - layout.craters();
+    DMatrix::from_fn(layout.len(), layout.craters(), |row, column| {
+        f64::from(u8::from(row == first + column))
+    })
 }
 
 /// Upper tail of the χ² distribution at `chi2`: only a large misfit is evidence against the model.

@@ -168,6 +168,8 @@ fn craters_beside_depths_name_what_is_hidden_and_alone_they_name_what_might_be()
     // Craters of the imitation follow from the depth alone, which friction of grains changes alike.
     let alone = diagnosed(&set);
     assert_eq!(alone["verdict"], "not-separable", "{}", alone["ranking"]);
+    let p = alone["p_lof"].as_f64().unwrap();
+    assert!(p < 0.05, "craters are no noise: lack of fit p {p}");
     let might_be = alone["not_separable"].to_string();
     assert!(might_be.contains("rolling-resistance"), "{might_be}");
     let ranking = alone["ranking"].as_array().unwrap();
