@@ -27,6 +27,12 @@ pub enum CampaignError {
     Run(#[from] RunError),
     #[error(transparent)]
     Step(#[from] StepError),
+    #[error(
+        "{:.0} % of the grains still move after {end} s, and a crater is measured when they lie still: write a longer \
+         [run] duration",
+        100.0 * share
+    )]
+    Moving { share: f64, end: f64 },
     #[error(transparent)]
     Threads(#[from] ThreadsError),
     #[error(transparent)]
@@ -50,6 +56,11 @@ pub enum CampaignError {
 }
 
 impl CampaignError {
+    /// Whether it is of one impact, which is left out.
+    pub(crate) fn is_of_an_impact(&self) -> bool {
+        matches!(self, Self::Step(_) | Self::Moving { .. })
+    }
+
     pub(crate) fn no_grains(model: &Model) -> Self {
         Self::NoGrains { model: model.run.name.clone() }
     }

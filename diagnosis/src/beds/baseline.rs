@@ -80,9 +80,11 @@ impl Baseline {
     ) -> Result<Self, BaselineError> {
         let instrument = Instrument::default().without_shared_errors();
         let set = MeasurementSet { instrument, ..stand.set.clone() };
-        if let Some(at) = runs.iter().position(|runs| runs.len() == 1) {
-            let condition = set.conditions[at].id.clone();
-            return Err(BaselineError::TooFew { condition, found: 1 });
+        // Conditions without runs are not looked at, if there are others.
+        let none = runs.iter().all(Vec::is_empty);
+        if let Some(at) = runs.iter().position(|runs| none || runs.len() == 1) {
+            let (condition, found) = (set.conditions[at].id.clone(), runs[at].len());
+            return Err(BaselineError::TooFew { condition, found });
         }
         let observed = as_measured(&set, layouts, runs);
         let shipped = find_shipped(STAND_IN)

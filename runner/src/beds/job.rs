@@ -101,6 +101,10 @@ impl Job {
                 return Ok(None);
             }
         }
+        let share = simulation.bed().moving_share();
+        if self.settles && share > STILL {
+            return Err(CampaignError::Moving { share, end: simulation.clock().time() });
+        }
         Ok(Some(recorder.record(&simulation, start.elapsed().as_secs_f64())))
     }
 

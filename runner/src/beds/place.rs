@@ -109,7 +109,7 @@ impl Impacts for Place<'_> {
                     Ok(Some(record))
                 }
                 Ok(None) => Err(CampaignError::Interrupted),
-                Err(CampaignError::Step(why)) => {
+                Err(why) if why.is_of_an_impact() => {
                     let name = &job.model.run.name;
                     self.watch.warn(&format!("an impact of {name} is left out: {why}"));
                     Ok(None)

@@ -81,7 +81,7 @@ fn impact(job: &Job, asked: &str, cache: &Path) -> Result<(), CampaignError> {
     match job.kept_or_run((cache, &key), &mut Heed::unattended()) {
         Ok(Some(_)) => Ok(()),
         Ok(None) => Err(CampaignError::Interrupted),
-        Err(CampaignError::Step(why)) => {
+        Err(why) if why.is_of_an_impact() => {
             eprintln!("the impact is left out: {why}");
             Ok(())
         }

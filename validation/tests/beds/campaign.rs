@@ -4,7 +4,7 @@ use std::num::NonZero;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-use configs::Change;
+use configs::{Change, Model};
 use diagnosis::beds::{Stand, Variation};
 use measurements::{Crater, Role, Run};
 use runner::beds::{Impacts, Job, Place, Record};
@@ -44,7 +44,8 @@ fn jobs() -> Vec<Job> {
 
 #[test]
 fn an_impact_leaves_a_crater_that_is_measured_when_the_bed_lies_still() {
-    let (model, mut set) = (model(&[]), empty_set(vec![condition(1.5, Role::Fit)]));
+    let [short, long] = [model(&[]), model(&["run.duration=\"1 s\""])];
+    let mut set = empty_set(vec![condition(1.5, Role::Fit)]);
     let cache = tempfile::tempdir().unwrap();
     let place = Place {
         cache: cache.path(),
@@ -52,20 +53,22 @@ fn an_impact_leaves_a_crater_that_is_measured_when_the_bed_lies_still() {
         watch: &Unattended as &dyn Watch,
         elsewhere: None,
     };
-    let mut measured = |crater: Crater| {
+    let mut measured = |crater: Crater, model: &Model| {
         set.runs = vec![Run { stop_time: Some(0.05), crater, ..run("a".to_owned(), 0) }];
-        let stand = Stand::new(&model, &set).unwrap();
+        let stand = Stand::new(model, &set).unwrap();
         let draw = stand.draws(0, 1, 1).concat()[0];
         let job = stand.job(0, draw, &Variation::default()).unwrap();
-        (job.settles, place.run(&[job]).unwrap()[0].clone().unwrap())
+        (job.settles, place.run(&[job]).unwrap()[0].clone())
     };
     let crater = Crater { depth: Some(0.01), rim_diameter: None };
-    let [(waits, at_rest), (does_not, at_stop)] = [crater, Crater::default()].map(&mut measured);
+    assert_eq!(measured(crater, &short), (true, None), "the bed still moves");
+    let (waits, at_rest) = measured(crater, &long);
+    let (does_not, at_stop) = measured(Crater::default(), &long);
+    let [at_rest, at_stop] = [at_rest, at_stop].map(Option::unwrap);
     assert_eq!([waits, does_not], [true, false]);
     assert!(at_rest.end > at_stop.end, "the bed moves for longer than the intruder");
     let n = at_stop.depth.len();
-    let rested = &at_rest;
-    assert_eq!(rested.depth[..n], at_stop.depth, "up to the stop they are one impact");
+    assert_eq!(at_rest.depth[..n], at_stop.depth, "up to the stop they are one impact");
     let [depth, rim] = at_rest.crater.expect("a crater");
     // Below the intruder the surface lies in the gaps of the grains that carry it.
     let grain = set.bed.grain_diameter.unwrap();
