@@ -22,10 +22,6 @@ const TOLERANCE: f64 = 1e-6;
 /// Most evaluations per unknown, and one more: a search that converges takes a tenth of them.
 const PATIENCE: usize = 30;
 
-/// Evaluations within which χ² has to fall by more than this number or this share of itself: along a bent valley a search
-/// creeps for hundreds of them, for less than any verdict hangs on.
-const CREEP: (usize, f64, f64) = (30, 0.05, 1e-4);
-
 /// Longest first step, in units of the distance from zero: a longer one leaves where derivatives hold, and logarithms
 /// do not come back.
 const FIRST_STEP: f64 = 1.0;
@@ -271,7 +267,7 @@ impl Data<'_> {
     ) -> Point {
         while held.contains(&false) {
             let unknowns = unknowns(&point, scales);
-            let best = RefCell::new(Best::new(unknowns.clone()));
+            let best = RefCell::new((f64::INFINITY, unknowns.clone()));
             let search = Search { data: self, scales, held, like: start, unknowns, best };
             let solver = LevenbergMarquardt::new()
                 .with_ftol(TOLERANCE)
@@ -279,7 +275,7 @@ impl Data<'_> {
                 .with_patience(PATIENCE)
                 .with_stepbound(FIRST_STEP);
             // The best that was tried, since the search may end where the model cannot be integrated.
-            let unknowns = solver.minimize(search).0.best.into_inner().unknowns;
+            let (_, unknowns) = solver.minimize(search).0.best.into_inner();
             point = point_of(&unknowns, scales, start);
             let mut outside = false;
             for (at, scale) in scales.iter().enumerate() {
@@ -501,33 +497,8 @@ struct Search<'a> {
     held: &'a [bool],
     like: &'a Point,
     unknowns: Vec<f64>,
-    best: RefCell<Best>,
-}
-
-/// The best that a search has tried.
-struct Best {
-    chi2: f64,
-    unknowns: Vec<f64>,
-    /// Evaluations so far, and χ² when they were last a multiple of those of [`CREEP`].
-    tried: usize,
-    before: f64,
-}
-
-impl Best {
-    fn new(unknowns: Vec<f64>) -> Self {
-        Self { chi2: f64::INFINITY, unknowns, tried: 0, before: f64::INFINITY }
-    }
-
-    /// Counts an evaluation; whether those of late have gained nothing.
-    fn creeps(&mut self) -> bool {
-        let (evaluations, least, share) = CREEP;
-        self.tried += 1;
-        if !self.tried.is_multiple_of(evaluations) {
-            return false;
-        }
-        let fall = std::mem::replace(&mut self.before, self.chi2) - self.chi2;
-        fall < least.max(share * self.chi2)
-    }
+    /// χ² and unknowns of the best that was tried.
+    best: RefCell<(f64, Vec<f64>)>,
 }
 
 impl Search<'_> {
@@ -555,17 +526,14 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Search<'_> {
     fn residuals(&self) -> Option<DVector<f64>> {
         let mut best = self.best.borrow_mut();
         let Self { data, scales, like, unknowns, .. } = self;
-        if best.creeps() {
-            return None;
-        }
         let Some(residual) = data.residual_at(unknowns, scales, like) else {
             let rows = self.data.rows();
-            let size = REFUSED * (best.chi2.max(1.0) / rows.max(1) as f64).sqrt();
+            let size = REFUSED * (best.0.max(1.0) / rows.max(1) as f64).sqrt();
             return size.is_finite().then(|| DVector::from_element(rows, size));
         };
         let chi2 = residual.norm_squared();
-        if chi2 < best.chi2 {
-            (best.chi2, best.unknowns) = (chi2, self.unknowns.clone());
+        if chi2 < best.0 {
+            *best = (chi2, self.unknowns.clone());
         }
         Some(residual)
     }
