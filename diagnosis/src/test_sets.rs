@@ -1,8 +1,8 @@
 //! Small measurement sets for the tests of this crate.
 
 use measurements::{
-    Bed, Condition, Crater, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind,
-    MeasurementSet, Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
+    Role, Run, StatedBed, StatedError, StopDefinition,
 };
 
 /// A sphere of an inch at `speed` (m/s) and `angle_deg` (deg), to be fitted to.
@@ -31,19 +31,7 @@ pub(crate) fn condition(speed: f64, angle_deg: f64) -> Condition {
 pub(crate) fn scalar_run(condition: usize, [stop_time, final_z, final_x]: [Option<f64>; 3]) -> Run {
     let name = format!("run {condition}");
     let frames = Vec::new();
-    Run {
-        name,
-        condition,
-        repeat: None,
-        order: None,
-        session: None,
-        stop_time,
-        final_z,
-        final_x,
-        crater: Crater::default(),
-        frames,
-        samples: Vec::new(),
-    }
+    Run { stop_time, final_z, final_x, frames, ..Run::new(name, condition) }
 }
 
 /// A run at 500 Hz from 0.05 s before first contact to 0.5 s after it.

@@ -401,6 +401,24 @@ pub struct Run {
 }
 
 impl Run {
+    /// A run under the condition of this index, of which nothing is measured yet.
+    #[must_use]
+    pub fn new(name: String, condition: usize) -> Self {
+        Self {
+            name,
+            condition,
+            repeat: None,
+            order: None,
+            session: None,
+            stop_time: None,
+            final_z: None,
+            final_x: None,
+            crater: Crater::default(),
+            frames: Vec::new(),
+            samples: Vec::new(),
+        }
+    }
+
     /// Whether anything was read along its way.
     #[must_use]
     pub fn has_readings(&self) -> bool {

@@ -254,19 +254,7 @@ mod tests {
             let off = 1e-4 * f64::from((7 * k).rem_euclid(5) - 2) / 2.0;
             Frame { t, z: factor * z + off, x: 0.0, sigma: None }
         };
-        Run {
-            name: name.into(),
-            condition: 0,
-            repeat: None,
-            order: None,
-            session: None,
-            stop_time: None,
-            final_z: None,
-            final_x: None,
-            crater: crate::Crater::default(),
-            frames: (-15..60).map(frame).collect(),
-            samples: Vec::new(),
-        }
+        Run { frames: (-15..60).map(frame).collect(), ..Run::new(name.into(), 0) }
     }
 
     fn set(runs: Vec<Run>) -> MeasurementSet {

@@ -206,19 +206,7 @@ mod tests {
     #[test]
     fn a_table_of_too_many_rows_is_refused_before_it_fills_the_memory() {
         let table = Endless { row: 0, rest: b"run,t,z,x\n".to_vec() };
-        let run = |name: &str| Run {
-            name: name.to_owned(),
-            condition: 0,
-            repeat: None,
-            order: None,
-            session: None,
-            stop_time: None,
-            final_z: None,
-            final_x: None,
-            crater: crate::Crater::default(),
-            frames: Vec::new(),
-            samples: Vec::new(),
-        };
+        let run = |name: &str| Run { ..Run::new(name.to_owned(), 0) };
         let (mut runs, mut findings) = ([run("r1")], Findings::default());
         let source = Source {
             name: "trajectories.csv",

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use configs::Color;
-use measurements::{Crater, Frame, Kind, MeasurementSet, Run};
+use measurements::{Frame, Kind, MeasurementSet, Run};
 use proptest::prelude::*;
 use proptest::sample::Index;
 
@@ -76,17 +76,13 @@ fn run(condition: usize) -> impl Strategy<Value = Run> {
     let frame = (0.0..0.01, 0.0..0.01, few());
     (label(), label(), few(), few(), few(), prop::collection::vec(frame, 1..4)).prop_map(
         move |(repeat, order, stop_time, final_z, final_x, frames)| Run {
-            name: String::new(),
-            condition,
             repeat,
             order,
-            session: None,
             stop_time,
             final_z,
             final_x,
-            crater: Crater::default(),
             frames: onward(&frames),
-            samples: Vec::new(),
+            ..Run::new(String::new(), condition)
         },
     )
 }

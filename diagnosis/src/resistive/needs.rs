@@ -141,19 +141,7 @@ mod tests {
     fn run(condition: usize, final_z: Option<f64>, frames: &[(f64, f64)]) -> Run {
         let frames = frames.iter().map(|&(t, z)| Frame { t, z, x: 0.0, sigma: None }).collect();
         let name = String::new();
-        Run {
-            name,
-            condition,
-            repeat: None,
-            order: None,
-            session: None,
-            stop_time: None,
-            final_z,
-            final_x: None,
-            crater: measurements::Crater::default(),
-            frames,
-            samples: Vec::new(),
-        }
+        Run { final_z, frames, ..Run::new(name, condition) }
     }
 
     fn set(conditions: Vec<Condition>, runs: Vec<Run>) -> MeasurementSet {

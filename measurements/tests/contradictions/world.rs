@@ -1,8 +1,8 @@
 //! A laboratory of its own: spheres that fall into sand before a camera, well or badly read.
 
 use measurements::{
-    Bed, Condition, Crater, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind,
-    MeasurementSet, Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
+    Role, Run, StatedBed, StatedError, StopDefinition,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -184,17 +184,12 @@ impl Laboratory {
         let rest = path[path.len() - 1];
         let late = (random.random::<f64>() - 0.5) / self.rate;
         Run {
-            name: format!("{condition}-{repeat}"),
-            condition,
             repeat: Some(repeat as i64),
-            order: None,
-            session: None,
             stop_time: Some(stop_time + late),
             final_z: Some(rest[0] + level + self.camera * normal(random)),
             final_x: (angle < 90.0).then_some(rest[1]),
-            crater: Crater::default(),
             frames,
-            samples: Vec::new(),
+            ..Run::new(format!("{condition}-{repeat}"), condition)
         }
     }
 

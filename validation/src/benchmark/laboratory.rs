@@ -2,8 +2,8 @@
 
 use diagnosis::missing_force::Reading;
 use measurements::{
-    Bed, Condition, Crater, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind,
-    MeasurementSet, Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
+    Role, Run, StatedBed, StatedError, StopDefinition,
 };
 
 use super::chance::Chance;
@@ -233,17 +233,11 @@ fn film(sphere: &Sphere<'_>, design: &Design, chance: &mut Chance) -> Result<Run
     let [final_x, final_z] = read(path.rest);
     let oblique = sphere.setting.angle_deg < 90.0;
     Ok(Run {
-        name: String::new(),
-        condition: 0,
-        repeat: None,
-        order: None,
-        session: None,
         stop_time: Some(path.stop_time - phase / RATE + chance.between(-0.5, 0.5) / RATE),
         final_z: Some(final_z),
         final_x: oblique.then_some(final_x),
-        crater: Crater::default(),
         frames,
-        samples: Vec::new(),
+        ..Run::new(String::new(), 0)
     })
 }
 

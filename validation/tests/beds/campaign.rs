@@ -10,7 +10,7 @@ use measurements::{Crater, Role, Run};
 use runner::beds::{Impacts, Job, Place, Record};
 use runner::{CampaignError, Progress, Unattended, Watch};
 
-use crate::world::{condition, empty_set, model, run};
+use crate::world::{condition, empty_set, model};
 
 /// Counts what ends, and wants to stop after so many.
 struct Patience {
@@ -54,7 +54,7 @@ fn an_impact_leaves_a_crater_that_is_measured_when_the_bed_lies_still() {
         elsewhere: None,
     };
     let mut measured = |crater: Crater, model: &Model| {
-        set.runs = vec![Run { stop_time: Some(0.05), crater, ..run("a".to_owned(), 0) }];
+        set.runs = vec![Run { stop_time: Some(0.05), crater, ..Run::new("a".to_owned(), 0) }];
         let stand = Stand::new(model, &set).unwrap();
         let draw = stand.draws(0, 1, 1).concat()[0];
         let job = stand.job(0, draw, &Variation::default()).unwrap();

@@ -193,7 +193,7 @@ fn pushes(rolling: f64) -> MeasurementSet {
             Sample { at, value, sigma: None }
         };
         let samples = (1..=20).map(sample).collect();
-        Run { samples, ..world::run(name.to_string(), condition) }
+        Run { samples, ..Run::new(name.to_string(), condition) }
     };
     let runs = (0..16).map(|name| read(name, name % 2)).collect();
     let set = world::empty_set(conditions.into());

@@ -2,8 +2,8 @@
 
 use configs::{LoadOptions, Model, ModelSource};
 use measurements::{
-    Bed, Condition, Crater, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role,
+    StatedBed, StatedError, StopDefinition,
 };
 
 /// 360 discs of two sizes, twelve wide and fourteen deep, and a disc of four of them.
@@ -123,22 +123,5 @@ pub(crate) fn empty_set(conditions: Vec<Condition>) -> MeasurementSet {
         runs: Vec::new(),
         keep: Vec::new(),
         notes: Vec::new(),
-    }
-}
-
-/// A run under `condition` of which nothing is measured.
-pub(crate) fn run(name: String, condition: usize) -> Run {
-    Run {
-        name,
-        condition,
-        repeat: None,
-        order: None,
-        session: None,
-        stop_time: None,
-        final_z: None,
-        final_x: None,
-        crater: Crater::default(),
-        frames: Vec::new(),
-        samples: Vec::new(),
     }
 }

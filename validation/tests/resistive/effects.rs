@@ -8,8 +8,8 @@ use diagnosis::forward::{Forward, Request, Scatter};
 use diagnosis::observable::Layout;
 use diagnosis::resistive::ResistiveForward;
 use measurements::{
-    Bed, Condition, Crater, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind,
-    MeasurementSet, Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
+    Role, Run, StatedBed, StatedError, StopDefinition,
 };
 
 use super::rig::{BED, DIAMETER, MASS};
@@ -64,17 +64,9 @@ fn all_round() -> MeasurementSet {
 /// One run of each condition: deep where it was fast, and seen before impact.
 fn set(conditions: Vec<Condition>) -> MeasurementSet {
     let followed = |condition: usize, depth: f64| Run {
-        name: format!("r{condition}"),
-        condition,
-        repeat: None,
-        order: None,
-        session: None,
-        stop_time: None,
         final_z: Some(depth),
-        final_x: None,
-        crater: Crater::default(),
         frames: vec![Frame { t: -0.02, z: -0.03, x: 0.0, sigma: None }],
-        samples: Vec::new(),
+        ..Run::new(format!("r{condition}"), condition)
     };
     let depth = |one: &Condition| one.diameter * if one.speed > 2.5 { 3.0 } else { 1.0 };
     let runs = conditions.iter().enumerate().map(|(index, one)| followed(index, depth(one)));

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use diagnosis::verdict::Verdict;
 use engine::fluid::Fluid;
 use engine::math::Vec3;
-use measurements::{Crater, Frame, Instrument, Kind, MeasurementSet, Run};
+use measurements::{Frame, Instrument, Kind, MeasurementSet, Run};
 use rand_pcg::Pcg64;
 use resistive::{Impact, Recorder, ResistanceLaw, Surroundings, Trajectory};
 
@@ -134,17 +134,9 @@ fn measured(stated: Option<Fluid>) -> MeasurementSet {
     let speeds = [0.4, 0.7, 1.1, 1.6, 2.2];
     let places = (0..speeds.len()).flat_map(|at| (0..4).map(move |repeat| (at, repeat)));
     let runs = places.map(|(at, repeat)| Run {
-        name: format!("{at}-{repeat}"),
-        condition: at,
         repeat: Some(repeat),
-        order: None,
-        session: None,
-        stop_time: None,
-        final_z: None,
-        final_x: None,
-        crater: Crater::default(),
         frames: frames(speeds[at], &mut random),
-        samples: Vec::new(),
+        ..Run::new(format!("{at}-{repeat}"), at)
     });
     let instrument =
         Instrument { rate: Some(RATE), position_sigma: Some(READING), ..Instrument::default() };

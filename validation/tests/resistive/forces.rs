@@ -15,8 +15,8 @@ use engine::math::Vec3;
 use engine::params::ParamTable;
 use intruders::Casting;
 use measurements::{
-    Bed, Condition, Crater, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, Sample, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role,
+    Run, Sample, StatedBed, StatedError, StopDefinition,
 };
 use rand_pcg::Pcg64;
 use resistive::{Driven, Impact, Recorder};
@@ -106,17 +106,9 @@ fn measured(hidden: Option<(&str, f64)>, seed: u64) -> MeasurementSet {
         .collect();
     let places = (0..conditions.len()).flat_map(|at| (0..REPEATS).map(move |repeat| (at, repeat)));
     let runs = places.map(|(at, repeat)| Run {
-        name: format!("{at}-{repeat}"),
-        condition: at,
         repeat: Some(repeat as i64),
-        order: None,
-        session: None,
-        stop_time: None,
-        final_z: None,
-        final_x: None,
-        crater: Crater::default(),
-        frames: Vec::new(),
         samples: push(&conditions[at], hidden, &mut random),
+        ..Run::new(format!("{at}-{repeat}"), at)
     });
     let runs = runs.collect();
     MeasurementSet {

@@ -8,7 +8,7 @@ use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::verdict::Verdict;
 use measurements::{
-    Bed, Condition, Crater, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role, Run,
+    Bed, Condition, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role, Run,
     StatedBed, StatedError, StopDefinition,
 };
 use rand::RngExt;
@@ -58,17 +58,11 @@ fn empty_set() -> MeasurementSet {
     let run = |index: usize| {
         let condition = index / REPEATS;
         Run {
-            name: format!("{condition}-{}", index % REPEATS),
-            condition,
             repeat: Some((index % REPEATS) as i64),
-            order: None,
-            session: None,
             stop_time: Some(0.1),
             final_z: Some(0.1),
             final_x: (conditions[condition].angle_deg < 90.0).then_some(0.1),
-            crater: Crater::default(),
-            frames: Vec::new(),
-            samples: Vec::new(),
+            ..Run::new(format!("{condition}-{}", index % REPEATS), condition)
         }
     };
     MeasurementSet {

@@ -9,8 +9,8 @@ use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::verdict::{Diagnosis, Verdict};
 use measurements::{
-    Bed, Condition, ContradictionKind, Crater, Feasible, FinalDefinition, Geometry, Instrument,
-    Kind, MeasurementSet, Role, Run, Sample, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, ContradictionKind, Feasible, FinalDefinition, Geometry, Instrument, Kind,
+    MeasurementSet, Role, Run, Sample, StatedBed, StatedError, StopDefinition,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -155,17 +155,9 @@ pub(crate) fn read_over_time(
     };
     let places = (0..conditions.len()).flat_map(|at| (0..REPEATS).map(move |repeat| (at, repeat)));
     let runs = places.map(|(at, repeat)| Run {
-        name: format!("{at}-{repeat}"),
-        condition: at,
         repeat: Some(repeat as i64),
-        order: None,
-        session: None,
-        stop_time: None,
-        final_z: None,
-        final_x: None,
-        crater: Crater::default(),
-        frames: Vec::new(),
         samples: fall(conditions[at].speed),
+        ..Run::new(format!("{at}-{repeat}"), at)
     });
     let runs = runs.collect();
     MeasurementSet {

@@ -5,9 +5,7 @@ use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::ParamTable;
 use intruders::Casting;
-use measurements::{
-    Condition, Crater, Instrument, Kind, MeasurementSet, Run, Sample, StopDefinition,
-};
+use measurements::{Condition, Instrument, Kind, MeasurementSet, Run, Sample, StopDefinition};
 use rand_pcg::Pcg64;
 use resistive::{Impact, State, Trajectory};
 
@@ -76,17 +74,9 @@ fn measured() -> MeasurementSet {
                 sigma: None,
             };
             runs.push(Run {
-                name: format!("{at}-{repeat}"),
-                condition: at,
                 repeat: Some(repeat),
-                order: None,
-                session: None,
-                stop_time: None,
-                final_z: None,
-                final_x: None,
-                crater: Crater::default(),
-                frames: Vec::new(),
                 samples: times.iter().zip(read).map(&mut sample).collect(),
+                ..Run::new(format!("{at}-{repeat}"), at)
             });
         }
     }

@@ -1,8 +1,8 @@
 //! Measurements in the world: repeats whose beds differ, seen by a camera.
 
 use measurements::{
-    Bed, Condition, Crater, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind,
-    MeasurementSet, Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
+    Role, Run, StatedBed, StatedError, StopDefinition,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -147,17 +147,12 @@ impl Laboratory {
         let (final_z, final_x) = (read(path.stop.0), read(path.stop.1));
         let late = (random.random::<f64>() - 0.5) / 650.0;
         Run {
-            name: format!("{condition}-{repeat}"),
-            condition,
             repeat: Some(repeat as i64),
-            order: None,
-            session: None,
             stop_time: Some(path.stop_time + late),
             final_z: Some(final_z),
             final_x: (setting.angle < 90.0).then_some(final_x),
-            crater: Crater::default(),
             frames,
-            samples: Vec::new(),
+            ..Run::new(format!("{condition}-{repeat}"), condition)
         }
     }
 

@@ -4,8 +4,8 @@ use configs::{ConfigError, LoadOptions, Model, ModelSource};
 use engine::bed::random;
 use engine::grains::Space;
 use measurements::{
-    Bed, Condition, Crater, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind,
-    MeasurementSet, Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
+    Role, Run, StatedBed, StatedError, StopDefinition,
 };
 use rand::Rng;
 use runner::beds::{Impacts, Lie, Record};
@@ -230,17 +230,10 @@ pub(super) fn seen(
         sigma: None,
     });
     Run {
-        name: format!("r{number:03}"),
-        condition,
-        repeat: None,
         order: Some(number as i64),
-        session: None,
-        stop_time: None,
         final_z: Some(deepest),
-        final_x: None,
-        crater: Crater::default(),
         frames: seen.collect(),
-        samples: Vec::new(),
+        ..Run::new(format!("r{number:03}"), condition)
     }
 }
 
