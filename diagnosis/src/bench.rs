@@ -57,10 +57,14 @@ impl Fitted {
     /// Twice the negative logarithm of the likelihood, with what priors and the scatter between conditions cost.
     #[must_use]
     pub fn deviance(&self) -> f64 {
+        self.fit.chi2 + self.cost_of_noise()
+    }
+
+    /// The part of the deviance that is not the misfit.
+    pub(crate) fn cost_of_noise(&self) -> f64 {
         let Between { sd, sigma, .. } = self.noise.sessions;
         let between = if sigma > 0.0 { (sd / sigma).powi(2) } else { 0.0 };
-        let widths = self.weights.iter().map(Weight::log_determinant).sum::<f64>();
-        self.fit.chi2 + widths + between
+        self.weights.iter().map(Weight::log_determinant).sum::<f64>() + between
     }
 }
 
@@ -164,6 +168,22 @@ impl Bench<'_> {
             weights = weigh(&noise)?;
             fit = self.data(&weights).fit(&fit.point)?;
         }
+        Ok(Fitted { fit, weights, noise })
+    }
+
+    /// `fitted` again, under its noise with a scatter between conditions of `sd`.
+    ///
+    /// # Errors
+    /// If the model fails.
+    pub(crate) fn with_scatter_between_conditions(
+        &self,
+        sd: f64,
+        fitted: &Fitted,
+    ) -> Result<Fitted, BenchError> {
+        let sessions = Between { sd, ..fitted.noise.sessions };
+        let noise = Noise { sessions, ..fitted.noise };
+        let weights = self.weights(&fitted.fit.point, &noise, &self.observed.fit)?;
+        let fit = self.data(&weights).fit(&fitted.fit.point)?;
         Ok(Fitted { fit, weights, noise })
     }
 

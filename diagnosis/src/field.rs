@@ -1,10 +1,10 @@
-//! A force against the motion of a body, over its depth, its speed and its impact angle.
+//! A force against the motion of a body, over its depth, its speed, its impact angle and its diameter.
 
-/// Nodes over depth (m), speed (m/s) and angle (rad): between them a field is linear, beyond constant.
+/// Nodes over depth (m), speed (m/s), angle (rad) and diameter (m): between them a field is linear, beyond constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     /// In rising order, at least one of each.
-    pub axes: [Vec<f64>; 3],
+    pub axes: [Vec<f64>; 4],
 }
 
 impl Grid {
@@ -20,17 +20,21 @@ impl Grid {
         self.len() == 0
     }
 
-    /// Node `index`: depth, speed, angle.
+    /// Node `index`: depth, speed, angle, diameter.
     #[must_use]
-    pub fn node(&self, index: usize) -> [f64; 3] {
-        let [_, speeds, angles] = self.axes.each_ref().map(Vec::len);
-        let (rest, angle) = (index / angles, index % angles);
-        [self.axes[0][rest / speeds], self.axes[1][rest % speeds], self.axes[2][angle]]
+    pub fn node(&self, index: usize) -> [f64; 4] {
+        let mut rest = index;
+        let mut node = [0.0; 4];
+        for (place, axis) in node.iter_mut().zip(&self.axes).rev() {
+            *place = axis[rest % axis.len()];
+            rest /= axis.len();
+        }
+        node
     }
 
     /// The node in units of the extent of each axis, for distances.
     #[must_use]
-    pub fn scaled(&self, index: usize) -> [f64; 3] {
+    pub fn scaled(&self, index: usize) -> [f64; 4] {
         let node = self.node(index);
         std::array::from_fn(|axis| {
             let ends = &self.axes[axis];
@@ -41,14 +45,16 @@ impl Grid {
 
     /// The nodes around `place` with their shares: a field there is the sum of its values times these.
     #[must_use]
-    pub fn shares_at(&self, place: [f64; 3]) -> [(usize, f64); 8] {
-        let [_, speeds, angles] = self.axes.each_ref().map(Vec::len);
-        let ends: [[(usize, f64); 2]; 3] =
+    pub fn shares_at(&self, place: [f64; 4]) -> [(usize, f64); 16] {
+        let ends: [[(usize, f64); 2]; 4] =
             std::array::from_fn(|axis| shares(&self.axes[axis], place[axis]));
         std::array::from_fn(|corner| {
-            let [depth, speed, angle] =
-                [ends[0][corner >> 2 & 1], ends[1][corner >> 1 & 1], ends[2][corner & 1]];
-            ((depth.0 * speeds + speed.0) * angles + angle.0, depth.1 * speed.1 * angle.1)
+            let mut all = (0, 1.0);
+            for (axis, ends) in ends.iter().enumerate() {
+                let (node, share) = ends[corner >> axis & 1];
+                all = (all.0 * self.axes[axis].len() + node, all.1 * share);
+            }
+            all
         })
     }
 }
@@ -77,9 +83,9 @@ pub struct Field {
 }
 
 impl Field {
-    /// The force at a depth (m), a speed (m/s) and an impact angle (rad), in units of ρ g A D.
+    /// The force at a depth (m), a speed (m/s), an impact angle (rad) and a diameter (m), in units of ρ g A D.
     #[must_use]
-    pub fn at(&self, place: [f64; 3]) -> f64 {
+    pub fn at(&self, place: [f64; 4]) -> f64 {
         let shares = self.grid.shares_at(place);
         shares.into_iter().map(|(node, share)| share * self.values[node]).sum()
     }
@@ -91,13 +97,16 @@ mod tests {
 
     #[test]
     fn a_field_is_linear_between_nodes_and_constant_beyond() {
-        let grid = Grid { axes: [vec![0.0, 0.1], vec![0.0, 1.0, 2.0], vec![1.0]] };
-        let of = |[depth, speed, _]: [f64; 3]| 3.0 + 20.0 * depth - speed + 5.0 * depth * speed;
+        let grid =
+            Grid { axes: [vec![0.0, 0.1], vec![0.0, 1.0, 2.0], vec![1.0], vec![0.02, 0.03]] };
+        let of = |[depth, speed, _, diameter]: [f64; 4]| {
+            3.0 + 20.0 * depth - speed + 5.0 * depth * speed + 100.0 * diameter * speed
+        };
         let values = (0..grid.len()).map(|node| of(grid.node(node))).collect();
         let field = Field { grid, values };
-        for place in [[0.03, 0.4, 1.0], [0.1, 2.0, 1.0], [0.07, 1.9, 0.2]] {
+        for place in [[0.03, 0.4, 1.0, 0.02], [0.1, 2.0, 1.0, 0.025], [0.07, 1.9, 1.0, 0.03]] {
             assert!((field.at(place) - of(place)).abs() < 1e-12);
         }
-        assert!((field.at([0.5, 9.0, 1.0]) - of([0.1, 2.0, 1.0])).abs() < 1e-12);
+        assert!((field.at([0.5, 9.0, 0.2, 0.04]) - of([0.1, 2.0, 1.0, 0.03])).abs() < 1e-12);
     }
 }

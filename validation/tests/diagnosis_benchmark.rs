@@ -65,6 +65,29 @@ fn a_layer_that_no_list_has_is_found_where_it_is_and_its_formula_predicts() {
 }
 
 #[test]
+fn the_band_holds_a_friction_that_depends_on_the_angle() {
+    let oblique = |hidden: &[Hidden], _: f64| hidden == [Hidden::AngleFriction];
+    let (_, answer) = answers(Row::Beyond, 1, oblique).remove(0);
+    let missing = answer.missing.expect("a missing force");
+    // Without it, conditions seem to scatter; a force seen under that scatter would stay near zero.
+    let [inside, all] = missing.covered.map(|n| n as f64);
+    assert!(inside > 0.9 * all, "{inside} of {all}");
+    let [before, after, _] = missing.held_out.expect("errors").map(|error| error.expect("one"));
+    assert!(after < 0.6 * before, "{before} {after}");
+}
+
+#[test]
+fn the_band_holds_a_friction_that_grows_in_the_course_of_the_campaign() {
+    // It has no single value at a depth, a speed and an angle: conditions have forces of their own.
+    let drift = |hidden: &[Hidden], strength: f64| hidden == [Hidden::Drift] && strength > 0.2;
+    let (_, answer) = answers(Row::Beyond, 1, drift).remove(0);
+    let missing = answer.missing.expect("a missing force");
+    let [inside, all] = missing.covered.map(|n| n as f64);
+    assert!(inside > 0.9 * all, "{inside} of {all}");
+    assert_eq!(missing.formula, None);
+}
+
+#[test]
 fn what_the_data_cannot_show_is_refused_not_ranked() {
     let some = |hidden: &[Hidden], _: f64| hidden[0] == Hidden::YieldStress;
     for (_, answer) in answers(Row::Vertical, 1, some) {

@@ -204,16 +204,15 @@ pub(super) struct Refitted {
 }
 
 impl Refitted {
-    /// Its force on `grid`, that of the mean body where its size counts.
+    /// Its force on `grid`, under the mean gravity where that counts.
     pub(super) fn field(&self, bench: &Bench<'_>, grid: &Grid) -> Field {
         let fit = &bench.observed.fit;
         let conditions = || fit.iter().map(|&at| &bench.set.conditions[at]);
         let n = fit.len().max(1) as f64;
-        let diameter = conditions().map(|one| one.diameter).sum::<f64>() / n;
         let gravity = conditions().map(|one| bench.set.bed_of(one).gravity).sum::<f64>() / n;
         let states: Vec<State> = (0..grid.len())
             .map(|node| grid.node(node))
-            .map(|[depth, speed, angle]| State { depth, speed, angle, diameter, gravity })
+            .map(|[depth, speed, angle, diameter]| State { depth, speed, angle, diameter, gravity })
             .collect();
         let q = self.fitted.fit.point.effects.last().map_or(0.0, |(_, q)| *q);
         let mut values = vec![0.0; grid.len()];

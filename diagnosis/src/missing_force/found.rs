@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::DVector;
 
+use super::apart::Apart;
 use super::process::Process;
 use super::response::Response;
 use super::with_field::WithField;
@@ -27,6 +28,8 @@ pub(super) struct Found {
     pub(super) fit: Fit,
     pub(super) response: Response,
     pub(super) process: Process,
+    /// Size of the model's force, in units of ρ g A D.
+    unit: f64,
     /// What the bodies go through in the model with that force, by condition that is fitted to.
     pub(super) passages: Vec<Vec<Moment>>,
 }
@@ -90,6 +93,19 @@ impl Found {
         Ok(None)
     }
 
+    /// How far the force on each condition lies from the one that all share.
+    pub(super) fn apart(&self) -> Option<Apart> {
+        Apart::of((&self.response, &self.process), &self.field.grid, self.unit)
+    }
+
+    /// Logarithm of the likelihood of what was measured, sizes and lengths averaged, under the noise of `under`.
+    pub(super) fn evidence(&self, under: &Fitted) -> f64 {
+        let chi2 = self.response.residual.norm_squared();
+        let misfit = self.misfit().max(1.0);
+        let wider = self.fit.residual.len() as f64 * libm::log(misfit);
+        self.process.log_odds - 0.5 * (chi2 / misfit + wider + under.cost_of_noise())
+    }
+
     /// What is left over in units of the noise.
     pub(super) fn misfit(&self) -> f64 {
         let rows = self.fit.residual.len();
@@ -119,6 +135,6 @@ impl Found {
         let rows = fit.residual.len();
         let misfit = fit.chi2 / rows.saturating_sub(fit.n_free()).max(1) as f64;
         let process = Process::of(&response, &field.grid, unit, misfit.max(1.0));
-        Ok(process.map(|process| Self { field, fit, response, process, passages }))
+        Ok(process.map(|process| Self { field, fit, response, process, unit, passages }))
     }
 }

@@ -7,6 +7,7 @@
 //! measurements, refitted as a part of the model, and kept where it takes a quarter of a clear error on conditions that
 //! were not fitted to. It fits and predicts; it does not explain.
 
+mod apart;
 mod formula;
 mod found;
 mod library;
@@ -29,9 +30,10 @@ use self::found::Found;
 use self::term::State;
 use self::with_field::WithField;
 use crate::bench::{Bench, BenchError, Fitted};
+use crate::between::Between;
 use crate::field::Field;
 use crate::fitted_parameters::parameters;
-use crate::forward::Moment;
+use crate::forward::{ByFormulas, Moment};
 use crate::held_out::HeldOut;
 use crate::rounding::{six_digits, six_digits_or_null};
 
@@ -97,15 +99,18 @@ pub fn missing_force(
     fall: Option<f64>,
 ) -> Result<Option<MissingForce>, BenchError> {
     let Some(by) = bench.forward.by_formulas() else { return Ok(None) };
-    let grid = response::grid(bench);
-    let nothing = Field { values: vec![0.0; grid.len()], grid };
-    let start = (baseline, baseline.fit.clone());
-    let Some(mut found) = Found::from(bench, by, start, nothing)? else { return Ok(None) };
+    let Some((under, mut found)) = most_likely(bench, by, baseline)? else { return Ok(None) };
     let look = |found: &Found| {
         let states = states(bench, &found.passages);
         let near = &found.fit.point.parameters;
-        let search =
-            Search { bench, by, baseline, near, response: &found.response, states: &states };
+        let search = Search {
+            bench,
+            by,
+            baseline: &under,
+            near,
+            response: &found.response,
+            states: &states,
+        };
         search.refitted()
     };
     let mut refitted = look(&found);
@@ -115,8 +120,8 @@ pub fn missing_force(
         let field = best.field(bench, &found.field.grid);
         let with = WithField { forward: bench.forward, field: Arc::new(field.clone()) };
         let with = Bench { forward: &with, ..*bench };
-        let Ok(fit) = with.data(&baseline.weights).fit_as_listed(&best.point()) else { break };
-        let Some(next) = Found::from(bench, by, (baseline, fit), field)? else { break };
+        let Ok(fit) = with.data(&under.weights).fit_as_listed(&best.point()) else { break };
+        let Some(next) = Found::from(bench, by, (&under, fit), field)? else { break };
         if next.fit.chi2 >= found.fit.chi2 {
             break;
         }
@@ -125,7 +130,7 @@ pub fn missing_force(
         refitted.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
     }
     let formula = Formula::kept(bench, by, baseline, refitted)?;
-    let readings = table::readings(bench, by, (&found, baseline))?;
+    let readings = table::readings(bench, by, (&found, baseline), under.noise.sessions.sd)?;
     let band = in_words(&readings);
     Ok(Some(MissingForce {
         file: FILE,
@@ -139,7 +144,7 @@ pub fn missing_force(
             .as_ref()
             .and_then(|one| one.fitted.fit.standard_error(one.fitted.fit.point.parameters.len())),
         holdout: formula.as_ref().map(|one| one.holdout.clone()),
-        log_odds: found.process.log_odds,
+        log_odds: found.evidence(&under) + 0.5 * baseline.deviance(),
         log_odds_of_best_effect: fall.map(|fall| 0.5 * fall),
         parameters: formula
             .as_ref()
@@ -149,6 +154,35 @@ pub fn missing_force(
         fitted: formula.map(|one| one.fitted),
         readings,
     }))
+}
+
+/// The force under the noise of `baseline`, or under less of its scatter between conditions, which a model that lacks a
+/// force takes for such scatter: what is most likely, with the model fitted under it.
+fn most_likely(
+    bench: &Bench<'_>,
+    by: &dyn ByFormulas,
+    baseline: &Fitted,
+) -> Result<Option<(Fitted, Found)>, BenchError> {
+    let Between { sd, sigma, .. } = baseline.noise.sessions;
+    let mut all = vec![baseline.clone()];
+    for less in [sigma, 0.0] {
+        if less < sd {
+            all.push(bench.with_scatter_between_conditions(less, baseline)?);
+        }
+    }
+    let mut best: Option<(Fitted, Found)> = None;
+    for under in all {
+        let grid = response::grid(bench);
+        let nothing = Field { values: vec![0.0; grid.len()], grid };
+        let start = (&under, under.fit.clone());
+        let Some(found) = Found::from(bench, by, start, nothing)? else { continue };
+        let evidence = |(under, found): &(Fitted, Found)| found.evidence(under);
+        let one = (under, found);
+        if best.as_ref().is_none_or(|best| evidence(&one) > evidence(best)) {
+            best = Some(one);
+        }
+    }
+    Ok(best)
 }
 
 /// What the bodies go through.

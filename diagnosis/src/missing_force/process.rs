@@ -1,8 +1,8 @@
-//! A force as a Gaussian process over depth, speed and angle, seen through the answer of the measurements to it.
+//! A force as a Gaussian process over depth, speed, angle and diameter, seen through the answer of the measurements to it.
 //!
 //! The force at the nodes of a grid is normal beforehand, with a covariance that falls with the square of their distance
 //! (Rasmussen & Williams 2006, Gaussian Processes for Machine Learning, eq. 2.31). Parameters of the model and errors of the
-//! apparatus are projected out of the answer and of the residual. Its size and its three lengths are averaged over a
+//! apparatus are projected out of the answer and of the residual. Its size and its four lengths are averaged over a
 //! grid, weighed by the evidence of each (ibid., eq. 5.8).
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -15,9 +15,10 @@ use crate::noise::log_determinant;
 const SIZES: [f64; 4] = [0.05, 0.15, 0.5, 1.5];
 const LENGTHS: [f64; 3] = [0.12, 0.3, 1.0];
 const ANGLES: [f64; 2] = [0.5, 2.0];
+const DIAMETERS: [f64; 2] = [0.7, 4.0];
 
 /// Lengths of the half of the variance that all nodes share: a force that only resists has a mean.
-const LONG: [f64; 3] = [2.0; 3];
+const LONG: [f64; 4] = [2.0; 4];
 
 /// Share of the variance of each node that no other shares.
 const OWN: f64 = 1e-6;
@@ -36,12 +37,46 @@ pub(super) struct Process {
     pub(super) log_odds: f64,
 }
 
-/// One size and three lengths.
-struct Setting {
+/// One size and four lengths.
+pub(super) struct Setting {
     log_odds: f64,
     mean: DVector<f64>,
     size: f64,
     solved: Cholesky<f64, Dyn>,
+}
+
+/// What settings say together, each weighed by its evidence.
+pub(super) struct Averaged {
+    /// Logarithm of the odds of such a force against none.
+    pub(super) log_odds: f64,
+    /// By node.
+    pub(super) mean: DVector<f64>,
+    /// Of the nodes.
+    pub(super) covariance: DMatrix<f64>,
+}
+
+impl Averaged {
+    /// Over `settings`, each with the place of its factor in `factors`.
+    pub(super) fn over(factors: &[DMatrix<f64>], settings: &[(usize, Setting)]) -> Self {
+        let all = || settings.iter().map(|(_, one)| one);
+        let best = all().map(|one| one.log_odds).fold(f64::NEG_INFINITY, f64::max);
+        let share = |one: &Setting| libm::exp(one.log_odds - best);
+        let total: f64 = all().map(share).sum();
+        let log_odds = best + libm::log(total / settings.len() as f64);
+        let counts = |one: &&(usize, Setting)| one.1.log_odds > best - NEGLIGIBLE;
+        let n = factors.first().map_or(0, DMatrix::nrows);
+        let mut mean = DVector::zeros(n);
+        for (_, one) in settings.iter().filter(counts) {
+            mean.axpy(share(one) / total, &one.mean, 1.0);
+        }
+        let mut covariance = DMatrix::zeros(n, n);
+        for (lengths, one) in settings.iter().filter(counts) {
+            let off = &one.mean - &mean;
+            let own = one.covariance(&factors[*lengths]);
+            covariance += (own + &off * off.transpose()) * (share(one) / total);
+        }
+        Self { log_odds, mean, covariance }
+    }
 }
 
 impl Setting {
@@ -57,39 +92,22 @@ impl Process {
     pub(super) fn of(response: &Response, grid: &Grid, unit: f64, misfit: f64) -> Option<Self> {
         let gram = response.beside.tr_mul(&response.beside) / misfit;
         let pull = response.beside.tr_mul(&response.residual) / misfit;
-        let places: Vec<[f64; 3]> = response.nodes.iter().map(|&node| grid.scaled(node)).collect();
-        let angles = if grid.axes[2].len() > 1 { &ANGLES[..] } else { &ANGLES[..1] };
+        let places: Vec<[f64; 4]> = response.nodes.iter().map(|&node| grid.scaled(node)).collect();
+        let varied = |axis: usize, of: &'static [f64]| match grid.axes[axis].len() {
+            1 => &of[..1],
+            _ => of,
+        };
         let (mut factors, mut settings) = (Vec::new(), Vec::new());
-        for depth in LENGTHS {
-            for speed in LENGTHS {
-                for &angle in angles {
-                    let factor = factor(&places, [depth, speed, angle])?;
-                    let inner = factor.tr_mul(&(&gram * &factor));
-                    let seen = factor.tr_mul(&pull);
-                    let sizes = SIZES.iter().map(|size| size * unit);
-                    let tried = sizes.filter_map(|size| setting(&factor, &inner, &seen, size));
-                    settings.extend(tried.map(|one| (factors.len(), one)));
-                    factors.push(factor);
-                }
-            }
+        for lengths in lengths(varied(2, &ANGLES), varied(3, &DIAMETERS)) {
+            let factor = factor(&places, lengths)?;
+            let inner = factor.tr_mul(&(&gram * &factor));
+            let seen = factor.tr_mul(&pull);
+            let sizes = SIZES.iter().map(|size| size * unit);
+            let tried = sizes.filter_map(|size| setting(&factor, &inner, &seen, size));
+            settings.extend(tried.map(|one| (factors.len(), one)));
+            factors.push(factor);
         }
-        let all = || settings.iter().map(|(_, one)| one);
-        let best = all().map(|one| one.log_odds).fold(f64::NEG_INFINITY, f64::max);
-        let share = |one: &Setting| libm::exp(one.log_odds - best);
-        let total: f64 = all().map(share).sum();
-        let log_odds = best + libm::log(total / settings.len() as f64);
-        let counts = |one: &&(usize, Setting)| one.1.log_odds > best - NEGLIGIBLE;
-        let n = response.nodes.len();
-        let mut mean = DVector::zeros(n);
-        for (_, one) in settings.iter().filter(counts) {
-            mean.axpy(share(one) / total, &one.mean, 1.0);
-        }
-        let mut covariance = DMatrix::zeros(n, n);
-        for (lengths, one) in settings.iter().filter(counts) {
-            let off = &one.mean - &mean;
-            let own = one.covariance(&factors[*lengths]);
-            covariance += (own + &off * off.transpose()) * (share(one) / total);
-        }
+        let Averaged { log_odds, mean, covariance } = Averaged::over(&factors, &settings);
         let mut whole = DVector::zeros(grid.len());
         response.nodes.iter().zip(mean.iter()).for_each(|(&node, value)| whole[node] = *value);
         log_odds.is_finite().then_some(Self { mean: whole, covariance, log_odds })
@@ -101,12 +119,25 @@ impl Process {
     }
 }
 
+/// All that are tried.
+fn lengths(angles: &[f64], diameters: &[f64]) -> Vec<[f64; 4]> {
+    let mut all = Vec::new();
+    for depth in LENGTHS {
+        for speed in LENGTHS {
+            for &angle in angles {
+                all.extend(diameters.iter().map(|&diameter| [depth, speed, angle, diameter]));
+            }
+        }
+    }
+    all
+}
+
 /// Cholesky factor of the covariance of a force of size 1.
-fn factor(places: &[[f64; 3]], lengths: [f64; 3]) -> Option<DMatrix<f64>> {
+pub(super) fn factor(places: &[[f64; 4]], lengths: [f64; 4]) -> Option<DMatrix<f64>> {
     let covariance = DMatrix::from_fn(places.len(), places.len(), |a, b| {
-        let alike = |lengths: [f64; 3]| {
+        let alike = |lengths: [f64; 4]| {
             let apart = |axis: usize| (places[a][axis] - places[b][axis]) / lengths[axis];
-            libm::exp(-0.5 * (0..3).map(|axis| apart(axis).powi(2)).sum::<f64>())
+            libm::exp(-0.5 * (0..4).map(|axis| apart(axis).powi(2)).sum::<f64>())
         };
         0.5 * (alike(lengths) + alike(LONG)) + if a == b { OWN } else { 0.0 }
     });
@@ -114,7 +145,7 @@ fn factor(places: &[[f64; 3]], lengths: [f64; 3]) -> Option<DMatrix<f64>> {
 }
 
 /// What follows from a force of `size` whose covariance has `factor`.
-fn setting(
+pub(super) fn setting(
     factor: &DMatrix<f64>,
     inner: &DMatrix<f64>,
     seen: &DVector<f64>,
@@ -135,8 +166,8 @@ mod tests {
     #[test]
     fn a_force_without_any_answer_is_what_it_was_beforehand() {
         let n = 4;
-        let places: Vec<[f64; 3]> = (0..n).map(|k| [k as f64 / 3.0, 0.0, 0.0]).collect();
-        let factor = factor(&places, [0.25; 3]).expect("positive definite");
+        let places: Vec<[f64; 4]> = (0..n).map(|k| [k as f64 / 3.0, 0.0, 0.0, 0.0]).collect();
+        let factor = factor(&places, [0.25; 4]).expect("positive definite");
         let nothing = DMatrix::zeros(n, n);
         let one = setting(&factor, &nothing, &DVector::zeros(n), 2.0).expect("a setting");
         assert!(one.log_odds.abs() < 1e-12, "nothing is learned");
@@ -147,8 +178,8 @@ mod tests {
 
     #[test]
     fn a_node_that_is_measured_exactly_has_the_force_that_was_measured() {
-        let places = [[0.0; 3], [1.0, 0.0, 0.0]];
-        let factor = factor(&places, [0.12; 3]).expect("positive definite");
+        let places = [[0.0; 4], [1.0, 0.0, 0.0, 0.0]];
+        let factor = factor(&places, [0.12; 4]).expect("positive definite");
         // One reading of the first node, 3 with a standard deviation of 1e-3.
         let answer = DMatrix::from_row_slice(1, 2, &[1e3, 0.0]);
         let (gram, pull) = (answer.tr_mul(&answer), answer.tr_mul(&DVector::from_element(1, 3e3)));

@@ -15,10 +15,11 @@ use crate::projection::Basis;
 use crate::sensitivity::Point;
 use crate::weights::Weight;
 
-/// Nodes over depth and over speed, and the most over angle.
+/// Nodes over depth and over speed, and the most over angle and over diameter.
 const DEPTHS: usize = 14;
 const SPEEDS: usize = 6;
 const ANGLES: usize = 6;
+const DIAMETERS: usize = 3;
 
 /// A force that is looked at is this share of what stops the bodies.
 const STEP: f64 = 0.02;
@@ -26,8 +27,8 @@ const STEP: f64 = 0.02;
 /// A node that counts less than this on a path does nothing there.
 const NEAR: f64 = 1e-3;
 
-/// Angles that differ by less are one (rad).
-const SAME_ANGLE: f64 = 1e-6;
+/// Angles (rad) and diameters (m) that differ by less are one.
+const SAME: f64 = 1e-6;
 
 /// The grid over what the conditions of the bench that are fitted to go through.
 pub(super) fn grid(bench: &Bench<'_>) -> Grid {
@@ -35,13 +36,20 @@ pub(super) fn grid(bench: &Bench<'_>) -> Grid {
     let depth = bench.observed.fit.iter().map(|&at| bench.observed.conditions[at].reach);
     let depth = depth.fold(f64::MIN_POSITIVE, f64::max);
     let speed = conditions().map(|one| one.speed).fold(f64::MIN_POSITIVE, f64::max);
-    let mut angles: Vec<f64> = conditions().map(|one| one.angle_deg.to_radians()).collect();
-    angles.sort_by(f64::total_cmp);
-    angles.dedup_by(|a, b| (*a - *b).abs() < SAME_ANGLE);
-    if angles.len() > ANGLES {
-        angles = spaced(angles[0], angles[angles.len() - 1], ANGLES);
+    let angles = distinct(conditions().map(|one| one.angle_deg.to_radians()), ANGLES);
+    let diameters = distinct(conditions().map(|one| one.diameter), DIAMETERS);
+    Grid { axes: [spaced(0.0, depth, DEPTHS), spaced(0.0, speed, SPEEDS), angles, diameters] }
+}
+
+/// The distinct ones of `values`, or `most` of even distance where there are more.
+fn distinct(values: impl Iterator<Item = f64>, most: usize) -> Vec<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup_by(|a, b| (*a - *b).abs() < SAME);
+    if values.len() > most {
+        values = spaced(values[0], values[values.len() - 1], most);
     }
-    Grid { axes: [spaced(0.0, depth, DEPTHS), spaced(0.0, speed, SPEEDS), angles] }
+    values
 }
 
 fn spaced(from: f64, to: f64, n: usize) -> Vec<f64> {
@@ -75,7 +83,8 @@ impl Response {
     ) -> Result<Self, PredictError> {
         let near: Vec<Vec<bool>> = (bench.observed.fit.iter().zip(passages))
             .map(|(&at, moments)| {
-                near(&field.grid, moments, bench.set.conditions[at].angle_deg.to_radians())
+                let body = &bench.set.conditions[at];
+                near(&field.grid, moments, [body.angle_deg.to_radians(), body.diameter])
             })
             .collect();
         let blocks: Vec<DMatrix<f64>> = bench
@@ -137,6 +146,37 @@ impl Response {
         DMatrix::from_columns(&self.nodes.iter().map(column).collect::<Vec<_>>())
     }
 
+    /// Every fitted condition with every node that its path comes near.
+    pub(super) fn by_condition(&self) -> Vec<(usize, usize)> {
+        let moves = |&(block, node): &(usize, usize)| {
+            self.blocks[block].column(node).iter().any(|answer| answer.abs() > 0.0)
+        };
+        let all = |block| self.nodes.iter().map(move |&node| (block, node));
+        (0..self.blocks.len()).flat_map(all).filter(moves).collect()
+    }
+
+    /// The answers to a force that only one condition meets, a column for each of `places`, parameters as they are.
+    pub(super) fn of_places(&self, places: &[(usize, usize)]) -> DMatrix<f64> {
+        let mut columns = DMatrix::zeros(self.rows, places.len());
+        for (&(block, node), mut column) in places.iter().zip(columns.column_iter_mut()) {
+            let from: usize = self.blocks[..block].iter().map(DMatrix::nrows).sum();
+            let answer = self.blocks[block].column(node);
+            column.rows_mut(from, answer.len()).copy_from(&answer);
+        }
+        columns
+    }
+
+    /// Each of `columns` beside the parameters.
+    pub(super) fn rest_of(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
+        let rest = columns.column_iter().map(|column| self.basis.rest(&column.into_owned()));
+        DMatrix::from_columns(&rest.collect::<Vec<_>>())
+    }
+
+    /// What a force with these values at [`Self::nodes`] leaves over beside the parameters.
+    pub(super) fn left_by(&self, values: &DVector<f64>) -> DVector<f64> {
+        &self.residual - &self.beside * values
+    }
+
     /// The states at the nodes, by fitted condition.
     pub(super) fn states(&self) -> &[Vec<State>] {
         &self.states
@@ -167,10 +207,10 @@ fn strength(moments: &[Moment]) -> f64 {
 }
 
 /// Which nodes count on a path.
-fn near(grid: &Grid, moments: &[Moment], angle: f64) -> Vec<bool> {
+fn near(grid: &Grid, moments: &[Moment], [angle, diameter]: [f64; 2]) -> Vec<bool> {
     let mut near = vec![false; grid.len()];
     for one in moments {
-        for (node, share) in grid.shares_at([one.depth, one.speed, angle]) {
+        for (node, share) in grid.shares_at([one.depth, one.speed, angle, diameter]) {
             near[node] |= share > NEAR;
         }
     }
@@ -203,8 +243,9 @@ fn columns(
 }
 
 fn states(bench: &Bench<'_>, grid: &Grid, condition: usize) -> Vec<State> {
-    let body = &bench.set.conditions[condition];
-    let (diameter, gravity) = (body.diameter, bench.set.bed_of(body).gravity);
+    let gravity = bench.set.bed_of(&bench.set.conditions[condition]).gravity;
     let nodes = (0..grid.len()).map(|node| grid.node(node));
-    nodes.map(|[depth, speed, angle]| State { depth, speed, angle, diameter, gravity }).collect()
+    nodes
+        .map(|[depth, speed, angle, diameter]| State { depth, speed, angle, diameter, gravity })
+        .collect()
 }

@@ -10,6 +10,9 @@ use crate::bench::{Bench, Fitted};
 use crate::fit::Fit;
 use crate::forward::{ByFormulas, Moment, PredictError, Request, Scatter};
 
+/// Logarithm by which a coefficient is moved to see what it does.
+const MORE: f64 = 0.1;
+
 /// The missing force at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
@@ -39,32 +42,48 @@ impl Reading {
 }
 
 /// The force on the way of the model with the force that it lacks: what is missing in the fitted model, its own
-/// parameters included. A force that parameters imitate is no less missing where the fit has put it into them.
+/// parameters included. A force that parameters imitate is no less missing where the fit has put it into them. Coefficients
+/// that differ between conditions by `scatter` (relative) may be a part of it: the band holds that.
 pub(super) fn readings(
     bench: &Bench<'_>,
     by: &dyn ByFormulas,
     (found, baseline): (&Found, &Fitted),
+    scatter: f64,
 ) -> Result<Vec<Reading>, PredictError> {
     let fit = &found.fit;
-    let still = |field| Scatter {
-        coefficients: vec![0.0; bench.forward.n_scattering_coefficients()],
-        field,
-        ..Scatter::default()
-    };
+    let n_coefficients = bench.forward.n_scattering_coefficients();
+    let still =
+        |field| Scatter { coefficients: vec![0.0; n_coefficients], field, ..Scatter::default() };
     let (alone, with) = (still(None), still(Some(Arc::new(found.field.clone()))));
+    let more: Vec<Scatter> = (0..n_coefficients)
+        .map(|index| {
+            let mut one = still(None);
+            one.coefficients[index] = MORE;
+            one
+        })
+        .collect();
     let at = |parameters, scatter| Request { parameters, effects: &[], scatter };
     // The model as it is fitted; the one with the force, without it; and the latter with each parameter moved.
     let moved: Vec<(Vec<f64>, f64)> = fit.free().iter().map(|&index| moved(fit, index)).collect();
     let mut others = vec![at(&baseline.fit.point.parameters, &alone)];
     others.push(at(&fit.point.parameters, &alone));
     others.extend(moved.iter().map(|(parameters, _)| at(parameters, &alone)));
+    others.extend(more.iter().map(|more| at(&fit.point.parameters, more)));
     let covariance = fit.free_covariance() * found.misfit().max(1.0);
     // By how much the parameters follow a force at a node.
     let follow = fit.free_covariance() * fit.jacobian.tr_mul(&found.response.whole());
+    let apart = found.apart();
+    let follow_apart =
+        apart.as_ref().map(|apart| fit.free_covariance() * fit.jacobian.tr_mul(&apart.answers));
+    let nodes = found.response.nodes.iter();
+    let step: Vec<f64> =
+        nodes.map(|&node| found.process.mean[node] - found.field.values[node]).collect();
+    let step = DVector::from_vec(step);
     let place = |node: usize| found.response.nodes.iter().position(|one| *one == node);
     let mut readings = Vec::new();
-    for &condition in &bench.observed.fit {
-        let angle = bench.set.conditions[condition].angle_deg.to_radians();
+    for (fitted, &condition) in bench.observed.fit.iter().enumerate() {
+        let body = &bench.set.conditions[condition];
+        let [angle, diameter] = [body.angle_deg.to_radians(), body.diameter];
         let moments = by.passage(condition, &at(&fit.point.parameters, &with), &others, MOMENTS)?;
         for one in moments {
             let (model, own) = (one.others[0], one.others[1]);
@@ -72,14 +91,31 @@ pub(super) fn readings(
                 one.others[2..].iter().zip(&moved).map(|(there, (_, by))| (there - own) / by);
             let slope = DVector::from_iterator(moved.len(), slopes);
             let mut weights = -follow.tr_mul(&slope);
+            let mut apart_weights = follow_apart.as_ref().map(|follow| -follow.tr_mul(&slope));
             let mut force = own - model;
-            for (node, share) in found.field.grid.shares_at([one.depth, one.speed, angle]) {
-                force += one.unit * share * found.process.mean[node];
+            for (node, share) in found.field.grid.shares_at([one.depth, one.speed, angle, diameter])
+            {
+                force += one.unit * share * found.field.values[node];
                 if let Some(at) = place(node) {
                     weights[at] += one.unit * share;
                 }
+                if let Some((apart, weights)) = apart.as_ref().zip(apart_weights.as_mut()) {
+                    apart.weigh(weights, (fitted, node), one.unit * share);
+                }
             }
-            let variance = found.process.variance(&weights) + slope.dot(&(&covariance * &slope));
+            // The parameters follow from the force of the path to the mean of the process.
+            force += weights.dot(&step);
+            let mut variance =
+                found.process.variance(&weights) + slope.dot(&(&covariance * &slope));
+            variance += one.others[2 + moved.len()..]
+                .iter()
+                .map(|there| (scatter * (there - own) / MORE).powi(2))
+                .sum::<f64>();
+            if let Some((apart, weights)) = apart.as_ref().zip(apart_weights.as_ref()) {
+                let (mean, spread) = apart.sum(weights);
+                force += mean;
+                variance += spread;
+            }
             let Moment { time, way, depth, speed, .. } = one;
             let se = variance.sqrt();
             readings.push(Reading { condition, time, way, depth, speed, force, se, model });

@@ -20,7 +20,7 @@ pub(super) struct FieldForce {
 impl FieldForce {
     fn size(&self, at: &Immersion, motion: &Motion, bed: &Surroundings) -> f64 {
         let unit = bed.bulk_density * bed.gravity * at.loaded_area * at.diameter;
-        unit * self.field.at([at.depth, motion.speed.abs(), self.angle])
+        unit * self.field.at([at.depth, motion.speed.abs(), self.angle, at.diameter])
     }
 }
 
