@@ -163,26 +163,24 @@ fn most_likely(
     by: &dyn ByFormulas,
     baseline: &Fitted,
 ) -> Result<Option<(Fitted, Found)>, BenchError> {
-    let Between { sd, sigma, .. } = baseline.noise.sessions;
-    let mut all = vec![baseline.clone()];
-    for less in [sigma, 0.0] {
-        if less < sd {
-            all.push(bench.with_scatter_between_conditions(less, baseline)?);
-        }
-    }
-    let mut best: Option<(Fitted, Found)> = None;
-    for under in all {
+    let look = |under: Fitted| -> Result<Option<(Fitted, Found)>, BenchError> {
         let grid = response::grid(bench);
         let nothing = Field { values: vec![0.0; grid.len()], grid };
-        let start = (&under, under.fit.clone());
-        let Some(found) = Found::from(bench, by, start, nothing)? else { continue };
-        let evidence = |(under, found): &(Fitted, Found)| found.evidence(under);
-        let one = (under, found);
-        if best.as_ref().is_none_or(|best| evidence(&one) > evidence(best)) {
-            best = Some(one);
+        let found = Found::from(bench, by, (&under, under.fit.clone()), nothing)?;
+        Ok(found.map(|found| (under, found)))
+    };
+    let Some(mut best) = look(baseline.clone())? else { return Ok(None) };
+    let Between { sd, sigma, .. } = baseline.noise.sessions;
+    let evidence = |(under, found): &(Fitted, Found)| found.evidence(under);
+    for less in [sigma, 0.0].into_iter().filter(|less| *less < sd) {
+        // A noise under which the model cannot be fitted is no candidate.
+        let fitted = bench.with_scatter_between_conditions(less, baseline).ok();
+        let found = fitted.and_then(|under| look(under).ok().flatten());
+        if let Some(one) = found.filter(|one| evidence(one) > evidence(&best)) {
+            best = one;
         }
     }
-    Ok(best)
+    Ok(Some(best))
 }
 
 /// What the bodies go through.
