@@ -1,15 +1,15 @@
 //! How far the force on each condition lies from the one that all share.
 //!
-//! A force that depends on more than depth, speed and angle (on time, on the way forward, on the impact speed, on the
-//! order of the runs) has no single value there. What the shared process leaves over is seen as a force that each condition
-//! has on its own, normal beforehand around zero. Its size and its length are averaged by their evidence; one of the sizes
-//! is none.
+//! A force that depends on more than depth, speed, angle and diameter (on time, on the impact speed, on the order of the
+//! runs) has no single value there. Each condition also has a force of its own, which explains what the shared one leaves
+//! over. It is normal beforehand around zero. Its size and its length are averaged by their evidence, size zero included.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::process::{Averaged, Process, factor, setting};
+use super::process::{Averaged, Process, factor};
 use super::response::Response;
 use crate::field::Grid;
+use crate::fit::Fit;
 
 /// Sizes over that of the model's force, and lengths over the extent of each axis, that are tried.
 const SIZES: [f64; 5] = [0.0, 0.01, 0.03, 0.1, 0.3];
@@ -21,51 +21,49 @@ pub(super) struct Apart {
     places: Vec<(usize, usize)>,
     mean: DVector<f64>,
     covariance: DMatrix<f64>,
-    /// Answers of the measurements to each, parameters as they are.
-    pub(super) answers: DMatrix<f64>,
+    /// By how much the parameters follow each.
+    follow: DMatrix<f64>,
 }
 
 impl Apart {
-    /// What `process` leaves over of `response` on `grid`; `unit` is the size of the model's force in units of ρ g A D. `None`
-    /// where nothing can be told.
+    /// What `process` leaves over of `response`, which is around `fit`, on `grid`; `unit` is the size of the model's force
+    /// in units of ρ g A D. `None` where nothing can be told.
     pub(super) fn of(
-        (response, process): (&Response, &Process),
+        (response, fit, process): (&Response, &Fit, &Process),
         grid: &Grid,
         unit: f64,
     ) -> Option<Self> {
         let places = response.by_condition();
         let answers = response.of_places(&places);
         let beside = response.rest_of(&answers);
-        let near = DVector::from_iterator(
-            response.nodes.len(),
-            response.nodes.iter().map(|&node| process.mean[node]),
-        );
         let gram = beside.tr_mul(&beside);
-        let pull = beside.tr_mul(&response.left_by(&near));
-        let (mut factors, mut settings) = (Vec::new(), Vec::new());
-        for length in LENGTHS {
-            let factor = factor_of_each(&places, grid, length)?;
-            let inner = factor.tr_mul(&(&gram * &factor));
-            let seen = factor.tr_mul(&pull);
-            let sizes = SIZES.iter().map(|size| size * unit);
-            let tried = sizes.filter_map(|size| setting(&factor, &inner, &seen, size));
-            settings.extend(tried.map(|one| (factors.len(), one)));
-            factors.push(factor);
-        }
-        let Averaged { mean, covariance, log_odds } = Averaged::over(&factors, &settings);
-        log_odds.is_finite().then_some(Self { places, mean, covariance, answers })
+        let pull = beside.tr_mul(&response.left_by(&process.mean));
+        let factors: Vec<DMatrix<f64>> = LENGTHS
+            .iter()
+            .map(|&length| factor_of_each(&places, grid, length))
+            .collect::<Option<_>>()?;
+        let sizes = SIZES.map(|size| size * unit);
+        let Averaged { mean, covariance, .. } = Averaged::over(&factors, &sizes, (&gram, &pull))?;
+        let follow = fit.free_covariance() * fit.jacobian.tr_mul(&answers);
+        Some(Self { places, mean, covariance, follow })
     }
 
-    /// Adds `share` of the node to the weight of the force that the fitted condition `at` has on its own there.
-    pub(super) fn weigh(&self, weights: &mut DVector<f64>, (at, node): (usize, usize), share: f64) {
-        if let Ok(place) = self.places.binary_search(&(at, node)) {
-            weights[place] += share;
+    /// Mean (N) and variance (N²) of what the force that the fitted condition `condition` has on its own adds to the
+    /// missing one: at nodes with `shares`, in `unit` (N), and by the parameters that follow, `slope` being the derivative
+    /// of the model's force by them.
+    pub(super) fn force(
+        &self,
+        condition: usize,
+        (shares, unit): (&[(usize, f64)], f64),
+        slope: &DVector<f64>,
+    ) -> (f64, f64) {
+        let mut weights = -self.follow.tr_mul(slope);
+        for &(node, share) in shares {
+            if let Ok(place) = self.places.binary_search(&(condition, node)) {
+                weights[place] += unit * share;
+            }
         }
-    }
-
-    /// Mean and variance of the sum of the forces times `weights`.
-    pub(super) fn sum(&self, weights: &DVector<f64>) -> (f64, f64) {
-        (weights.dot(&self.mean), weights.dot(&(&self.covariance * weights)).max(0.0))
+        (weights.dot(&self.mean), weights.dot(&(&self.covariance * &weights)).max(0.0))
     }
 }
 

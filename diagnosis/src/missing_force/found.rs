@@ -95,7 +95,7 @@ impl Found {
 
     /// How far the force on each condition lies from the one that all share.
     pub(super) fn apart(&self) -> Option<Apart> {
-        Apart::of((&self.response, &self.process), &self.field.grid, self.unit)
+        Apart::of((&self.response, &self.fit, &self.process), &self.field.grid, self.unit)
     }
 
     /// Logarithm of the likelihood of what was measured, sizes and lengths averaged, under the noise of `under`.

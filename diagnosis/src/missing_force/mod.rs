@@ -156,8 +156,8 @@ pub fn missing_force(
     }))
 }
 
-/// The force under the noise of `baseline`, or under less of its scatter between conditions, which a model that lacks a
-/// force takes for such scatter: what is most likely, with the model fitted under it.
+/// The most likely force, with the model fitted under its noise. A model that lacks a force takes it for scatter between
+/// conditions, so the noise of `baseline` is tried with less of that scatter too.
 fn most_likely(
     bench: &Bench<'_>,
     by: &dyn ByFormulas,

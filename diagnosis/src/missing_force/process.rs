@@ -38,7 +38,7 @@ pub(super) struct Process {
 }
 
 /// One size and four lengths.
-pub(super) struct Setting {
+struct Setting {
     log_odds: f64,
     mean: DVector<f64>,
     size: f64,
@@ -56,26 +56,38 @@ pub(super) struct Averaged {
 }
 
 impl Averaged {
-    /// Over `settings`, each with the place of its factor in `factors`.
-    pub(super) fn over(factors: &[DMatrix<f64>], settings: &[(usize, Setting)]) -> Self {
+    /// Over `sizes` and over lengths, which `factors` are of; `gram` and `pull` are the product of the answers with
+    /// themselves and with what they explain. `None` where nothing can be told.
+    pub(super) fn over(
+        factors: &[DMatrix<f64>],
+        sizes: &[f64],
+        (gram, pull): (&DMatrix<f64>, &DVector<f64>),
+    ) -> Option<Self> {
+        let mut settings = Vec::new();
+        for factor in factors {
+            let inner = factor.tr_mul(&(gram * factor));
+            let seen = factor.tr_mul(pull);
+            let tried = sizes.iter().filter_map(|&size| setting(factor, &inner, &seen, size));
+            settings.extend(tried.map(|one| (factor, one)));
+        }
         let all = || settings.iter().map(|(_, one)| one);
         let best = all().map(|one| one.log_odds).fold(f64::NEG_INFINITY, f64::max);
         let share = |one: &Setting| libm::exp(one.log_odds - best);
         let total: f64 = all().map(share).sum();
         let log_odds = best + libm::log(total / settings.len() as f64);
-        let counts = |one: &&(usize, Setting)| one.1.log_odds > best - NEGLIGIBLE;
-        let n = factors.first().map_or(0, DMatrix::nrows);
+        let counts = |one: &&(&DMatrix<f64>, Setting)| one.1.log_odds > best - NEGLIGIBLE;
+        let n = pull.len();
         let mut mean = DVector::zeros(n);
         for (_, one) in settings.iter().filter(counts) {
             mean.axpy(share(one) / total, &one.mean, 1.0);
         }
         let mut covariance = DMatrix::zeros(n, n);
-        for (lengths, one) in settings.iter().filter(counts) {
+        for (factor, one) in settings.iter().filter(counts) {
             let off = &one.mean - &mean;
-            let own = one.covariance(&factors[*lengths]);
+            let own = one.covariance(factor);
             covariance += (own + &off * off.transpose()) * (share(one) / total);
         }
-        Self { log_odds, mean, covariance }
+        log_odds.is_finite().then_some(Self { log_odds, mean, covariance })
     }
 }
 
@@ -97,20 +109,14 @@ impl Process {
             1 => &of[..1],
             _ => of,
         };
-        let (mut factors, mut settings) = (Vec::new(), Vec::new());
-        for lengths in lengths(varied(2, &ANGLES), varied(3, &DIAMETERS)) {
-            let factor = factor(&places, lengths)?;
-            let inner = factor.tr_mul(&(&gram * &factor));
-            let seen = factor.tr_mul(&pull);
-            let sizes = SIZES.iter().map(|size| size * unit);
-            let tried = sizes.filter_map(|size| setting(&factor, &inner, &seen, size));
-            settings.extend(tried.map(|one| (factors.len(), one)));
-            factors.push(factor);
-        }
-        let Averaged { log_odds, mean, covariance } = Averaged::over(&factors, &settings);
+        let tried = lengths(varied(2, &ANGLES), varied(3, &DIAMETERS)).into_iter();
+        let factors: Vec<DMatrix<f64>> =
+            tried.map(|lengths| factor(&places, lengths)).collect::<Option<_>>()?;
+        let Averaged { log_odds, mean, covariance } =
+            Averaged::over(&factors, &SIZES.map(|size| size * unit), (&gram, &pull))?;
         let mut whole = DVector::zeros(grid.len());
         response.nodes.iter().zip(mean.iter()).for_each(|(&node, value)| whole[node] = *value);
-        log_odds.is_finite().then_some(Self { mean: whole, covariance, log_odds })
+        Some(Self { mean: whole, covariance, log_odds })
     }
 
     /// Variance of the sum of the forces at the nodes that some path comes near, times `weights`.
@@ -119,7 +125,7 @@ impl Process {
     }
 }
 
-/// All that are tried.
+/// The lengths over depth, speed, angle and diameter that are tried.
 fn lengths(angles: &[f64], diameters: &[f64]) -> Vec<[f64; 4]> {
     let mut all = Vec::new();
     for depth in LENGTHS {
@@ -145,7 +151,7 @@ pub(super) fn factor(places: &[[f64; 4]], lengths: [f64; 4]) -> Option<DMatrix<f
 }
 
 /// What follows from a force of `size` whose covariance has `factor`.
-pub(super) fn setting(
+fn setting(
     factor: &DMatrix<f64>,
     inner: &DMatrix<f64>,
     seen: &DVector<f64>,

@@ -146,13 +146,13 @@ impl Response {
         DMatrix::from_columns(&self.nodes.iter().map(column).collect::<Vec<_>>())
     }
 
-    /// Every fitted condition with every node that its path comes near.
+    /// Every fitted condition with every node that its path comes near, in rising order.
     pub(super) fn by_condition(&self) -> Vec<(usize, usize)> {
-        let moves = |&(block, node): &(usize, usize)| {
+        let answers = |&(block, node): &(usize, usize)| {
             self.blocks[block].column(node).iter().any(|answer| answer.abs() > 0.0)
         };
         let all = |block| self.nodes.iter().map(move |&node| (block, node));
-        (0..self.blocks.len()).flat_map(all).filter(moves).collect()
+        (0..self.blocks.len()).flat_map(all).filter(answers).collect()
     }
 
     /// The answers to a force that only one condition meets, a column for each of `places`, parameters as they are.
@@ -172,9 +172,14 @@ impl Response {
         DMatrix::from_columns(&rest.collect::<Vec<_>>())
     }
 
-    /// What a force with these values at [`Self::nodes`] leaves over beside the parameters.
+    /// What a force with these `values` at all nodes leaves over beside the parameters.
     pub(super) fn left_by(&self, values: &DVector<f64>) -> DVector<f64> {
-        &self.residual - &self.beside * values
+        &self.residual - &self.beside * self.at_nodes(values)
+    }
+
+    /// Those of `values` at all nodes that are at [`Self::nodes`].
+    pub(super) fn at_nodes(&self, values: &DVector<f64>) -> DVector<f64> {
+        DVector::from_iterator(self.nodes.len(), self.nodes.iter().map(|&node| values[node]))
     }
 
     /// The states at the nodes, by fitted condition.

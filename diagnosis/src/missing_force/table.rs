@@ -73,12 +73,8 @@ pub(super) fn readings(
     // By how much the parameters follow a force at a node.
     let follow = fit.free_covariance() * fit.jacobian.tr_mul(&found.response.whole());
     let apart = found.apart();
-    let follow_apart =
-        apart.as_ref().map(|apart| fit.free_covariance() * fit.jacobian.tr_mul(&apart.answers));
-    let nodes = found.response.nodes.iter();
-    let step: Vec<f64> =
-        nodes.map(|&node| found.process.mean[node] - found.field.values[node]).collect();
-    let step = DVector::from_vec(step);
+    let values = DVector::from_column_slice(&found.field.values);
+    let step = found.response.at_nodes(&(&found.process.mean - values));
     let place = |node: usize| found.response.nodes.iter().position(|one| *one == node);
     let mut readings = Vec::new();
     for (fitted, &condition) in bench.observed.fit.iter().enumerate() {
@@ -91,28 +87,23 @@ pub(super) fn readings(
                 one.others[2..].iter().zip(&moved).map(|(there, (_, by))| (there - own) / by);
             let slope = DVector::from_iterator(moved.len(), slopes);
             let mut weights = -follow.tr_mul(&slope);
-            let mut apart_weights = follow_apart.as_ref().map(|follow| -follow.tr_mul(&slope));
             let mut force = own - model;
-            for (node, share) in found.field.grid.shares_at([one.depth, one.speed, angle, diameter])
-            {
+            let shares = found.field.grid.shares_at([one.depth, one.speed, angle, diameter]);
+            for (node, share) in shares {
                 force += one.unit * share * found.field.values[node];
                 if let Some(at) = place(node) {
                     weights[at] += one.unit * share;
                 }
-                if let Some((apart, weights)) = apart.as_ref().zip(apart_weights.as_mut()) {
-                    apart.weigh(weights, (fitted, node), one.unit * share);
-                }
             }
-            // The parameters follow from the force of the path to the mean of the process.
+            // From the force of the path to the mean of the process, which the parameters follow.
             force += weights.dot(&step);
-            let mut variance =
-                found.process.variance(&weights) + slope.dot(&(&covariance * &slope));
-            variance += one.others[2 + moved.len()..]
-                .iter()
-                .map(|there| (scatter * (there - own) / MORE).powi(2))
-                .sum::<f64>();
-            if let Some((apart, weights)) = apart.as_ref().zip(apart_weights.as_ref()) {
-                let (mean, spread) = apart.sum(weights);
+            let by_coefficients = one.others[2 + moved.len()..].iter();
+            let scattered = by_coefficients.map(|there| (scatter * (there - own) / MORE).powi(2));
+            let mut variance = found.process.variance(&weights)
+                + slope.dot(&(&covariance * &slope))
+                + scattered.sum::<f64>();
+            if let Some(apart) = &apart {
+                let (mean, spread) = apart.force(fitted, (&shares, one.unit), &slope);
                 force += mean;
                 variance += spread;
             }
