@@ -36,7 +36,7 @@ impl Apart {
         let places = response.by_condition();
         let answers = response.of_places(&places);
         let beside = response.rest_of(&answers);
-        let gram = beside.tr_mul(&beside);
+        let gram = beside.transpose() * &beside;
         let pull = beside.tr_mul(&response.left_by(&process.mean));
         let factors: Vec<DMatrix<f64>> = LENGTHS
             .iter()

@@ -138,6 +138,16 @@ struct Choice {
     fall: f64,
 }
 
+impl Choice {
+    /// Its first term and that of `second`; `None` where both do the same.
+    fn and(&self, response: &Response, second: &Self) -> Option<Self> {
+        let both = [&self.columns[0], &second.columns[0]];
+        let (fall, amplitudes) = explained(&both, &response.residual)?;
+        let terms = vec![self.terms[0].clone(), second.terms[0].clone()];
+        Some(Self { terms, columns: both.map(Clone::clone).to_vec(), amplitudes, fall })
+    }
+}
+
 /// Where a formula is looked for.
 #[derive(Clone, Copy)]
 pub(super) struct Search<'a> {
@@ -156,8 +166,10 @@ impl Search<'_> {
     /// The most promising formulas as parts of the model, a second term counted at what it has to be worth; best first.
     pub(super) fn refitted(&self) -> Vec<Refitted> {
         let terms = library(self.states);
-        let singles = singles(self.response, &terms);
-        let doubles = doubles(self.response, &terms, &singles);
+        let known: Vec<Choice> =
+            terms.into_par_iter().filter_map(|term| choose(self.response, term, None)).collect();
+        let singles = singles(self.response, known.clone());
+        let doubles = doubles(self.response, &known, &singles);
         let finalists: Vec<&Choice> =
             singles.iter().take(SINGLES).chain(doubles.iter().take(DOUBLES)).collect();
         let mut refitted: Vec<Refitted> =
@@ -249,10 +261,9 @@ fn predicts(formula: &Formula, baseline: &Fitted) -> bool {
 }
 
 /// Single terms, best first, with their best numbers; of terms that are alike only the best.
-fn singles(response: &Response, terms: &[Term]) -> Vec<Choice> {
-    let all = terms.iter().filter_map(|term| choose(response, vec![term.clone()], None));
-    let mut searched: Vec<Choice> = different(all.collect(), SEARCHED)
-        .into_iter()
+fn singles(response: &Response, all: Vec<Choice>) -> Vec<Choice> {
+    let mut searched: Vec<Choice> = different(all, SEARCHED)
+        .into_par_iter()
         .map(|choice| search(response, choice, None))
         .collect();
     searched.sort_by(|a, b| b.fall.total_cmp(&a.fall));
@@ -260,14 +271,12 @@ fn singles(response: &Response, terms: &[Term]) -> Vec<Choice> {
 }
 
 /// Two terms, likewise: each of the best with what helps it most.
-fn doubles(response: &Response, terms: &[Term], singles: &[Choice]) -> Vec<Choice> {
-    let mut found: Vec<Choice> = singles
-        .iter()
-        .take(SEARCHED_WITH)
+fn doubles(response: &Response, known: &[Choice], singles: &[Choice]) -> Vec<Choice> {
+    let first = &singles[..singles.len().min(SEARCHED_WITH)];
+    let mut found: Vec<Choice> = first
+        .par_iter()
         .filter_map(|first| {
-            let with = terms.iter().filter_map(|term| {
-                choose(response, vec![first.terms[0].clone(), term.clone()], Some(first))
-            });
+            let with = known.iter().filter_map(|second| first.and(response, second));
             let best = with.max_by(|a, b| a.fall.total_cmp(&b.fall))?;
             Some(search(response, best, Some(first)))
         })
@@ -292,26 +301,21 @@ fn different(mut choices: Vec<Choice>, most: usize) -> Vec<Choice> {
     kept
 }
 
-/// What `terms` explain; the first is known where `first` is given. `None` where one does nothing or both do the same.
-fn choose(response: &Response, terms: Vec<Term>, first: Option<&Choice>) -> Option<Choice> {
-    let column = |term: &Term| {
-        let values = response.states().iter().map(|states| term.values(states));
-        Some(response.of_values(&values.collect::<Option<Vec<_>>>()?))
-    };
-    let mut columns = Vec::with_capacity(terms.len());
-    for (at, term) in terms.iter().enumerate() {
-        match first.filter(|_| at == 0) {
-            Some(known) => columns.push(known.columns[0].clone()),
-            None => columns.push(column(term)?),
-        }
+/// What `term` explains, beside `first` where that is given. `None` where it does nothing or both do the same.
+fn choose(response: &Response, term: Term, first: Option<&Choice>) -> Option<Choice> {
+    let values = response.states().map(|states| term.values(states));
+    let column = response.of_values(&values.collect::<Option<Vec<_>>>()?);
+    let (fall, amplitudes) = explained(&[&column], &response.residual)?;
+    let one = Choice { terms: vec![term], columns: vec![column], amplitudes, fall };
+    match first {
+        Some(first) => first.and(response, &one),
+        None => Some(one),
     }
-    let (fall, amplitudes) = explained(&columns, &response.residual)?;
-    Some(Choice { terms, columns, amplitudes, fall })
 }
 
 /// Fall of χ² and amplitudes by least squares.
-fn explained(columns: &[DVector<f64>], residual: &DVector<f64>) -> Option<(f64, Vec<f64>)> {
-    match columns {
+fn explained(columns: &[&DVector<f64>], residual: &DVector<f64>) -> Option<(f64, Vec<f64>)> {
+    match *columns {
         [one] => {
             let norm = one.norm_squared();
             let pull = one.dot(residual);
@@ -344,13 +348,11 @@ impl Numbers<'_> {
         if numbers.iter().zip(&self.least).any(|(number, least)| number < least) {
             return None;
         }
-        let mut terms = self.choice.terms.clone();
-        let last = terms.pop()?;
+        let last = self.choice.terms.last()?;
         // What is searched is what will be written.
         let rounded: Vec<f64> =
             numbers.iter().map(|number| short(*number).parse().unwrap_or(*number)).collect();
-        terms.push(last.with(&rounded));
-        choose(self.response, terms, self.first)
+        choose(self.response, last.with(&rounded), self.first)
     }
 }
 

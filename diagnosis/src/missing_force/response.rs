@@ -1,5 +1,6 @@
 //! How measurements answer to a small force around each node of depth, speed and angle.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
@@ -58,8 +59,8 @@ fn spaced(from: f64, to: f64, n: usize) -> Vec<f64> {
 
 /// The answer of all that was fitted to, whitened, and what of it no parameter of the model imitates.
 pub(super) struct Response {
-    /// Change of the whitened observables of each fitted condition per ρ g A D at a node.
-    blocks: Vec<DMatrix<f64>>,
+    /// By fitted condition.
+    blocks: Vec<Block>,
     /// What parameters imitate.
     basis: Basis,
     /// What the model without any further force leaves over beside them, to first order.
@@ -69,8 +70,30 @@ pub(super) struct Response {
     /// The answers beside the parameters, a column for each of these.
     pub(super) beside: DMatrix<f64>,
     rows: usize,
-    /// States in the nodes' order, by fitted condition.
-    states: Vec<Vec<State>>,
+}
+
+/// The answer of one condition.
+struct Block {
+    /// The nodes that its path comes near, in rising order.
+    nodes: Vec<usize>,
+    /// Change of its whitened observables per ρ g A D at each of these.
+    answers: DMatrix<f64>,
+    /// The states at each of these.
+    states: Vec<State>,
+}
+
+impl Block {
+    /// The answer to the force at `node`; `None` far from its path.
+    fn column(&self, node: usize) -> Option<DVector<f64>> {
+        let at = self.nodes.binary_search(&node).ok()?;
+        Some(self.answers.column(at).into_owned())
+    }
+
+    /// The answer to a force of `values` at all nodes.
+    fn change(&self, values: &DVector<f64>) -> DVector<f64> {
+        let own = self.nodes.iter().map(|&node| values[node]);
+        &self.answers * DVector::from_iterator(self.nodes.len(), own)
+    }
 }
 
 impl Response {
@@ -81,87 +104,86 @@ impl Response {
         field: &Field,
         passages: &[Vec<Moment>],
     ) -> Result<Self, PredictError> {
-        let near: Vec<Vec<bool>> = (bench.observed.fit.iter().zip(passages))
-            .map(|(&at, moments)| {
-                let body = &bench.set.conditions[at];
-                near(&field.grid, moments, [body.angle_deg.to_radians(), body.diameter])
-            })
-            .collect();
-        let blocks: Vec<DMatrix<f64>> = bench
+        let blocks: Vec<Block> = bench
             .observed
             .fit
             .par_iter()
             .zip(weights)
             .zip(passages)
-            .zip(&near)
-            .map(|(((&condition, weight), moments), near)| {
+            .map(|((&condition, weight), moments)| {
+                let body = &bench.set.conditions[condition];
+                let [angle, diameter] = [body.angle_deg.to_radians(), body.diameter];
+                let nodes = near(&field.grid, moments, [angle, diameter]);
                 let step = STEP * strength(moments);
-                let columns = columns(bench.forward, &fit.point, condition, (field, near, step))?;
-                Ok(weight.whiten_columns(&columns))
+                let columns = columns(bench.forward, &fit.point, condition, (field, &nodes, step))?;
+                let states = states(bench, &field.grid, (condition, &nodes));
+                Ok(Block { nodes, answers: weight.whiten_columns(&columns), states })
             })
             .collect::<Result<_, PredictError>>()?;
         let basis = Basis::of(&fit.jacobian);
         let rows = fit.residual.len();
-        let states = bench.observed.fit.iter().map(|&at| states(bench, &field.grid, at)).collect();
+        let nodes: BTreeSet<usize> = blocks.iter().flat_map(|block| block.nodes.clone()).collect();
         let mut response = Self {
             blocks,
             basis,
             residual: DVector::zeros(rows),
-            nodes: (0..field.grid.len()).filter(|&at| near.iter().any(|near| near[at])).collect(),
+            nodes: nodes.into_iter().collect(),
             beside: DMatrix::zeros(rows, 0),
             rows,
-            states,
         };
-        let columns: Vec<DVector<f64>> = response
-            .nodes
-            .iter()
-            .map(|&node| {
-                response
-                    .stacked(response.blocks.iter().map(|block| block.column(node).into_owned()))
-            })
-            .collect();
-        response.beside = DMatrix::from_columns(&columns);
+        response.beside = response.rest_of(&response.whole());
         let there = response.change(&DVector::from_column_slice(&field.values));
         response.residual = response.basis.rest(&(&fit.residual + there));
         Ok(response)
     }
 
-    /// What a force of these values at the nodes would change beside the parameters; `values` by fitted condition, in
-    /// units of ρ g A D.
+    /// What a force of these values would change beside the parameters; `values` at [`Self::states`], in units of ρ g A D.
     pub(super) fn of_values(&self, values: &[Vec<f64>]) -> DVector<f64> {
         let parts = self.blocks.iter().zip(values);
-        self.stacked(parts.map(|(block, values)| block * DVector::from_column_slice(values)))
+        let parts =
+            parts.map(|(block, values)| &block.answers * DVector::from_column_slice(values));
+        self.basis.rest(&self.placed(parts))
     }
 
     /// Change of the whitened observables by a force of these `values` at the nodes, parameters as they are.
     pub(super) fn change(&self, values: &DVector<f64>) -> DVector<f64> {
-        self.placed(self.blocks.iter().map(|block| block * values))
+        self.placed(self.blocks.iter().map(|block| block.change(values)))
     }
 
     /// The answers with the parameters as they are, a column for each of [`Self::nodes`].
     pub(super) fn whole(&self) -> DMatrix<f64> {
-        let column = |&node: &usize| {
-            self.placed(self.blocks.iter().map(|block| block.column(node).into_owned()))
-        };
-        DMatrix::from_columns(&self.nodes.iter().map(column).collect::<Vec<_>>())
+        let mut columns = DMatrix::zeros(self.rows, self.nodes.len());
+        let mut from = 0;
+        for block in &self.blocks {
+            for (at, answer) in block.nodes.iter().zip(block.answers.column_iter()) {
+                if let Ok(place) = self.nodes.binary_search(at) {
+                    columns.view_mut((from, place), (answer.len(), 1)).copy_from(&answer);
+                }
+            }
+            from += block.answers.nrows();
+        }
+        columns
     }
 
     /// Every fitted condition with every node that its path comes near, in rising order.
     pub(super) fn by_condition(&self) -> Vec<(usize, usize)> {
-        let answers = |&(block, node): &(usize, usize)| {
-            self.blocks[block].column(node).iter().any(|answer| answer.abs() > 0.0)
-        };
-        let all = |block| self.nodes.iter().map(move |&node| (block, node));
-        (0..self.blocks.len()).flat_map(all).filter(answers).collect()
+        let mut places = Vec::new();
+        for (at, block) in self.blocks.iter().enumerate() {
+            let answers = block.nodes.iter().zip(block.answers.column_iter());
+            let answers = answers.filter(|(_, answer)| answer.iter().any(|one| one.abs() > 0.0));
+            places.extend(answers.map(|(&node, _)| (at, node)));
+        }
+        places
     }
 
     /// The answers to a force that only one condition meets, a column for each of `places`, parameters as they are.
     pub(super) fn of_places(&self, places: &[(usize, usize)]) -> DMatrix<f64> {
         let mut columns = DMatrix::zeros(self.rows, places.len());
         for (&(block, node), mut column) in places.iter().zip(columns.column_iter_mut()) {
-            let from: usize = self.blocks[..block].iter().map(DMatrix::nrows).sum();
-            let answer = self.blocks[block].column(node);
-            column.rows_mut(from, answer.len()).copy_from(&answer);
+            let from: usize = self.blocks[..block].iter().map(|one| one.answers.nrows()).sum();
+            if let Some(answer) = self.blocks[block].column(node) {
+                column.rows_mut(from, answer.len()).copy_from(&answer);
+            }
         }
         columns
     }
@@ -182,14 +204,9 @@ impl Response {
         DVector::from_iterator(self.nodes.len(), self.nodes.iter().map(|&node| values[node]))
     }
 
-    /// The states at the nodes, by fitted condition.
-    pub(super) fn states(&self) -> &[Vec<State>] {
-        &self.states
-    }
-
-    /// Blocks of all fitted conditions as one column, beside the parameters.
-    fn stacked(&self, parts: impl Iterator<Item = DVector<f64>>) -> DVector<f64> {
-        self.basis.rest(&self.placed(parts))
+    /// The states at the nodes that the path of each fitted condition comes near.
+    pub(super) fn states(&self) -> impl Iterator<Item = &[State]> {
+        self.blocks.iter().map(|block| &*block.states)
     }
 
     /// Blocks of all fitted conditions as one column; the rows below, of what is known beforehand, answer to no force.
@@ -211,45 +228,48 @@ fn strength(moments: &[Moment]) -> f64 {
     if force > 0.0 && unit > 0.0 { force / unit } else { 1.0 }
 }
 
-/// Which nodes count on a path.
-fn near(grid: &Grid, moments: &[Moment], [angle, diameter]: [f64; 2]) -> Vec<bool> {
-    let mut near = vec![false; grid.len()];
-    for one in moments {
-        for (node, share) in grid.shares_at([one.depth, one.speed, angle, diameter]) {
-            near[node] |= share > NEAR;
-        }
-    }
-    near
+/// The nodes that count on a path, in rising order.
+fn near(grid: &Grid, moments: &[Moment], [angle, diameter]: [f64; 2]) -> Vec<usize> {
+    let places = moments.iter().map(|one| [one.depth, one.speed, angle, diameter]);
+    let shares = places.flat_map(|place| grid.shares_at(place));
+    let near: BTreeSet<usize> =
+        shares.filter(|(_, share)| *share > NEAR).map(|(node, _)| node).collect();
+    near.into_iter().collect()
 }
 
 fn columns(
     forward: &dyn Forward,
     point: &Point,
     condition: usize,
-    (field, near, step): (&Field, &[bool], f64),
+    (field, nodes, step): (&Field, &[usize], f64),
 ) -> Result<DMatrix<f64>, PredictError> {
     let with = |values: Vec<f64>| {
         let field = Arc::new(Field { grid: field.grid.clone(), values });
         point.predict(&WithField { forward, field }, condition)
     };
     let mean = with(field.values.clone())?;
-    let columns: Vec<DVector<f64>> = (0..near.len())
-        .map(|node| {
-            if !near[node] {
-                return DVector::zeros(mean.len());
-            }
+    let columns: Vec<DVector<f64>> = nodes
+        .iter()
+        .map(|&node| {
             let mut values = field.values.clone();
             values[node] += step;
             // A node with which it cannot be integrated is one that nothing is known of.
             with(values).map_or_else(|_| DVector::zeros(mean.len()), |there| (there - &mean) / step)
         })
         .collect();
-    Ok(DMatrix::from_columns(&columns))
+    Ok(match columns.is_empty() {
+        true => DMatrix::zeros(mean.len(), 0),
+        false => DMatrix::from_columns(&columns),
+    })
 }
 
-fn states(bench: &Bench<'_>, grid: &Grid, condition: usize) -> Vec<State> {
+fn states(
+    bench: &Bench<'_>,
+    grid: &Grid,
+    (condition, nodes): (usize, &[usize]),
+) -> Vec<State> {
     let gravity = bench.set.bed_of(&bench.set.conditions[condition]).gravity;
-    let nodes = (0..grid.len()).map(|node| grid.node(node));
+    let nodes = nodes.iter().map(|&node| grid.node(node));
     nodes
         .map(|[depth, speed, angle, diameter]| State { depth, speed, angle, diameter, gravity })
         .collect()
