@@ -44,6 +44,8 @@ const MOST: usize = 64;
 enum Fault {
     Clock,
     Zero,
+    /// The level of the surface, where clock, depths and speed of each run are read where free fall comes to it.
+    Surface,
     Speed,
     Scale,
     Tilt,
@@ -64,15 +66,52 @@ pub(crate) struct Apparatus {
     parameters: Vec<Parameter>,
     /// Which body falls, by condition.
     bodies: Vec<usize>,
+    /// How it comes to the surface, by condition.
+    falls: Vec<Fall>,
     /// By group of runs: its share of the runs of each condition.
     groups: Vec<Vec<f64>>,
     coefficients: usize,
 }
 
+/// How a body comes to the surface.
+#[derive(Clone, Copy, Debug)]
+struct Fall {
+    /// Velocity at contact, downward and forward (m/s).
+    down: f64,
+    forward: f64,
+    /// Acceleration of the fall (m/s²).
+    gravity: f64,
+}
+
+impl Fall {
+    fn of(set: &MeasurementSet, condition: &Condition) -> Self {
+        let angle = condition.angle_deg.to_radians();
+        Self {
+            down: condition.speed * libm::sin(angle),
+            forward: condition.speed * libm::cos(angle),
+            gravity: set.fall_of(condition),
+        }
+    }
+
+    /// Adds to `scatter` that the surface lies `deeper` (m) than where the clock, depths and speed are read.
+    fn add(self, scatter: &mut Scatter, deeper: f64) {
+        let Self { down, forward, gravity } = self;
+        // Where free fall never comes to it, it only just does.
+        let later = (down * down + 2.0 * gravity * deeper).max(0.0).sqrt();
+        let time = 2.0 * deeper / (down + later).max(f64::MIN_POSITIVE);
+        let [before, after] = [down, later].map(|down| libm::hypot(down, forward));
+        scatter.level += deeper;
+        scatter.clock -= time;
+        scatter.ahead += forward * time;
+        scatter.speed += after / before.max(f64::MIN_POSITIVE) - 1.0;
+    }
+}
+
 impl Apparatus {
     /// Those of `set`, for a model with these `coefficients`; `layouts` are the observables of its conditions.
     pub(crate) fn of(set: &MeasurementSet, coefficients: &[&str], layouts: &[Layout]) -> Self {
-        let mut all = Self { coefficients: coefficients.len(), ..Self::default() };
+        let falls = set.conditions.iter().map(|one| Fall::of(set, one)).collect();
+        let mut all = Self { coefficients: coefficients.len(), falls, ..Self::default() };
         let instrument = &set.instrument;
         let or = |stated: Option<f64>, default: f64| stated.unwrap_or(default);
         // Held-out conditions must not decide which errors are fitted.
@@ -91,8 +130,13 @@ impl Apparatus {
         }
         let level = instrument.level_sigma.unwrap_or(0.0);
         let grain = 0.5 * set.coarsest_grains();
-        let zero = or(instrument.zero_sigma, defaults::ZERO.max(grain).max(level));
-        all.add(Fault::Zero, "depth-zero", "m", zero);
+        // Depths that are counted from where free fall comes to the surface have no other zero.
+        let unstated = match instrument.surface_sigma {
+            Some(_) => 0.0,
+            None => defaults::ZERO.max(grain).max(level),
+        };
+        all.add(Fault::Zero, "depth-zero", "m", or(instrument.zero_sigma, unstated));
+        all.add(Fault::Surface, "surface", "m", or(instrument.surface_sigma, 0.0));
         let speed = or(instrument.speed_bias_sigma_rel, defaults::SPEED);
         all.add(Fault::Speed, "speed-scale", "1", speed);
         all.add(Fault::Scale, "camera-scale", "1", or(instrument.scale_sigma_rel, defaults::SCALE));
@@ -209,6 +253,7 @@ impl Apparatus {
             match *fault {
                 Fault::Clock => all.clock += value,
                 Fault::Zero => all.level += value,
+                Fault::Surface => self.falls[condition].add(&mut all, value),
                 Fault::Speed => all.speed += value,
                 Fault::Scale => all.scale += value,
                 Fault::Tilt => all.tilt += value,

@@ -302,6 +302,8 @@ pub struct Scatter {
     pub level: f64,
     /// How late the clock is zero (s): positive when contact is before it.
     pub clock: f64,
+    /// Way forward (m) at contact.
+    pub ahead: f64,
     /// Relative error of every length that is read.
     pub scale: f64,
     /// Relative deviation of the mass of the body from what is stated.

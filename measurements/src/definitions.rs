@@ -9,7 +9,7 @@
 use super::reading::Reading;
 use super::stops::{self, Stops};
 use super::zeros::{mean, position};
-use super::{FinalDefinition, Kind, MeasurementSet, Run, StopDefinition};
+use super::{FinalDefinition, Instrument, Kind, MeasurementSet, Run, StopDefinition};
 
 /// A number of a run that its frames show too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -201,7 +201,10 @@ fn held(
         let mean = mean(misses);
         let floor = match scalar {
             Scalar::StopTime => FRAME * step,
-            _ => LENGTH.max(set.instrument.level_sigma.unwrap_or(0.0)),
+            _ => {
+                let Instrument { level_sigma, surface_sigma, .. } = set.instrument;
+                [level_sigma, surface_sigma].into_iter().flatten().fold(LENGTH, f64::max)
+            }
         };
         Miss { definition: words[definition], mean, limit: floor + BY_CHANCE * mean.se }
     };

@@ -246,6 +246,7 @@ fn instrument(
         // Unlike an error of readings, none of these may be missed: zero says that it is exact.
         time_sigma: optional(&table, &keys::TIME_SIGMA),
         zero_sigma: optional(&table, &keys::ZERO_SIGMA),
+        surface_sigma: optional(&table, &keys::SURFACE_SIGMA),
         speed_bias_sigma_rel: optional(&table, &keys::SPEED_BIAS_SIGMA),
         scale_sigma_rel: optional(&table, &keys::SCALE_SIGMA),
         mass_sigma_rel: optional(&table, &keys::MASS_SIGMA),

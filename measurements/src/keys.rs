@@ -96,6 +96,13 @@ pub(super) const ZERO_SIGMA: ParamSpec = key(
     (0.0, 0.05),
     "the error of the zero of depth, which all runs share",
 );
+pub(super) const SURFACE_SIGMA: ParamSpec = key(
+    "surface_sigma_m",
+    LENGTH,
+    NOT_NEGATIVE,
+    (0.0, 0.05),
+    "the error of the level of the surface, which all runs share, where clocks, depths and speeds are read where free fall comes to that level",
+);
 pub(super) const SPEED_BIAS_SIGMA: ParamSpec = key(
     "speed_bias_sigma_rel",
     NUMBER,

@@ -212,6 +212,9 @@ pub struct Instrument {
     pub time_sigma: Option<f64>,
     /// How well the zero of depth is known that all runs share (m).
     pub zero_sigma: Option<f64>,
+    /// How well the level of the surface is known (m) that all runs share, where the clock, depths and speed of each are
+    /// read where its free fall comes to that level: all three are off together.
+    pub surface_sigma: Option<f64>,
     /// Relative error that all impact speeds share.
     pub speed_bias_sigma_rel: Option<f64>,
     /// Relative error of the scale of lengths.
@@ -232,6 +235,7 @@ impl Instrument {
         Self {
             time_sigma: none,
             zero_sigma: none,
+            surface_sigma: none,
             speed_bias_sigma_rel: none,
             scale_sigma_rel: none,
             mass_sigma_rel: none,

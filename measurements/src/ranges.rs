@@ -106,6 +106,7 @@ fn of_set(set: &MeasurementSet) -> impl Iterator<Item = Number> {
         (&VALUE, instrument.force_sigma),
         (&READING_ERROR, instrument.level_sigma),
         (&READING_ERROR, instrument.zero_sigma),
+        (&READING_ERROR, instrument.surface_sigma),
         (&SHARE, instrument.speed_bias_sigma_rel),
         (&SHARE, instrument.scale_sigma_rel),
         (&SHARE, instrument.mass_sigma_rel),

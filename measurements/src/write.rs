@@ -101,6 +101,7 @@ impl MeasurementSet {
         file.number("level_sigma_m", self.instrument.level_sigma);
         file.number("time_sigma_s", self.instrument.time_sigma);
         file.number("zero_sigma_m", self.instrument.zero_sigma);
+        file.number("surface_sigma_m", self.instrument.surface_sigma);
         file.number("speed_bias_sigma_rel", self.instrument.speed_bias_sigma_rel);
         file.number("scale_sigma_rel", self.instrument.scale_sigma_rel);
         file.number("mass_sigma_rel", self.instrument.mass_sigma_rel);

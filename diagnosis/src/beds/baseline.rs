@@ -204,6 +204,7 @@ fn opposite(scatter: &Scatter) -> Scatter {
         speed: -scatter.speed,
         level: -scatter.level,
         clock: -scatter.clock,
+        ahead: -scatter.ahead,
         scale: -scatter.scale,
         mass: -scatter.mass,
         tilt: -scatter.tilt,

@@ -166,7 +166,7 @@ impl Law {
         Inputs {
             numbers: self.coefficients.iter().map(|one| one.at(parameters)).collect(),
             effects: all.map(|(effect, q)| (effect.clone(), q)).collect(),
-            scatter: Scatter { level: 0.0, scale: 0.0, ..scatter.clone() },
+            scatter: Scatter { level: 0.0, ahead: 0.0, scale: 0.0, ..scatter.clone() },
         }
     }
 
@@ -359,7 +359,7 @@ impl Prepared {
     /// What is read of `seen`.
     fn read(&self, seen: &Seen, scatter: &Scatter) -> Result<Vec<f64>, String> {
         let read = |&(depth, range): &(f64, f64)| {
-            let (mut depth, mut range) = (depth + scatter.level, range);
+            let (mut depth, mut range) = (depth + scatter.level, range + scatter.ahead);
             seen.laws.iter().for_each(|law| law.read(&mut depth, &mut range));
             (depth * (1.0 + scatter.scale), range * (1.0 + scatter.scale))
         };

@@ -8,7 +8,7 @@ use super::fault::Fault;
 const OFF: (f64, f64) = (1e-3, 3.5);
 
 /// Least error of a level (m).
-const LEAST: f64 = 1e-5;
+pub(super) const LEAST: f64 = 1e-5;
 
 /// What is known of one run.
 pub(super) struct Seen {
@@ -29,6 +29,8 @@ pub(super) struct Touch {
     pub(super) level: Reading,
     /// Downward velocity (m/s).
     pub(super) sinking: Reading,
+    /// Error of the depth of free fall there (m).
+    pub(super) fall_error: f64,
 }
 
 /// Where the levels come from.
@@ -88,12 +90,18 @@ impl Touch {
                 value: v + gravity * later,
                 se: libm::hypot(falling.se, gravity * se),
             },
+            fall_error: at_time.se,
         }
     }
 
     /// Where the path departs from free fall.
     fn own(contact: &Contact) -> Self {
-        Self { time: contact.time, level: contact.depth, sinking: contact.sinking }
+        Self {
+            time: contact.time,
+            level: contact.depth,
+            sinking: contact.sinking,
+            fall_error: contact.at_time.se,
+        }
     }
 }
 

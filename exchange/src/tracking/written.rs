@@ -12,7 +12,10 @@ use super::fault::Fault;
 use super::options::Options;
 use super::run::Run;
 use super::settings::Settings;
-use super::surface::Level;
+use super::surface::{LEAST, Level};
+
+/// How well a level that is stated is known (m).
+const STATED: f64 = 1e-3;
 
 /// What is written.
 pub(super) struct Known<'a> {
@@ -81,14 +84,16 @@ fn measurement(known: &Known<'_>, notes: &[String]) -> Result<String, Fault> {
             significant(scatter, 2)
         ));
     }
-    let (level_error, by) = match level {
-        Level::Stated => (None, ""),
-        Level::Common(level) => (Some(level.se), "the one level of all runs"),
-        Level::Own => (Some(of(|run| run.touch.level.se)), "the level of each run"),
+    let (surface, by) = match level {
+        Level::Stated => (STATED, "as it is stated"),
+        Level::Common(level) => (level.se, "the one level of all runs, by their contacts"),
+        Level::Own => (of(|run| run.touch.level.se), "the level of each run, by its contact"),
     };
-    if let Some(error) = level_error {
-        line(format!("level_sigma_m = {:<12} # of {by}, by the contact", significant(error, 2)));
-    }
+    line(format!("surface_sigma_m = {:<10} # of {by}", significant(surface, 2)));
+    line(format!(
+        "level_sigma_m = {:<12} # of one run against the others, by its fall",
+        significant(of(|run| run.touch.fall_error).max(LEAST), 2)
+    ));
     line("\n[bed]".to_owned());
     let is_planar = runs.iter().any(|run| run.body.shape == "disc");
     if is_planar {

@@ -36,6 +36,7 @@ pub(crate) const INSTRUMENT: Instrument = Instrument {
     level_sigma: None,
     time_sigma: None,
     zero_sigma: None,
+    surface_sigma: None,
     speed_bias_sigma_rel: Some(2e-3),
     scale_sigma_rel: Some(2e-3),
     mass_sigma_rel: Some(1e-3),
