@@ -6,10 +6,12 @@
 //! `t₀` and several `p`, and what is said of the contact is the mean over these fits, each with the
 //! weight of its misfit; its error holds the spread between them. Nothing of a model of the bed is needed.
 //!
-//! Of a path whose zeros are not known ([`super::Departure`]) more is fitted to, and `k` may change with time.
+//! Of a path whose zeros are not known ([`super::Departure`]) more is fitted to: `k` may change with time, and the contact
+//! is then sought by the forces of a bed ([`super::braking`]).
 
 use nalgebra::{Matrix5, Vector5};
 
+use super::braking::{self, Body, Readings};
 use super::reading::Reading;
 use super::smooth::{blocks, median_step, slope, velocity_window};
 use super::{Condition, Frame, Run};
@@ -65,8 +67,11 @@ pub(super) const FEWEST: usize = 5;
 /// Most frames, or means of neighbouring ones, that are fitted to.
 const MOST: usize = 48;
 
+/// The same where the zeros are not known: more of the fall has to tell.
+const MOST_OF_FALL: usize = 200;
+
 /// Places of the contact that are tried between two frames.
-const BETWEEN_FRAMES: usize = 4;
+pub(super) const BETWEEN_FRAMES: usize = 4;
 
 /// How well the acceleration before contact is known, relative to gravity: guides and air take some of it.
 pub(super) const FREE: f64 = 0.3;
@@ -95,7 +100,7 @@ pub(super) fn read(
     if all.len() < FEWEST {
         return coarse(&run.frames, sigma, (condition, gravity, zero));
     }
-    let (fits, contact) = fit(all, (MOST, false), (gravity, doubt, sigma), power);
+    let (fits, contact) = fit(all, (gravity, doubt, sigma), power);
     let [first, last] = fits.ends;
     let reaches_zero = first <= zero + 1.5 * contact.step && zero <= last;
     let is_whole = all[0].t <= run.frames[0].t;
@@ -115,19 +120,44 @@ pub(super) fn read(
 /// The fits to the frames `all` near contact, and what they say of it.
 pub(super) fn fit(
     all: &[Frame],
-    (most, bends): (usize, bool),
     (gravity, doubt, sigma): (f64, f64, f64),
     power: f64,
 ) -> (Fits, Contact) {
+    let (frames, sigma) = blocks(all, MOST, sigma);
+    let fits = Fits::of(&frames, (gravity, doubt, sigma), (power, false));
+    let contact = seen(&fits, all, (&frames, sigma));
+    (fits, contact)
+}
+
+/// The fits to the frames `all` near contact of a path whose zeros are not known, and what they say of it.
+pub(super) fn fit_braked(
+    all: &[Frame],
+    (gravity, doubt, sigma): (f64, f64, f64),
+    (power, body): (f64, Body<'_>),
+) -> (Fits, Contact) {
+    let (frames, sigma) = blocks(all, MOST_OF_FALL, sigma);
+    let powers = Fits::of(&frames, (gravity, doubt, sigma), (power, true));
+    let best = powers.all.iter().min_by(|a, b| a.misfit.total_cmp(&b.misfit));
+    let scale = (powers.origin, powers.scale);
+    let readings = Readings { frames: &frames, known: (gravity, doubt, sigma), scale };
+    let path = |time: f64| best.map_or([0.0; 2], |best| powers.path(best, time));
+    // The path of such a fit tells the forces better than a power does.
+    let (_, path) = braking::fits(&readings, body, path);
+    let (braked, _) = braking::fits(&readings, body, |time| path.at(time));
+    let fits = Fits::new(braked, scale, &frames);
+    let contact = seen(&fits, all, (&frames, sigma));
+    (fits, contact)
+}
+
+/// What `fits` to means of `all` frames, with their error, say of the contact.
+fn seen(fits: &Fits, all: &[Frame], (frames, sigma): (&[Frame], f64)) -> Contact {
     let step = (all[all.len() - 1].t - all[0].t) / (all.len() - 1) as f64;
-    let (frames, sigma) = blocks(all, most, sigma);
-    let fits = Fits::of(&frames, (gravity, doubt, sigma), (power, bends));
     let time = fits.mean(|fit| (fit.contact, 0.0));
     // Behind the contact the bed brakes the forward motion too.
     let before = frames.iter().filter(|frame| frame.t <= time.value + step).count();
     let before = &frames[..before.clamp(3, frames.len())];
     let forward = slope(before.iter().map(|frame| (frame.t, frame.x)), sigma);
-    let contact = Contact {
+    Contact {
         time,
         between: fits.between(),
         depth_at_zero: None,
@@ -139,8 +169,7 @@ pub(super) fn fit(
         forward,
         first: all[0].t,
         step,
-    };
-    (fits, contact)
+    }
 }
 
 /// Of few frames: the depth at `zero` alone, on the chord beside it.
@@ -222,11 +251,18 @@ pub(super) fn power_of(shape: &str) -> Option<f64> {
     }
 }
 
+/// The power that follows from the shape, and those beside it.
+fn powers(power: f64) -> [f64; 3] {
+    [(power - 1.0).max(2.0), power, power + 1.0]
+}
+
 /// All fits of one run.
 pub(super) struct Fits {
     /// The time (s) that fits count from, and its scale.
     origin: f64,
     scale: f64,
+    /// Of time, by form.
+    powers: [f64; 3],
     pub(super) all: Vec<Fit>,
     /// Ends of the frames (s).
     ends: [f64; 2],
@@ -237,11 +273,15 @@ pub(super) struct Fits {
 /// The path for one contact and one power.
 pub(super) struct Fit {
     pub(super) contact: f64,
-    pub(super) power: f64,
+    /// Which power, or which other form, the departure has.
+    pub(super) form: usize,
+    /// Chi-squared.
     pub(super) misfit: f64,
-    /// a, b, c, k in units of the scale of time, and what k changes by with time.
-    numbers: Vector5<f64>,
-    covariance: Matrix5<f64>,
+    /// Logarithm of the determinant of the normal matrix with a diagonal of 1; 0 where forms take the same numbers.
+    pub(super) open: f64,
+    /// a, b, c, k in units of the scale of time, and what k changes by with time; k is 0 of a departure by forces.
+    pub(super) numbers: Vector5<f64>,
+    pub(super) covariance: Matrix5<f64>,
 }
 
 impl Fits {
@@ -255,30 +295,41 @@ impl Fits {
         let places = BETWEEN_FRAMES * (frames.len() - 1);
         let place = |k: usize| first + (last - first) * k as f64 / places as f64;
         let mut all = Vec::new();
-        for power in [(power - 1.0).max(2.0), power, power + 1.0] {
+        let powers = powers(power);
+        for form in 0..powers.len() {
             for contact in (0..=places).map(place) {
                 all.extend(Fit::of(
                     frames,
                     (origin, scale),
                     (gravity, doubt, sigma),
-                    (contact, power, bends),
+                    (contact, form, powers[form], bends),
                 ));
             }
         }
+        Self { powers, ..Self::new(all, (origin, scale), frames) }
+    }
+
+    pub(super) fn new(all: Vec<Fit>, (origin, scale): (f64, f64), frames: &[Frame]) -> Self {
+        let ends = [frames[0].t, frames[frames.len() - 1].t];
         let best = all.iter().fold(f64::INFINITY, |best, fit| best.min(fit.misfit));
         // One row more than frames, the acceleration, and five numbers less.
         let freedom = (frames.len() as f64 - 4.0).max(1.0);
         // Few degrees of freedom leave the residuals, and so the errors, uncertain themselves.
         let excess = (best / freedom).max(1.0) * (1.0 + 4.0 / freedom);
-        Self { origin, scale, all, ends: [first, last], excess }
+        Self { origin, scale, powers: [1.0; 3], all, ends, excess }
+    }
+
+    /// Minus twice the logarithm of the likelihood of a contact, the other numbers averaged.
+    pub(super) fn cost(&self, fit: &Fit) -> f64 {
+        fit.misfit / self.excess + fit.open
     }
 
     /// Weighted mean of a number with a variance over all fits.
     fn mean(&self, of: impl Fn(&Fit) -> (f64, f64)) -> Reading {
-        let best = self.all.iter().fold(f64::INFINITY, |best, fit| best.min(fit.misfit));
+        let best = self.all.iter().fold(f64::INFINITY, |best, fit| best.min(self.cost(fit)));
         let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
         for fit in &self.all {
-            let weight = libm::exp(-0.5 * (fit.misfit - best) / self.excess);
+            let weight = libm::exp(-0.5 * (self.cost(fit) - best));
             let (value, variance) = of(fit);
             sum += weight;
             first += weight * value;
@@ -291,10 +342,10 @@ impl Fits {
     /// The earliest and latest contact that fit nearly as well as the best of their power.
     fn between(&self) -> [f64; 2] {
         let mut between = [f64::INFINITY, f64::NEG_INFINITY];
-        for power in self.all.iter().map(|fit| fit.power) {
-            let own = || self.all.iter().filter(|fit| fit.power.total_cmp(&power).is_eq());
-            let best = own().fold(f64::INFINITY, |best, fit| best.min(fit.misfit));
-            for fit in own().filter(|fit| fit.misfit <= best + POSSIBLE * self.excess) {
+        for form in 0..self.powers.len() {
+            let own = || self.all.iter().filter(|fit| fit.form == form);
+            let best = own().fold(f64::INFINITY, |best, fit| best.min(self.cost(fit)));
+            for fit in own().filter(|fit| self.cost(fit) <= best + POSSIBLE) {
                 between = [between[0].min(fit.contact), between[1].max(fit.contact)];
             }
         }
@@ -323,8 +374,21 @@ impl Fits {
     fn whole_velocity(&self, fit: &Fit, time: f64) -> (f64, f64) {
         let t = (time - self.origin) / self.scale;
         let since = ((time - fit.contact) / self.scale).max(0.0);
-        let departure = fit.power * libm::pow(since, fit.power - 1.0);
+        let power = self.powers[fit.form];
+        let departure = power * libm::pow(since, power - 1.0);
         fit.along(Vector5::new(0.0, 1.0, t, -departure, 0.0) / self.scale)
+    }
+
+    /// Depth (m) and velocity (m/s) at `time` (s), the departure from free fall included.
+    fn path(&self, fit: &Fit, time: f64) -> [f64; 2] {
+        let t = (time - self.origin) / self.scale;
+        let since = ((time - fit.contact) / self.scale).max(0.0);
+        let power = self.powers[fit.form];
+        let slower = libm::pow(since, power - 1.0);
+        let at = Vector5::new(1.0, t, 0.5 * t * t, -slower * since, slower * since * since);
+        let bend = (power + 1.0) * slower * since;
+        let along = Vector5::new(0.0, 1.0, t, -power * slower, bend) / self.scale;
+        [at.dot(&fit.numbers), along.dot(&fit.numbers)]
     }
 
     /// Acceleration (m/s²) before the contact, and its variance.
@@ -338,7 +402,7 @@ impl Fit {
         frames: &[Frame],
         (origin, scale): (f64, f64),
         (gravity, doubt, sigma): (f64, f64, f64),
-        (contact, power, bends): (f64, f64, bool),
+        (contact, form, power, bends): (f64, usize, f64, bool),
     ) -> Option<Self> {
         let (mut normal, mut right, mut square) = (Matrix5::zeros(), Vector5::zeros(), 0.0);
         let mut add = |row: Vector5<f64>, value: f64, weight: f64| {
@@ -372,7 +436,7 @@ impl Fit {
             Some(found) => found,
             None => solve(held)?,
         };
-        Some(Self { contact, power, misfit, numbers, covariance })
+        Some(Self { contact, form, misfit, open: 0.0, numbers, covariance })
     }
 
     /// A combination of the numbers, and its variance.

@@ -1,7 +1,9 @@
 //! First contact of a path whose clock and depths count from anywhere.
 
 use super::Frame;
-use super::contact::{Contact, FEWEST, FREE, Fit, fit, power_of};
+use super::braking::Body;
+use super::contact::{Contact, FEWEST, FREE, Fit, fit_braked, power_of};
+use super::fall::Fall;
 use super::reading::Reading;
 use super::smooth::velocity_window;
 
@@ -10,9 +12,6 @@ const FALLING: f64 = 0.4;
 
 /// The same behind it.
 const BEHIND: f64 = 0.55;
-
-/// Most frames, or means of neighbouring ones, that are fitted to.
-const MOST_OF_FALL: usize = 200;
 
 /// First contact of a path whose zeros are not known.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,21 +25,41 @@ pub struct Departure {
 /// A contact that was tried.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Trial {
-    /// Power of time that the path departs with.
-    pub(super) power: f64,
+    /// How the path departs.
+    pub(super) form: usize,
     /// Depth (m) of free fall at the contact.
     pub(super) depth: f64,
-    /// Chi-squared.
+    /// Minus twice the logarithm of its likelihood.
     pub(super) misfit: f64,
 }
 
+/// How well the acceleration before contact is known, relative to gravity, where the fall does not show that guides or air
+/// take more of it; and the standard errors beyond which it does.
+const KNOWN: f64 = 0.05;
+const SHOWN: f64 = 2.0;
+
+/// The same of the fall in `frames`.
+fn doubt(frames: &[Frame], gravity: f64) -> f64 {
+    let beyond = Fall::of_frames(frames).map_or(FREE, |fall| {
+        let Reading { value, se } = fall.acceleration;
+        2.0 * ((value - gravity).abs() - SHOWN * se) / gravity
+    });
+    // An error that is not finite shows nothing.
+    beyond.max(KNOWN).min(FREE)
+}
+
 impl Departure {
-    /// First contact in `frames` of a body of this `shape` that does not spin: times in s on any clock, depths in m
+    /// First contact in `frames` of a body of this `shape` and diameter (m) that does not spin: times in s on any clock, depths in m
     /// downward on any scale, readings good to `sigma` (m), under `gravity` (m/s²). `None` where they do not show
     /// it: fewer than five frames near contact, no fall before it, or a shape whose lowest point does not fall
     /// freely.
     #[must_use]
-    pub fn of_frames(frames: &[Frame], shape: &str, gravity: f64, sigma: f64) -> Option<Self> {
+    pub fn of_frames(
+        frames: &[Frame],
+        (shape, diameter): (&str, f64),
+        gravity: f64,
+        sigma: f64,
+    ) -> Option<Self> {
         let power = power_of(shape)?;
         let near = velocity_window(frames, sigma, BEHIND)?;
         // Nothing is known of the zeros: more of the fall has to tell.
@@ -48,11 +67,13 @@ impl Departure {
         let from = frames.partition_point(|frame| frame.t < start);
         let to = frames.partition_point(|frame| frame.t <= end);
         let all = Some(&frames[from..to]).filter(|all| all.len() >= FEWEST)?;
-        let (fits, contact) = fit(all, (MOST_OF_FALL, true), (gravity, FREE, sigma), power);
+        let body = Body { shape, diameter };
+        let (fits, contact) =
+            fit_braked(all, (gravity, doubt(frames, gravity), sigma), (power, body));
         let trial = |fit: &Fit| Trial {
-            power: fit.power,
+            form: fit.form,
             depth: fits.free(fit, fit.contact).0,
-            misfit: fit.misfit / fits.excess,
+            misfit: fits.cost(fit),
         };
         Some(Self { contact, trials: fits.all.iter().map(trial).collect() })
     }

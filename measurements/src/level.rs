@@ -1,7 +1,7 @@
 //! One level of the surface for several runs, from how their paths depart from free fall.
 //!
-//! A path alone does not say well with which power of time it departs, and so where. Runs into one bed share level
-//! and power: the level that fits all of them is known much better than by each.
+//! A path alone does not say well in which form it departs, and so where. Runs into one bed share level
+//! and form: the level that fits all of them is known much better than by each.
 
 use super::departure::{Departure, Trial};
 use super::reading::Reading;
@@ -16,17 +16,18 @@ const OUT_OF_REACH: f64 = 1e4;
 /// Chi-squared above the least that a look goes on with.
 const NEAR: f64 = 25.0;
 
+/// Chi-squared above that of the best form up to which another is as good, and what each run adds to it.
+const AS_GOOD: (f64, f64) = (9.0, 1.0);
+
 /// A level (m) that all of `runs` may have: the depth of free fall at contact, on their common scale. `None` where
 /// the runs differ by more than their errors, or there are none.
 #[must_use]
 pub fn common_level(runs: &[&Departure]) -> Option<Reading> {
-    let mut powers: Vec<f64> = runs.first()?.trials.iter().map(|trial| trial.power).collect();
-    powers.sort_by(f64::total_cmp);
-    powers.dedup();
-    let curves: Vec<Vec<Curve>> = powers
-        .iter()
-        .map(|power| runs.iter().map(|run| Curve::of(run, *power)).collect())
-        .collect();
+    let mut forms: Vec<usize> = runs.first()?.trials.iter().map(|trial| trial.form).collect();
+    forms.sort_unstable();
+    forms.dedup();
+    let curves: Vec<Vec<Curve>> =
+        forms.iter().map(|form| runs.iter().map(|run| Curve::of(run, *form)).collect()).collect();
     let depths = || runs.iter().map(|run| run.contact.depth);
     let mut low = depths().map(|depth| depth.value - 8.0 * depth.se).fold(f64::INFINITY, f64::min);
     let mut high =
@@ -36,18 +37,19 @@ pub fn common_level(runs: &[&Departure]) -> Option<Reading> {
         let step = (high - low) / (LEVELS - 1) as f64;
         let levels = (0..LEVELS).map(|k| low + step * k as f64);
         let at = |level: f64| {
-            curves.iter().map(move |own| (level, own.iter().map(|one| one.at(level)).sum::<f64>()))
+            let sum = move |own: &Vec<Curve>| own.iter().map(|one| one.at(level)).sum::<f64>();
+            curves.iter().enumerate().map(move |(form, own)| (form, level, sum(own)))
         };
-        tried = levels.flat_map(at).collect::<Vec<(f64, f64)>>();
-        let best = least(tried.iter().map(|one| one.1));
-        let near = || tried.iter().filter(|one| one.1 <= best + NEAR).map(|one| one.0);
+        tried = levels.flat_map(at).collect::<Vec<(usize, f64, f64)>>();
+        let best = least(tried.iter().map(|one| one.2));
+        let near = || tried.iter().filter(|one| one.2 <= best + NEAR).map(|one| one.1);
         let ends = (least(near()) - step, near().fold(f64::NEG_INFINITY, f64::max) + step);
         if ends.1 - ends.0 > 0.5 * (high - low) {
             break;
         }
         (low, high) = ends;
     }
-    let best = least(tried.iter().map(|one| one.1));
+    let best = least(tried.iter().map(|one| one.2));
     let own = |curve: &Curve| least(curve.0.iter().map(|one| one.1));
     let apart = least(curves.iter().map(|curves| curves.iter().map(own).sum()));
     let freedom = (runs.len() - 1) as f64;
@@ -55,28 +57,35 @@ pub fn common_level(runs: &[&Departure]) -> Option<Reading> {
     if best - apart > freedom + 6.0 * (2.0 * freedom).sqrt() {
         return None;
     }
-    let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
-    for (level, misfit) in tried {
-        let weight = libm::exp(-0.5 * (misfit - best));
-        let off = level - low;
-        sum += weight;
-        first += weight * off;
-        second += weight * off * off;
+    let of_form = |form: usize| {
+        let own = tried.iter().filter(move |one| one.0 == form);
+        let best = least(own.clone().map(|one| one.2));
+        (best, own.map(move |&(_, level, misfit)| (level - low, libm::exp(-0.5 * (misfit - best)))))
+    };
+    // No bed takes one of the forms exactly: those that come near tell as much as the best.
+    let near = AS_GOOD.0 + AS_GOOD.1 * runs.len() as f64;
+    let forms = (0..curves.len()).map(of_form).filter(|(own, _)| own - best <= near);
+    let (mut n, mut mean, mut square) = (0.0, 0.0, 0.0);
+    for (_, own) in forms {
+        let sum = own.clone().map(|(_, weight)| weight).sum::<f64>();
+        n += 1.0;
+        mean += own.clone().map(|(off, weight)| weight * off).sum::<f64>() / sum;
+        square += own.map(|(off, weight)| weight * off * off).sum::<f64>() / sum;
     }
-    let mean = first / sum;
-    Some(Reading { value: low + mean, se: (second / sum - mean * mean).max(0.0).sqrt() })
+    (mean, square) = (mean / n, square / n);
+    Some(Reading { value: low + mean, se: (square - mean * mean).max(0.0).sqrt() })
 }
 
 fn least(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(f64::INFINITY, f64::min)
 }
 
-/// Chi-squared of one run over the level, for one power.
+/// Chi-squared of one run over the level, for one form.
 struct Curve(Vec<(f64, f64)>);
 
 impl Curve {
-    fn of(run: &Departure, power: f64) -> Self {
-        let own = run.trials.iter().filter(|trial| trial.power.total_cmp(&power).is_eq());
+    fn of(run: &Departure, form: usize) -> Self {
+        let own = run.trials.iter().filter(|trial| trial.form == form);
         let mut points: Vec<(f64, f64)> =
             own.map(|&Trial { depth, misfit, .. }| (depth, misfit)).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -16,6 +16,7 @@ mod agreement;
 mod angular_velocity;
 mod beds;
 mod bodies;
+mod braking;
 mod cells;
 mod checks;
 mod columns;

@@ -263,11 +263,7 @@ fn columns(
     })
 }
 
-fn states(
-    bench: &Bench<'_>,
-    grid: &Grid,
-    (condition, nodes): (usize, &[usize]),
-) -> Vec<State> {
+fn states(bench: &Bench<'_>, grid: &Grid, (condition, nodes): (usize, &[usize])) -> Vec<State> {
     let gravity = bench.set.bed_of(&bench.set.conditions[condition]).gravity;
     let nodes = nodes.iter().map(|&node| grid.node(node));
     nodes

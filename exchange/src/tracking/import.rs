@@ -102,14 +102,15 @@ fn see(
     let frames = scales.in_si(&one.path);
     let noise = (one.path.noise() * scales.length.1).max(1e-6);
     let shape = one.body.shape.as_str();
-    let departure = motion::contact(&frames, (shape, noise), settings.gravity).map_err(|why| {
-        let what = format!("the run {}: {why}", one.name);
-        Fault::new(
-            &one.path.track.file,
-            what,
-            format!("--leave-out {} goes on without it", one.name),
-        )
-    })?;
+    let departure = motion::contact(&frames, ((shape, one.body.diameter), noise), settings.gravity)
+        .map_err(|why| {
+            let what = format!("the run {}: {why}", one.name);
+            Fault::new(
+                &one.path.track.file,
+                what,
+                format!("--leave-out {} goes on without it", one.name),
+            )
+        })?;
     let below_centre = one.body.below_centre();
     let lift = match (settings.tracked, below_centre, settings.text("surface")) {
         (Tracked::Lowest, ..) | (_, _, None) => 0.0,

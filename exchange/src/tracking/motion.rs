@@ -124,16 +124,16 @@ fn clock(samples: &[Sample], track: &Track, settings: &Settings<'_>) -> Vec<f64>
     }
 }
 
-/// First contact on a path in SI whose readings are good to `noise` (m), of a body of this `shape`.
+/// First contact on a path in SI whose readings are good to `noise` (m), of a body of this `shape` and `diameter` (m).
 ///
 /// # Errors
 /// What its frames lack.
 pub(super) fn contact(
     frames: &[Frame],
-    (shape, noise): (&str, f64),
+    ((shape, diameter), noise): ((&str, f64), f64),
     gravity: f64,
 ) -> Result<Departure, &'static str> {
-    let departure = Departure::of_frames(frames, shape, gravity, noise)
+    let departure = Departure::of_frames(frames, (shape, diameter), gravity, noise)
         .ok_or("too few frames are near the greatest speed to see a contact")?;
     let contact = &departure.contact;
     let time = contact.time;
@@ -142,7 +142,7 @@ pub(super) fn contact(
         [first, .., last] => (last.z - first.z) / (last.t - first.t),
         _ => f64::INFINITY,
     };
-    let error = (2.0 * time.se).max(2.0 * contact.step);
+    let error = (3.0 * time.se).max(2.0 * contact.step);
     match () {
         () if speed > BRAKED * contact.falling.value => {
             Err("the body is never braked: the frames behind contact are missing")

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use exchange::tracking::{IMPORT_FILE, ImportFile, Options, Set, import};
 use measurements::MeasurementSet;
 
-use crate::world::{Camera, Drop, drop};
+use crate::world::{Camera, Drop, Meets, drop_into};
 
 /// Level of the surface on the axis of the tables (cm).
 const LEVEL: f64 = 18.4;
@@ -21,13 +21,14 @@ pub(crate) fn ball() -> Options {
 }
 
 /// Tables in cm and ms with y upward, decimal commas and semicolons, of drops from four heights, three times each.
-fn write_tables(folder: &Path, seed: u64) -> Vec<(PathBuf, Drop)> {
+fn write_tables(folder: &Path, meets: Meets, seed: u64) -> Vec<(PathBuf, Drop)> {
     let mut all = Vec::new();
     for (at, height) in [0.05, 0.1, 0.2, 0.4].into_iter().enumerate() {
         for repeat in 0..3_u32 {
             let seed = 100 * seed + 10 * at as u64 + u64::from(repeat);
             let hold = 0.3 + 0.013 * f64::from(repeat);
-            let one = drop(height, Camera { hold, duration: 1.0, seed, ..Camera::USUAL });
+            let one =
+                drop_into(meets, height, Camera { hold, duration: 1.0, seed, ..Camera::USUAL });
             let mut text = String::from("\u{feff}t (ms);y (cm)\r\n");
             for (t, z) in &one.readings {
                 let row = format!("{:.3};{:.4}\r\n", 1e3 * t, LEVEL + 1e2 * z);
@@ -61,25 +62,36 @@ fn misses(set: &Set, drops: &[(PathBuf, Drop)]) -> Vec<[f64; 2]> {
 
 #[test]
 fn contact_speed_and_level_are_found_within_their_errors() {
-    let mut all = Vec::new();
-    for seed in 1..7 {
-        let here = tempfile::tempdir().expect("a folder");
-        let drops = write_tables(here.path(), seed);
-        let paths: Vec<PathBuf> = drops.iter().map(|(path, _)| path.clone()).collect();
-        let set = imported(&paths, &ball(), &here.path().join("set"));
-        all.extend(misses(&set, &drops));
-    }
-    for which in [0, 1] {
-        let square = all.iter().map(|miss| miss[which].powi(2)).sum::<f64>() / all.len() as f64;
-        let worst = all.iter().map(|miss| miss[which].abs()).fold(0.0, f64::max);
-        assert!((0.05..2.5).contains(&square) && worst < 4.0, "{which}: {square}, {worst}");
+    for meets in [Meets::Whole, Meets::Section] {
+        let mut all = Vec::new();
+        for seed in 1..7 {
+            let here = tempfile::tempdir().expect("a folder");
+            let drops = write_tables(here.path(), meets, seed);
+            let paths: Vec<PathBuf> = drops.iter().map(|(path, _)| path.clone()).collect();
+            let set = imported(&paths, &ball(), &here.path().join("set"));
+            all.extend(misses(&set, &drops));
+            // Where the surface is, the contacts are not refused.
+            let mut stated = ball();
+            stated.set("surface", format!("{LEVEL} cm"));
+            let set = imported(&paths, &stated, &here.path().join("stated"));
+            let off = |one: &[f64; 2]| one[1].abs() < 5.0;
+            assert!(misses(&set, &drops).iter().all(off), "{meets:?}, {seed}");
+        }
+        for which in [0, 1] {
+            let square = all.iter().map(|miss| miss[which].powi(2)).sum::<f64>() / all.len() as f64;
+            let worst = all.iter().map(|miss| miss[which].abs()).fold(0.0, f64::max);
+            assert!(
+                (0.05..2.5).contains(&square) && worst < 4.0,
+                "{meets:?}, {which}: {square}, {worst}"
+            );
+        }
     }
 }
 
 #[test]
 fn an_import_is_repeated_to_the_byte() {
     let here = tempfile::tempdir().expect("a folder");
-    let drops = write_tables(here.path(), 1);
+    let drops = write_tables(here.path(), Meets::Whole, 1);
     let paths: Vec<PathBuf> = drops.iter().map(|(path, _)| path.clone()).collect();
     let mut options = ball();
     options.set("condition", "h{height}_r{repeat}");

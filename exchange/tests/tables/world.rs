@@ -7,6 +7,27 @@ pub(crate) const GRAVITY: f64 = 9.81;
 const MASS: f64 = 0.067;
 const LAW: [f64; 3] = [1.6, 35.0, 0.5];
 
+/// Diameter (m).
+const DIAMETER: f64 = 0.0254;
+
+/// What of the ball the bed meets: all of it from first contact on, or its section in the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Meets {
+    Whole,
+    Section,
+}
+
+impl Meets {
+    fn share(self, depth: f64) -> f64 {
+        match self {
+            Self::Section if depth < 0.5 * DIAMETER => {
+                4.0 * depth.max(0.0) * (DIAMETER - depth) / (DIAMETER * DIAMETER)
+            }
+            _ => 1.0,
+        }
+    }
+}
+
 /// Step (s).
 const STEP: f64 = 1e-5;
 
@@ -57,6 +78,11 @@ impl Noise {
 /// A ball that is held at `height` (m) above the surface, falls, and is stopped by the bed, whose coefficients
 /// scatter by 3 % from run to run.
 pub(crate) fn drop(height: f64, camera: Camera) -> Drop {
+    drop_into(Meets::Whole, height, camera)
+}
+
+/// The same where the bed meets `meets` of the ball.
+pub(crate) fn drop_into(meets: Meets, height: f64, camera: Camera) -> Drop {
     let mut noise = Noise(camera.seed.wrapping_mul(7919).wrapping_add(17));
     let [b, k, c] = LAW.map(|one| one * (1.0 + 0.03 * noise.normal()));
     let fall = (2.0 * height / GRAVITY).sqrt();
@@ -65,7 +91,7 @@ pub(crate) fn drop(height: f64, camera: Camera) -> Drop {
     let mut depths = vec![0.0];
     let (mut depth, mut velocity) = (0.0, speed);
     while velocity > 0.0 {
-        let pull = |v: f64, z: f64| GRAVITY - (b * v * v + k * z + c) / MASS;
+        let pull = |v: f64, z: f64| GRAVITY - (meets.share(z) * (b * v * v + c) + k * z) / MASS;
         let middle = velocity + 0.5 * STEP * pull(velocity, depth);
         depth += STEP * middle;
         velocity += STEP * pull(middle, depth - 0.5 * STEP * middle);

@@ -1,0 +1,215 @@
+//! First contact of a path by what a bed takes from its fall.
+//!
+//! From contact on the body is braked by `s k₁ v² + k₂ z + s k₃` per unit mass: a drag that is not negative, a resistance
+//! that grows with depth, and friction. The share `s` of the body that meets the bed is that of its section at the depth
+//! `z`, or the whole at once: beds and their models lie at these ends and in between. A power of time is not enough: it goes
+//! on to grow where the section does not.
+
+use nalgebra::{Matrix5, Matrix6, Vector5, Vector6};
+
+use super::Frame;
+use super::contact::{BETWEEN_FRAMES, Fit};
+
+/// Steps between two readings that forces are integrated in.
+const STEPS: usize = 3;
+
+/// Weight that holds a force at zero, and one by which no number is undetermined, in units of what readings tell.
+const HELD: f64 = 1e9;
+const LOOSE: f64 = 1e-9;
+
+/// Share of what a force does by which it has to differ from others to count as another.
+const ALIKE: f64 = 0.01;
+
+/// Forces that are held at zero, by their place among the numbers: friction, what grows with depth, or both.
+const WITHOUT: [&[usize]; 4] = [&[], &[5], &[4], &[4, 5]];
+
+/// How the share of the body that meets the bed follows from that of its section.
+const EXPOSURES: [fn(f64) -> f64; 2] = [|_| 1.0, |section| section];
+
+/// What falls.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Body<'a> {
+    pub(super) shape: &'a str,
+    /// (m)
+    pub(super) diameter: f64,
+}
+
+impl Body<'_> {
+    /// Section in the surface over the largest, `depth` (m) below first contact.
+    fn section(self, depth: f64) -> f64 {
+        let share = (depth / self.diameter).max(0.0);
+        let chord = |share: f64| if share < 0.5 { 4.0 * share * (1.0 - share) } else { 1.0 };
+        match self.shape {
+            "sphere" | "hemisphere" => chord(share),
+            "disc" => chord(share).sqrt(),
+            "cone" => (2.0 * share).min(1.0).powi(2),
+            _ => 1.0,
+        }
+    }
+}
+
+/// The readings that are fitted to.
+pub(super) struct Readings<'a> {
+    pub(super) frames: &'a [Frame],
+    /// Acceleration of the fall (m/s²), its relative error, and the error of a reading (m).
+    pub(super) known: (f64, f64, f64),
+    /// The time (s) that fits count from, and its scale.
+    pub(super) scale: (f64, f64),
+}
+
+/// A path between readings.
+pub(super) struct Path {
+    /// Times (s), depths (m) and velocities (m/s).
+    readings: Vec<[f64; 3]>,
+}
+
+impl Path {
+    /// Depth (m) and velocity (m/s) at `time` (s), by the cubic between the readings around it.
+    pub(super) fn at(&self, time: f64) -> [f64; 2] {
+        let all = &self.readings;
+        let behind = all.partition_point(|one| one[0] <= time).clamp(1, all.len() - 1);
+        let [[t0, z0, v0], [t1, z1, v1]] = [all[behind - 1], all[behind]];
+        let step = t1 - t0;
+        let s = (time - t0) / step;
+        let [mean, bend] = [(z1 - z0) / step, v0 + v1 - 2.0 * (z1 - z0) / step];
+        let curve = 3.0 * mean - 2.0 * v0 - v1;
+        [z0 + step * s * (v0 + s * (curve + s * bend)), v0 + s * (2.0 * curve + 3.0 * s * bend)]
+    }
+}
+
+/// Fits for all contacts and exposures, and the path of the best. `path` is the depth (m) and the velocity (m/s) at a time
+/// (s), near enough to know forces by.
+pub(super) fn fits(
+    readings: &Readings<'_>,
+    body: Body<'_>,
+    path: impl Fn(f64) -> [f64; 2],
+) -> (Vec<Fit>, Path) {
+    let frames = readings.frames;
+    let (first, last) = (frames[0].t, frames[frames.len() - 1].t);
+    let places = BETWEEN_FRAMES * (frames.len() - 1);
+    let contacts = (0..=places).map(|k| first + (last - first) * k as f64 / places as f64);
+    let mut fits: Vec<Fit> = Vec::with_capacity(EXPOSURES.len() * (places + 1));
+    let mut best = (f64::INFINITY, Path { readings: Vec::new() });
+    for contact in contacts {
+        let [level, _] = path(contact);
+        for (form, exposure) in EXPOSURES.iter().enumerate() {
+            let forces = |time: f64| {
+                let [z, v] = path(time);
+                let share = exposure(body.section(z - level));
+                [share * v * v, (z - level).max(0.0), share]
+            };
+            let braked = braked(readings, contact, forces);
+            let behind = frames.iter().filter(|frame| frame.t > contact);
+            let there: Vec<[f64; 3]> = behind.map(|frame| forces(frame.t)).collect();
+            let Some((fit, strengths)) = solved(readings, (contact, form), (&braked, &there))
+            else {
+                continue;
+            };
+            if fit.misfit < best.0 {
+                best = (fit.misfit, readings.path(&fit, &braked, strengths));
+            }
+            fits.push(fit);
+        }
+    }
+    (fits, best.1)
+}
+
+/// By how much each of three forces of size one has braked the body at a reading: its way, in units of the scale of time
+/// squared, and its speed, in units of the scale.
+#[derive(Clone, Copy)]
+struct Braked {
+    way: [f64; 3],
+    speed: [f64; 3],
+}
+
+impl Readings<'_> {
+    /// The path of `fit`, with forces of these `strengths`.
+    fn path(&self, fit: &Fit, braked: &[Braked], strengths: [f64; 3]) -> Path {
+        let (origin, scale) = self.scale;
+        let [a, b, c] = [0, 1, 2].map(|k| fit.numbers[k]);
+        let sum = |of: &[f64; 3]| of.iter().zip(strengths).map(|(one, k)| one * k).sum::<f64>();
+        let reading = |(frame, by): (&Frame, &Braked)| {
+            let t = (frame.t - origin) / scale;
+            let depth = a + t * (b + 0.5 * c * t) - sum(&by.way);
+            [frame.t, depth, (b + c * t - sum(&by.speed)) / scale]
+        };
+        Path { readings: self.frames.iter().zip(braked).map(reading).collect() }
+    }
+}
+
+/// What three `forces` of size one, at a time (s), do from `contact` on.
+fn braked(readings: &Readings<'_>, contact: f64, forces: impl Fn(f64) -> [f64; 3]) -> Vec<Braked> {
+    let (mut way, mut speed, mut now) = ([0.0; 3], [0.0; 3], contact);
+    let mut all = Vec::with_capacity(readings.frames.len());
+    for frame in readings.frames {
+        if frame.t > now {
+            let time = (frame.t - now) / STEPS as f64;
+            let step = time / readings.scale.1;
+            for _ in 0..STEPS {
+                let at = forces(now + 0.5 * time);
+                for k in 0..3 {
+                    way[k] += step * (speed[k] + 0.5 * step * at[k]);
+                    speed[k] += step * at[k];
+                }
+                now += time;
+            }
+        }
+        all.push(Braked { way, speed });
+    }
+    all
+}
+
+/// The fit with forces that brake the body as `braked` says and are `forces` at the readings behind contact, and how
+/// strong they are.
+fn solved(
+    readings: &Readings<'_>,
+    (contact, form): (f64, usize),
+    (braked, forces): (&[Braked], &[[f64; 3]]),
+) -> Option<(Fit, [f64; 3])> {
+    let Readings { frames, known: (gravity, doubt, sigma), scale: (origin, scale) } = *readings;
+    // Depths from anywhere would drown what the readings tell.
+    let middle = frames[frames.len() / 2].z;
+    let reading = |(frame, Braked { way: [drag, depth, friction], .. }): (&Frame, &Braked)| {
+        let t = (frame.t - origin) / scale;
+        let row = Vector6::new(1.0, t, 0.5 * t * t, -drag, -depth, -friction);
+        (row / sigma, (frame.z - middle) / sigma)
+    };
+    let mut rows: Vec<(Vector6<f64>, f64)> = frames.iter().zip(braked).map(reading).collect();
+    let [known, doubt] = [gravity, doubt * gravity.max(1.0)].map(|of| of * scale * scale);
+    rows.push((Vector6::new(0.0, 0.0, 1.0 / doubt, 0.0, 0.0, 0.0), known / doubt));
+    let normal: Matrix6<f64> = rows.iter().map(|(row, _)| row * row.transpose()).sum();
+    let right: Vector6<f64> = rows.iter().map(|(row, value)| row * *value).sum();
+    // In units of what each tells, numbers are of one size.
+    let unit = normal.diagonal().map(|own| if own > 0.0 { own.sqrt().recip() } else { 1.0 });
+    let units = Matrix6::from_diagonal(&unit);
+    let scaled = units * normal * units + Matrix6::from_diagonal_element(LOOSE);
+    let solve = |held: &[usize]| {
+        let mut scaled = scaled;
+        held.iter().for_each(|&force| scaled[(force, force)] += HELD);
+        let covariance = units * scaled.cholesky()?.inverse() * units;
+        let numbers: Vector6<f64> = covariance * right;
+        let misfit: f64 = rows.iter().map(|(row, value)| (row.dot(&numbers) - value).powi(2)).sum();
+        Some((numbers, covariance, misfit))
+    };
+    // A bed never pushes a body on.
+    let brakes = |numbers: &Vector6<f64>| {
+        numbers[3] >= 0.0
+            && forces
+                .iter()
+                .all(|force| (0..3).map(|k| numbers[3 + k] * force[k]).sum::<f64>() >= 0.0)
+    };
+    let tried = WITHOUT.iter().filter_map(|held| solve(held)).filter(|one| brakes(&one.0));
+    let (numbers, covariance, misfit) = match tried.min_by(|a, b| a.2.total_cmp(&b.2)) {
+        Some(found) => found,
+        None => solve(&[3, 4, 5])?,
+    };
+    let (mut own, mut spread) = (Vector5::zeros(), Matrix5::zeros());
+    own.fixed_rows_mut::<3>(0).copy_from(&numbers.fixed_rows::<3>(0));
+    own[0] += middle;
+    spread.fixed_view_mut::<3, 3>(0, 0).copy_from(&covariance.fixed_view::<3, 3>(0, 0));
+    // The likelihood of a contact is averaged over the numbers, each as wide beforehand as what it does. The best numbers
+    // alone would favour contacts at which forces imitate one another.
+    let open = (scaled + Matrix6::from_diagonal_element(ALIKE)).cholesky()?.ln_determinant();
+    let fit = Fit { contact, form, misfit, open, numbers: own, covariance: spread };
+    Some((fit, [numbers[3], numbers[4], numbers[5]]))
+}
