@@ -17,9 +17,6 @@ const STEPS: usize = 3;
 const HELD: f64 = 1e9;
 const LOOSE: f64 = 1e-9;
 
-/// Share of what a force does by which it has to differ from others to count as another.
-const ALIKE: f64 = 0.01;
-
 /// Forces that are held at zero, by their place among the numbers: friction, what grows with depth, or both.
 const WITHOUT: [&[usize]; 4] = [&[], &[5], &[4], &[4, 5]];
 
@@ -207,9 +204,6 @@ fn solved(
     own.fixed_rows_mut::<3>(0).copy_from(&numbers.fixed_rows::<3>(0));
     own[0] += middle;
     spread.fixed_view_mut::<3, 3>(0, 0).copy_from(&covariance.fixed_view::<3, 3>(0, 0));
-    // The likelihood of a contact is averaged over the numbers, each as wide beforehand as what it does. The best numbers
-    // alone would favour contacts at which forces imitate one another.
-    let open = (scaled + Matrix6::from_diagonal_element(ALIKE)).cholesky()?.ln_determinant();
-    let fit = Fit { contact, form, misfit, open, numbers: own, covariance: spread };
+    let fit = Fit { contact, form, misfit, numbers: own, covariance: spread };
     Some((fit, [numbers[3], numbers[4], numbers[5]]))
 }

@@ -277,8 +277,6 @@ pub(super) struct Fit {
     pub(super) form: usize,
     /// Chi-squared.
     pub(super) misfit: f64,
-    /// Logarithm of the determinant of the normal matrix with a diagonal of 1; 0 where forms take the same numbers.
-    pub(super) open: f64,
     /// a, b, c, k in units of the scale of time, and what k changes by with time; k is 0 of a departure by forces.
     pub(super) numbers: Vector5<f64>,
     pub(super) covariance: Matrix5<f64>,
@@ -319,17 +317,12 @@ impl Fits {
         Self { origin, scale, powers: [1.0; 3], all, ends, excess }
     }
 
-    /// Minus twice the logarithm of the likelihood of a contact, the other numbers averaged.
-    pub(super) fn cost(&self, fit: &Fit) -> f64 {
-        fit.misfit / self.excess + fit.open
-    }
-
     /// Weighted mean of a number with a variance over all fits.
     fn mean(&self, of: impl Fn(&Fit) -> (f64, f64)) -> Reading {
-        let best = self.all.iter().fold(f64::INFINITY, |best, fit| best.min(self.cost(fit)));
+        let best = self.all.iter().fold(f64::INFINITY, |best, fit| best.min(fit.misfit));
         let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
         for fit in &self.all {
-            let weight = libm::exp(-0.5 * (self.cost(fit) - best));
+            let weight = libm::exp(-0.5 * (fit.misfit - best) / self.excess);
             let (value, variance) = of(fit);
             sum += weight;
             first += weight * value;
@@ -344,8 +337,8 @@ impl Fits {
         let mut between = [f64::INFINITY, f64::NEG_INFINITY];
         for form in 0..self.powers.len() {
             let own = || self.all.iter().filter(|fit| fit.form == form);
-            let best = own().fold(f64::INFINITY, |best, fit| best.min(self.cost(fit)));
-            for fit in own().filter(|fit| self.cost(fit) <= best + POSSIBLE) {
+            let best = own().fold(f64::INFINITY, |best, fit| best.min(fit.misfit));
+            for fit in own().filter(|fit| fit.misfit <= best + POSSIBLE * self.excess) {
                 between = [between[0].min(fit.contact), between[1].max(fit.contact)];
             }
         }
@@ -436,7 +429,7 @@ impl Fit {
             Some(found) => found,
             None => solve(held)?,
         };
-        Some(Self { contact, form, misfit, open: 0.0, numbers, covariance })
+        Some(Self { contact, form, misfit, numbers, covariance })
     }
 
     /// A combination of the numbers, and its variance.

@@ -29,7 +29,7 @@ pub(super) struct Trial {
     pub(super) form: usize,
     /// Depth (m) of free fall at the contact.
     pub(super) depth: f64,
-    /// Minus twice the logarithm of its likelihood.
+    /// Chi-squared.
     pub(super) misfit: f64,
 }
 
@@ -73,7 +73,7 @@ impl Departure {
         let trial = |fit: &Fit| Trial {
             form: fit.form,
             depth: fits.free(fit, fit.contact).0,
-            misfit: fits.cost(fit),
+            misfit: fit.misfit / fits.excess,
         };
         Some(Self { contact, trials: fits.all.iter().map(trial).collect() })
     }

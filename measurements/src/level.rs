@@ -58,22 +58,23 @@ pub fn common_level(runs: &[&Departure]) -> Option<Reading> {
         return None;
     }
     let of_form = |form: usize| {
-        let own = tried.iter().filter(move |one| one.0 == form);
-        let best = least(own.clone().map(|one| one.2));
-        (best, own.map(move |&(_, level, misfit)| (level - low, libm::exp(-0.5 * (misfit - best)))))
+        let own = || tried.iter().filter(|one| one.0 == form);
+        let best = least(own().map(|one| one.2));
+        let weight = |misfit: f64| libm::exp(-0.5 * (misfit - best));
+        let sum = |power: i32| own().map(|one| weight(one.2) * (one.1 - low).powi(power)).sum();
+        let [all, first, second]: [f64; 3] = [0, 1, 2].map(sum);
+        (best, first / all, second / all - (first / all).powi(2))
     };
     // No bed takes one of the forms exactly: those that come near tell as much as the best.
-    let near = AS_GOOD.0 + AS_GOOD.1 * runs.len() as f64;
-    let forms = (0..curves.len()).map(of_form).filter(|(own, _)| own - best <= near);
-    let (mut n, mut mean, mut square) = (0.0, 0.0, 0.0);
-    for (_, own) in forms {
-        let sum = own.clone().map(|(_, weight)| weight).sum::<f64>();
-        n += 1.0;
-        mean += own.clone().map(|(off, weight)| weight * off).sum::<f64>() / sum;
-        square += own.map(|(off, weight)| weight * off * off).sum::<f64>() / sum;
-    }
-    (mean, square) = (mean / n, square / n);
-    Some(Reading { value: low + mean, se: (square - mean * mean).max(0.0).sqrt() })
+    let as_good = AS_GOOD.0 + AS_GOOD.1 * runs.len() as f64;
+    let forms = (0..curves.len()).map(of_form).filter(|one| one.0 - best <= as_good);
+    let (means, variances): (Vec<f64>, Vec<f64>) = forms.map(|one| (one.1, one.2)).unzip();
+    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
+    let range =
+        means.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least(means.iter().copied());
+    // A bed may differ from both forms as they do from each other: every level within their range of the mean is as likely.
+    let se = (mean(&variances).max(0.0) + range * range / 3.0).sqrt();
+    Some(Reading { value: low + mean(&means), se })
 }
 
 fn least(values: impl Iterator<Item = f64>) -> f64 {
