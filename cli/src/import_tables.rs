@@ -74,7 +74,10 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         Some(path) => {
             let file = ImportFile::read(path).map_err(failed)?;
             file.refuse_changed().map_err(failed)?;
-            (file.files, file.options, path.parent().map(Path::to_owned))
+            // What is typed beside it stands above what it says.
+            let mut options = file.options;
+            options.take(args.tables.options()?);
+            (file.files, options, path.parent().map(Path::to_owned))
         }
         None => (args.files.clone(), args.tables.options()?, None),
     };
@@ -96,7 +99,11 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         return Err(stopped(BEGINS_AGAIN));
     }
     set.write(&out).map_err(failed)?;
-    let loaded = MeasurementSet::load(&out)?;
+    let loaded = MeasurementSet::load(&out).inspect_err(|_| {
+        if !is_there {
+            set.remove(&out);
+        }
+    })?;
     if !args.quiet {
         output::to_stderr(&loaded.render_warnings(stderr_color()));
     }

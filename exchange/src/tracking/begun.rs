@@ -4,7 +4,7 @@ use std::path::{Path as File, PathBuf};
 
 use super::bodies::{Bodies, Body};
 use super::fault::Fault;
-use super::motion::Path;
+use super::motion::{FEWEST, Path};
 use super::settings::Settings;
 use super::track::Track;
 use super::{inputs, layouts};
@@ -30,7 +30,8 @@ pub(super) fn tracks(
             let mut tracks = Vec::new();
             for sheet in inputs::sheets(path, &bytes)? {
                 let found = layouts::tracks(&sheet, &settings.columns)?;
-                tracks.extend(found.into_iter().map(|track| named(track, path)));
+                let found = without_short(found).into_iter();
+                tracks.extend(found.map(|track| named(track, path)));
             }
             Ok((tracks, blake3::hash(&bytes).to_hex().to_string()))
         };
@@ -43,6 +44,24 @@ pub(super) fn tracks(
         }
     }
     if faults.is_empty() { Ok((all, hashes)) } else { Err(faults) }
+}
+
+/// Without tracks that are no drops: spots that a program followed for a few frames, lines of sums. A table of such tracks
+/// alone is left as it is.
+fn without_short(mut tracks: Vec<Track>) -> Vec<Track> {
+    let is_short = |track: &Track| track.samples.len() < FEWEST;
+    if tracks.iter().all(is_short) {
+        return tracks;
+    }
+    let name = |track: &Track| track.name.clone().unwrap_or_else(|| track.stem.clone());
+    let short: Vec<String> = tracks.iter().filter(|one| is_short(one)).map(name).collect();
+    tracks.retain(|track| !is_short(track));
+    if !short.is_empty() {
+        let names = short.join(", ");
+        let note = format!("{names}: fewer than {FEWEST} readings, left out");
+        tracks.iter_mut().take(1).for_each(|first| first.notes.push(note.clone()));
+    }
+    tracks
 }
 
 /// A track of a sheet of its own is called by the file and the sheet.
@@ -63,9 +82,10 @@ pub(super) fn begin(
     settings: &Settings<'_>,
 ) -> Result<Vec<Begun>, Vec<Fault>> {
     let names = names(&tracks);
+    refuse_unknown(&settings.leave_out, &names)?;
     let (mut begun, mut faults) = (Vec::new(), Vec::new());
     for (track, name) in tracks.into_iter().zip(names) {
-        if settings.leave_out.contains(&name) {
+        if settings.leave_out.iter().any(|pattern| pattern.matches(&name)) {
             continue;
         }
         let one = || -> Result<Begun, Fault> {
@@ -85,6 +105,21 @@ pub(super) fn begin(
         (true, true) => Err(vec![Fault::new("--leave-out", "no run is left", "leave out fewer")]),
         (false, true) => Ok(begun),
     }
+}
+
+/// Refuses runs to leave out that are not there.
+fn refuse_unknown(patterns: &[glob::Pattern], names: &[String]) -> Result<(), Vec<Fault>> {
+    let fits = |pattern: &&glob::Pattern| names.iter().any(|name| pattern.matches(name));
+    let unknown = patterns.iter().filter(|pattern| !fits(pattern));
+    let fault = |pattern: &glob::Pattern| {
+        let right = match configs::nearest(pattern.as_str(), names.iter().map(String::as_str)) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("runs: {}", configs::shorten(&names.join(", "))),
+        };
+        Fault::new("--leave-out", format!("no run is called `{pattern}`"), right)
+    };
+    let faults: Vec<Fault> = unknown.map(fault).collect();
+    if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
 
 /// Names of runs: those of the tables where no two are alike, else behind the name of their file.

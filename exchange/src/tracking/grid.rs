@@ -27,8 +27,12 @@ pub(super) struct Places {
 impl<'a> Grid<'a> {
     /// The sheet whose header is the row `header` and whose units are in the row `units`.
     pub(super) fn below(sheet: &'a Sheet, header: usize, units: Option<usize>) -> Self {
-        let mut headings: Vec<Heading> =
-            sheet.rows[header].cells.iter().map(|name| Heading::of(name)).collect();
+        // The mark of a comment is no name of a column.
+        let names = match &sheet.rows[header].cells[..] {
+            [mark, names @ ..] if mark == "#" => names,
+            names => names,
+        };
+        let mut headings: Vec<Heading> = names.iter().map(|name| Heading::of(name)).collect();
         if let Some(units) = units {
             for (heading, unit) in headings.iter_mut().zip(&sheet.rows[units].cells) {
                 heading.unit = Unit::of(unit);
@@ -48,6 +52,9 @@ impl<'a> Grid<'a> {
             let right = "a line of names such as t (ms),y (cm), then rows of numbers";
             return Err(sheet.fault("no row of numbers is found", right));
         };
+        // Readings without a position may stand before the first that has one.
+        let is_reading = |row: &&Row| sheet.is_numeric(row, 1) && !sheet.has_words(row);
+        let first = first - sheet.rows[..first].iter().rev().take_while(is_reading).count();
         let width = sheet.rows[first].cells.len();
         let is_header = |row: &Row| {
             let named = row.cells.iter().filter(|cell| !cell.is_empty()).count();
@@ -96,8 +103,18 @@ impl<'a> Grid<'a> {
     /// The column that is called `name`, with or without its unit.
     pub(super) fn named(&self, name: &str) -> Result<usize, Fault> {
         let lower = name.trim().to_lowercase();
-        let is_it = |one: &Heading| one.name.to_lowercase() == lower || one.stem == lower;
-        self.headings.iter().position(is_it).ok_or_else(|| {
+        let with = |is_it: &dyn Fn(&Heading) -> bool| -> Vec<usize> {
+            (0..self.headings.len()).filter(|at| is_it(&self.headings[*at])).collect()
+        };
+        let mut all = with(&|one| one.name.to_lowercase() == lower);
+        if all.is_empty() {
+            all = with(&|one| one.stem == lower);
+        }
+        if all.len() > 1 {
+            let what = format!("{} columns are called `{name}`", all.len());
+            return Err(self.sheet.fault(what, "give each a name of its own in the table"));
+        }
+        all.first().copied().ok_or_else(|| {
             let names: Vec<&str> = self.headings.iter().map(|one| one.name.as_str()).collect();
             let near = configs::nearest(name, names.iter().copied());
             let right = match near {

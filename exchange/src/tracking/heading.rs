@@ -144,7 +144,8 @@ fn stem_and_unit(bare: &str) -> (&str, Unit) {
         && let Some((stem, unit)) = bare.rsplit_once(['/', '_', ' '])
         && let Some(unit) = Unit::maybe(unit)
     {
-        return (stem, unit);
+        let stem = stem.trim_end_matches(['/', ' ']);
+        return (stem.strip_suffix(" in").unwrap_or(stem), unit);
     }
     (bare, Unit::Unstated)
 }
@@ -165,6 +166,8 @@ mod tests {
             ("Latest: Position (m)", Role::Vertical, "m"),
             ("y_mm", Role::Vertical, "mm"),
             ("t/ms", Role::Time, "ms"),
+            ("t / ms", Role::Time, "ms"),
+            ("Zeit in ms", Role::Time, "ms"),
             ("POSITION_Y", Role::Vertical, "not said"),
             ("height (px)", Role::Vertical, "px"),
             ("Frame", Role::Frame, "not said"),

@@ -24,20 +24,76 @@ use super::{import_file, inputs, written};
 /// Everything that is wrong with the options, else with the tables, else with the runs.
 pub fn import(paths: &[PathBuf], options: &Options, out: &File) -> Result<Set, TrackingError> {
     let settings = Settings::of(options)?;
-    let paths = inputs::expand(paths)?;
+    let mut paths = inputs::expand(paths)?;
+    // A folder of drops may hold the table of their bodies.
+    if let Some(bodies) = options.get("bodies").and_then(|path| std::fs::canonicalize(path).ok()) {
+        paths.retain(|path| std::fs::canonicalize(path).ok().as_ref() != Some(&bodies));
+    }
     let bodies = match options.get("bodies") {
         Some(path) => Bodies::read(File::new(path))?,
         None => Bodies::default(),
     };
     let (tracks, hashes) = tracks(&paths, &settings)?;
     let begun = begin(tracks, &bodies, &settings)?;
+    let mut told = told(&begun);
+    told.extend(off_gravity(&begun, &settings));
     let (runs, understood, level) = finish(begun, &settings)?;
     let manner = manner(&runs, &settings);
-    let notes = notes(&runs, &level, &manner, &settings);
+    let mut notes = notes(&runs, &level, &manner, &settings);
+    notes.append(&mut told);
     let known = written::Known { options, settings: &settings, level: &level, runs: &runs, out };
     let mut files = written::files(&known, &notes)?;
     files.push((import_file::IMPORT_FILE, import_file::text(&paths, &hashes, options, out)));
     Ok(Set { understood, notes, files })
+}
+
+/// What was assumed of tables, and left out of them, in sentences.
+fn told(begun: &[Begun]) -> Vec<String> {
+    let tracks = || begun.iter().map(|one| &one.path.track);
+    let mut files: Vec<&str> = tracks().map(|track| track.file.as_str()).collect();
+    files.dedup();
+    let mut all: Vec<String> = Vec::new();
+    for file in files {
+        let own = || tracks().filter(|track| track.file == file);
+        let holes: usize = own().map(|track| track.holes).sum();
+        let holes = match holes {
+            0 => None,
+            1 => Some("1 row without a time or a position is left out".to_owned()),
+            n => Some(format!("{n} rows without a time or a position are left out")),
+        };
+        for note in own().flat_map(|track| &track.notes).chain(&holes) {
+            let sentence = format!("{file}: {note}.");
+            if !all.contains(&sentence) {
+                all.push(sentence);
+            }
+        }
+    }
+    all
+}
+
+/// A sentence where the fall before contact is clearly another than that of gravity.
+fn off_gravity(begun: &[Begun], settings: &Settings<'_>) -> Option<String> {
+    /// Relative, and in standard errors.
+    const CLEAR: (f64, f64) = (0.04, 4.0);
+    let paths: Vec<Path> = begun.iter().map(|one| one.path.clone()).collect();
+    let (mut weights, mut sum) = (0.0, 0.0);
+    for path in &paths {
+        let scales = path.scales(&paths, settings).ok()?;
+        let Reading { value, se } = scales.fall(path)?;
+        if se > 0.0 && se.is_finite() {
+            weights += se.powi(-2);
+            sum += value * se.powi(-2);
+        }
+    }
+    let (mean, se) = (sum / weights, weights.sqrt().recip());
+    let off = (mean - settings.gravity).abs();
+    (off > (CLEAR.0 * settings.gravity).max(CLEAR.1 * se)).then(|| {
+        format!(
+            "Warning: before contact the bodies fall at {mean:.2} ± {se:.2} m/s^2, not at {}: are the scale, the unit and \
+             the frame rate right? A guide or air brakes too; speeds and depths are as the table has them.",
+            settings.gravity
+        )
+    })
 }
 
 /// Contacts, levels and conditions.
@@ -102,15 +158,7 @@ fn see(
     let frames = scales.in_si(&one.path);
     let noise = (one.path.noise() * scales.length.1).max(1e-6);
     let shape = one.body.shape.as_str();
-    let departure = motion::contact(&frames, ((shape, one.body.diameter), noise), settings.gravity)
-        .map_err(|why| {
-            let what = format!("the run {}: {why}", one.name);
-            Fault::new(
-                &one.path.track.file,
-                what,
-                format!("--leave-out {} goes on without it", one.name),
-            )
-        })?;
+    refuse_far(&frames, one, &scales)?;
     let below_centre = one.body.below_centre();
     let lift = match (settings.tracked, below_centre, settings.text("surface")) {
         (Tracked::Lowest, ..) | (_, _, None) => 0.0,
@@ -127,7 +175,42 @@ fn see(
     };
     let stated = settings.position("surface", &one.labels)?;
     let stated = stated.map(|level| one.path.sign * level - lift);
+    let sees_surface = stated.is_some_and(|level| frames[0].z < level);
+    let departure = motion::contact(
+        &frames,
+        ((shape, one.body.diameter), noise),
+        (settings.gravity, sees_surface),
+    )
+    .map_err(|why| {
+        let what = format!("the run {}: {why}", one.name);
+        Fault::new(
+            &one.path.track.file,
+            what,
+            format!("--leave-out {} goes on without it", one.name),
+        )
+    })?;
     Ok((Seen { name: one.name.clone(), departure, stated, below_centre }, scales, frames, noise))
+}
+
+/// Refuses units by which the body goes very far.
+fn refuse_far(frames: &[Frame], one: &Begun, scales: &Scales) -> Result<(), Fault> {
+    /// Diameters.
+    const FAR: f64 = 400.0;
+    let ends = frames.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], frame| {
+        [low.min(frame.z), high.max(frame.z)]
+    });
+    let (way, diameter) = (ends[1] - ends[0], one.body.diameter);
+    if way <= FAR * diameter {
+        return Ok(());
+    }
+    let what = format!(
+        "in {} and {} the body of {:.4} mm moves {way:.1} m",
+        scales.length.0,
+        scales.time.0,
+        1e3 * diameter
+    );
+    let right = "is the clip played slowly? --rate 1000Hz counts frames; else --length-unit, --time-unit, --diameter";
+    Err(Fault::new(&one.path.track.file, what, right))
 }
 
 /// Replaces speeds by those of stated heights of release.
@@ -159,6 +242,9 @@ fn notes(runs: &[Run], level: &Level, manner: &str, settings: &Settings<'_>) -> 
             "Surface: one level for all runs, from their contacts, known to {:.2} mm.",
             1e3 * level.se
         ),
+        Level::Own if runs.len() == 1 => {
+            format!("Surface: from the contact, known to {:.2} mm.", 1e3 * runs[0].touch.level.se)
+        }
         Level::Own => "Surface: a level for each run, from its contact: those of the runs differ by more than their errors.".to_owned(),
     });
     notes.push(format!("Conditions: {manner}."));

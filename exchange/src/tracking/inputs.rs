@@ -115,7 +115,10 @@ pub(super) fn sheets(path: &Path, bytes: &[u8]) -> Result<Vec<Sheet>, Fault> {
         part.map_or(String::new(), |part| part.to_string_lossy().into_owned())
     };
     let (stem, ending) = (part(path.file_stem()), part(path.extension()).to_ascii_lowercase());
-    let sheets = match spreadsheet::ENDINGS.contains(&ending.as_str()) {
+    // ImageJ saves text under the name of a spreadsheet.
+    let is_text = ending == "xls" && spreadsheet::is_text(bytes);
+    let is_book = spreadsheet::ENDINGS.contains(&ending.as_str()) && !is_text;
+    let sheets = match is_book {
         true => spreadsheet::read(&file, &stem, bytes)?,
         false => vec![text::read(&file, &stem, bytes)?],
     };

@@ -1,11 +1,14 @@
 //! A track as a path in SI: order and clock of its readings, which way is down, units, and first contact.
 
-use measurements::{Contact, Departure, Fall, Frame};
+use measurements::{Contact, Departure, Fall, Frame, Reading};
 
 use super::fault::Fault;
 use super::settings::Settings;
 use super::track::{Sample, Track};
 use super::units::Unit;
+
+/// Fewest readings of a drop.
+pub(super) const FEWEST: usize = 8;
 
 /// Relative error of an acceleration up to which it tells units.
 const TELLS: f64 = 0.1;
@@ -53,6 +56,11 @@ impl Path {
         (read.value > 0.0 && read.se < TELLS * read.value).then_some(read.value)
     }
 
+    /// Its acceleration before contact, if it falls.
+    pub(super) fn fall(&self) -> Option<Reading> {
+        Some(self.fall?.acceleration)
+    }
+
     /// Error of one of its readings of a position, in its unit.
     pub(super) fn noise(&self) -> f64 {
         self.fall.map_or_else(|| measurements::reading_noise(&self.frames), |fall| fall.noise)
@@ -88,7 +96,13 @@ fn in_order(track: &mut Track, settings: &Settings<'_>) -> Result<Vec<Sample>, F
                 "its clock is too coarse: --rate 240Hz counts rows instead",
             ),
             (true, _) => ("a time is listed twice with other positions", "keep one of the rows"),
-            (false, _) => ("the time runs back", "several drops in one table need a column `run`"),
+            (false, _) if track.name.is_some() => {
+                ("the time runs back", "sort the rows of the run by time")
+            }
+            (false, _) => (
+                "the time runs back",
+                "sort the rows of one drop by time; several drops in one table need a column `run`",
+            ),
         };
         let what = format!("{what} ({}, behind {} on line {})", sample.t, last.t, last.line);
         return Err(Fault::new(&track.file, what, right).at(sample.line));
@@ -96,13 +110,11 @@ fn in_order(track: &mut Track, settings: &Settings<'_>) -> Result<Vec<Sample>, F
     if copies > 0 {
         track.notes.push(format!("{copies} readings that repeat the one before are left out"));
     }
-    if samples.len() < 8 {
-        let what = format!("{} readings are too few to see a drop in", samples.len());
-        return Err(Fault::new(
-            &track.file,
-            what,
-            "a drop takes 8 at least, some of them before contact",
-        ));
+    if samples.len() < FEWEST {
+        let whose = track.name.as_ref().map_or(String::new(), |name| format!("the run {name}: "));
+        let what = format!("{whose}{} readings are too few to see a drop in", samples.len());
+        let right = format!("a drop takes {FEWEST} at least, some of them before contact");
+        return Err(Fault::new(&track.file, what, right));
     }
     Ok(samples)
 }
@@ -124,14 +136,15 @@ fn clock(samples: &[Sample], track: &Track, settings: &Settings<'_>) -> Vec<f64>
     }
 }
 
-/// First contact on a path in SI whose readings are good to `noise` (m), of a body of this `shape` and `diameter` (m).
+/// First contact on a path in SI whose readings are good to `noise` (m), of a body of this `shape` and `diameter` (m). Where it is known to
+/// begin above the surface (`sees_surface`), too little of the fall may be seen to show it.
 ///
 /// # Errors
 /// What its frames lack.
 pub(super) fn contact(
     frames: &[Frame],
     ((shape, diameter), noise): ((&str, f64), f64),
-    gravity: f64,
+    (gravity, sees_surface): (f64, bool),
 ) -> Result<Departure, &'static str> {
     let departure = Departure::of_frames(frames, (shape, diameter), gravity, noise)
         .ok_or("too few frames are near the greatest speed to see a contact")?;
@@ -147,7 +160,7 @@ pub(super) fn contact(
         () if speed > BRAKED * contact.falling.value => {
             Err("the body is never braked: the frames behind contact are missing")
         }
-        () if time.value - error < contact.first => Err(
+        () if !sees_surface && time.value - error < contact.first => Err(
             "no free fall is seen before the body is braked: the frames before contact are missing",
         ),
         () => Ok(departure),

@@ -43,6 +43,11 @@ impl Options {
         }
     }
 
+    /// Sets those that `other` has.
+    pub fn take(&mut self, other: Self) {
+        self.0.extend(other.0);
+    }
+
     /// The option as it was typed.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&str> {

@@ -1,7 +1,7 @@
 //! Units of paths: as tables and options say them, or as the fall before contact shows them.
 
 use configs::engine::units::Dimension;
-use measurements::Frame;
+use measurements::{Frame, Reading};
 
 use super::fault::Fault;
 use super::motion::Path;
@@ -24,6 +24,13 @@ pub(super) struct Scales {
 }
 
 impl Scales {
+    /// The acceleration before contact (m/s²) of `path`, if it falls.
+    pub(super) fn fall(&self, path: &Path) -> Option<Reading> {
+        let Reading { value, se } = path.fall()?;
+        let size = self.length.1 / (self.time.1 * self.time.1);
+        Some(Reading { value: size * value, se: size * se })
+    }
+
     /// The frames of `path` in SI.
     pub(super) fn in_si(&self, path: &Path) -> Vec<Frame> {
         let of = |frame: &Frame| Frame {
@@ -101,7 +108,7 @@ impl Path {
         {
             let ratio = ratio(acceleration, time.1, length.1);
             if (ratio - 1.0).abs() > ALLOWED {
-                return Err(self.contradicts_gravity(ratio, settings.gravity));
+                return Err(self.contradicts_gravity(ratio, settings));
             }
         }
         let way = self.track.forward.as_ref().and_then(|x| x.unit.si(Dimension::LENGTH));
@@ -163,14 +170,21 @@ impl Path {
         Fault::new(&self.track.file, what, format!("write --length-unit cm{pixel}"))
     }
 
-    fn contradicts_gravity(&self, ratio: f64, gravity: f64) -> Fault {
+    fn contradicts_gravity(&self, ratio: f64, settings: &Settings<'_>) -> Fault {
+        let gravity = settings.gravity;
         let near = |factor: f64| (ratio * factor - 1.0).abs() <= ALLOWED;
         let guess = match () {
+            () if settings.rate.is_some() || settings.scale.is_some() => {
+                let [time, length] = [(1.0 / ratio).sqrt(), 1.0 / ratio].map(|factor| format!("{factor:.3}"));
+                format!("the rate of frames times {time}, or the length of a pixel times {length}, would fit. ")
+            }
             () if near(1e2) => {
                 "is it a hundred times as large: cm for m? --length-unit says so. ".to_owned()
             }
             () if near(1e3) => {
-                "is it a thousand times as large: mm for m? --length-unit says so. ".to_owned()
+                "is it a thousand times as large: mm for m? --length-unit says so. A clip played some 32 times as slow \
+                 has this too: --rate 1000Hz counts frames instead. "
+                    .to_owned()
             }
             () if near(1e1) => {
                 "is it ten times as large: mm for cm? --length-unit says so. ".to_owned()

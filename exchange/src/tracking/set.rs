@@ -66,6 +66,15 @@ impl Set {
         Ok(())
     }
 
+    /// Removes its files from `folder`, and the folder where nothing else is in it.
+    pub fn remove(&self, folder: &Path) {
+        // What cannot be removed is told of when it is written again.
+        for (name, _) in &self.files {
+            let _ = std::fs::remove_file(folder.join(name));
+        }
+        let _ = std::fs::remove_dir(folder);
+    }
+
     /// Whether `folder` holds these files already, byte for byte.
     #[must_use]
     pub fn is_in(&self, folder: &Path) -> bool {

@@ -54,7 +54,8 @@ pub(super) struct Settings<'a> {
     pub(super) length_unit: Option<Unit>,
     pub(super) time_unit: Option<Unit>,
     pub(super) trusts_units: bool,
-    pub(super) leave_out: Vec<String>,
+    /// Names of runs, or patterns of names.
+    pub(super) leave_out: Vec<glob::Pattern>,
 }
 
 impl<'a> Settings<'a> {
@@ -133,7 +134,7 @@ impl<'a> Settings<'a> {
             trusts_units: options.get("trust_units") == Some("yes"),
             leave_out: options
                 .get("leave_out")
-                .map(|names| names.split(',').map(|name| name.trim().to_owned()).collect())
+                .map(|names| names.split(',').map(|name| pattern_of(name.trim())).collect())
                 .unwrap_or_default(),
         })
     }
@@ -187,6 +188,13 @@ impl<'a> Settings<'a> {
     pub(super) fn text(&self, key: &str) -> Option<&'a str> {
         self.options.get(key)
     }
+}
+
+/// The pattern of names, or the name where it is none.
+fn pattern_of(name: &str) -> glob::Pattern {
+    glob::Pattern::new(name)
+        .or_else(|_| glob::Pattern::new(&glob::Pattern::escape(name)))
+        .unwrap_or_default()
 }
 
 fn quantity(

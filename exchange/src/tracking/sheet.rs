@@ -65,6 +65,11 @@ impl Sheet {
         numbers >= least && numbers >= words
     }
 
+    /// Whether a cell of `row` is neither a number nor a mark for a missing one.
+    pub(super) fn has_words(&self, row: &Row) -> bool {
+        row.cells.iter().any(|cell| self.number(cell) == Number::Other)
+    }
+
     /// A fault of the whole table.
     pub(super) fn fault(&self, what: impl Into<String>, right: impl Into<String>) -> Fault {
         Fault::new(&self.file, what, right)
@@ -87,8 +92,22 @@ pub(super) fn number(cell: &str, decimal_comma: bool) -> Number {
         Ok(value) if value.is_finite() && text.contains(|c: char| c.is_ascii_digit()) => {
             Number::Value(value)
         }
-        _ => Number::Other,
+        _ => clock(&text).map_or(Number::Other, Number::Value),
     }
+}
+
+/// Seconds of a time such as `0:12.3` or `00:00:12.300`.
+fn clock(text: &str) -> Option<f64> {
+    let (rest, seconds) = text.rsplit_once(':')?;
+    let is_count = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    let (whole, share) = seconds.split_once('.')?;
+    let parts: Vec<&str> = rest.split(':').chain([whole]).collect();
+    if parts.len() > 3 || !parts.iter().chain([&share]).all(|part| is_count(part)) {
+        return None;
+    }
+    let higher =
+        rest.split(':').try_fold(0.0, |sum, part| Some(60.0 * sum + part.parse::<f64>().ok()?))?;
+    Some(60.0 * higher + seconds.parse::<f64>().ok()?)
 }
 
 #[cfg(test)]
@@ -106,5 +125,8 @@ mod tests {
             assert_eq!(number(word, false), Number::Other, "{word}");
         }
         assert_eq!(number("1.5", true), Number::Other);
+        assert_eq!(number("00:01:12.5", false), Number::Value(72.5));
+        assert_eq!(number("1:12,25", true), Number::Value(72.25));
+        assert_eq!(number("1:2:3:4.5", false), Number::Other);
     }
 }

@@ -10,6 +10,13 @@ use super::sheet::{Number, Row, Sheet, number};
 /// Endings of the names of spreadsheets.
 pub(super) const ENDINGS: [&str; 4] = ["xlsx", "xlsm", "xls", "ods"];
 
+/// Whether this is text, whatever the name of the file says.
+pub(super) fn is_text(bytes: &[u8]) -> bool {
+    /// First bytes of archives and of compound documents.
+    const BOOKS: [&[u8]; 2] = [b"PK", &[0xd0, 0xcf, 0x11, 0xe0]];
+    !BOOKS.iter().any(|first| bytes.starts_with(first)) && !bytes.contains(&0)
+}
+
 /// The sheets with numbers of the file that messages call `file`.
 ///
 /// # Errors

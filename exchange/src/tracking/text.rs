@@ -1,5 +1,7 @@
 //! Text as a sheet: encoding, line ends, separator and decimals are found out.
 
+use encoding_rs::WINDOWS_1252;
+
 use super::fault::Fault;
 use super::sheet::{Number, Row, Sheet, number};
 
@@ -63,7 +65,7 @@ pub(super) fn read(file: &str, stem: &str, bytes: &[u8]) -> Result<Sheet, Fault>
     })
 }
 
-/// UTF-8 or UTF-16 by its byte order mark, else UTF-8, else Latin-1.
+/// UTF-8 or UTF-16 by its byte order mark, else UTF-8, else Windows-1252, which holds Latin-1.
 fn decode(bytes: &[u8], notes: &mut Vec<String>) -> String {
     let wide = |bytes: &[u8], of: fn([u8; 2]) -> u16| {
         let units: Vec<u16> = bytes.chunks_exact(2).map(|pair| of([pair[0], pair[1]])).collect();
@@ -76,8 +78,8 @@ fn decode(bytes: &[u8], notes: &mut Vec<String>) -> String {
         _ => match std::str::from_utf8(bytes) {
             Ok(text) => text.to_owned(),
             Err(_) => {
-                notes.push("it is not UTF-8 and was read as Latin-1".to_owned());
-                bytes.iter().map(|byte| char::from(*byte)).collect()
+                notes.push("it is not UTF-8 and was read as Windows-1252".to_owned());
+                WINDOWS_1252.decode(bytes).0.into_owned()
             }
         },
     }
@@ -149,8 +151,8 @@ mod tests {
         let wide: Vec<u8> =
             "\u{feff}t,y\n0,1.5\n1,1.6\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
         assert_eq!(read("a.csv", "a", &wide).expect("a table").rows, plain);
-        let latin = read("a.csv", "a", b"Slice n\xb0,Y\n1,2\n").expect("a table");
-        assert_eq!(latin.rows[0].cells[0], "Slice n°");
+        let latin = read("a.csv", "a", b"Slice n\xb0,Y \x96\n1,2\n").expect("a table");
+        assert_eq!(latin.rows[0].cells, ["Slice n°", "Y –"]);
         assert_eq!(latin.notes.len(), 1);
     }
 

@@ -14,6 +14,9 @@ use super::run::Run;
 use super::settings::Settings;
 use super::surface::{LEAST, Level};
 
+/// Relative difference of speeds that are the same.
+const ROUNDING: f64 = 1e-9;
+
 /// How well a level that is stated is known (m).
 const STATED: f64 = 1e-3;
 
@@ -244,7 +247,8 @@ fn speed_scatter(conditions: &[(&str, Vec<&Run>)]) -> Option<f64> {
     let fit = median(errors);
     let scatter = if freedom >= 3.0 { f64::sqrt(sum / freedom) } else { 0.0 };
     let error = scatter.max(fit);
-    (error > 0.0).then_some(error)
+    // Speeds of one stated height differ by their rounding.
+    (error > ROUNDING).then_some(error)
 }
 
 /// Mean with its error, from scatter or stated errors, whichever is larger.

@@ -45,7 +45,13 @@ fn holds(set: &Set, drops: &[Drop], layout: &str) {
 }
 
 /// Reads a table, and gives what was understood.
-fn check(name: &str, text: &str, options: &[(&str, &str)], drops: &[Drop], layout: &str) -> Set {
+pub(crate) fn check(
+    name: &str,
+    text: &str,
+    options: &[(&str, &str)],
+    drops: &[Drop],
+    layout: &str,
+) -> Set {
     let set =
         of_text(name, text.as_bytes(), options).unwrap_or_else(|error| panic!("{name}: {error}"));
     holds(&set, drops, layout);

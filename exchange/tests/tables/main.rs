@@ -2,6 +2,7 @@
 
 mod contact;
 mod formats;
+mod irregular;
 mod layouts;
 mod refusals;
 mod world;

@@ -4,7 +4,7 @@ use crate::formats;
 use crate::layouts::of_text;
 
 /// What is said of a table.
-fn told(name: &str, text: &str, options: &[(&str, &str)]) -> String {
+pub(crate) fn told(name: &str, text: &str, options: &[(&str, &str)]) -> String {
     match of_text(name, text.as_bytes(), options) {
         Ok(set) => panic!("{name} was read: {:?}", set.understood),
         Err(message) => message,
@@ -12,7 +12,7 @@ fn told(name: &str, text: &str, options: &[(&str, &str)]) -> String {
 }
 
 /// Holds a message against its parts.
-fn has(message: &str, parts: &[&str]) {
+pub(crate) fn has(message: &str, parts: &[&str]) {
     for part in parts {
         assert!(message.contains(part), "{part:?} is not in\n{message}");
     }

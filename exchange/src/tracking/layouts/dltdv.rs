@@ -3,6 +3,7 @@
 use super::{Layout, first_row};
 use crate::tracking::fault::Fault;
 use crate::tracking::grid::{Grid, Places};
+use crate::tracking::heading::Role;
 use crate::tracking::settings::Columns;
 use crate::tracking::sheet::Sheet;
 use crate::tracking::track::Track;
@@ -17,7 +18,7 @@ fn fits(sheet: &Sheet, _: &Columns) -> bool {
     })
 }
 
-fn read(sheet: &Sheet, _: &Columns) -> Result<Vec<Track>, Fault> {
+fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
     let grid = Grid::below(sheet, 0, None);
     let point = |at: usize| grid.headings[at].stem.rsplit_once('_');
     let mut points: Vec<&str> = Vec::new();
@@ -31,6 +32,7 @@ fn read(sheet: &Sheet, _: &Columns) -> Result<Vec<Track>, Fault> {
     let column = |name: &str, axis: &str| {
         (0..grid.headings.len()).find(|at| point(*at) == Some((name, axis)))
     };
+    let asked = columns.of(Role::Vertical).map(|name| grid.named(name)).transpose()?;
     let mut tracks = Vec::new();
     for name in points {
         // In space the third axis stands up; on a picture the second does.
@@ -40,6 +42,9 @@ fn read(sheet: &Sheet, _: &Columns) -> Result<Vec<Track>, Fault> {
                 .fault(format!("the column `{name}_Y` is missing"), right)
                 .at(sheet.rows[0].line));
         };
+        if asked.is_some_and(|asked| asked != z) {
+            continue;
+        }
         let places = Places { t: None, z, x: column(name, "x") };
         let track = grid.track("DLTdv", places, grid.all_rows())?;
         if !track.samples.is_empty() {

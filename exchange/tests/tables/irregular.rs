@@ -1,0 +1,83 @@
+//! Tables that are irregular and yet readable, and irregular drops that are not.
+
+use std::fmt::Write as _;
+
+use crate::formats;
+use crate::layouts::check;
+use crate::refusals::{has, told};
+use crate::world::Drop;
+
+/// Rows of times (s) and heights (mm), made by `row`, below `head`.
+fn table(head: &str, one: &Drop, row: impl Fn(usize, f64, f64) -> String) -> String {
+    let mut text = format!("{head}\n");
+    for (at, (t, z)) in one.readings.iter().enumerate() {
+        let _ = writeln!(text, "{}", row(at, *t, 1e3 * z));
+    }
+    text
+}
+
+#[test]
+fn names_marks_and_clocks_of_other_programs() {
+    let drops = formats::two();
+    let one = &drops[..1];
+    let read = |name: &str, text: &str| check(name, text, &[], one, "one drop");
+    let comma = |_: usize, t: f64, z: f64| format!("{t:.5},{z:.3}");
+    // Nothing was tracked in the first frames.
+    for mark in ["NaN", "", "-"] {
+        let set = read(
+            "a.csv",
+            &table("t (s),z (mm)", &drops[0], |at, t, z| match at {
+                0..3 => format!("{t:.5},{mark}"),
+                _ => comma(at, t, z),
+            }),
+        );
+        let told = "3 rows without a time or a position are left out";
+        assert!(set.notes.iter().any(|note| note.contains(told)), "{:?}", set.notes);
+    }
+    // As numpy writes a header.
+    read("a.txt", &table("# t z_mm", &drops[0], |_, t, z| format!("{t:.5e} {z:.5e}")));
+    // Quantity over unit, as standards have it.
+    read("a.csv", &table("t / ms,z / mm", &drops[0], |_, t, z| format!("{:.3},{z:.3}", 1e3 * t)));
+    read("a.csv", &table("Zeit in s,Höhe in mm", &drops[0], comma));
+    read("a.csv", &table("time,z (mm)", &drops[0], |_, t, z| format!("00:00:{t:08.5},{z:.3}")));
+    // Text under the name of a spreadsheet.
+    let tabs = table("t (s)\tz (mm)", &drops[0], |_, t, z| format!("{t:.5}\t{z:.3}"));
+    read("Results.xls", &tabs);
+}
+
+#[test]
+fn what_is_no_drop_is_left_out() {
+    let drops = formats::two();
+    let long = formats::long(&drops) + "Mean,10cm,,38.2,\n";
+    let set = check("a.csv", &long, &[], &drops, "long");
+    assert!(set.notes.iter().any(|note| note.contains("Mean: fewer than 8 readings")));
+    // A ruler beside the ball.
+    let points = formats::dltdv(&drops);
+    let options =
+        [("scale", "0.2mm/px"), ("rate", "650Hz"), ("column_z", "pt1_cam1_Y"), ("counts", "down")];
+    check("a.csv", &points, &options, &drops[..1], "DLTdv");
+    let options = [("scale", "0.2mm/px"), ("rate", "650Hz"), ("leave_out", "*pt2*")];
+    check("a.csv", &points, &options, &drops[..1], "DLTdv");
+    let message = told("a.csv", &points, &[("leave_out", "pt3_cam1")]);
+    has(&message, &["--leave-out: no run is called `pt3_cam1`", "did you mean `pt"]);
+    let twice = table("t (s),z (mm),z (mm)", &drops[0], |_, t, z| format!("{t:.5},{z:.3},{z:.3}"));
+    has(&told("a.csv", &twice, &[("column_z", "z")]), &["2 columns are called `z`"]);
+}
+
+#[test]
+fn scales_and_clocks_that_the_fall_belies() {
+    let drops = formats::two();
+    // Pixels of 0.87 mm that are called millimetres.
+    let text = table("t (s),z (mm)", &drops[0], |_, t, z| format!("{t:.5},{:.3}", z / 0.87));
+    let set = crate::layouts::of_text("a.csv", text.as_bytes(), &[]).expect("a set");
+    let told_of = |part: &str| set.notes.iter().any(|note| note.contains(part));
+    assert!(told_of("Warning: before contact the bodies fall at 11."), "{:?}", set.notes);
+    // A clip of 1000 frames a second, played at 30.
+    let slow = |one: &Drop| table("t,z", one, |_, t, z| format!("{:.5},{z:.3}", t * 1000.0 / 30.0));
+    has(&told("a.csv", &slow(&drops[0]), &[]), &["is the clip played slowly? --rate"]);
+    let stated = slow(&drops[0]).replace("t,z", "t (s),z (mm)");
+    has(&told("a.csv", &stated, &[]), &["mm for m?", "--rate 1000Hz counts frames"]);
+    let wrong = [("scale", "0.1mm/px"), ("rate", "650Hz")];
+    let message = told("a.csv", &formats::dltdv(&drops), &wrong);
+    has(&message, &["the length of a pixel times 2.0"]);
+}
