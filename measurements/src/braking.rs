@@ -8,7 +8,7 @@
 use nalgebra::{Matrix5, Matrix6, Vector5, Vector6};
 
 use super::Frame;
-use super::contact::{BETWEEN_FRAMES, Fit};
+use super::fits::{BETWEEN_FRAMES, Fit};
 
 /// Steps between two readings that forces are integrated in.
 const STEPS: usize = 3;

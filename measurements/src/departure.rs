@@ -2,8 +2,9 @@
 
 use super::Frame;
 use super::braking::Body;
-use super::contact::{Contact, FEWEST, FREE, Fit, fit_braked, power_of};
+use super::contact::{Contact, FEWEST, FREE, fit_braked, power_of};
 use super::fall::Fall;
+use super::fits::Fit;
 use super::reading::Reading;
 use super::smooth::velocity_window;
 
@@ -40,12 +41,12 @@ const SHOWN: f64 = 2.0;
 
 /// The same of the fall in `frames`.
 fn doubt(frames: &[Frame], gravity: f64) -> f64 {
-    let beyond = Fall::of_frames(frames).map_or(FREE, |fall| {
+    let fall = Fall::of_frames(frames).filter(|fall| fall.acceleration.value.is_finite());
+    let beyond = fall.map_or(FREE, |fall| {
         let Reading { value, se } = fall.acceleration;
         2.0 * ((value - gravity).abs() - SHOWN * se) / gravity
     });
-    // An error that is not finite shows nothing.
-    beyond.max(KNOWN).min(FREE)
+    beyond.clamp(KNOWN, FREE)
 }
 
 impl Departure {

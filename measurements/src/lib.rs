@@ -36,6 +36,7 @@ mod document;
 mod fall;
 mod feasible;
 mod findings;
+mod fits;
 mod force_depth;
 mod header;
 pub mod json_schema;

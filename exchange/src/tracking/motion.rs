@@ -155,7 +155,7 @@ pub(super) fn contact(
         [first, .., last] => (last.z - first.z) / (last.t - first.t),
         _ => f64::INFINITY,
     };
-    let error = (3.0 * time.se).max(2.0 * contact.step);
+    let error = (2.0 * time.se).max(2.0 * contact.step);
     match () {
         () if speed > BRAKED * contact.falling.value => {
             Err("the body is never braked: the frames behind contact are missing")
