@@ -6,7 +6,7 @@ use super::contact::{Contact, FEWEST, FREE, fit_braked, power_of};
 use super::fall::Fall;
 use super::fits::Fit;
 use super::reading::Reading;
-use super::smooth::velocity_window;
+use super::smooth::{fastest, velocity_window};
 
 /// Share of its greatest velocity above which the fall before contact is looked at.
 const FALLING: f64 = 0.4;
@@ -19,6 +19,8 @@ const BEHIND: f64 = 0.55;
 pub struct Departure {
     /// What its frames alone say.
     pub contact: Contact,
+    /// Probability that the body is braked from the first frames on.
+    pub is_braked_at_first: f64,
     /// All contacts that were tried.
     pub(super) trials: Vec<Trial>,
 }
@@ -33,6 +35,13 @@ pub(super) struct Trial {
     /// Chi-squared.
     pub(super) misfit: f64,
 }
+
+/// Frames behind the fastest that are fitted to at least, if the body has this share of its greatest velocity in them.
+const BRAKED: usize = 5;
+const STILL_FAST: f64 = 0.15;
+
+/// Frames that are the first of a path.
+const SOON: f64 = 2.0;
 
 /// How well the acceleration before contact is known, relative to gravity, where the fall does not show that guides or air
 /// take more of it; and the standard errors beyond which it does.
@@ -67,6 +76,12 @@ impl Departure {
         let (start, end) = (velocity_window(frames, sigma, FALLING)?[0].t, near[near.len() - 1].t);
         let from = frames.partition_point(|frame| frame.t < start);
         let to = frames.partition_point(|frame| frame.t <= end);
+        // A slow camera sees a body that is soon braked in few frames.
+        let (fastest, most) = fastest(frames, sigma)?;
+        let moves =
+            |pair: &&[Frame]| pair[1].z - pair[0].z > STILL_FAST * most * (pair[1].t - pair[0].t);
+        let more = (fastest + BRAKED).saturating_sub(to);
+        let to = to + frames[to - 1..].windows(2).take(more).take_while(moves).count();
         let all = Some(&frames[from..to]).filter(|all| all.len() >= FEWEST)?;
         let body = Body { shape, diameter };
         let (fits, contact) =
@@ -76,7 +91,10 @@ impl Departure {
             depth: fits.free(fit, fit.contact).0,
             misfit: fit.misfit / fits.excess,
         };
-        Some(Self { contact, trials: fits.all.iter().map(trial).collect() })
+        let soon = contact.first + SOON * contact.step;
+        let at_first = |fit: &Fit| (f64::from(u8::from(fit.contact <= soon)), 0.0);
+        let is_braked_at_first = fits.mean(at_first).value;
+        Some(Self { contact, is_braked_at_first, trials: fits.all.iter().map(trial).collect() })
     }
 
     /// The same with depths counted from `level` (m).
@@ -90,6 +108,7 @@ impl Departure {
             ..self.contact
         };
         let trial = |trial: &Trial| Trial { depth: trial.depth - level, ..*trial };
-        Self { contact, trials: self.trials.iter().map(trial).collect() }
+        let is_braked_at_first = self.is_braked_at_first;
+        Self { contact, is_braked_at_first, trials: self.trials.iter().map(trial).collect() }
     }
 }

@@ -56,8 +56,13 @@ pub(super) fn median_step(frames: &[Frame]) -> Option<f64> {
 
 /// The greatest downward velocity (m/s) of readings that are good to `sigma` (m).
 pub(super) fn greatest_velocity(frames: &[Frame], sigma: f64) -> Option<f64> {
+    fastest(frames, sigma).map(|(_, velocity)| velocity)
+}
+
+/// The frame of that velocity, and the velocity (m/s).
+pub(super) fn fastest(frames: &[Frame], sigma: f64) -> Option<(usize, f64)> {
     let (velocities, peak) = downward(frames, sigma)?;
-    Some(velocities[peak])
+    Some((peak, velocities[peak]))
 }
 
 /// Downward velocities, and which of them is the greatest.

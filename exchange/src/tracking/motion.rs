@@ -149,23 +149,24 @@ pub(super) fn contact(
     let departure = Departure::of_frames(frames, (shape, diameter), gravity, noise)
         .ok_or("too few frames are near the greatest speed to see a contact")?;
     let contact = &departure.contact;
-    let time = contact.time;
     let end = &frames[frames.len().saturating_sub(6)..];
     let speed = match end {
         [first, .., last] => (last.z - first.z) / (last.t - first.t),
         _ => f64::INFINITY,
     };
-    let error = (2.0 * time.se).max(2.0 * contact.step);
     match () {
         () if speed > BRAKED * contact.falling.value => {
             Err("the body is never braked: the frames behind contact are missing")
         }
-        () if !sees_surface && time.value - error < contact.first => Err(
+        () if !sees_surface && departure.is_braked_at_first > LIKELY => Err(
             "no free fall is seen before the body is braked: the frames before contact are missing",
         ),
         () => Ok(departure),
     }
 }
+
+/// Probability of a body that is braked at first with which no free fall is seen.
+const LIKELY: f64 = 0.1;
 
 /// Share of the speed at contact that is left at the end of a clip that shows the body braked.
 const BRAKED: f64 = 0.7;
