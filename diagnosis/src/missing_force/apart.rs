@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::process::{Averaged, Process, factor};
+use super::process::{Averaged, Process, alike};
 use super::response::Response;
 use crate::field::Grid;
 use crate::fit::Fit;
@@ -38,12 +38,10 @@ impl Apart {
         let beside = response.rest_of(&answers);
         let gram = beside.transpose() * &beside;
         let pull = beside.tr_mul(&response.left_by(&process.mean));
-        let factors: Vec<DMatrix<f64>> = LENGTHS
-            .iter()
-            .map(|&length| factor_of_each(&places, grid, length))
-            .collect::<Option<_>>()?;
+        let covariances = LENGTHS.map(|length| of_each(&places, grid, length));
         let sizes = SIZES.map(|size| size * unit);
-        let Averaged { mean, covariance, .. } = Averaged::over(&factors, &sizes, (&gram, &pull))?;
+        let Averaged { mean, covariance, .. } =
+            Averaged::over(&covariances, &sizes, (&gram, &pull))?;
         let follow = fit.free_covariance() * fit.jacobian.tr_mul(&answers);
         Some(Self { places, mean, covariance, follow })
     }
@@ -67,15 +65,15 @@ impl Apart {
     }
 }
 
-/// Factor of the covariance of forces of size 1 that no two conditions share.
-fn factor_of_each(places: &[(usize, usize)], grid: &Grid, length: f64) -> Option<DMatrix<f64>> {
+/// The covariance of forces of size 1 that no two conditions share.
+fn of_each(places: &[(usize, usize)], grid: &Grid, length: f64) -> DMatrix<f64> {
     let mut whole = DMatrix::zeros(places.len(), places.len());
     let mut from = 0;
     for own in places.chunk_by(|a, b| a.0 == b.0) {
         let scaled: Vec<[f64; 4]> = own.iter().map(|&(_, node)| grid.scaled(node)).collect();
-        let part = factor(&scaled, [length; 4])?;
+        let part = alike(&scaled, [length; 4]);
         whole.view_mut((from, from), part.shape()).copy_from(&part);
         from += own.len();
     }
-    Some(whole)
+    whole
 }

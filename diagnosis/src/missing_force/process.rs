@@ -24,6 +24,9 @@ const LONG: [f64; 4] = [2.0; 4];
 /// Share of the variance of each node that no other shares.
 const OWN: f64 = 1e-6;
 
+/// Share of the noise that counts as none.
+const NOTHING: f64 = 1e-8;
+
 /// Settings less likely by this logarithm than the best do not count.
 const NEGLIGIBLE: f64 = 8.0;
 
@@ -38,12 +41,80 @@ pub(super) struct Process {
     pub(super) log_odds: f64,
 }
 
+/// What is measured of the force at the nodes, in as few numbers as tell it.
+pub(super) struct Seen {
+    /// Answers of these numbers to the force at each node; their product with themselves is that of all measurements.
+    root: DMatrix<f64>,
+    /// What the numbers are.
+    values: DVector<f64>,
+}
+
+impl Seen {
+    /// `gram` and `pull` are the products of the answers with themselves and with what they explain; forces are no larger
+    /// than `most`. The root is the Cholesky factor with pivots (Higham 2002, Accuracy and Stability of Numerical
+    /// Algorithms, § 10.3), up to where what is left tells nothing.
+    pub(super) fn of(gram: &DMatrix<f64>, pull: &DVector<f64>, most: f64) -> Self {
+        let n = gram.nrows();
+        let mut left = gram.diagonal();
+        let (mut columns, mut values): (Vec<DVector<f64>>, Vec<f64>) = (Vec::new(), Vec::new());
+        while columns.len() < n {
+            let (pivot, largest) = left.argmax();
+            if largest * most * most < NOTHING {
+                break;
+            }
+            let scale = largest.sqrt();
+            let mut column = gram.column(pivot).into_owned();
+            let mut value = pull[pivot];
+            for (before, own) in columns.iter().zip(&values) {
+                column.axpy(-before[pivot], before, 1.0);
+                value -= before[pivot] * own;
+            }
+            column /= scale;
+            left.iter_mut().zip(column.iter()).for_each(|(left, one)| *left -= one * one);
+            left[pivot] = 0.0;
+            columns.push(column);
+            values.push(value / scale);
+        }
+        let root = match columns.is_empty() {
+            true => DMatrix::zeros(0, n),
+            false => DMatrix::from_columns(&columns).transpose(),
+        };
+        Self { root, values: DVector::from_vec(values) }
+    }
+}
+
 /// One size and four lengths.
 struct Setting {
     log_odds: f64,
-    mean: DVector<f64>,
     size: f64,
     solved: Cholesky<f64, Dyn>,
+}
+
+/// The settings of one covariance of forces of size 1.
+struct Settings<'a> {
+    covariance: &'a DMatrix<f64>,
+    /// Its product with the root of what is seen.
+    answers: DMatrix<f64>,
+    each: Vec<Setting>,
+}
+
+impl<'a> Settings<'a> {
+    fn of(covariance: &'a DMatrix<f64>, sizes: &[f64], seen: &Seen) -> Self {
+        let answers = &seen.root * covariance;
+        let inner = &answers * seen.root.transpose();
+        let each = sizes.iter().filter_map(|&size| setting(&inner, &seen.values, size)).collect();
+        Self { covariance, answers, each }
+    }
+
+    fn mean(&self, one: &Setting, seen: &Seen) -> DVector<f64> {
+        self.answers.tr_mul(&one.solved.solve(&seen.values)) * (one.size * one.size)
+    }
+
+    fn spread(&self, one: &Setting) -> DMatrix<f64> {
+        let square = one.size * one.size;
+        let told = self.answers.transpose() * one.solved.solve(&self.answers);
+        (self.covariance - told * square) * square
+    }
 }
 
 /// What settings say together, each weighed by its evidence.
@@ -57,52 +128,38 @@ pub(super) struct Averaged {
 }
 
 impl Averaged {
-    /// Over `sizes` and over lengths, which `factors` are of; `gram` and `pull` are the product of the answers with
-    /// themselves and with what they explain. `None` where nothing can be told.
+    /// Over `sizes` and over lengths, which `covariances` of forces of size 1 are of; `gram` and `pull` are the products of
+    /// the answers with themselves and with what they explain. `None` where nothing can be told.
     pub(super) fn over(
-        factors: &[DMatrix<f64>],
+        covariances: &[DMatrix<f64>],
         sizes: &[f64],
         (gram, pull): (&DMatrix<f64>, &DVector<f64>),
     ) -> Option<Self> {
-        let tried = |factor: &'_ DMatrix<f64>| -> Vec<Setting> {
-            // A product of matrices is several times as fast as one by a transpose that is not formed.
-            let inner = factor.transpose() * (gram * factor);
-            let seen = factor.tr_mul(pull);
-            sizes.iter().filter_map(|&size| setting(factor, &inner, &seen, size)).collect()
-        };
-        let of_each: Vec<Vec<Setting>> = factors.par_iter().map(tried).collect();
-        let settings: Vec<(&DMatrix<f64>, Setting)> = factors
-            .iter()
-            .zip(of_each)
-            .flat_map(|(factor, all)| all.into_iter().map(move |one| (factor, one)))
-            .collect();
-        let all = || settings.iter().map(|(_, one)| one);
-        let best = all().map(|one| one.log_odds).fold(f64::NEG_INFINITY, f64::max);
+        let most = sizes.iter().copied().fold(0.0, f64::max);
+        let seen = Seen::of(gram, pull, most);
+        let of_each = covariances.par_iter().map(|one| Settings::of(one, sizes, &seen));
+        let of_each: Vec<Settings<'_>> = of_each.collect();
+        let all: Vec<(&Settings<'_>, &Setting)> =
+            of_each.iter().flat_map(|one| one.each.iter().map(move |own| (one, own))).collect();
+        let best = all.iter().map(|(_, one)| one.log_odds).fold(f64::NEG_INFINITY, f64::max);
         let share = |one: &Setting| libm::exp(one.log_odds - best);
-        let total: f64 = all().map(share).sum();
-        let log_odds = best + libm::log(total / settings.len() as f64);
-        let counts = |one: &&(&DMatrix<f64>, Setting)| one.1.log_odds > best - NEGLIGIBLE;
+        let total: f64 = all.iter().map(|(_, one)| share(one)).sum();
+        let log_odds = best + libm::log(total / all.len() as f64);
+        let counted: Vec<_> =
+            all.into_iter().filter(|(_, one)| one.log_odds > best - NEGLIGIBLE).collect();
+        let told = |(of, one): &(&Settings<'_>, &Setting)| {
+            (share(one) / total, of.mean(one, &seen), of.spread(one))
+        };
+        let told: Vec<(f64, DVector<f64>, DMatrix<f64>)> = counted.par_iter().map(told).collect();
         let n = pull.len();
         let mut mean = DVector::zeros(n);
-        for (_, one) in settings.iter().filter(counts) {
-            mean.axpy(share(one) / total, &one.mean, 1.0);
-        }
+        told.iter().for_each(|(share, own, _)| mean.axpy(*share, own, 1.0));
         let mut covariance = DMatrix::zeros(n, n);
-        let counted: Vec<&(&DMatrix<f64>, Setting)> = settings.iter().filter(counts).collect();
-        let own: Vec<DMatrix<f64>> =
-            counted.par_iter().map(|(factor, one)| one.covariance(factor)).collect();
-        for ((_, one), own) in counted.into_iter().zip(own) {
-            let off = &one.mean - &mean;
-            covariance += (own + &off * off.transpose()) * (share(one) / total);
+        for (share, own, spread) in told {
+            let off = own - &mean;
+            covariance += (spread + &off * off.transpose()) * share;
         }
         log_odds.is_finite().then_some(Self { log_odds, mean, covariance })
-    }
-}
-
-impl Setting {
-    /// `factor` is that of its lengths.
-    fn covariance(&self, factor: &DMatrix<f64>) -> DMatrix<f64> {
-        factor * self.solved.inverse() * factor.transpose() * (self.size * self.size)
     }
 }
 
@@ -118,10 +175,9 @@ impl Process {
             _ => of,
         };
         let tried = lengths(varied(2, &ANGLES), varied(3, &DIAMETERS)).into_par_iter();
-        let factors: Vec<DMatrix<f64>> =
-            tried.map(|lengths| factor(&places, lengths)).collect::<Option<_>>()?;
+        let covariances: Vec<DMatrix<f64>> = tried.map(|lengths| alike(&places, lengths)).collect();
         let Averaged { log_odds, mean, covariance } =
-            Averaged::over(&factors, &SIZES.map(|size| size * unit), (&gram, &pull))?;
+            Averaged::over(&covariances, &SIZES.map(|size| size * unit), (&gram, &pull))?;
         let mut whole = DVector::zeros(grid.len());
         response.nodes.iter().zip(mean.iter()).for_each(|(&node, value)| whole[node] = *value);
         Some(Self { mean: whole, covariance, log_odds })
@@ -146,68 +202,88 @@ fn lengths(angles: &[f64], diameters: &[f64]) -> Vec<[f64; 4]> {
     all
 }
 
-/// Cholesky factor of the covariance of a force of size 1.
-pub(super) fn factor(places: &[[f64; 4]], lengths: [f64; 4]) -> Option<DMatrix<f64>> {
-    let covariance = DMatrix::from_fn(places.len(), places.len(), |a, b| {
+/// The covariance of a force of size 1.
+pub(super) fn alike(places: &[[f64; 4]], lengths: [f64; 4]) -> DMatrix<f64> {
+    DMatrix::from_fn(places.len(), places.len(), |a, b| {
         let alike = |lengths: [f64; 4]| {
             let apart = |axis: usize| (places[a][axis] - places[b][axis]) / lengths[axis];
             libm::exp(-0.5 * (0..4).map(|axis| apart(axis).powi(2)).sum::<f64>())
         };
         0.5 * (alike(lengths) + alike(LONG)) + if a == b { OWN } else { 0.0 }
-    });
-    Cholesky::new(covariance).map(|factor| factor.l())
+    })
 }
 
-/// What follows from a force of `size` whose covariance has `factor`.
-fn setting(
-    factor: &DMatrix<f64>,
-    inner: &DMatrix<f64>,
-    seen: &DVector<f64>,
-    size: f64,
-) -> Option<Setting> {
-    let n = seen.len();
+/// What follows from a force of `size`; `inner` is the covariance that one of size 1 gives what is seen, `values`.
+fn setting(inner: &DMatrix<f64>, values: &DVector<f64>, size: f64) -> Option<Setting> {
+    let n = values.len();
     let solved = Cholesky::new(DMatrix::identity(n, n) + inner * (size * size))?;
-    let pulled = solved.solve(seen);
-    let log_odds = 0.5 * (size * size * seen.dot(&pulled) - log_determinant(&solved));
-    let mean = factor * pulled * (size * size);
-    Some(Setting { log_odds, mean, size, solved })
+    let explained = values.norm_squared() - values.dot(&solved.solve(values));
+    let log_odds = 0.5 * (explained - log_determinant(&solved));
+    Some(Setting { log_odds, size, solved })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// What one covariance and one size say.
+    fn said(
+        covariance: &DMatrix<f64>,
+        size: f64,
+        answer: &DMatrix<f64>,
+        read: &DVector<f64>,
+    ) -> Averaged {
+        let (gram, pull) = (answer.tr_mul(answer), answer.tr_mul(read));
+        let covariances = std::slice::from_ref(covariance);
+        Averaged::over(covariances, &[size], (&gram, &pull)).expect("a force")
+    }
+
     #[test]
     fn a_force_without_any_answer_is_what_it_was_beforehand() {
         let n = 4;
         let places: Vec<[f64; 4]> = (0..n).map(|k| [k as f64 / 3.0, 0.0, 0.0, 0.0]).collect();
-        let factor = factor(&places, [0.25; 4]).expect("positive definite");
-        let nothing = DMatrix::zeros(n, n);
-        let one = setting(&factor, &nothing, &DVector::zeros(n), 2.0).expect("a setting");
+        let covariance = alike(&places, [0.25; 4]);
+        let one = said(&covariance, 2.0, &DMatrix::zeros(1, n), &DVector::zeros(1));
         assert!(one.log_odds.abs() < 1e-12, "nothing is learned");
         assert!(one.mean.norm() < 1e-12);
-        let sd = one.covariance(&factor)[(0, 0)].sqrt();
+        let sd = one.covariance[(0, 0)].sqrt();
         assert!((sd - 2.0).abs() < 1e-5, "{sd}");
     }
 
     #[test]
     fn a_node_that_is_measured_exactly_has_the_force_that_was_measured() {
         let places = [[0.0; 4], [1.0, 0.0, 0.0, 0.0]];
-        let factor = factor(&places, [0.12; 4]).expect("positive definite");
+        let covariance = alike(&places, [0.12; 4]);
         // One reading of the first node, 3 with a standard deviation of 1e-3.
         let answer = DMatrix::from_row_slice(1, 2, &[1e3, 0.0]);
-        let (gram, pull) = (answer.tr_mul(&answer), answer.tr_mul(&DVector::from_element(1, 3e3)));
-        let (inner, seen) = (factor.tr_mul(&(&gram * &factor)), factor.tr_mul(&pull));
-        let one = setting(&factor, &inner, &seen, 1.0).expect("a setting");
+        let one = said(&covariance, 1.0, &answer, &DVector::from_element(1, 3e3));
         assert!((one.mean[0] - 3.0).abs() < 1e-4, "{}", one.mean[0]);
-        assert!((one.covariance(&factor)[(0, 0)].sqrt() / 1e-3 - 1.0).abs() < 1e-3);
+        assert!((one.covariance[(0, 0)].sqrt() / 1e-3 - 1.0).abs() < 1e-3);
         // Far away half of the variance is shared still, over a length of 2: exp(−1/8) of it at a distance of 1.
         let shared = 0.5 * libm::exp(-0.125);
-        let there = one.covariance(&factor)[(1, 1)];
+        let there = one.covariance[(1, 1)];
         assert!((there - (1.0 - shared * shared)).abs() < 1e-4, "{there}");
         assert!((one.mean[1] - 3.0 * shared).abs() < 1e-4, "{}", one.mean[1]);
         // Its odds are those of a normal of variance 1 + 1e-6 against one of 1e-6.
         let expected = 0.5 * (9e6 - 9.0 / (1.0 + 1e-6)) - 0.5 * libm::log(1.0 + 1e6);
         assert!((one.log_odds / expected - 1.0).abs() < 1e-5, "{} {expected}", one.log_odds);
+    }
+
+    #[test]
+    fn fewer_numbers_say_what_all_measurements_say() {
+        let places: Vec<[f64; 4]> = (0..5).map(|k| [f64::from(k) / 4.0, 0.0, 0.0, 0.0]).collect();
+        let covariance = alike(&places, [0.3; 4]);
+        // Seven readings of three kinds.
+        let kinds = DMatrix::from_fn(3, 5, |a, b| libm::sin(((1 + a) * (1 + b)) as f64));
+        let mixed = DMatrix::from_fn(7, 3, |a, b| libm::pow(0.3 * (a + 1) as f64, b as f64));
+        let answer = mixed * kinds;
+        let read = DVector::from_fn(7, |k, _| libm::sin(2.0 * k as f64));
+        let seen = Seen::of(&answer.tr_mul(&answer), &answer.tr_mul(&read), 1.0);
+        assert_eq!(seen.values.len(), 3);
+        let one = said(&covariance, 1.0, &answer, &read);
+        let whole = DMatrix::identity(7, 7) + &answer * &covariance * answer.transpose();
+        let gain = &covariance * answer.transpose() * whole.try_inverse().expect("regular");
+        assert!((&gain * &read - &one.mean).norm() < 1e-6);
+        assert!((&covariance - gain * &answer * &covariance - &one.covariance).norm() < 1e-6);
     }
 }
