@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use configs::edit::add_effects;
 use diagnosis::bench::Bench;
 use diagnosis::calibrate::{Size, calibrate};
-use diagnosis::diagnose::diagnose;
+use diagnosis::diagnose::{diagnose, seek_missing_force};
 use diagnosis::missing_force::FOUND;
 use diagnosis::next::recommend;
 use diagnosis::verdict::{Diagnosis, Verdict};
@@ -37,6 +37,9 @@ pub(crate) struct Args {
     /// what they tell.
     #[arg(long, value_name = "OLD_DIAGNOSIS.json")]
     after: Option<PathBuf>,
+    /// Seek the force that the model lacks, and a formula for it, whatever the verdict: some seconds.
+    #[arg(long)]
+    missing_force: bool,
     #[command(flatten)]
     flags: Flags,
     #[command(flatten)]
@@ -53,6 +56,11 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     if model.loaded.model.grains().is_some() && args.calibrate {
         return Err(CommandError::BadInput(
             "--calibrate is of resistive-force models: sets of a bed of grains take hours to simulate\n".to_owned(),
+        ));
+    }
+    if model.loaded.model.grains().is_some() && args.missing_force {
+        return Err(CommandError::BadInput(
+            "--missing-force is of resistive-force models: compare shows the force on a body in a bed of grains\n".to_owned(),
         ));
     }
     if model.loaded.model.grains().is_some() && args.after.is_some() {
@@ -74,6 +82,9 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let results = flags.results(&measured, "diagnose", &models)?;
     let bench = Bench { set: &measured.set, observed: &measured.observed, forward: &forward };
     let mut diagnosis = diagnose(&bench, flags.seed).map_err(|error| failed(error, &model.name))?;
+    if args.missing_force {
+        seek_missing_force(&bench, &mut diagnosis).map_err(|error| failed(error, &model.name))?;
+    }
     let next = recommend(&bench, &model.loaded.model, &mut diagnosis);
     flags.notes(&measured.set.notes);
     flags.notes(&measured.observed.notes);
@@ -134,15 +145,17 @@ fn propose(
     object: &Value,
     diagnosis: &Diagnosis,
 ) -> Result<Vec<(String, String)>, CommandError> {
-    let proposals: Vec<Vec<&str>> = match diagnosis.verdict {
+    let mut proposals: Vec<Vec<&str>> = match diagnosis.verdict {
         Verdict::Supported => vec![diagnosis.effects.iter().map(String::as_str).collect()],
         Verdict::Pair => vec![diagnosis.effects.iter().map(String::as_str).collect()],
         Verdict::NotSeparable => {
             diagnosis.not_separable.iter().map(|id| vec![id.as_str()]).collect()
         }
-        Verdict::NoneOfTheCandidates if has_formula(diagnosis) => vec![vec![FOUND]],
         _ => Vec::new(),
     };
+    if has_formula(diagnosis) {
+        proposals.push(vec![FOUND]);
+    }
     proposals
         .into_iter()
         .map(|effects| {

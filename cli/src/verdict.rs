@@ -65,6 +65,9 @@ pub(crate) fn as_text(
     }
     if let Some(force) = &diagnosis.missing_force {
         text.push_str(&missing_force(force));
+        if !diagnosis.effects.is_empty() {
+            text.push_str("It is sought without any listed effect; the verdict stands.\n");
+        }
     }
     text.push_str(&held_out(diagnosis));
     text

@@ -16,7 +16,7 @@ use crate::frequency::of_benchmark;
 use crate::held_out::HeldOut;
 use crate::lack_of_fit::lack_of_fit;
 use crate::marginal::{Marginals, marginals};
-use crate::missing_force::missing_force;
+use crate::missing_force::{MissingForce, missing_force};
 use crate::noise::{Noise, NoiseSource};
 use crate::pair::{Pair, best_pair};
 use crate::ranked::ranked;
@@ -351,12 +351,7 @@ impl Judge<'_> {
         };
         let missing_force = match verdict {
             Verdict::NoneOfTheCandidates => {
-                let best = ranking.scores.first().map(|score| score.delta);
-                match missing_force(bench, &self.baseline, best) {
-                    // The verdict stands without it.
-                    Err(BenchError::Predict(_) | BenchError::Singular { .. }) => None,
-                    other => other?,
-                }
+                sought(bench, &self.baseline, ranking.scores.first().map(|score| score.delta))?
             }
             _ => None,
         };
@@ -406,6 +401,30 @@ impl Judge<'_> {
 
     fn name(&self, candidate: usize) -> String {
         self.bench.forward.candidates()[candidate].id.clone()
+    }
+}
+
+/// Seeks the force that the model lacks where the verdict of `diagnosis` did not ask for it.
+///
+/// # Errors
+/// If the model fails.
+pub fn seek_missing_force(bench: &Bench<'_>, diagnosis: &mut Diagnosis) -> Result<(), BenchError> {
+    if let (Some(baseline), None) = (&diagnosis.baseline, &diagnosis.missing_force) {
+        let best = diagnosis.ranking.first().and_then(|effect| effect.delta);
+        diagnosis.missing_force = sought(bench, baseline, best)?;
+    }
+    Ok(())
+}
+
+/// What `baseline` lacks; a verdict stands without it.
+fn sought(
+    bench: &Bench<'_>,
+    baseline: &Fitted,
+    best: Option<f64>,
+) -> Result<Option<MissingForce>, BenchError> {
+    match missing_force(bench, baseline, best) {
+        Err(BenchError::Predict(_) | BenchError::Singular { .. }) => Ok(None),
+        other => other,
     }
 }
 

@@ -91,6 +91,13 @@ impl Formula {
         let extended =
             by.extended(vec![own]).map_err(|why| BenchError::Formula(why.to_string()))?;
         let with = Bench { forward: &*extended, ..*bench };
+        // The noise under which the force was sought is not the one that the formula leaves.
+        let under_its_own = |point: &Point| {
+            let noise = with.fit(point).ok()?;
+            let fit = with.data(&noise.weights).fit_as_listed(point).ok()?;
+            Some(Fitted { fit, ..noise })
+        };
+        let fitted = under_its_own(&fitted.fit.point).unwrap_or(fitted);
         let holdout = HeldOut::of(&with, baseline, &fitted)?;
         let q = fitted.fit.point.effects.last().map_or(0.0, |(_, q)| *q);
         let sense = if q < 0.0 { "pushes along the motion" } else { "resists" };

@@ -419,6 +419,7 @@ mod tests {
             pair: None,
             resolved: None,
             missing: None,
+            asked: None,
             seconds: 1.0,
         };
         let trial = Trial { plan, outcome: Outcome::Answered(Box::new(answer)) };

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use configs::{ConfigError, LoadOptions, Model, ModelSource, find_shipped};
 use diagnosis::bench::{Bench, BenchError, DEFAULT_SEED, Fitted};
-use diagnosis::diagnose::diagnose;
+use diagnosis::diagnose::{diagnose, seek_missing_force};
 use diagnosis::held_out::HeldOut;
 use diagnosis::missing_force::MissingForce;
 use diagnosis::observable::Observable;
@@ -85,6 +85,9 @@ pub struct Answer {
     pub resolved: Option<Resolved>,
     /// The force that is missing, where no listed effect explains the data.
     pub missing: Option<Missing>,
+    /// The same, sought beside a verdict that did not ask for it.
+    #[serde(default)]
+    pub asked: Option<Missing>,
     /// Time that the diagnosis took (s).
     pub seconds: f64,
 }
@@ -174,7 +177,7 @@ fn answer(
     let forward = ResistiveForward::new(model, set, &observed.layouts())
         .map_err(|error| error.to_string())?;
     let bench = Bench { set, observed: &observed, forward: &forward };
-    let diagnosis = diagnose(&bench, DEFAULT_SEED).map_err(|error| error.to_string())?;
+    let mut diagnosis = diagnose(&bench, DEFAULT_SEED).map_err(|error| error.to_string())?;
     let seconds = clock.elapsed().as_secs_f64();
     let pair = match plan.hidden.len() {
         2 => pair_found(&bench).map_err(|error| error.to_string())?,
@@ -187,7 +190,20 @@ fn answer(
     let rest = resting_points(&plan.design, nature).map_err(|error| error.to_string())?;
     let endpoint = endpoints(&bench, &diagnosis, &rest).map_err(|error| error.to_string())?;
     let missing = diagnosis.missing_force.as_ref().map(|force| Missing::of(force, plan, nature));
-    Ok(Answer::new(diagnosis, nature, Apart { pair, endpoint, resolved, missing, seconds }))
+    let asked = match plan.row {
+        Row::Beyond if missing.is_none() && is_unlisted(plan) => {
+            seek_missing_force(&bench, &mut diagnosis).map_err(|error| error.to_string())?;
+            diagnosis.missing_force.as_ref().map(|force| Missing::of(force, plan, nature))
+        }
+        _ => None,
+    };
+    let apart = Apart { pair, endpoint, resolved, missing, asked, seconds };
+    Ok(Answer::new(diagnosis, nature, apart))
+}
+
+/// Whether something is hidden that no candidate is.
+fn is_unlisted(plan: &Plan) -> bool {
+    plan.hidden.iter().any(|hidden| !hidden.is_listed())
 }
 
 /// What is learned beside a diagnosis.
@@ -196,6 +212,7 @@ struct Apart {
     endpoint: Option<[f64; 2]>,
     resolved: Option<Resolved>,
     missing: Option<Missing>,
+    asked: Option<Missing>,
     seconds: f64,
 }
 
@@ -248,6 +265,7 @@ impl Answer {
             pair: apart.pair,
             resolved: apart.resolved,
             missing: apart.missing,
+            asked: apart.asked,
             seconds: apart.seconds,
         }
     }
