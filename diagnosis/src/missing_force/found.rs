@@ -43,18 +43,26 @@ impl Found {
         (baseline, fit): (&Fitted, Fit),
         field: Field,
     ) -> Result<Option<Self>, BenchError> {
-        let Some(mut found) = Self::around(bench, by, (baseline, fit), field)? else {
-            return Ok(None);
-        };
+        let found = Self::around(bench, by, (baseline, fit), field)?;
+        found.map(|found| found.settled(bench, by, baseline)).transpose()
+    }
+
+    /// Around the force that it finds.
+    pub(super) fn settled(
+        mut self,
+        bench: &Bench<'_>,
+        by: &dyn ByFormulas,
+        baseline: &Fitted,
+    ) -> Result<Self, BenchError> {
         for _ in 0..ROUNDS {
-            let Some(next) = found.nearer(bench, by, baseline)? else { break };
-            let is_settled = found.fit.chi2 - next.fit.chi2 < SETTLED * next.fit.chi2;
-            found = next;
+            let Some(next) = self.nearer(bench, by, baseline)? else { break };
+            let is_settled = self.fit.chi2 - next.fit.chi2 < SETTLED * next.fit.chi2;
+            self = next;
             if is_settled {
                 break;
             }
         }
-        Ok(Some(found))
+        Ok(self)
     }
 
     /// Around the mean of the process, or around a part of the way to it, where the model fits better; `None` where it
@@ -112,7 +120,8 @@ impl Found {
         self.fit.chi2 / rows.saturating_sub(self.fit.n_free()).max(1) as f64
     }
 
-    fn around(
+    /// Around the force of `field`, as [`Self::from`] begins.
+    pub(super) fn around(
         bench: &Bench<'_>,
         by: &dyn ByFormulas,
         (baseline, fit): (&Fitted, Fit),

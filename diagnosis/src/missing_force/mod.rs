@@ -47,6 +47,9 @@ const TWO_SIDED_95: f64 = 1.96;
 const FAR: f64 = 1.5;
 const AGAIN: usize = 3;
 
+/// Noises under which the force is sought to its end, of those that begin best.
+const SETTLED: usize = 2;
+
 /// Parts of the depth over which the force is summed up in words.
 const PARTS: usize = 10;
 
@@ -166,21 +169,26 @@ fn most_likely(
     let look = |under: Fitted| -> Result<Option<(Fitted, Found)>, BenchError> {
         let grid = response::grid(bench);
         let nothing = Field { values: vec![0.0; grid.len()], grid };
-        let found = Found::from(bench, by, (&under, under.fit.clone()), nothing)?;
+        let found = Found::around(bench, by, (&under, under.fit.clone()), nothing)?;
         Ok(found.map(|found| (under, found)))
     };
-    let Some(mut best) = look(baseline.clone())? else { return Ok(None) };
+    let Some(first) = look(baseline.clone())? else { return Ok(None) };
+    let mut begun = vec![first];
     let Between { sd, sigma, .. } = baseline.noise.sessions;
-    let evidence = |(under, found): &(Fitted, Found)| found.evidence(under);
     for less in [sigma, 0.0].into_iter().filter(|less| *less < sd) {
         // A noise under which the model cannot be fitted is no candidate.
         let fitted = bench.with_scatter_between_conditions(less, baseline).ok();
-        let found = fitted.and_then(|under| look(under).ok().flatten());
-        if let Some(one) = found.filter(|one| evidence(one) > evidence(&best)) {
-            best = one;
-        }
+        begun.extend(fitted.and_then(|under| look(under).ok().flatten()));
     }
-    Ok(Some(best))
+    let evidence = |(under, found): &(Fitted, Found)| found.evidence(under);
+    begun.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));
+    begun.truncate(SETTLED);
+    let mut settled = Vec::with_capacity(begun.len());
+    for (under, found) in begun {
+        let found = found.settled(bench, by, &under)?;
+        settled.push((under, found));
+    }
+    Ok(settled.into_iter().max_by(|a, b| evidence(a).total_cmp(&evidence(b))))
 }
 
 /// What the bodies go through.
