@@ -64,6 +64,9 @@ impl Path {
     /// Depth (m) and velocity (m/s) at `time` (s), by the cubic between the readings around it.
     pub(super) fn at(&self, time: f64) -> [f64; 2] {
         let all = &self.readings;
+        if all.len() < 2 {
+            return [0.0; 2];
+        }
         let behind = all.partition_point(|one| one[0] <= time).clamp(1, all.len() - 1);
         let [[t0, z0, v0], [t1, z1, v1]] = [all[behind - 1], all[behind]];
         let step = t1 - t0;

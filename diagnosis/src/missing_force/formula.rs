@@ -39,6 +39,9 @@ const ALIKE: f64 = 0.98;
 /// Fall of the deviance that a term is worth: it is chosen from hundreds.
 const WORTH: f64 = 20.0;
 
+/// Share of the scatter between conditions that may be left beside a formula.
+const LEFT: f64 = 0.5;
+
 /// A force that may be negative goes to zero with the speed over this share of √(g D).
 const REST: &str = "tanh(20 * v / V_s)";
 
@@ -254,6 +257,12 @@ impl Refitted {
     }
 }
 
+/// Whether conditions differ as before beside the formula: it does not say what they lack, though it may happen to predict.
+fn leaves_them_apart(formula: &Formula, baseline: &Fitted) -> bool {
+    let [before, after] = [baseline, &formula.fitted].map(|one| one.noise.sessions);
+    after.sd > after.sigma.max(LEFT * before.sd)
+}
+
 /// Whether it is worth its terms and takes a quarter of a clear error on conditions that it has not seen.
 fn predicts(formula: &Formula, baseline: &Fitted) -> bool {
     let holdout = &formula.holdout;
@@ -265,6 +274,7 @@ fn predicts(formula: &Formula, baseline: &Fitted) -> bool {
         && holdout.log_density_gain > 0.0
         && holdout.not_predicted.is_empty()
         && fall >= WORTH * formula.terms as f64
+        && !leaves_them_apart(formula, baseline)
 }
 
 /// Single terms, best first, with their best numbers; of terms that are alike only the best.
