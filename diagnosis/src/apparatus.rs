@@ -383,6 +383,27 @@ mod tests {
     }
 
     #[test]
+    fn a_surface_that_lies_deeper_leaves_the_fall_where_it_is() {
+        let fall = Fall { down: 1.5, forward: 0.7, gravity: 9.81 };
+        for deeper in [-3e-3, 2e-3] {
+            let mut scatter = Scatter::default();
+            fall.add(&mut scatter, deeper);
+            let speed = (1.0 + scatter.speed) * libm::hypot(fall.down, fall.forward);
+            let down = (speed * speed - fall.forward * fall.forward).sqrt();
+            for t in [-0.02, 0.0, 0.005] {
+                let since = t + scatter.clock;
+                let depth = scatter.level + since * (down + 0.5 * fall.gravity * since);
+                assert!((depth - t * (fall.down + 0.5 * fall.gravity * t)).abs() < 1e-12, "{t}");
+                let way = scatter.ahead + fall.forward * since;
+                assert!((way - fall.forward * t).abs() < 1e-12, "{t}");
+            }
+        }
+        let (_, read) = before(|set| set.instrument.surface_sigma = Some(2e-3));
+        assert_eq!(sigma(&read, "surface"), Some(2e-3));
+        assert_eq!(sigma(&read, "depth-zero"), None);
+    }
+
+    #[test]
     fn what_is_stated_stands_before_what_is_usual_and_zero_says_exact() {
         let (_, usual) = before(|_| ());
         // Half of a frame of 500 Hz; the grains of 0.8 mm and the level of 0.2 mm are finer than 1 mm.

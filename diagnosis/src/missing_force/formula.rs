@@ -66,14 +66,14 @@ pub struct Formula {
 }
 
 impl Formula {
-    /// The first of `refitted` that is worth keeping, if any is.
+    /// The first of `refitted`, best first, that is worth keeping, if one of as many as are refitted at a time is.
     pub(super) fn kept(
         bench: &Bench<'_>,
         by: &dyn ByFormulas,
         baseline: &Fitted,
         refitted: Vec<Refitted>,
     ) -> Result<Option<Self>, BenchError> {
-        for one in refitted {
+        for one in refitted.into_iter().take(SINGLES + DOUBLES) {
             let formula = Self::judged(bench, by, baseline, one)?;
             if predicts(&formula, baseline) {
                 return Ok(Some(formula));
