@@ -74,7 +74,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         Some(path) => {
             let file = ImportFile::read(path).map_err(failed)?;
             file.refuse_changed().map_err(failed)?;
-            // What is typed beside it stands above what it says.
+            // Options on the command line override those of the file.
             let mut options = file.options;
             options.take(args.tables.options()?);
             (file.files, options, path.parent().map(Path::to_owned))

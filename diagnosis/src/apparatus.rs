@@ -44,7 +44,7 @@ const MOST: usize = 64;
 enum Fault {
     Clock,
     Zero,
-    /// The level of the surface, where clock, depths and speed of each run are read where free fall comes to it.
+    /// The level of the surface, if the clock, depths and speed of each run are read where its free fall reaches that level.
     Surface,
     Speed,
     Scale,
@@ -66,14 +66,14 @@ pub(crate) struct Apparatus {
     parameters: Vec<Parameter>,
     /// Which body falls, by condition.
     bodies: Vec<usize>,
-    /// How it comes to the surface, by condition.
+    /// Motion of the body at the surface, by condition.
     falls: Vec<Fall>,
     /// By group of runs: its share of the runs of each condition.
     groups: Vec<Vec<f64>>,
     coefficients: usize,
 }
 
-/// How a body comes to the surface.
+/// Motion of a body at the surface.
 #[derive(Clone, Copy, Debug)]
 struct Fall {
     /// Velocity at contact, downward and forward (m/s).
@@ -96,7 +96,7 @@ impl Fall {
     /// Adds to `scatter` that the surface lies `deeper` (m) than where the clock, depths and speed are read.
     fn add(self, scatter: &mut Scatter, deeper: f64) {
         let Self { down, forward, gravity } = self;
-        // Where free fall never comes to it, it only just does.
+        // A surface that free fall never reaches is placed at the top of the fall.
         let later = (down * down + 2.0 * gravity * deeper).max(0.0).sqrt();
         let time = 2.0 * deeper / (down + later).max(f64::MIN_POSITIVE);
         let [before, after] = [down, later].map(|down| libm::hypot(down, forward));
@@ -130,7 +130,7 @@ impl Apparatus {
         }
         let level = instrument.level_sigma.unwrap_or(0.0);
         let grain = 0.5 * set.coarsest_grains();
-        // Depths that are counted from where free fall comes to the surface have no other zero.
+        // Depths that count from the point where free fall reaches the surface have no other zero.
         let unstated = match instrument.surface_sigma {
             Some(_) => 0.0,
             None => defaults::ZERO.max(grain).max(level),

@@ -416,7 +416,7 @@ pub fn seek_missing_force(bench: &Bench<'_>, diagnosis: &mut Diagnosis) -> Resul
     Ok(())
 }
 
-/// What `baseline` lacks; a verdict stands without it.
+/// The force that `baseline` lacks; none if the model fails, since the verdict does not need it.
 fn sought(
     bench: &Bench<'_>,
     baseline: &Fitted,

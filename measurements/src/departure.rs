@@ -40,7 +40,7 @@ pub(super) struct Trial {
 const BRAKED: usize = 5;
 const STILL_FAST: f64 = 0.15;
 
-/// Frames that are the first of a path.
+/// Number of frames that count as the first of a path.
 const SOON: f64 = 2.0;
 
 /// How well the acceleration before contact is known, relative to gravity, where the fall does not show that guides or air
@@ -59,8 +59,8 @@ fn doubt(frames: &[Frame], gravity: f64) -> f64 {
 }
 
 impl Departure {
-    /// First contact in `frames` of a body of this `shape` and diameter (m) that does not spin: times in s on any clock, depths in m
-    /// downward on any scale, readings good to `sigma` (m), under `gravity` (m/s²). `None` where they do not show
+    /// First contact in `frames` of a body of this `shape` and diameter (m) that does not spin: times in s on any clock,
+    /// depths in m downward on any scale, readings good to `sigma` (m), under `gravity` (m/s²). `None` where they do not show
     /// it: fewer than five frames near contact, no fall before it, or a shape whose lowest point does not fall
     /// freely.
     #[must_use]

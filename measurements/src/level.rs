@@ -65,14 +65,15 @@ pub fn common_level(runs: &[&Departure]) -> Option<Reading> {
         let [all, first, second]: [f64; 3] = [0, 1, 2].map(sum);
         (best, first / all, second / all - (first / all).powi(2))
     };
-    // No bed takes one of the forms exactly: those that come near tell as much as the best.
+    // No bed follows a form exactly, so a form that fits nearly as well as the best counts as much.
     let as_good = AS_GOOD.0 + AS_GOOD.1 * runs.len() as f64;
     let forms = (0..curves.len()).map(of_form).filter(|one| one.0 - best <= as_good);
     let (means, variances): (Vec<f64>, Vec<f64>) = forms.map(|one| (one.1, one.2)).unzip();
     let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
     let range =
         means.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least(means.iter().copied());
-    // A bed may differ from both forms as they do from each other: every level within their range of the mean is as likely.
+    // A bed may differ from the forms as much as they differ from each other: levels within that distance of the mean are
+    // equally likely.
     let se = (mean(&variances).max(0.0) + range * range / 3.0).sqrt();
     Some(Reading { value: low + mean(&means), se })
 }

@@ -66,7 +66,7 @@ pub struct Formula {
 }
 
 impl Formula {
-    /// The first of `refitted`, best first, that is worth keeping, if one of as many as are refitted at a time is.
+    /// The first of `refitted` (best first) that is worth keeping. As many are judged as one search refits.
     pub(super) fn kept(
         bench: &Bench<'_>,
         by: &dyn ByFormulas,
@@ -94,7 +94,7 @@ impl Formula {
         let extended =
             by.extended(vec![own]).map_err(|why| BenchError::Formula(why.to_string()))?;
         let with = Bench { forward: &*extended, ..*bench };
-        // The noise under which the force was sought is not the one that the formula leaves.
+        // The noise of the search differs from the noise beside the formula, which is estimated here.
         let under_its_own = |point: &Point| {
             let noise = with.fit(point).ok()?;
             let fit = with.data(&noise.weights).fit_as_listed(point).ok()?;
@@ -257,7 +257,8 @@ impl Refitted {
     }
 }
 
-/// Whether conditions differ as before beside the formula: it does not say what they lack, though it may happen to predict.
+/// Whether the formula leaves most of the scatter between conditions. Such a formula does not describe what is missing, even
+/// if it predicts the held-out conditions by chance.
 fn leaves_them_apart(formula: &Formula, baseline: &Fitted) -> bool {
     let [before, after] = [baseline, &formula.fitted].map(|one| one.noise.sessions);
     after.sd > after.sigma.max(LEFT * before.sd)

@@ -47,7 +47,7 @@ impl Found {
         found.map(|found| found.settled(bench, by, baseline)).transpose()
     }
 
-    /// Around the force that it finds.
+    /// Repeats the search around the force that it finds until the fit no longer improves.
     pub(super) fn settled(
         mut self,
         bench: &Bench<'_>,
@@ -120,7 +120,7 @@ impl Found {
         self.fit.chi2 / rows.saturating_sub(self.fit.n_free()).max(1) as f64
     }
 
-    /// Around the force of `field`, as [`Self::from`] begins.
+    /// One step of the search, with the answers taken around the force of `field`.
     pub(super) fn around(
         bench: &Bench<'_>,
         by: &dyn ByFormulas,

@@ -47,7 +47,7 @@ const TWO_SIDED_95: f64 = 1.96;
 const FAR: f64 = 1.5;
 const AGAIN: usize = 3;
 
-/// Noises under which the force is sought to its end, of those that begin best.
+/// Number of noises under which the search is completed: those with the best evidence after its first step.
 const SETTLED: usize = 2;
 
 /// Parts of the depth over which the force is summed up in words.

@@ -24,7 +24,7 @@ const LONG: [f64; 4] = [2.0; 4];
 /// Share of the variance of each node that no other shares.
 const OWN: f64 = 1e-6;
 
-/// Share of the noise that counts as none.
+/// Variance, relative to that of the noise, below which a direction carries no information.
 const NOTHING: f64 = 1e-8;
 
 /// Settings less likely by this logarithm than the best do not count.
@@ -41,18 +41,18 @@ pub(super) struct Process {
     pub(super) log_odds: f64,
 }
 
-/// What is measured of the force at the nodes, in as few numbers as tell it.
+/// The measurements of the force at the nodes, compressed to the few numbers that carry their information.
 pub(super) struct Seen {
-    /// Answers of these numbers to the force at each node; their product with themselves is that of all measurements.
+    /// Answer of each number to the force at each node. Its Gram matrix is that of all measurements.
     root: DMatrix<f64>,
-    /// What the numbers are.
+    /// Values of these numbers.
     values: DVector<f64>,
 }
 
 impl Seen {
     /// `gram` and `pull` are the products of the answers with themselves and with what they explain; forces are no larger
     /// than `most`. The root is the Cholesky factor with pivots (Higham 2002, Accuracy and Stability of Numerical
-    /// Algorithms, § 10.3), up to where what is left tells nothing.
+    /// Algorithms, § 10.3), truncated where the rest carries no information.
     pub(super) fn of(gram: &DMatrix<f64>, pull: &DVector<f64>, most: f64) -> Self {
         let n = gram.nrows();
         let mut left = gram.diagonal();

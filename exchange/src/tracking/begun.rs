@@ -46,8 +46,8 @@ pub(super) fn tracks(
     if faults.is_empty() { Ok((all, hashes)) } else { Err(faults) }
 }
 
-/// Without tracks that are no drops: spots that a program followed for a few frames, lines of sums. A table of such tracks
-/// alone is left as it is.
+/// Removes tracks that are too short to be drops, such as spots that a program follows for a few frames, or lines of sums. A
+/// table that holds only short tracks keeps them, so that the message about them names the table.
 fn without_short(mut tracks: Vec<Track>) -> Vec<Track> {
     let is_short = |track: &Track| track.samples.len() < FEWEST;
     if tracks.iter().all(is_short) {
@@ -107,7 +107,7 @@ pub(super) fn begin(
     }
 }
 
-/// Refuses runs to leave out that are not there.
+/// Refuses names of runs to leave out that no run has.
 fn refuse_unknown(patterns: &[glob::Pattern], names: &[String]) -> Result<(), Vec<Fault>> {
     let fits = |pattern: &&glob::Pattern| names.iter().any(|name| pattern.matches(name));
     let unknown = patterns.iter().filter(|pattern| !fits(pattern));

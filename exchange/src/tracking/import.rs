@@ -47,7 +47,7 @@ pub fn import(paths: &[PathBuf], options: &Options, out: &File) -> Result<Set, T
     Ok(Set { understood, notes, files })
 }
 
-/// What was assumed of tables, and left out of them, in sentences.
+/// Sentences about what is assumed of the tables, and what is left out of them.
 fn told(begun: &[Begun]) -> Vec<String> {
     let tracks = || begun.iter().map(|one| &one.path.track);
     let mut files: Vec<&str> = tracks().map(|track| track.file.as_str()).collect();
@@ -71,9 +71,9 @@ fn told(begun: &[Begun]) -> Vec<String> {
     all
 }
 
-/// A sentence where the fall before contact is clearly another than that of gravity.
+/// A warning if the acceleration before contact clearly differs from gravity.
 fn off_gravity(begun: &[Begun], settings: &Settings<'_>) -> Option<String> {
-    /// Relative, and in standard errors.
+    /// Least relative difference, and least difference in standard errors.
     const CLEAR: (f64, f64) = (0.04, 4.0);
     let paths: Vec<Path> = begun.iter().map(|one| one.path.clone()).collect();
     let (mut weights, mut sum) = (0.0, 0.0);
@@ -192,9 +192,9 @@ fn see(
     Ok((Seen { name: one.name.clone(), departure, stated, below_centre }, scales, frames, noise))
 }
 
-/// Refuses units by which the body goes very far.
+/// Refuses units in which the body moves implausibly far.
 fn refuse_far(frames: &[Frame], one: &Begun, scales: &Scales) -> Result<(), Fault> {
-    /// Diameters.
+    /// Longest path, in diameters.
     const FAR: f64 = 400.0;
     let ends = frames.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], frame| {
         [low.min(frame.z), high.max(frame.z)]

@@ -136,8 +136,8 @@ fn clock(samples: &[Sample], track: &Track, settings: &Settings<'_>) -> Vec<f64>
     }
 }
 
-/// First contact on a path in SI whose readings are good to `noise` (m), of a body of this `shape` and `diameter` (m). Where it is known to
-/// begin above the surface (`sees_surface`), too little of the fall may be seen to show it.
+/// First contact on a path in SI whose readings are good to `noise` (m), of a body of this `shape` and `diameter` (m). If the path is
+/// known to begin above the surface (`sees_surface`), the frames need not show free fall.
 ///
 /// # Errors
 /// What its frames lack.
@@ -165,7 +165,7 @@ pub(super) fn contact(
     }
 }
 
-/// Probability of a body that is braked at first with which no free fall is seen.
+/// Probability that the body is braked from the first frames on, above which no free fall counts as seen.
 const LIKELY: f64 = 0.1;
 
 /// Share of the speed at contact that is left at the end of a clip that shows the body braked.

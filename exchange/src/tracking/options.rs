@@ -43,7 +43,7 @@ impl Options {
         }
     }
 
-    /// Sets those that `other` has.
+    /// Takes over every option of `other`.
     pub fn take(&mut self, other: Self) {
         self.0.extend(other.0);
     }

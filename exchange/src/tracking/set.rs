@@ -68,7 +68,7 @@ impl Set {
 
     /// Removes its files from `folder`, and the folder where nothing else is in it.
     pub fn remove(&self, folder: &Path) {
-        // What cannot be removed is told of when it is written again.
+        // A file that cannot be removed causes an error when the set is written again.
         for (name, _) in &self.files {
             let _ = std::fs::remove_file(folder.join(name));
         }

@@ -190,7 +190,7 @@ impl<'a> Settings<'a> {
     }
 }
 
-/// The pattern of names, or the name where it is none.
+/// `name` as a pattern of names. A name that is not a valid pattern matches itself alone.
 fn pattern_of(name: &str) -> glob::Pattern {
     glob::Pattern::new(name)
         .or_else(|_| glob::Pattern::new(&glob::Pattern::escape(name)))

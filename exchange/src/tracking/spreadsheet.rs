@@ -10,7 +10,7 @@ use super::sheet::{Number, Row, Sheet, number};
 /// Endings of the names of spreadsheets.
 pub(super) const ENDINGS: [&str; 4] = ["xlsx", "xlsm", "xls", "ods"];
 
-/// Whether this is text, whatever the name of the file says.
+/// Whether the content is text; the name of the file does not matter.
 pub(super) fn is_text(bytes: &[u8]) -> bool {
     /// First bytes of archives and of compound documents.
     const BOOKS: [&[u8]; 2] = [b"PK", &[0xd0, 0xcf, 0x11, 0xe0]];

@@ -14,10 +14,10 @@ use super::run::Run;
 use super::settings::Settings;
 use super::surface::{LEAST, Level};
 
-/// Relative difference of speeds that are the same.
+/// Relative difference below which speeds count as equal.
 const ROUNDING: f64 = 1e-9;
 
-/// How well a level that is stated is known (m).
+/// Standard error of a level that the user states (m).
 const STATED: f64 = 1e-3;
 
 /// What is written.
@@ -247,7 +247,7 @@ fn speed_scatter(conditions: &[(&str, Vec<&Run>)]) -> Option<f64> {
     let fit = median(errors);
     let scatter = if freedom >= 3.0 { f64::sqrt(sum / freedom) } else { 0.0 };
     let error = scatter.max(fit);
-    // Speeds of one stated height differ by their rounding.
+    // Speeds from one stated height differ only by rounding.
     (error > ROUNDING).then_some(error)
 }
 
