@@ -10,6 +10,10 @@ use nalgebra::{Matrix5, Matrix6, Vector5, Vector6};
 use super::Frame;
 use super::fits::{BETWEEN_FRAMES, Fit};
 
+/// How often contacts are added beside the best, and the chi-squared that two neighbours may differ by.
+const REFINED: usize = 12;
+const RESOLVED: f64 = 1.0;
+
 /// Steps between two readings that forces are integrated in.
 const STEPS: usize = 3;
 
@@ -87,12 +91,12 @@ pub(super) fn fits(
     let frames = readings.frames;
     let (first, last) = (frames[0].t, frames[frames.len() - 1].t);
     let places = BETWEEN_FRAMES * (frames.len() - 1);
-    let contacts = (0..=places).map(|k| first + (last - first) * k as f64 / places as f64);
+    let step = (last - first) / places as f64;
     let mut fits: Vec<Fit> = Vec::with_capacity(EXPOSURES.len() * (places + 1));
     let mut best = (f64::INFINITY, Path { readings: Vec::new() });
-    for contact in contacts {
-        let [level, _] = path(contact);
-        for (form, exposure) in EXPOSURES.iter().enumerate() {
+    for (form, exposure) in EXPOSURES.iter().enumerate() {
+        let mut fit_at = |contact: f64| {
+            let [level, _] = path(contact);
             let forces = |time: f64| {
                 let [z, v] = path(time);
                 let share = exposure(body.section(z - level));
@@ -101,17 +105,45 @@ pub(super) fn fits(
             let braked = braked(readings, contact, forces);
             let behind = frames.iter().filter(|frame| frame.t > contact);
             let there: Vec<[f64; 3]> = behind.map(|frame| forces(frame.t)).collect();
-            let Some((fit, strengths)) = solved(readings, (contact, form), (&braked, &there))
-            else {
-                continue;
-            };
+            let (fit, strengths) = solved(readings, (contact, form), (&braked, &there))?;
             if fit.misfit < best.0 {
                 best = (fit.misfit, readings.path(&fit, &braked, strengths));
             }
-            fits.push(fit);
-        }
+            Some(fit)
+        };
+        let grid = (0..=places).map(|k| first + step * k as f64);
+        let mut own: Vec<Fit> = grid.filter_map(&mut fit_at).collect();
+        refine(&mut own, step, fit_at);
+        fits.append(&mut own);
     }
     (fits, best.1)
+}
+
+/// Adds contacts beside the best of `fits`, which are in order and a `step` (s) apart, until those beside it fit about as
+/// well: exact readings tell a contact far better than they are apart.
+fn refine(fits: &mut Vec<Fit>, step: f64, mut fit_at: impl FnMut(f64) -> Option<Fit>) {
+    for _ in 0..REFINED {
+        let misfit = |at: &usize| fits[*at].misfit;
+        let best = (0..fits.len()).min_by(|a, b| misfit(a).total_cmp(&misfit(b)));
+        let Some(best) = best else { return };
+        let beside = [best.checked_sub(1), (best + 1 < fits.len()).then_some(best + 1)];
+        let is_resolved = |at: usize| fits[at].misfit < fits[best].misfit + RESOLVED;
+        if beside.iter().flatten().all(|&at| is_resolved(at)) {
+            break;
+        }
+        let between = |at: usize| 0.5 * (fits[at].contact + fits[best].contact);
+        let more: Vec<Fit> =
+            beside.into_iter().flatten().map(between).filter_map(&mut fit_at).collect();
+        fits.extend(more);
+        fits.sort_by(|a, b| a.contact.total_cmp(&b.contact));
+    }
+    // A mean over contacts goes by their distances.
+    let contacts: Vec<f64> = fits.iter().map(|fit| fit.contact).collect();
+    for (at, fit) in fits.iter_mut().enumerate() {
+        let before = at.checked_sub(1).map_or(step, |before| contacts[at] - contacts[before]);
+        let behind = contacts.get(at + 1).map_or(step, |behind| behind - contacts[at]);
+        fit.share = 0.5 * (before + behind) / step;
+    }
 }
 
 /// By how much each of three forces of size one has braked the body at a reading: its way, in units of the scale of time
@@ -207,6 +239,6 @@ fn solved(
     own.fixed_rows_mut::<3>(0).copy_from(&numbers.fixed_rows::<3>(0));
     own[0] += middle;
     spread.fixed_view_mut::<3, 3>(0, 0).copy_from(&covariance.fixed_view::<3, 3>(0, 0));
-    let fit = Fit { contact, form, misfit, numbers: own, covariance: spread };
+    let fit = Fit { contact, form, share: 1.0, misfit, numbers: own, covariance: spread };
     Some((fit, [numbers[3], numbers[4], numbers[5]]))
 }

@@ -40,6 +40,9 @@ pub(super) struct Trial {
 const BRAKED: usize = 5;
 const STILL_FAST: f64 = 0.15;
 
+/// Share of the time between two frames to which a frame has the time that it states: the shutter and the clock of a camera.
+const PUNCTUAL: f64 = 0.005;
+
 /// Number of frames that count as the first of a path.
 const SOON: f64 = 2.0;
 
@@ -84,6 +87,8 @@ impl Departure {
         let to = to + frames[to - 1..].windows(2).take(more).take_while(moves).count();
         let all = Some(&frames[from..to]).filter(|all| all.len() >= FEWEST)?;
         let body = Body { shape, diameter };
+        let step = (all[all.len() - 1].t - all[0].t) / (all.len() - 1) as f64;
+        let sigma = libm::hypot(sigma, PUNCTUAL * step * most);
         let (fits, contact) =
             fit_braked(all, (gravity, doubt(frames, gravity), sigma), (power, body));
         let trial = |fit: &Fit| Trial {

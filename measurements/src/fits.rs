@@ -35,6 +35,8 @@ pub(super) struct Fit {
     pub(super) contact: f64,
     /// Which power, or which other form, the departure has.
     pub(super) form: usize,
+    /// Time that it stands for in a mean, over that of the others of its form where contacts are equally far apart.
+    pub(super) share: f64,
     /// Chi-squared.
     pub(super) misfit: f64,
     /// a, b, c, k in units of the scale of time, and what k changes by with time; k is 0 of a departure by forces.
@@ -82,7 +84,7 @@ impl Fits {
         let best = self.all.iter().fold(f64::INFINITY, |best, fit| best.min(fit.misfit));
         let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
         for fit in &self.all {
-            let weight = libm::exp(-0.5 * (fit.misfit - best) / self.excess);
+            let weight = fit.share * libm::exp(-0.5 * (fit.misfit - best) / self.excess);
             let (value, variance) = of(fit);
             sum += weight;
             first += weight * value;
@@ -189,7 +191,7 @@ impl Fit {
             Some(found) => found,
             None => solve(held)?,
         };
-        Some(Self { contact, form, misfit, numbers, covariance })
+        Some(Self { contact, form, share: 1.0, misfit, numbers, covariance })
     }
 
     /// A combination of the numbers, and its variance.
