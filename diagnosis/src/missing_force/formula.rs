@@ -33,6 +33,11 @@ const MOST: f64 = 1e4;
 const SINGLES: usize = 3;
 const DOUBLES: usize = 2;
 
+/// Formulas whose own noise is estimated, which is slow; and by how much the ratio of errors on held-out conditions may
+/// be larger under the noise of the search than what is kept.
+const JUDGED: usize = 2;
+const SLACK: f64 = 1.2;
+
 /// Terms more alike than this are one.
 const ALIKE: f64 = 0.98;
 
@@ -66,34 +71,42 @@ pub struct Formula {
 }
 
 impl Formula {
-    /// The first of `refitted` (best first) that is worth keeping. As many are judged as one search refits.
+    /// The first of `refitted` (best first) that is worth keeping. As many are looked at as one search refits, and
+    /// [`JUDGED`] of those that predict under the noise of the search are judged.
     pub(super) fn kept(
         bench: &Bench<'_>,
         by: &dyn ByFormulas,
         baseline: &Fitted,
         refitted: Vec<Refitted>,
     ) -> Result<Option<Self>, BenchError> {
+        let mut judged = 0;
         for one in refitted.into_iter().take(SINGLES + DOUBLES) {
-            let formula = Self::judged(bench, by, baseline, one)?;
+            let own = draft(FOUND, one.force.clone(), by);
+            let extended =
+                by.extended(vec![own]).map_err(|why| BenchError::Formula(why.to_string()))?;
+            let with = Bench { forward: &*extended, ..*bench };
+            let holdout = HeldOut::of(&with, baseline, &one.fitted)?;
+            if holdout.is_above_noise() != Some(true) {
+                break;
+            }
+            if ratio(&holdout).is_none_or(|ratio| ratio > SLACK * NEARER) {
+                continue;
+            }
+            let formula = Self::judged(&with, baseline, one)?;
             if predicts(&formula, baseline) {
                 return Ok(Some(formula));
+            }
+            judged += 1;
+            if judged == JUDGED {
+                break;
             }
         }
         Ok(None)
     }
 
-    /// `refitted` before conditions that it was not fitted to.
-    fn judged(
-        bench: &Bench<'_>,
-        by: &dyn ByFormulas,
-        baseline: &Fitted,
-        refitted: Refitted,
-    ) -> Result<Self, BenchError> {
+    /// `refitted`, a part of the model `with`, before conditions that it was not fitted to.
+    fn judged(with: &Bench<'_>, baseline: &Fitted, refitted: Refitted) -> Result<Self, BenchError> {
         let Refitted { force, terms, amplitudes, fitted } = refitted;
-        let own = draft(FOUND, force.clone(), by);
-        let extended =
-            by.extended(vec![own]).map_err(|why| BenchError::Formula(why.to_string()))?;
-        let with = Bench { forward: &*extended, ..*bench };
         // The noise of the search differs from the noise beside the formula, which is estimated here.
         let under_its_own = |point: &Point| {
             let noise = with.fit(point).ok()?;
@@ -101,7 +114,7 @@ impl Formula {
             Some(Fitted { fit, ..noise })
         };
         let fitted = under_its_own(&fitted.fit.point).unwrap_or(fitted);
-        let holdout = HeldOut::of(&with, baseline, &fitted)?;
+        let holdout = HeldOut::of(with, baseline, &fitted)?;
         let q = fitted.fit.point.effects.last().map_or(0.0, |(_, q)| *q);
         let sense = if q < 0.0 { "pushes along the motion" } else { "resists" };
         let each: Vec<String> = terms.iter().map(Term::words).collect();
@@ -264,13 +277,17 @@ fn leaves_them_apart(formula: &Formula, baseline: &Fitted) -> bool {
     after.sd > after.sigma.max(LEFT * before.sd)
 }
 
+/// The error that is left on held-out conditions, over that of the model as it is.
+fn ratio(holdout: &HeldOut) -> Option<f64> {
+    Some(holdout.after? / holdout.before?)
+}
+
 /// Whether it is worth its terms and takes a quarter of a clear error on conditions that it has not seen.
 fn predicts(formula: &Formula, baseline: &Fitted) -> bool {
     let holdout = &formula.holdout;
     let fall = baseline.deviance() - formula.fitted.deviance();
-    let ratio = holdout.before.zip(holdout.after).map(|(before, after)| after / before);
     holdout.is_above_noise() == Some(true)
-        && ratio.is_some_and(|ratio| ratio <= NEARER)
+        && ratio(holdout).is_some_and(|ratio| ratio <= NEARER)
         && holdout.ratio_at_most.is_none_or(|most| most < 1.0)
         && holdout.log_density_gain > 0.0
         && holdout.not_predicted.is_empty()

@@ -27,8 +27,7 @@ fn write_tables(folder: &Path, meets: Meets, camera: Camera) -> Vec<(PathBuf, Dr
         for repeat in 0..3_u32 {
             let seed = 100 * camera.seed + 10 * at as u64 + u64::from(repeat);
             let hold = 0.3 + 0.013 * f64::from(repeat);
-            let one =
-                drop_into(meets, height, Camera { hold, duration: 1.0, seed, ..camera });
+            let one = drop_into(meets, height, Camera { hold, duration: 1.0, seed, ..camera });
             let mut text = String::from("\u{feff}t (ms);y (cm)\r\n");
             for (t, z) in &one.readings {
                 let row = format!("{:.3};{:.4}\r\n", 1e3 * t, LEVEL + 1e2 * z);
