@@ -13,6 +13,7 @@ use super::braking::{self, Body, Readings};
 use super::fits::Fits;
 use super::reading::Reading;
 use super::smooth::{blocks, median_step, slope, velocity_window};
+use super::strays::but_strays;
 use super::{Condition, Frame, Run};
 
 /// What the frames of a run say of its first contact, on the clock and the scale of the table.
@@ -89,14 +90,15 @@ pub(super) fn read(
     zero: f64,
 ) -> Option<Contact> {
     let power = power(condition)?;
-    let all = velocity_window(&run.frames, sigma, NEAR)?;
+    let frames = but_strays(&run.frames, sigma);
+    let all = velocity_window(&frames, sigma, NEAR)?;
     if all.len() < FEWEST {
-        return coarse(&run.frames, sigma, (condition, gravity, zero));
+        return coarse(&frames, sigma, (condition, gravity, zero));
     }
     let (fits, contact) = fit(all, (gravity, doubt, sigma), power);
     let [first, last] = fits.ends;
     let reaches_zero = first <= zero + 1.5 * contact.step && zero <= last;
-    let is_whole = all[0].t <= run.frames[0].t;
+    let is_whole = all[0].t <= frames[0].t;
     let depth_at_zero = match reaches_zero {
         true => Some(fits.mean(|fit| fits.free(fit, zero))),
         false if is_whole => back_to_zero(all, condition, gravity, zero),

@@ -86,7 +86,7 @@ pub use load::{Loaded, SetError};
 pub use priors::ParameterPrior;
 pub use reading::Reading;
 pub use shipped::{SHIPPED_SETS, ShippedSet, find as find_shipped_set};
-pub use strays::{Cleaned, without_strays};
+pub use strays::{Cleaned, stray_frames, without_strays};
 pub use template::TEMPLATE;
 pub use write::WriteError;
 pub use zeros::{Offset, RunContact, Severity, SpeedRatio, Zero, Zeros};

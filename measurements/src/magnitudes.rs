@@ -7,6 +7,7 @@ use super::contradiction::{Contradiction, ContradictionKind};
 use super::findings::Findings;
 use super::smooth::greatest_velocity;
 use super::start::Start;
+use super::strays::but_strays;
 use super::zeros::position;
 use super::{Condition, MeasurementSet, Run};
 
@@ -75,7 +76,8 @@ fn at_start(set: &MeasurementSet, run: &Run) -> Option<f64> {
 fn at_most(set: &MeasurementSet, run: &Run) -> Option<f64> {
     let condition = &set.conditions[run.condition];
     let stated = condition.speed * libm::sin(condition.angle_deg.to_radians());
-    let measured = greatest_velocity(&run.frames, position(set, run))?;
+    let error = position(set, run);
+    let measured = greatest_velocity(&but_strays(&run.frames, error), error)?;
     let gained = set.bed_of(condition).gravity * condition.diameter;
     let possible = (stated * stated + gained).sqrt();
     let before = run.frames.iter().filter(|frame| frame.t < 0.0).count();

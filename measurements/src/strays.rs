@@ -45,13 +45,10 @@ pub fn without_strays(set: &MeasurementSet, error: f64) -> Cleaned {
         if is_kept(run) || run.frames.len() < FEWEST_FRAMES {
             continue;
         }
-        let tracks = [track(&run.frames, |frame| frame.z), track(&run.frames, |frame| frame.x)];
-        let found = tracks.map(|track| Found::of(&track, error));
-        let stray: Vec<bool> =
-            (0..run.frames.len()).map(|i| found.iter().any(|one| one.stray[i])).collect();
+        let stray = stray_frames(&run.frames, error);
         let count = stray.iter().filter(|stray| **stray).count();
-        if count as f64 <= SHARE * run.frames.len() as f64 {
-            (frames, of) = (frames + count, of + usize::from(count > 0));
+        if count > 0 {
+            (frames, of) = (frames + count, of + 1);
             let mut stray = stray.into_iter();
             run.frames.retain(|_| !stray.next().unwrap_or_default());
         }
@@ -92,6 +89,28 @@ pub fn without_strays(set: &MeasurementSet, error: f64) -> Cleaned {
     let mut at = 0..;
     set.runs.retain(|_| at.next().is_none_or(|at| !left_out.contains(&at)));
     Cleaned { set, notes }
+}
+
+/// Which of `frames` are stray, `error` being that of one reading of a position. None is in a path of few frames, nor where
+/// so many look so that the path is not known.
+#[must_use]
+pub fn stray_frames(frames: &[Frame], error: f64) -> Vec<bool> {
+    let none = vec![false; frames.len()];
+    if frames.len() < FEWEST_FRAMES {
+        return none;
+    }
+    let tracks = [track(frames, |frame| frame.z), track(frames, |frame| frame.x)];
+    let found = tracks.map(|track| Found::of(&track, error));
+    let stray: Vec<bool> =
+        (0..frames.len()).map(|at| found.iter().any(|one| one.stray[at])).collect();
+    let count = stray.iter().filter(|stray| **stray).count();
+    if count as f64 <= SHARE * frames.len() as f64 { stray } else { none }
+}
+
+/// `frames` without those that are stray, likewise.
+pub(super) fn but_strays(frames: &[Frame], error: f64) -> Vec<Frame> {
+    let stray = stray_frames(frames, error);
+    frames.iter().zip(stray).filter(|(_, stray)| !stray).map(|(frame, _)| *frame).collect()
 }
 
 /// Times and one coordinate.

@@ -158,7 +158,8 @@ fn see(
     let frames = scales.in_si(&one.path);
     let noise = (one.path.noise() * scales.length.1).max(1e-6);
     let shape = one.body.shape.as_str();
-    refuse_far(&frames, one, &scales)?;
+    let of_the_body = one.path.of_the_body(&frames);
+    refuse_far(&of_the_body, one, &scales)?;
     let below_centre = one.body.below_centre();
     let lift = match (settings.tracked, below_centre, settings.text("surface")) {
         (Tracked::Lowest, ..) | (_, _, None) => 0.0,
@@ -175,9 +176,9 @@ fn see(
     };
     let stated = settings.position("surface", &one.labels)?;
     let stated = stated.map(|level| one.path.sign * level - lift);
-    let sees_surface = stated.is_some_and(|level| frames[0].z < level);
+    let sees_surface = stated.is_some_and(|level| of_the_body[0].z < level);
     let departure = motion::contact(
-        &frames,
+        &of_the_body,
         ((shape, one.body.diameter), noise),
         (settings.gravity, sees_surface),
     )

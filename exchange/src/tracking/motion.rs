@@ -1,6 +1,6 @@
 //! A track as a path in SI: order and clock of its readings, which way is down, units, and first contact.
 
-use measurements::{Contact, Departure, Fall, Frame, Reading};
+use measurements::{Contact, Departure, Fall, Frame, Reading, stray_frames};
 
 use super::fault::Fault;
 use super::settings::Settings;
@@ -19,6 +19,8 @@ pub(super) struct Path {
     pub(super) track: Track,
     /// Times (s where a rate was given), depths and ways.
     pub(super) frames: Vec<Frame>,
+    /// Which of them are not of the body.
+    stray: Vec<bool>,
     /// 1 where the axis of the table counts downward, -1 upward.
     pub(super) sign: f64,
     fall: Option<Fall>,
@@ -42,12 +44,19 @@ impl Path {
             samples.iter().zip(&clock).map(frame).collect()
         };
         let (down, up) = (with(1.0), with(-1.0));
-        let falls = [Fall::of_frames(&down), Fall::of_frames(&up)];
+        let stray = stray_frames(&down, measurements::reading_noise(&down));
+        note_stray(&mut track, &samples, &stray);
+        let falls = [&down, &up].map(|frames| Fall::of_frames(&but(frames, &stray)));
         let speed = |at: usize| falls[at].map_or(0.0, |fall| fall.velocity);
         let sign = settings.sign.unwrap_or(if speed(0) >= speed(1) { 1.0 } else { -1.0 });
         let [down_fall, up_fall] = falls;
         let (frames, fall) = if sign > 0.0 { (down, down_fall) } else { (up, up_fall) };
-        Ok(Self { track, frames, sign, fall })
+        Ok(Self { track, frames, stray, sign, fall })
+    }
+
+    /// Those of `frames`, which are its own in other units, that are of the body.
+    pub(super) fn of_the_body(&self, frames: &[Frame]) -> Vec<Frame> {
+        but(frames, &self.stray)
     }
 
     /// Its acceleration before contact, if that is known well enough to tell units.
@@ -67,10 +76,51 @@ impl Path {
     }
 }
 
+/// `frames` without those that are `stray`.
+fn but(frames: &[Frame], stray: &[bool]) -> Vec<Frame> {
+    frames.iter().zip(stray).filter(|(_, stray)| !**stray).map(|(frame, _)| *frame).collect()
+}
+
+/// Says which readings are not of the body.
+fn note_stray(track: &mut Track, samples: &[Sample], stray: &[bool]) {
+    /// Lines that are listed.
+    const LISTED: usize = 5;
+    let lines = samples.iter().zip(stray).filter(|(_, stray)| **stray).map(|(one, _)| one.line);
+    let lines: Vec<String> = lines.map(|line| line.to_string()).collect();
+    let more = if lines.len() > LISTED { ", …" } else { "" };
+    let listed = format!("{}{more}", lines[..lines.len().min(LISTED)].join(", "));
+    match lines.len() {
+        0 => {}
+        1 => track.notes.push(format!(
+            "the reading on line {listed} is not of the body: the contact is sought without it"
+        )),
+        n => track.notes.push(format!(
+            "{n} readings are not of the body (lines {listed}): the contact is sought without them"
+        )),
+    }
+}
+
+/// Whether the rows of one drop are out of order: no part of them goes back as far as a second drop would.
+fn is_out_of_order(samples: &[Sample]) -> bool {
+    let backs = (1..samples.len()).filter(|&at| samples[at].t < samples[at - 1].t);
+    let backs: Vec<usize> = backs.collect();
+    let ends = backs.iter().skip(1).copied().chain([samples.len()]);
+    let begins_a_drop = |(&at, end): (&usize, usize)| {
+        let passed = samples[..at].iter().rev().take_while(|one| one.t > samples[at].t).count();
+        end - at >= FEWEST && passed >= FEWEST
+    };
+    !backs.is_empty() && !backs.iter().zip(ends).any(begins_a_drop)
+}
+
 /// The readings in the order of time; copies of one are dropped.
 fn in_order(track: &mut Track, settings: &Settings<'_>) -> Result<Vec<Sample>, Fault> {
     let mut samples: Vec<Sample> = Vec::with_capacity(track.samples.len());
     let mut copies = 0;
+    let counts_rows = track.time.unit == Unit::Clock && settings.rate.is_some();
+    if !counts_rows && is_out_of_order(&track.samples) {
+        track.samples.sort_by(|a, b| a.t.total_cmp(&b.t));
+        track.notes.push("its rows are sorted by time".to_owned());
+    }
     for sample in &track.samples {
         let Some(last) = samples.last() else {
             samples.push(*sample);
@@ -86,7 +136,7 @@ fn in_order(track: &mut Track, settings: &Settings<'_>) -> Result<Vec<Sample>, F
             copies += 1;
             continue;
         }
-        if track.time.unit == Unit::Clock && settings.rate.is_some() {
+        if counts_rows {
             samples.push(*sample);
             continue;
         }

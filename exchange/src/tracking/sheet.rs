@@ -83,16 +83,37 @@ pub(super) fn number(cell: &str, decimal_comma: bool) -> Number {
     if marks.contains(&lower.as_str()) {
         return Number::Missing;
     }
+    let cell = match decimal_comma {
+        true => without_groups(cell, '.', ','),
+        false => without_groups(cell, ',', '.'),
+    };
     let text = match decimal_comma {
         true if cell.contains('.') => return Number::Other,
         true => cell.replace(',', "."),
-        false => cell.to_owned(),
+        false => cell,
     };
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && text.contains(|c: char| c.is_ascii_digit()) => {
             Number::Value(value)
         }
         _ => clock(&text).map_or(Number::Other, Number::Value),
+    }
+}
+
+/// `cell` without the marks between groups of three digits, as in `1.234,5`; as it is where no decimals tell the `mark` from
+/// that of decimals.
+fn without_groups(cell: &str, mark: char, decimal: char) -> String {
+    let is_grouped = || {
+        let (whole, decimals) = cell.split_once(decimal)?;
+        let (first, groups) = whole.trim_start_matches(['+', '-']).split_once(mark)?;
+        let is_count = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
+        let is_group = |part: &str| part.len() == 3 && is_count(part);
+        let are_groups = groups.split(mark).all(is_group);
+        Some(matches!(first.len(), 1..=3) && is_count(first) && are_groups && is_count(decimals))
+    };
+    match is_grouped() {
+        Some(true) => cell.replace(mark, ""),
+        _ => cell.to_owned(),
     }
 }
 
@@ -125,6 +146,12 @@ mod tests {
             assert_eq!(number(word, false), Number::Other, "{word}");
         }
         assert_eq!(number("1.5", true), Number::Other);
+        for (grouped, comma) in [("-1.234.567,25", true), ("-1,234,567.25", false)] {
+            assert_eq!(number(grouped, comma), Number::Value(-1_234_567.25), "{grouped}");
+        }
+        for word in ["1.234", "12.34,5", "1234.567,5", ".234,5"] {
+            assert_eq!(number(word, true), Number::Other, "{word}");
+        }
         assert_eq!(number("00:01:12.5", false), Number::Value(72.5));
         assert_eq!(number("1:12,25", true), Number::Value(72.25));
         assert_eq!(number("1:2:3:4.5", false), Number::Other);

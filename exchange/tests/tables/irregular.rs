@@ -81,3 +81,31 @@ fn scales_and_clocks_that_the_fall_belies() {
     let message = told("a.csv", &formats::dltdv(&drops), &wrong);
     has(&message, &["the length of a pixel times 2.0"]);
 }
+
+#[test]
+fn readings_that_are_not_of_the_body_and_rows_out_of_order() {
+    let drops = formats::two();
+    let one = &drops[..1];
+    let contact = (drops[0].contact * 650.0) as usize;
+    // While it is held, in the fall, just before contact and in the bed.
+    for stray in [40, contact - 20, contact - 2, contact + 8] {
+        let text = table("t (s),z (mm)", &drops[0], |at, t, z| {
+            format!("{t:.5},{:.3}", if at == stray { z + 14.0 } else { z })
+        });
+        let set = check("a.csv", &text, &[], one, "one drop");
+        let told = format!("the reading on line {} is not of the body", stray + 2);
+        assert!(set.notes.iter().any(|note| note.contains(&told)), "{told}: {:?}", set.notes);
+    }
+    let text = table("t (s),z (mm)", &drops[0], |_, t, z| format!("{t:.5},{z:.3}"));
+    let rows: Vec<&str> = text.lines().skip(1).collect();
+    let mut swapped = rows.clone();
+    swapped.swap(100, 101);
+    let reversed: Vec<&str> = rows.iter().rev().copied().collect();
+    let shuffled: Vec<&str> = (0..rows.len()).map(|at| rows[at * 89 % rows.len()]).collect();
+    for rows in [swapped, reversed, shuffled] {
+        let text = format!("t (s),z (mm)\n{}\n", rows.join("\n"));
+        let set = check("a.csv", &text, &[], one, "one drop");
+        let told = "its rows are sorted by time";
+        assert!(set.notes.iter().any(|note| note.contains(told)), "{:?}", set.notes);
+    }
+}

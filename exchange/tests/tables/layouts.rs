@@ -25,7 +25,9 @@ fn of_files(paths: &[PathBuf], options: &[(&str, &str)], out: &Path) -> Result<S
     let set = import(paths, &all, out).map_err(|error| error.to_string())?;
     set.write(out).map_err(|error| error.to_string())?;
     let loaded = MeasurementSet::load(out).map_err(|error| error.to_string())?;
-    assert!(loaded.contradictions.is_empty(), "{}", loaded.describe());
+    let said: Vec<&str> =
+        loaded.contradictions.iter().map(|one| &*one.diagnostic.message).collect();
+    assert!(said.is_empty(), "{said:?}");
     Ok(set)
 }
 
