@@ -104,6 +104,7 @@ impl Fall {
         scatter.clock -= time;
         scatter.ahead += forward * time;
         scatter.speed += after / before.max(f64::MIN_POSITIVE) - 1.0;
+        scatter.steeper += libm::atan2(later, forward) - libm::atan2(down, forward);
     }
 }
 
@@ -389,12 +390,13 @@ mod tests {
             let mut scatter = Scatter::default();
             fall.add(&mut scatter, deeper);
             let speed = (1.0 + scatter.speed) * libm::hypot(fall.down, fall.forward);
-            let down = (speed * speed - fall.forward * fall.forward).sqrt();
+            let angle = libm::atan2(fall.down, fall.forward) + scatter.steeper;
+            let [down, forward] = [libm::sin(angle), libm::cos(angle)].map(|part| speed * part);
             for t in [-0.02, 0.0, 0.005] {
                 let since = t + scatter.clock;
                 let depth = scatter.level + since * (down + 0.5 * fall.gravity * since);
                 assert!((depth - t * (fall.down + 0.5 * fall.gravity * t)).abs() < 1e-12, "{t}");
-                let way = scatter.ahead + fall.forward * since;
+                let way = scatter.ahead + forward * since;
                 assert!((way - fall.forward * t).abs() < 1e-12, "{t}");
             }
         }

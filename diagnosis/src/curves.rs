@@ -2,7 +2,7 @@
 
 use measurements::{Along, Condition, Curve, Frame, Kind, MeasurementSet, Run, Sample};
 
-use crate::resampling::{common_grid, depth_and_range};
+use crate::resampling::{common_grid, on_lines};
 
 /// Most places that are compared; neighbours tell the same.
 pub(crate) const PLACES: usize = 24;
@@ -58,10 +58,7 @@ impl CommonCurve {
         }
         let each: Vec<&[Frame]> = tracks.iter().map(Vec::as_slice).collect();
         let grid = common_grid(&each);
-        let values: Vec<Vec<f64>> = each
-            .iter()
-            .map(|track| depth_and_range(track, &grid).into_iter().map(|one| one.0).collect())
-            .collect();
+        let values: Vec<Vec<f64>> = each.iter().map(|track| on_lines(track, &grid)).collect();
         let n = values.len() as f64;
         let mean: Vec<f64> =
             (0..grid.len()).map(|at| values.iter().map(|run| run[at]).sum::<f64>() / n).collect();

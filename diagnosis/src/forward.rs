@@ -298,6 +298,8 @@ pub struct Scatter {
     pub coefficients: Vec<f64>,
     /// Relative deviation of the impact speed.
     pub speed: f64,
+    /// By how much the impact is steeper (rad); nothing is steeper than a vertical one.
+    pub steeper: f64,
     /// Deviation of the level of the surface (m): positive when it lies lower than assumed.
     pub level: f64,
     /// How late the clock is zero (s): positive when contact is before it.
@@ -332,8 +334,10 @@ impl Scatter {
         let Self {
             coefficients,
             speed,
+            steeper,
             level,
             clock,
+            ahead,
             scale,
             mass,
             tilt,
@@ -343,8 +347,8 @@ impl Scatter {
             ..
         } = self;
         let lists = coefficients.iter().chain(along).chain(sideways);
-        let is_still =
-            lists.chain([speed, level, clock, scale, mass, tilt]).all(|value| *value == 0.0);
+        let single = [speed, steeper, level, clock, ahead, scale, mass, tilt];
+        let is_still = lists.chain(single).all(|value| *value == 0.0);
         is_still && field.is_none()
     }
 }

@@ -10,7 +10,7 @@ use runner::beds::STOPPED;
 use crate::apparatus::too_many;
 use crate::curves::{self, CommonCurve};
 use crate::observable::{Curve, Layout, Observable};
-use crate::resampling::{common_grid, depth_and_range, stopped_at};
+use crate::resampling::{depth_and_range, seen_grid, stopped_at};
 
 /// Error that a reading of a position is credited with where the set states none (m).
 const UNSTATED: f64 = 1e-4;
@@ -341,7 +341,7 @@ struct CommonFrames {
 /// Frames of `runs` up to `share` of the time to the stop.
 fn frames_of(runs: &[&Run], condition: &Condition, share: f64) -> CommonFrames {
     let tracks: Vec<&[Frame]> = runs.iter().map(|run| run.frames.as_slice()).collect();
-    let grid = common_grid(&tracks);
+    let grid = seen_grid(&tracks);
     let readings: Vec<_> = tracks.iter().map(|track| depth_and_range(track, &grid)).collect();
     let at = |time: usize, part: fn(&(f64, f64)) -> f64| {
         readings.iter().map(|run| part(&run[time])).sum::<f64>() / readings.len() as f64

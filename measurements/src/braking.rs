@@ -2,7 +2,7 @@
 //!
 //! From contact on the body is braked by `s k₁ v² + k₂ z + s k₃` per unit mass: a drag that is not negative, a resistance
 //! that grows with depth, and friction. The share `s` of the body that meets the bed is that of its section at the depth
-//! `z`, or the whole at once: beds and their models lie at these ends and in between. A power of time is not enough: it goes
+//! `z`, of which `k₂ z` may be a part too, or the whole at once: beds and their models lie at these ends and in between. A power of time is not enough: it goes
 //! on to grow where the section does not.
 
 use nalgebra::{Matrix5, Matrix6, Vector5, Vector6};
@@ -24,18 +24,22 @@ const LOOSE: f64 = 1e-9;
 /// Forces that are held at zero, by their place among the numbers: friction, what grows with depth, or both.
 const WITHOUT: [&[usize]; 4] = [&[], &[5], &[4], &[4, 5]];
 
-/// How the share of the body that meets the bed follows from that of its section.
-const EXPOSURES: [fn(f64) -> f64; 2] = [|_| 1.0, |section| section];
+/// Shares of the body that meet the bed, by that of its section: of drag and friction, and of what grows with depth.
+const EXPOSURES: [fn(f64) -> [f64; 2]; 3] =
+    [|_| [1.0, 1.0], |section| [section, 1.0], |section| [section, section]];
 
-/// What falls.
+/// The part of a body that meets the bed first.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Body<'a> {
-    pub(super) shape: &'a str,
+pub struct Tip<'a> {
+    /// As conditions call it.
+    pub shape: &'a str,
     /// (m)
-    pub(super) diameter: f64,
+    pub diameter: f64,
+    /// Full apex angle of a cone (deg); unstated, 90.
+    pub apex_deg: Option<f64>,
 }
 
-impl Body<'_> {
+impl Tip<'_> {
     /// Section in the surface over the largest, `depth` (m) below first contact.
     fn section(self, depth: f64) -> f64 {
         let share = (depth / self.diameter).max(0.0);
@@ -43,7 +47,10 @@ impl Body<'_> {
         match self.shape {
             "sphere" | "hemisphere" => chord(share),
             "disc" => chord(share).sqrt(),
-            "cone" => (2.0 * share).min(1.0).powi(2),
+            "cone" => {
+                let half = 0.5 * self.apex_deg.unwrap_or(90.0).to_radians();
+                (2.0 * share * libm::tan(half)).min(1.0).powi(2)
+            }
             _ => 1.0,
         }
     }
@@ -85,7 +92,7 @@ impl Path {
 /// (s), near enough to know forces by.
 pub(super) fn fits(
     readings: &Readings<'_>,
-    body: Body<'_>,
+    tip: Tip<'_>,
     path: impl Fn(f64) -> [f64; 2],
 ) -> (Vec<Fit>, Path) {
     let frames = readings.frames;
@@ -99,8 +106,8 @@ pub(super) fn fits(
             let [level, _] = path(contact);
             let forces = |time: f64| {
                 let [z, v] = path(time);
-                let share = exposure(body.section(z - level));
-                [share * v * v, (z - level).max(0.0), share]
+                let [share, deep] = exposure(tip.section(z - level));
+                [share * v * v, deep * (z - level).max(0.0), share]
             };
             let braked = braked(readings, contact, forces);
             let behind = frames.iter().filter(|frame| frame.t > contact);

@@ -9,7 +9,7 @@
 //! Of a path whose zeros are not known ([`super::Departure`]) more is fitted to: `k` may change with time, and the contact
 //! is then sought by the forces of a bed ([`super::braking`]).
 
-use super::braking::{self, Body, Readings};
+use super::braking::{self, Readings, Tip};
 use super::fits::Fits;
 use super::reading::Reading;
 use super::smooth::{blocks, median_step, slope, velocity_window};
@@ -128,7 +128,7 @@ pub(super) fn fit(
 pub(super) fn fit_braked(
     all: &[Frame],
     (gravity, doubt, sigma): (f64, f64, f64),
-    (power, body): (f64, Body<'_>),
+    (power, tip): (f64, Tip<'_>),
 ) -> (Fits, Contact) {
     let (frames, sigma) = blocks(all, MOST_OF_FALL, sigma);
     let powers = Fits::of(&frames, (gravity, doubt, sigma), (power, true));
@@ -137,8 +137,8 @@ pub(super) fn fit_braked(
     let readings = Readings { frames: &frames, known: (gravity, doubt, sigma), scale };
     let path = |time: f64| best.map_or([0.0; 2], |best| powers.path(best, time));
     // The path of such a fit tells the forces better than a power does.
-    let (_, path) = braking::fits(&readings, body, path);
-    let (braked, _) = braking::fits(&readings, body, |time| path.at(time));
+    let (_, path) = braking::fits(&readings, tip, path);
+    let (braked, _) = braking::fits(&readings, tip, |time| path.at(time));
     let fits = Fits::new(braked, scale, &frames);
     let contact = seen(&fits, all, (&frames, sigma));
     (fits, contact)

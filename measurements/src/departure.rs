@@ -1,7 +1,7 @@
 //! First contact of a path whose clock and depths count from anywhere.
 
 use super::Frame;
-use super::braking::Body;
+use super::braking::Tip;
 use super::contact::{Contact, FEWEST, FREE, fit_braked, power_of};
 use super::fall::Fall;
 use super::fits::Fit;
@@ -62,18 +62,13 @@ fn doubt(frames: &[Frame], gravity: f64) -> f64 {
 }
 
 impl Departure {
-    /// First contact in `frames` of a body of this `shape` and diameter (m) that does not spin: times in s on any clock,
+    /// First contact in `frames` of a body with this `tip` that does not spin: times in s on any clock,
     /// depths in m downward on any scale, readings good to `sigma` (m), under `gravity` (m/s²). `None` where they do not show
     /// it: fewer than five frames near contact, no fall before it, or a shape whose lowest point does not fall
     /// freely.
     #[must_use]
-    pub fn of_frames(
-        frames: &[Frame],
-        (shape, diameter): (&str, f64),
-        gravity: f64,
-        sigma: f64,
-    ) -> Option<Self> {
-        let power = power_of(shape)?;
+    pub fn of_frames(frames: &[Frame], tip: Tip<'_>, gravity: f64, sigma: f64) -> Option<Self> {
+        let power = power_of(tip.shape)?;
         let near = velocity_window(frames, sigma, BEHIND)?;
         // Nothing is known of the zeros: more of the fall has to tell.
         let (start, end) = (velocity_window(frames, sigma, FALLING)?[0].t, near[near.len() - 1].t);
@@ -86,11 +81,10 @@ impl Departure {
         let more = (fastest + BRAKED).saturating_sub(to);
         let to = to + frames[to - 1..].windows(2).take(more).take_while(moves).count();
         let all = Some(&frames[from..to]).filter(|all| all.len() >= FEWEST)?;
-        let body = Body { shape, diameter };
         let step = (all[all.len() - 1].t - all[0].t) / (all.len() - 1) as f64;
         let sigma = libm::hypot(sigma, PUNCTUAL * step * most);
         let (fits, contact) =
-            fit_braked(all, (gravity, doubt(frames, gravity), sigma), (power, body));
+            fit_braked(all, (gravity, doubt(frames, gravity), sigma), (power, tip));
         let trial = |fit: &Fit| Trial {
             form: fit.form,
             depth: fits.free(fit, fit.contact).0,

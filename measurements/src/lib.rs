@@ -73,6 +73,7 @@ mod zeros;
 use engine::fluid::Fluid;
 
 pub use agreement::Agreement;
+pub use braking::Tip;
 pub use contact::Contact;
 pub use contradiction::{Contradiction, ContradictionKind};
 pub use curve::{Along, Axis, Curve};

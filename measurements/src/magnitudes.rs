@@ -66,6 +66,8 @@ fn middle(set: &MeasurementSet, of: impl Fn(&Run) -> Option<f64>) -> Option<(f64
 
 /// Measured over stated velocity near first contact.
 fn at_start(set: &MeasurementSet, run: &Run) -> Option<f64> {
+    let frames = but_strays(&run.frames, position(set, run));
+    let run = &Run { frames, ..run.clone() };
     let (start, stated) = (Start::of(run)?, set.conditions[run.condition].speed);
     let measured = libm::hypot(start.dx, start.dz) / start.dt;
     (stated > 0.0).then_some(measured / stated)

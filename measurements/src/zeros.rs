@@ -4,8 +4,11 @@
 //! of depth shifts that depth in all runs alike, a wrong zero of the clock in proportion to the velocity:
 //! where runs have several velocities, that tells the two apart.
 
+use super::braking::Tip;
 use super::contact::{self, Contact};
+use super::departure::Departure;
 use super::reading::Reading;
+use super::strays::but_strays;
 use super::{Kind, MeasurementSet, Run};
 
 /// How well the level of the surface is known (m), where the set does not say it.
@@ -399,6 +402,27 @@ pub(super) fn mean(readings: impl Iterator<Item = Reading> + Clone) -> Reading {
     Reading { value, se: of_scatter.max(stated / (n * n)).sqrt() }
 }
 
+/// Whether runs of the condition show its speed where their contacts are sought by the forces of a bed: a power of time may
+/// miss the way that exact readings are braked on.
+fn is_shown(set: &MeasurementSet, condition: usize) -> bool {
+    let of = &set.conditions[condition];
+    let ratio = |run: &Run| {
+        let sigma = position(set, run);
+        let frames = but_strays(&run.frames, sigma);
+        let tip = Tip { shape: &of.shape, diameter: of.diameter, apex_deg: of.apex_deg };
+        let Contact { sinking, forward, .. } =
+            Departure::of_frames(&frames, tip, set.fall_of(of), sigma)?.contact;
+        let speed = libm::hypot(sinking.value, forward.value);
+        let se = libm::hypot(sinking.value * sinking.se, forward.value * forward.se) / speed;
+        Some(Reading { value: speed / of.speed, se: se / of.speed })
+    };
+    let own = set.runs.iter().filter(|run| run.condition == condition);
+    let ratios: Vec<Reading> = own.filter_map(ratio).collect();
+    let mean = mean(ratios.iter().copied());
+    let is_free = of.spin == 0.0 && !ratios.is_empty();
+    is_free && (mean.value - 1.0).abs() <= (OF_SPEED * mean.se).max(NOTABLE_SPEED)
+}
+
 fn speeds(set: &MeasurementSet, contacts: &[RunContact]) -> Vec<SpeedRatio> {
     let set_error = set.instrument.speed_sigma_rel.unwrap_or(SPEED);
     let ratio = |one: &RunContact| {
@@ -421,9 +445,9 @@ fn speeds(set: &MeasurementSet, contacts: &[RunContact]) -> Vec<SpeedRatio> {
         let ratio = Reading { se: libm::hypot(mean.se, set_error / n.sqrt()), ..mean };
         let (off, error) = ((ratio.value - 1.0).abs(), OF_SPEED * ratio.se);
         let severity = match () {
+            () if off <= error.max(NOTABLE_SPEED) || is_shown(set, condition) => Severity::None,
             () if off > error.max(WRONG_SPEED) => Severity::Wrong,
-            () if off > error.max(NOTABLE_SPEED) => Severity::Notable,
-            () => Severity::None,
+            () => Severity::Notable,
         };
         Some(SpeedRatio { condition, ratio, severity })
     };

@@ -31,9 +31,9 @@ pub use error::ImpactError;
 pub use felt::Accelerometer;
 pub use impact::{Effort, Ending, Impact, PartStop};
 pub use laws::{
-    Acts, Coefficients, Direction, Draft, Effect, Expression, Facts, ForceError, Kind, Needs,
-    OtherForm, OwnEffect, OwnEffectError, OwnParameter, RESISTANCE_LAWS, ResistanceEntry, Role,
-    STATE_VARIABLES, StateVariable, Twin, find_resistance, twins,
+    Acts, Approach, Coefficients, Direction, Draft, Effect, Expression, Facts, ForceError, Kind,
+    Needs, OtherForm, OwnEffect, OwnEffectError, OwnParameter, RESISTANCE_LAWS, ResistanceEntry,
+    Role, STATE_VARIABLES, StateVariable, Twin, find_resistance, twins,
 };
 pub use observe::{Observer, Stretch, Trajectory};
 pub use record::{PartSample, Recorder, Sample};

@@ -202,6 +202,7 @@ fn opposite(scatter: &Scatter) -> Scatter {
     Scatter {
         coefficients: less(&scatter.coefficients),
         speed: -scatter.speed,
+        steeper: -scatter.steeper,
         level: -scatter.level,
         clock: -scatter.clock,
         ahead: -scatter.ahead,

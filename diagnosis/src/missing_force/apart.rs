@@ -34,6 +34,9 @@ impl Apart {
         unit: f64,
     ) -> Option<Self> {
         let places = response.by_condition();
+        if places.is_empty() {
+            return None;
+        }
         let answers = response.of_places(&places);
         let beside = response.rest_of(&answers);
         let gram = beside.transpose() * &beside;

@@ -239,15 +239,25 @@ pub(super) struct Refitted {
 }
 
 impl Refitted {
-    /// Its force on `grid`, under the mean gravity where that counts.
-    pub(super) fn field(&self, bench: &Bench<'_>, grid: &Grid) -> Field {
+    /// Its force on `grid`, under the mean gravity where that counts; `None` where impacts do not share it.
+    pub(super) fn field(&self, bench: &Bench<'_>, grid: &Grid) -> Option<Field> {
+        if self.terms.iter().any(Term::is_of_impact) {
+            return None;
+        }
         let fit = &bench.observed.fit;
         let conditions = || fit.iter().map(|&at| &bench.set.conditions[at]);
         let n = fit.len().max(1) as f64;
         let gravity = conditions().map(|one| bench.set.bed_of(one).gravity).sum::<f64>() / n;
         let states: Vec<State> = (0..grid.len())
             .map(|node| grid.node(node))
-            .map(|[depth, speed, angle, diameter]| State { depth, speed, angle, diameter, gravity })
+            .map(|[depth, speed, angle, diameter]| State {
+                depth,
+                speed,
+                impact_speed: speed,
+                angle,
+                diameter,
+                gravity,
+            })
             .collect();
         let q = self.fitted.fit.point.effects.last().map_or(0.0, |(_, q)| *q);
         let mut values = vec![0.0; grid.len()];
@@ -256,7 +266,7 @@ impl Refitted {
             let each = values.iter_mut().zip(term.values(&states).unwrap_or_default());
             each.for_each(|(value, of_term)| *value += share * of_term);
         }
-        Field { grid: grid.clone(), values }
+        Some(Field { grid: grid.clone(), values })
     }
 
     /// The parameters of the model with it.

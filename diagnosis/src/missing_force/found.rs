@@ -141,6 +141,9 @@ impl Found {
         relative.sort_by(f64::total_cmp);
         let Some(&unit) = relative.get(relative.len() / 2) else { return Ok(None) };
         let response = Response::of(bench, (&fit, &baseline.weights), &field, &passages)?;
+        if response.nodes.is_empty() {
+            return Ok(None);
+        }
         let rows = fit.residual.len();
         let misfit = fit.chi2 / rows.saturating_sub(fit.n_free()).max(1) as f64;
         let process = Process::of(&response, &field.grid, unit, misfit.max(1.0));

@@ -1,5 +1,5 @@
 //! The forms that a missing force is looked for among: powers, layers, steps and decays in depth; powers, saturations and
-//! decays in speed; angle; and products of two.
+//! decays in speed; the impact speed and what is left of it; angle; and products of two.
 
 use super::term::{Factor, Length, State, Term};
 
@@ -27,7 +27,12 @@ pub(super) fn library(states: &[State]) -> Vec<Term> {
         true => vec![Factor::Sine, Factor::Cosine, Factor::SineOfTwice],
         false => Vec::new(),
     };
-    let singles = depths.iter().chain(&speeds).chain(&angles).map(|&one| Term(vec![one]));
+    let impacts = match differs(&|one| one.impact_speed) {
+        true => of_impact(),
+        false => Vec::new(),
+    };
+    let singles =
+        depths.iter().chain(&speeds).chain(&angles).chain(&impacts).map(|&one| Term(vec![one]));
     let products = |a: &[Factor], b: &[Factor]| -> Vec<Term> {
         a.iter().flat_map(|&one| b.iter().map(move |&two| Term(vec![one, two]))).collect()
     };
@@ -39,6 +44,9 @@ pub(super) fn library(states: &[State]) -> Vec<Term> {
     let power: Vec<Factor> = power.collect();
     let local = depths.iter().copied().filter(|one| !matches!(one, Factor::DepthPower(_)));
     all.extend(products(&power, &local.collect::<Vec<_>>()));
+    for others in [&power, &speeds, &angles] {
+        all.extend(products(others, &impacts));
+    }
     all
 }
 
@@ -60,5 +68,12 @@ fn of_speed(most: f64) -> Vec<Factor> {
     let mut all: Vec<Factor> = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0].map(Factor::SpeedPower).into();
     all.extend([0.05, 0.15, 0.4].map(|share| Factor::Saturating { at: share * most }));
     all.extend([0.1, 0.25, 0.5].map(|share| Factor::Slow { below: share * most }));
+    all
+}
+
+fn of_impact() -> Vec<Factor> {
+    let mut all: Vec<Factor> = [0.5, 1.0, 2.0].map(Factor::ImpactSpeedPower).into();
+    all.extend([0.5, 1.0, 2.0].map(Factor::LeftPower));
+    all.extend([0.2, 0.4, 0.6, 0.8].map(|to| Factor::Slowed { to, width: 0.05 }));
     all
 }

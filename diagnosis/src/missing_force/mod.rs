@@ -119,8 +119,15 @@ pub fn missing_force(
     let mut refitted = look(&found);
     for _ in 0..AGAIN {
         // Answers far from the force that is there mislead: once more around the best formula.
-        let Some(best) = refitted.first().filter(|_| found.misfit() > FAR) else { break };
-        let field = best.field(bench, &found.field.grid);
+        if found.misfit() <= FAR {
+            break;
+        }
+        let grid = &found.field.grid;
+        let Some((best, field)) =
+            refitted.iter().find_map(|one| Some((one, one.field(bench, grid)?)))
+        else {
+            break;
+        };
         let with = WithField { forward: bench.forward, field: Arc::new(field.clone()) };
         let with = Bench { forward: &with, ..*bench };
         let Ok(fit) = with.data(&under.weights).fit_as_listed(&best.point()) else { break };
@@ -198,9 +205,10 @@ fn states(bench: &Bench<'_>, passages: &[Vec<Moment>]) -> Vec<State> {
         let body = &bench.set.conditions[condition];
         let gravity = bench.set.bed_of(body).gravity;
         let (angle, diameter) = (body.angle_deg.to_radians(), body.diameter);
+        let impact_speed = body.speed;
         moments.iter().map(move |one| {
             let (depth, speed) = (one.depth, one.speed);
-            State { depth, speed, angle, diameter, gravity }
+            State { depth, speed, impact_speed, angle, diameter, gravity }
         })
     })
     .collect()

@@ -190,8 +190,12 @@ impl Response {
 
     /// Each of `columns` beside the parameters.
     pub(super) fn rest_of(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
-        let rest = columns.column_iter().map(|column| self.basis.rest(&column.into_owned()));
-        DMatrix::from_columns(&rest.collect::<Vec<_>>())
+        let mut rest = columns.clone();
+        for mut column in rest.column_iter_mut() {
+            let own = self.basis.rest(&column.clone_owned());
+            column.copy_from(&own);
+        }
+        rest
     }
 
     /// What a force with these `values` at all nodes leaves over beside the parameters.
@@ -264,9 +268,17 @@ fn columns(
 }
 
 fn states(bench: &Bench<'_>, grid: &Grid, (condition, nodes): (usize, &[usize])) -> Vec<State> {
-    let gravity = bench.set.bed_of(&bench.set.conditions[condition]).gravity;
+    let of = &bench.set.conditions[condition];
+    let (gravity, impact_speed) = (bench.set.bed_of(of).gravity, of.speed);
     let nodes = nodes.iter().map(|&node| grid.node(node));
     nodes
-        .map(|[depth, speed, angle, diameter]| State { depth, speed, angle, diameter, gravity })
+        .map(|[depth, speed, angle, diameter]| State {
+            depth,
+            speed,
+            impact_speed,
+            angle,
+            diameter,
+            gravity,
+        })
         .collect()
 }

@@ -2,8 +2,9 @@
 
 use resistive::formula::Formula;
 
-/// Variables that factors use: depth of the lowest point, diameter, speed, √(g D), impact angle; and a millimetre.
-const VARIABLES: [&str; 6] = ["z", "D", "v", "V_s", "theta", MILLIMETRE];
+/// Variables that factors use: depth of the lowest point, diameter, speed, impact speed, √(g D), impact angle; and a
+/// millimetre.
+const VARIABLES: [&str; 7] = ["z", "D", "v", "v_0", "V_s", "theta", MILLIMETRE];
 
 /// The constant that lengths of the bed are written in.
 pub(super) const MILLIMETRE: &str = "mm";
@@ -18,6 +19,8 @@ pub(super) struct State {
     pub(super) depth: f64,
     /// (m/s)
     pub(super) speed: f64,
+    /// At first contact (m/s).
+    pub(super) impact_speed: f64,
     /// Impact angle below the horizontal (rad).
     pub(super) angle: f64,
     /// (m)
@@ -76,6 +79,9 @@ pub(super) enum Factor {
     SpeedPower(f64),
     Saturating { at: f64 },
     Slow { below: f64 },
+    ImpactSpeedPower(f64),
+    LeftPower(f64),
+    Slowed { to: f64, width: f64 },
     Sine,
     Cosine,
     SineOfTwice,
@@ -103,6 +109,11 @@ impl Factor {
             Self::SpeedPower(power) => powered("(v / V_s)", power),
             Self::Saturating { at } => format!("((v / V_s) / (v / V_s + {}))", short(at)),
             Self::Slow { below } => format!("(1 / (1 + ((v / V_s) / {})^2))", short(below)),
+            Self::ImpactSpeedPower(power) => powered("(v_0 / V_s)", power),
+            Self::LeftPower(power) => powered("(v / v_0)", power),
+            Self::Slowed { to, width } => {
+                format!("(0.5 - 0.5 * tanh((v / v_0 - {}) / {}))", short(to), short(width))
+            }
             Self::Sine => "sin(theta)".to_owned(),
             Self::Cosine => "cos(theta)".to_owned(),
             Self::SineOfTwice => "sin(2 * theta)".to_owned(),
@@ -126,6 +137,13 @@ impl Factor {
                 format!("grows with speed and saturates around {at:.2} sqrt(g D)")
             }
             Self::Slow { below } => format!("acts at speeds below {below:.2} sqrt(g D)"),
+            Self::ImpactSpeedPower(power) => {
+                format!("grows with {}", power_words("impact speed", power))
+            }
+            Self::LeftPower(power) => {
+                format!("grows with {}", power_words("speed over impact speed", power))
+            }
+            Self::Slowed { to, .. } => format!("acts below {to:.2} of the impact speed"),
             Self::Sine => "is larger the steeper the impact is".to_owned(),
             Self::Cosine => "is larger the flatter the impact is".to_owned(),
             Self::SineOfTwice => "is largest in impacts at 45 degrees".to_owned(),
@@ -134,7 +152,12 @@ impl Factor {
 
     /// Whether it vanishes at rest.
     fn needs_motion(self) -> bool {
-        matches!(self, Self::SpeedPower(_) | Self::Saturating { .. })
+        matches!(self, Self::SpeedPower(_) | Self::Saturating { .. } | Self::LeftPower(_))
+    }
+
+    /// Whether it differs between impacts at a place and a speed that they share.
+    fn is_of_impact(self) -> bool {
+        matches!(self, Self::ImpactSpeedPower(_) | Self::LeftPower(_) | Self::Slowed { .. })
     }
 
     /// The numbers of its form that are searched.
@@ -142,12 +165,15 @@ impl Factor {
         match self {
             Self::Layer { centre: a, width: b, .. }
             | Self::Below { depth: a, width: b, .. }
-            | Self::Above { depth: a, width: b, .. } => vec![a, b],
+            | Self::Above { depth: a, width: b, .. }
+            | Self::Slowed { to: a, width: b } => vec![a, b],
             Self::Fading { over: a, .. } | Self::Saturating { at: a } | Self::Slow { below: a } => {
                 vec![a]
             }
             Self::DepthPower(_)
             | Self::SpeedPower(_)
+            | Self::ImpactSpeedPower(_)
+            | Self::LeftPower(_)
             | Self::Sine
             | Self::Cosine
             | Self::SineOfTwice => Vec::new(),
@@ -163,6 +189,7 @@ impl Factor {
             (Self::Fading { unit, .. }, &[over]) => Self::Fading { unit, over },
             (Self::Saturating { .. }, &[at]) => Self::Saturating { at },
             (Self::Slow { .. }, &[below]) => Self::Slow { below },
+            (Self::Slowed { .. }, &[to, width]) => Self::Slowed { to, width },
             (same, _) => same,
         }
     }
@@ -190,6 +217,11 @@ impl Term {
         self.0.iter().any(|factor| factor.needs_motion())
     }
 
+    /// Whether it differs between impacts at a place and a speed that they share.
+    pub(super) fn is_of_impact(&self) -> bool {
+        self.0.iter().any(|factor| factor.is_of_impact())
+    }
+
     /// The numbers of its form that are searched.
     pub(super) fn numbers(&self) -> Vec<f64> {
         self.0.iter().flat_map(|factor| factor.numbers()).collect()
@@ -214,6 +246,7 @@ impl Term {
                 "z" => state.depth,
                 "D" => state.diameter,
                 "v" => state.speed,
+                "v_0" => state.impact_speed,
                 "V_s" => state.own_speed(),
                 "theta" => state.angle,
                 _ => 1e-3,
@@ -250,7 +283,7 @@ mod tests {
     use super::*;
 
     fn state(depth: f64) -> State {
-        State { depth, speed: 1.0, angle: 1.0, diameter: 0.02, gravity: 9.81 }
+        State { depth, speed: 1.0, impact_speed: 2.0, angle: 1.0, diameter: 0.02, gravity: 9.81 }
     }
 
     #[test]

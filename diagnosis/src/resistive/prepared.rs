@@ -11,7 +11,7 @@ use intruders::{Casting, ShapeEntry};
 use measurements::{
     Condition, FinalDefinition, Geometry, Kind, MeasurementSet, Role, StopDefinition,
 };
-use resistive::{Coefficients, Effect, Expression, ResistanceEntry};
+use resistive::{Approach, Coefficients, Effect, Expression, ResistanceEntry};
 use resistive::{
     Driven, Effort, Ending, Impact, Recorder, ResistanceLaw, Sample, Space, State, Surroundings,
     Tolerance, Trajectory,
@@ -79,13 +79,13 @@ struct Seen {
     laws: Vec<Box<dyn ResistanceLaw>>,
 }
 
-/// The law of a model at one impact angle, as a function of its free parameters.
+/// The law of a model in one impact, as a function of its free parameters.
 struct Law {
     baseline: &'static ResistanceEntry,
     coefficients: Vec<Affine>,
     functions: Vec<(&'static str, Expression)>,
     effects: Vec<(Effect, Affine)>,
-    angle: f64,
+    approach: Approach,
     /// Greatest depth (m) and impact speed (m/s) of the set.
     extent: [f64; 2],
 }
@@ -108,10 +108,10 @@ impl Law {
     fn new(
         medium: &ResistiveMedium,
         free: &[FreeParameter],
-        (angle, extent): (f64, [f64; 2]),
+        (approach, extent): (Approach, [f64; 2]),
     ) -> Self {
         let baseline = medium.resistance.entry;
-        let here = medium.coefficients_at(angle);
+        let here = medium.coefficients_at(approach.angle);
         let (functions, numbers): (Vec<_>, Vec<_>) =
             baseline.params.iter().map(|spec| spec.key).partition(|key| here.is_function(key));
         let changed: Vec<(Coefficients, f64)> = free
@@ -121,7 +121,8 @@ impl Law {
                 let value = one.value + change * one.value.abs().clamp(1e-3, 1.0);
                 let moved = medium.with_parameters(&[(&one.path, value)]);
                 // Where neither direction is allowed, nothing can be free.
-                let there = moved.map_or_else(|_| here.clone(), |m| m.coefficients_at(angle));
+                let there =
+                    moved.map_or_else(|_| here.clone(), |m| m.coefficients_at(approach.angle));
                 (there, value - one.value)
             })
             .collect();
@@ -155,7 +156,7 @@ impl Law {
                 .filter_map(|key| Some((key, here.function(key)?.clone())))
                 .collect(),
             effects,
-            angle,
+            approach,
             extent,
         }
     }
@@ -196,14 +197,17 @@ impl Law {
             own.chain(added).filter(|(_, q, _)| *q != 0.0).collect();
         effects.sort_by_key(|(effect, ..)| effect.rank());
         laws.extend(effects.iter().map(|&(effect, q, bends)| {
-            let law = effect.build(q, self.angle);
+            let law = effect.build(q, self.approach);
             if bends { self.bent(law, scatter) } else { law }
         }));
         if scatter.tilt != 0.0 {
-            laws.extend(Effect::listed("tilt").map(|tilt| tilt.build(scatter.tilt, self.angle)));
+            laws.extend(Effect::listed("tilt").map(|tilt| tilt.build(scatter.tilt, self.approach)));
         }
         if let Some(field) = &scatter.field {
-            laws.push(Box::new(FieldForce { field: Arc::clone(field), angle: self.angle }));
+            laws.push(Box::new(FieldForce {
+                field: Arc::clone(field),
+                angle: self.approach.angle,
+            }));
         }
         if let Some(path) = PathScatter::of(scatter) {
             laws.push(Box::new(path));
@@ -256,6 +260,7 @@ impl Prepared {
             return Err(ForwardError::InFluid { condition, shape: shape.name });
         }
         let angle = condition.angle_deg.to_radians();
+        let approach = Approach { speed: condition.speed, angle };
         let bed = Surroundings {
             bulk_density: bed.bulk_density.unwrap_or(medium.bulk_density),
             gravity: bed.gravity,
@@ -279,7 +284,7 @@ impl Prepared {
             angle,
             spin: condition.spin,
             bed,
-            law: Law::new(&there, free, (angle, extent)),
+            law: Law::new(&there, free, (approach, extent)),
         })
     }
 
@@ -444,7 +449,8 @@ impl Prepared {
         let (sine, cosine) = if self.angle >= FRAC_PI_2 {
             (1.0, 0.0)
         } else {
-            (libm::sin(self.angle), libm::cos(self.angle))
+            let angle = (self.angle + scatter.steeper).min(FRAC_PI_2);
+            (libm::sin(angle), libm::cos(angle))
         };
         let made = (self.shape.assembly)(&Casting {
             params: &self.sizes,

@@ -135,8 +135,9 @@ fn names(tracks: &[Track]) -> Vec<String> {
             (None, _) => track.stem.clone(),
         };
         let name = name.trim().to_owned();
-        let same = names.iter().filter(|other| **other == name).count();
-        names.push(if same == 0 { name } else { format!("{name}-{}", same + 1) });
+        let others = (2..).map(|nth| format!("{name}-{nth}"));
+        let free = std::iter::once(name.clone()).chain(others).find(|one| !names.contains(one));
+        names.extend(free);
     }
     names
 }

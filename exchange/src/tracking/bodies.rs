@@ -26,7 +26,15 @@ pub(super) struct Body {
     pub(super) apex: Option<f64>,
 }
 
+/// Share of its diameter that the tip of a cone may go into a bed without being braked noticeably.
+const SOFT: f64 = 0.25;
+
 impl Body {
+    /// How deep its tip goes before a bed resists noticeably, at most (m).
+    pub(super) fn soft_entry(&self) -> f64 {
+        if self.shape == "cone" { SOFT * self.diameter } else { 0.0 }
+    }
+
     /// How far its lowest point is below its centre (m), where it has one centre that cameras track.
     pub(super) fn below_centre(&self) -> Option<f64> {
         match self.shape.as_str() {

@@ -37,7 +37,7 @@ const TIME: [&str; 11] = [
     "x_value",
     "timestamp",
 ];
-const FRAME: [&str; 9] = [
+const FRAME: [&str; 11] = [
     "frame",
     "frames",
     "frame number",
@@ -47,6 +47,8 @@ const FRAME: [&str; 9] = [
     "slice n°",
     "image",
     "frame_idx",
+    "bild",
+    "bildnummer",
 ];
 const VERTICAL: [&str; 17] = [
     "y",
@@ -68,7 +70,7 @@ const VERTICAL: [&str; 17] = [
     "altura",
 ];
 const FORWARD: [&str; 6] = ["x", "position_x", "pos_x", "x_pos", "posx", "xpos"];
-const RUN: [&str; 16] = [
+const RUN: [&str; 26] = [
     "run",
     "trial",
     "drop",
@@ -85,6 +87,16 @@ const RUN: [&str; 16] = [
     "run no",
     "track id",
     "versuch",
+    "clip",
+    "video",
+    "sample",
+    "test no",
+    "test number",
+    "trial number",
+    "run number",
+    "drop number",
+    "essai",
+    "aufnahme",
 ];
 
 impl Heading {

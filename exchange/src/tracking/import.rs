@@ -3,7 +3,7 @@
 use std::path::{Path as File, PathBuf};
 
 use configs::engine::units::Dimension;
-use measurements::{Frame, Reading};
+use measurements::{Frame, Reading, Tip};
 
 use super::begun::{Begun, begin, tracks};
 use super::bodies::Bodies;
@@ -179,7 +179,7 @@ fn see(
     let sees_surface = stated.is_some_and(|level| of_the_body[0].z < level);
     let departure = motion::contact(
         &of_the_body,
-        ((shape, one.body.diameter), noise),
+        (Tip { shape, diameter: one.body.diameter, apex_deg: one.body.apex }, noise),
         (settings.gravity, sees_surface),
     )
     .map_err(|why| {
@@ -190,7 +190,11 @@ fn see(
             format!("--leave-out {} goes on without it", one.name),
         )
     })?;
-    Ok((Seen { name: one.name.clone(), departure, stated, below_centre }, scales, frames, noise))
+    let fall = (settings.gravity, one.body.diameter);
+    motion::refuse_several(&of_the_body, (&departure.contact, noise), fall, &one.path.track)?;
+    let soft = one.body.soft_entry();
+    let seen = Seen { name: one.name.clone(), departure, stated, soft, below_centre };
+    Ok((seen, scales, frames, noise))
 }
 
 /// Refuses units in which the body moves implausibly far.

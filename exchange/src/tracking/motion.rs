@@ -1,6 +1,6 @@
 //! A track as a path in SI: order and clock of its readings, which way is down, units, and first contact.
 
-use measurements::{Contact, Departure, Fall, Frame, Reading, stray_frames};
+use measurements::{Contact, Departure, Fall, Frame, Reading, Tip, stray_frames};
 
 use super::fault::Fault;
 use super::settings::Settings;
@@ -186,17 +186,17 @@ fn clock(samples: &[Sample], track: &Track, settings: &Settings<'_>) -> Vec<f64>
     }
 }
 
-/// First contact on a path in SI whose readings are good to `noise` (m), of a body of this `shape` and `diameter` (m). If the path is
+/// First contact on a path in SI whose readings are good to `noise` (m), of a body with this `tip`. If the path is
 /// known to begin above the surface (`sees_surface`), the frames need not show free fall.
 ///
 /// # Errors
 /// What its frames lack.
 pub(super) fn contact(
     frames: &[Frame],
-    ((shape, diameter), noise): ((&str, f64), f64),
+    (tip, noise): (Tip<'_>, f64),
     (gravity, sees_surface): (f64, bool),
 ) -> Result<Departure, &'static str> {
-    let departure = Departure::of_frames(frames, (shape, diameter), gravity, noise)
+    let departure = Departure::of_frames(frames, tip, gravity, noise)
         .ok_or("too few frames are near the greatest speed to see a contact")?;
     let contact = &departure.contact;
     let end = &frames[frames.len().saturating_sub(6)..];
@@ -213,6 +213,59 @@ pub(super) fn contact(
         ),
         () => Ok(departure),
     }
+}
+
+/// Refuses a path, of readings good to `noise` (m), with several falls of a body of this `diameter` (m)
+/// under `gravity` (m/s²): they are drops that nothing tells apart.
+///
+/// # Errors
+/// With how many there are.
+pub(super) fn refuse_several(
+    frames: &[Frame],
+    (contact, noise): (&Contact, f64),
+    (gravity, diameter): (f64, f64),
+    track: &Track,
+) -> Result<(), Fault> {
+    /// Share of the speed at contact above which a body may fall, and of the way of the longest fall that is one.
+    const FAST: f64 = 0.25;
+    const WAY: f64 = 0.2;
+    /// Standard errors of a velocity that are no fall.
+    const CLEAR: f64 = 5.0;
+    /// Share of gravity that a hand which lowers a body does not reach.
+    const FREE: f64 = 0.5;
+    /// Frames that a velocity is taken over.
+    const OVER: usize = 4;
+    let velocity = |part: &&[Frame]| (part[OVER].z - part[0].z) / (part[OVER].t - part[0].t);
+    let fast = |part: &&[Frame]| {
+        let error = std::f64::consts::SQRT_2 * noise / (part[OVER].t - part[0].t);
+        // A hand that holds a body moves it by its diameter.
+        let own = (gravity * diameter).sqrt();
+        velocity(part) > (FAST * contact.falling.value).max(CLEAR * error).max(own)
+    };
+    let parts: Vec<&[Frame]> = frames.windows(OVER + 1).collect();
+    let ends_of_fall = |fall: &[&[Frame]]| {
+        let fastest = fall.iter().max_by(|a, b| velocity(a).total_cmp(&velocity(b)))?;
+        let (first, last) = (fall.first()?, fall.last()?);
+        let gained = velocity(fastest) - velocity(first);
+        let is_free = gained >= FREE * gravity * (fastest[0].t - first[0].t);
+        is_free.then(|| [first[0].z, last[OVER].z])
+    };
+    let falls = parts.chunk_by(|a, b| fast(a) == fast(b)).filter(|chunk| fast(&chunk[0]));
+    let ends: Vec<[f64; 2]> = falls.filter_map(ends_of_fall).collect();
+    let longest = ends.iter().map(|[from, to]| to - from).fold(0.0, f64::max);
+    let (mut n, mut lowest) = (0, f64::INFINITY);
+    for [from, to] in ends.into_iter().filter(|[from, to]| to - from > WAY * longest) {
+        // A fall that noise breaks into parts goes on where it was.
+        n += usize::from(from < lowest - 0.5 * (to - from));
+        lowest = to;
+    }
+    if n < 2 {
+        return Ok(());
+    }
+    let whose = track.name.as_ref().map_or(String::new(), |name| format!("the run {name}: "));
+    let what = format!("{whose}it holds several drops, {n} at least");
+    let right = "a run is one drop: name the column that tells drops apart, --column run=NAME, or give each drop a table";
+    Err(Fault::new(&track.file, what, right))
 }
 
 /// Probability that the body is braked from the first frames on, above which no free fall counts as seen.

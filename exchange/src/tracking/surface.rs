@@ -16,6 +16,8 @@ pub(super) struct Seen {
     pub(super) departure: Departure,
     /// Depth (m) that the tracked point has at contact by what the user says, with the size of the body there.
     pub(super) stated: Option<f64>,
+    /// How deep the tip goes before the bed resists noticeably, at most (m).
+    pub(super) soft: f64,
     /// How far the lowest point is below the centre (m), if that is known.
     pub(super) below_centre: Option<f64>,
 }
@@ -111,20 +113,21 @@ fn off(runs: &[Seen]) -> Vec<Fault> {
     let below = |run: &Seen| Some(run.departure.below(run.stated?));
     let all: Vec<Departure> = runs.iter().filter_map(below).collect();
     match common_level(&all.iter().collect::<Vec<_>>()) {
-        Some(miss) => one_off("the runs are", miss, runs[0].below_centre).into_iter().collect(),
+        Some(miss) => one_off("the runs are", miss, &runs[0]).into_iter().collect(),
         None => {
             let of = |(run, one): (&Seen, &Departure)| {
-                one_off(&format!("the run {} is", run.name), one.contact.depth, run.below_centre)
+                one_off(&format!("the run {} is", run.name), one.contact.depth, run)
             };
             runs.iter().zip(&all).filter_map(of).collect()
         }
     }
 }
 
-/// What is wrong with a level that contacts miss by `miss` (m).
-fn one_off(who: &str, miss: Reading, below_centre: Option<f64>) -> Option<Fault> {
+/// What is wrong with a level that contacts, as that of `run`, miss by `miss` (m).
+fn one_off(who: &str, miss: Reading, run: &Seen) -> Option<Fault> {
+    let Seen { soft, below_centre, .. } = *run;
     let error = OFF.1 * miss.se;
-    if miss.value.abs() <= OFF.0.max(error) {
+    if (-OFF.0.max(error)..=OFF.0.max(error) + soft).contains(&miss.value) {
         return None;
     }
     let near = |wanted: f64| (miss.value - wanted).abs() <= error.max(0.1 * wanted.abs());

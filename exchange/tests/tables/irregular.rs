@@ -83,6 +83,35 @@ fn scales_and_clocks_that_the_fall_belies() {
 }
 
 #[test]
+fn several_drops_that_nothing_tells_apart_are_refused() {
+    let drops = formats::two();
+    let mut text = String::from("t (s),z (mm),Kugelfall\n");
+    for (at, one) in drops.iter().enumerate() {
+        for (t, z) in &one.readings {
+            let _ = writeln!(text, "{:.5},{:.3},{at}", t + 2.0 * at as f64, 1e3 * z);
+        }
+    }
+    let refused = told("a.csv", &text, &[]);
+    has(&refused, &["it holds several drops, 2 at least", "--column run=NAME"]);
+    let options = [("column_run", "Kugelfall")];
+    let set = crate::layouts::of_text("a.csv", text.as_bytes(), &options).expect("two drops");
+    assert_eq!(set.understood.len(), 2);
+}
+
+#[test]
+fn means_beside_drops_are_no_drops() {
+    let drops = formats::two();
+    let mut text = String::from("t (s),a,b,Mittelwert\n");
+    let pairs = drops[0].readings.iter().zip(&drops[1].readings);
+    for ((t, a), (_, b)) in pairs {
+        let _ = writeln!(text, "{t:.5},{:.3},{:.3},{:.3}", 1e3 * a, 1e3 * b, 500.0 * (a + b));
+    }
+    let set = crate::layouts::of_text("a.csv", text.as_bytes(), &[("length_unit", "mm")])
+        .expect("two drops");
+    assert_eq!(set.understood.len(), 2);
+}
+
+#[test]
 fn readings_that_are_not_of_the_body_and_rows_out_of_order() {
     let drops = formats::two();
     let one = &drops[..1];

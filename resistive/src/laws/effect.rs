@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::ResistanceLaw;
 use engine::params::{Default, ParamSpec, ParamTable};
 
+use super::approach::Approach;
 use super::coefficients::Coefficients;
 use super::expression::OwnEffect;
 use super::facts::Needs;
@@ -108,16 +109,16 @@ impl Effect {
         }
     }
 
-    /// Its term of the force with amplitude `q` (SI) in an impact at `angle` below the horizontal (rad).
+    /// Its term of the force with amplitude `q` (SI) on a body that comes as `approach` says.
     #[must_use]
-    pub fn build(&self, q: f64, angle: f64) -> Box<dyn ResistanceLaw> {
+    pub fn build(&self, q: f64, approach: Approach) -> Box<dyn ResistanceLaw> {
         match self {
             Self::Listed(entry, given) => {
                 let mut numbers = given.clone();
                 numbers.set("q", q);
                 (entry.build)(&Coefficients::new(numbers))
             }
-            Self::Own(own) => own.build(q, angle),
+            Self::Own(own) => own.build(q, approach),
         }
     }
 

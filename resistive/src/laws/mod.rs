@@ -5,6 +5,7 @@ mod added_mass;
 mod air_drag;
 mod anisotropic_drag;
 mod anisotropic_friction;
+mod approach;
 mod bekker;
 mod bottom_wall;
 mod buoyancy;
@@ -35,6 +36,7 @@ mod two_term_vector;
 mod viscous_drag;
 mod yield_stress;
 
+pub use approach::Approach;
 pub use coefficients::{Coefficients, Expression};
 pub use effect::Effect;
 pub use expression::{

@@ -6,7 +6,7 @@ use engine::ledger::{Channel, ChannelKind};
 use engine::params::{ParamSpec, ParamTable, Range};
 use intruders::Casting;
 use resistive::{Account, Flow, Immersion, Impact, Load, Motion, ResistanceLaw, Surroundings};
-use resistive::{Coefficients, Facts, Kind, Needs, ResistanceEntry, Role};
+use resistive::{Approach, Coefficients, Facts, Kind, Needs, ResistanceEntry, Role};
 
 /// F = −q ρ A v² z/D v̂   (N)
 struct LateDrag {
@@ -100,7 +100,8 @@ pub(crate) fn impacts() -> [Impact; 2] {
     let by_formula = resistive.impact(condition);
     let mut plain = resistive.medium.clone();
     plain.effects.clear();
-    let mut laws = plain.laws_at(condition.angle_rad);
+    let approach = Approach { speed: condition.speed, angle: condition.angle_rad };
+    let mut laws = plain.laws_at(approach);
     let mut numbers = ParamTable::new();
     numbers.set("q", 0.2);
     laws.push((ENTRY.build)(&Coefficients::new(numbers)));

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use engine::grains::Space;
 use engine::params::Range;
 use engine::units::Dimension;
-use resistive::{Acts, Direction, Draft, OwnEffect, OwnParameter};
+use resistive::{Acts, Approach, Direction, Draft, OwnEffect, OwnParameter};
 use resistive::{Impact, ImpactError, Recorder, ResistanceLaw, Trajectory};
 
 use super::late_drag;
@@ -17,6 +17,9 @@ const APART: f64 = 1e-9;
 
 /// As for the effects of the table.
 const CLOSURE: f64 = 1e-8;
+
+/// Of forces that do not depend on it.
+const APPROACH: Approach = Approach { speed: 2.0, angle: 1.0 };
 
 fn own(force: &str, direction: Direction) -> Arc<OwnEffect> {
     let parameter = |name: &str, dimension, value| OwnParameter {
@@ -69,7 +72,7 @@ fn a_formula_of_a_listed_effect_gives_its_path() {
     ] {
         for angle in [90.0, 40.0] {
             let listed = with(law(name, &[("q", 0.5)]), angle);
-            let formula = with(own(force, direction).build(0.5, 1.0), angle);
+            let formula = with(own(force, direction).build(0.5, APPROACH), angle);
             let [path, stop] = apart(&listed, &formula);
             assert!(path < APART && stop < APART, "{name} at {angle}: {path:e} m, {stop:e} s");
         }
@@ -82,7 +85,7 @@ fn the_ledger_of_every_direction_closes_under_the_name_of_the_effect() {
     for direction in [AgainstMotion, Friction, Up, Down, Forward, Backward, Normal] {
         for angle in [90.0, 40.0] {
             let effect = own("q * rho * A * v^2 * z / D", direction);
-            let impact = with(effect.build(0.3, 1.0), angle);
+            let impact = with(effect.build(0.3, APPROACH), angle);
             let (ending, closure) = with_ledger(&impact);
             assert!(ending.stopped, "{direction:?} at {angle} deg did not stop");
             assert!(closure < CLOSURE, "{direction:?} at {angle} deg: {closure:e}");
@@ -97,7 +100,7 @@ fn the_ledger_of_every_direction_closes_under_the_name_of_the_effect() {
 fn a_broken_power_of_the_speed_brings_a_body_to_rest() {
     let effect = own("q * rho * A * V_s^2 * (v / V_s)^1.5", Direction::AgainstMotion);
     for angle in [90.0, 40.0] {
-        let (ending, closure) = with_ledger(&with(effect.build(1.0, 1.0), angle));
+        let (ending, closure) = with_ledger(&with(effect.build(1.0, APPROACH), angle));
         assert!(ending.stopped && closure < CLOSURE, "{closure:e}");
     }
 }
@@ -105,7 +108,7 @@ fn a_broken_power_of_the_speed_brings_a_body_to_rest() {
 #[test]
 fn a_force_that_loses_its_value_is_named_with_the_step() {
     let effect = own("q * m * g * sqrt(1 - z / reach)", Direction::Up);
-    let error = with(effect.build(1.0, 1.0), 90.0).run(10.0, &mut ()).unwrap_err();
+    let error = with(effect.build(1.0, APPROACH), 90.0).run(10.0, &mut ()).unwrap_err();
     let ImpactError::NotFinite { law, depth, speed, time } = &error else { panic!("{error}") };
     assert_eq!(law, "my-own");
     // The formula ends 10 mm deep, which the sphere passes at some 2 m/s; the step that fails is small.
@@ -117,7 +120,7 @@ fn a_force_that_loses_its_value_is_named_with_the_step() {
 fn two_runs_have_equal_bits() {
     let effect =
         own("q * rho * A * v^2 * tanh(z / D) * exp(-t * g / V_s)", Direction::AgainstMotion);
-    let depth = || with(effect.build(0.3, 1.0), 40.0).run(10.0, &mut ()).expect("an impact");
+    let depth = || with(effect.build(0.3, APPROACH), 40.0).run(10.0, &mut ()).expect("an impact");
     assert_eq!(depth(), depth());
 }
 
@@ -128,7 +131,7 @@ fn time_counts_from_first_contact_in_every_stage_of_a_step() {
     let drop = |law| sphere(vec![law], 1.0, 90.0);
     let time = 0.2;
     let mut path = Trajectory::at(std::slice::from_ref(&time));
-    drop(push.build(1.0, 1.0)).run(time, &mut path).expect("a fall");
+    drop(push.build(1.0, APPROACH)).run(time, &mut path).expect("a fall");
     let scale = (super::rig::BED.gravity * super::rig::DIAMETER).sqrt() / super::rig::BED.gravity;
     let pushed = super::rig::BED.gravity * scale * (1.0 - libm::exp(-time / scale));
     let expected = -1.0 - super::rig::BED.gravity * time - pushed;

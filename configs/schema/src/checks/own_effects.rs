@@ -2,8 +2,7 @@
 
 use engine::math::Vec3;
 use engine::units::{Dimension, format_si};
-use resistive::{Effect, OwnEffect};
-use resistive::{Motion, State};
+use resistive::{Approach, Effect, Motion, OwnEffect, State};
 
 use super::{Common, rounded};
 use crate::diagnostics::Diagnostic;
@@ -63,8 +62,8 @@ fn fault(
             spin: part.spin,
             time: 0.0,
         };
-        let angle = condition.angle_rad;
-        if let Err(error) = effect.check(&part.immersion, &motion, impact.bed(), angle) {
+        let approach = Approach { speed: condition.speed, angle: condition.angle_rad };
+        if let Err(error) = effect.check(&part.immersion, &motion, impact.bed(), approach) {
             let depth = format_si(rounded(depth, 5), Dimension::LENGTH);
             let speed = format_si(rounded(speed, 5), Dimension::SPEED);
             return Some(format!("at a depth of {depth} and a speed of {speed} it {error}"));

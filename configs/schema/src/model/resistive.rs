@@ -5,7 +5,7 @@ use std::sync::Arc;
 use engine::fluid::Fluid;
 use engine::params::{ParamSpec, ParamTable};
 use intruders::Casting;
-use resistive::{Assembly, Driven, Impact, ResistanceLaw, Space, Surroundings};
+use resistive::{Approach, Assembly, Driven, Impact, ResistanceLaw, Space, Surroundings};
 use resistive::{Coefficients, Effect, Expression, OwnEffect, ResistanceEntry};
 
 use super::{Condition, Intruder, Launch, Model};
@@ -109,7 +109,7 @@ impl ResistiveMedium {
             velocity: launch.velocity(),
             spin: launch.spin.y,
         });
-        let laws = self.laws_at(launch.angle_rad);
+        let laws = self.laws_at(Approach { speed: launch.speed, angle: launch.angle_rad });
         let assembly: Box<dyn Assembly> = match launch.pushed_to {
             Some(_) => Box::new(Driven::new(launchable.assembly)),
             None => launchable.assembly,
@@ -124,13 +124,13 @@ impl ResistiveMedium {
         Surroundings { bulk_density, gravity, packing, bed_depth, fluid }
     }
 
-    /// The baseline for an impact at `angle_rad`, then the effects in their order.
+    /// The baseline for a body that comes as `approach` says, then the effects in their order.
     #[must_use]
-    pub fn laws_at(&self, angle_rad: f64) -> Vec<Box<dyn ResistanceLaw>> {
-        let mut laws = vec![(self.resistance.entry.build)(&self.coefficients_at(angle_rad))];
+    pub fn laws_at(&self, approach: Approach) -> Vec<Box<dyn ResistanceLaw>> {
+        let mut laws = vec![(self.resistance.entry.build)(&self.coefficients_at(approach.angle))];
         let mut effects: Vec<&EffectChoice> = self.effects.iter().collect();
         effects.sort_by_key(|one| one.effect.rank());
-        laws.extend(effects.iter().map(|one| one.effect.build(one.q, angle_rad)));
+        laws.extend(effects.iter().map(|one| one.effect.build(one.q, approach)));
         laws
     }
 

@@ -33,6 +33,29 @@ fn time(grid: &Grid<'_>, columns: &Columns) -> Result<Option<usize>, Fault> {
     }
 }
 
+/// Whether a column called so holds means or errors of the others.
+fn is_statistic(name: &str) -> bool {
+    const NAMES: [&str; 16] = [
+        "mean",
+        "average",
+        "avg",
+        "median",
+        "mittel",
+        "mittelwert",
+        "moyenne",
+        "media",
+        "std",
+        "stdev",
+        "stddev",
+        "sd",
+        "se",
+        "sem",
+        "sigma",
+        "error",
+    ];
+    NAMES.contains(&name.trim().to_lowercase().as_str())
+}
+
 /// Names of the drops, with the columns of their positions: points of a coordinate (`y1`, `y2`), or, where no
 /// column is called like a position, every column of numbers.
 fn drops(grid: &Grid<'_>) -> Vec<(String, usize, Option<usize>)> {
@@ -64,5 +87,7 @@ fn drops(grid: &Grid<'_>) -> Vec<(String, usize, Option<usize>)> {
         2 * grid.rows.iter().filter(|row| is_value(row.cell(at))).count() > grid.rows.len()
     };
     let others = (0..grid.headings.len()).filter(|at| role(*at).is_none() && numbers(*at));
-    others.map(|at| (grid.headings[at].stem.clone(), at, None)).collect()
+    let all: Vec<_> = others.map(|at| (grid.headings[at].stem.clone(), at, None)).collect();
+    let drops: Vec<_> = all.iter().filter(|(name, ..)| !is_statistic(name)).cloned().collect();
+    if drops.is_empty() { all } else { drops }
 }

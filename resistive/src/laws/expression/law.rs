@@ -6,6 +6,7 @@ use crate::{Account, Flow, Immersion, Load, Motion, ResistanceLaw, Surroundings}
 use engine::ledger::{Channel, ChannelKind};
 use engine::math::Vec3;
 
+use super::super::approach::Approach;
 use super::variables::Seen;
 use super::{Acts, Direction, OwnEffect};
 
@@ -16,18 +17,18 @@ const fn account(flow: Flow) -> Account {
 const DYNAMIC: &[Account] = &[account(Flow::Dynamic)];
 const STATIC: &[Account] = &[account(Flow::Static)];
 
-/// The force that the formula of `effect` says, of amplitude `q` (SI), in an impact at `angle` (rad).
+/// The force that the formula of `effect` says, of amplitude `q` (SI), in the impact of a body that comes as `approach` says.
 struct Law {
     effect: Arc<OwnEffect>,
     q: f64,
-    angle: f64,
+    approach: Approach,
 }
 
 impl OwnEffect {
-    /// The term of the force with amplitude `q` (SI) in an impact at `angle` below the horizontal (rad).
+    /// The term of the force with amplitude `q` (SI) on a body that comes as `approach` says.
     #[must_use]
-    pub fn build(self: &Arc<Self>, q: f64, angle: f64) -> Box<dyn ResistanceLaw> {
-        Box::new(Law { effect: Arc::clone(self), q, angle })
+    pub fn build(self: &Arc<Self>, q: f64, approach: Approach) -> Box<dyn ResistanceLaw> {
+        Box::new(Law { effect: Arc::clone(self), q, approach })
     }
 }
 
@@ -55,7 +56,7 @@ impl Law {
 
     /// (N), along its direction.
     fn force(&self, at: &Immersion, motion: &Motion, bed: &Surroundings) -> f64 {
-        let seen = Seen { at, motion, bed, speed: motion.speed, angle: self.angle };
+        let seen = Seen { at, motion, bed, speed: motion.speed, approach: self.approach };
         let force = self.effect.value(self.q, &seen);
         // Beyond a reversal there are only trials of the solver; where the formula has no value there, such
         // as a broken power of the speed, the value before the reversal is continued evenly.

@@ -8,6 +8,7 @@ use engine::params::{ParamSpec, Range};
 use engine::units::Dimension;
 use thiserror::Error;
 
+use super::approach::Approach;
 use super::facts::Needs;
 use super::{RESISTANCE_LAWS, find_resistance};
 use crate::formula::{DimensionError, Formula, FormulaError, Known, is_reserved};
@@ -261,12 +262,12 @@ impl OwnEffect {
         at: &Immersion,
         motion: &Motion,
         bed: &Surroundings,
-        angle: f64,
+        approach: Approach,
     ) -> Result<(), ForceError> {
         if !self.is_informed(bed) {
             return Ok(());
         }
-        let seen = Seen { at, motion, bed, speed: motion.speed, angle };
+        let seen = Seen { at, motion, bed, speed: motion.speed, approach };
         let q = self.value_in_file().unwrap_or(self.amplitude.allowed.max);
         let (force, without) = (self.value(q, &seen), self.value(0.0, &seen));
         let is_still = motion.velocity.norm() == 0.0;

@@ -8,6 +8,9 @@ use super::super::Effect;
 use super::super::testing::{SPHERE, sinking, surroundings};
 use super::*;
 
+/// At 2 m/s and 1 rad.
+const APPROACH: Approach = Approach { speed: 2.0, angle: 1.0 };
+
 fn parameter(name: &str, dimension: Dimension, value: Option<f64>) -> OwnParameter {
     OwnParameter { name: name.to_owned(), dimension, value, range: Range::closed(0.0, 10.0) }
 }
@@ -45,8 +48,8 @@ fn the_formula_of_a_listed_effect_is_that_effect() {
         ("buoyancy", "q * rho * g * V", Direction::Up),
         ("yield-stress", "q * rho * g * A * D", Direction::Friction),
     ] {
-        let listed = Effect::listed(name).expect("a listed effect").build(0.7, 1.0);
-        let own = own(force, direction).build(0.7, 1.0);
+        let listed = Effect::listed(name).expect("a listed effect").build(0.7, APPROACH);
+        let own = own(force, direction).build(0.7, APPROACH);
         for (depth, speed) in [(0.003, 2.0), (0.02, 0.5), (0.04, 1e-3)] {
             let (listed, own) = (load(&*listed, depth, speed), load(&*own, depth, speed));
             let scale = listed.dynamic.norm() + listed.friction.norm();
@@ -70,20 +73,21 @@ fn every_direction_is_the_one_that_it_says() {
         (Normal, 1.0, 0.0),
     ] {
         let effect = own("q * m * g * v / V_s", direction);
-        let force = load(&*effect.build(2.0, 1.0), 0.01, 1.0).dynamic;
+        let force = load(&*effect.build(2.0, APPROACH), 0.01, 1.0).dynamic;
         let size = force.norm();
         assert!((force.x - x * size).abs() < 1e-12 && (force.z - z * size).abs() < 1e-12);
         let sideways = matches!(direction, Forward | Backward | Normal);
-        assert_eq!(effect.build(2.0, 1.0).deflects(), sideways);
+        assert_eq!(effect.build(2.0, APPROACH).deflects(), sideways);
     }
 }
 
 #[test]
 fn a_broken_power_of_the_speed_is_continued_evenly_beyond_a_reversal() {
-    let law = own("q * rho * A * V_s^2 * (v / V_s)^1.5", Direction::AgainstMotion).build(1.0, 1.0);
+    let law =
+        own("q * rho * A * V_s^2 * (v / V_s)^1.5", Direction::AgainstMotion).build(1.0, APPROACH);
     let (before, beyond) = (load(&*law, 0.01, 0.3).dynamic, load(&*law, 0.01, -0.3).dynamic);
     assert!(before.z > 0.0 && (before.z - beyond.z).abs() < 1e-15);
-    let linear = own("q * rho * A * V_s * v", Direction::AgainstMotion).build(1.0, 1.0);
+    let linear = own("q * rho * A * V_s * v", Direction::AgainstMotion).build(1.0, APPROACH);
     assert!(load(&*linear, 0.01, -0.3).dynamic.z < 0.0, "where there is a value it is taken");
 }
 
@@ -94,22 +98,27 @@ fn what_the_data_must_contain_follows_from_the_variables() {
     assert_eq!(of("q * m * omega * v"), [Needs::Spin]);
     assert_eq!(of("q * m * g * phi * (1 - phi) * z / H"), [Needs::Packings, Needs::BedDepth]);
     let effect = own("q * m * g * phi", Direction::Up);
-    let force = load(&*effect.build(1.0, 1.0), 0.01, 1.0);
+    let force = load(&*effect.build(1.0, APPROACH), 0.01, 1.0);
     assert_eq!(force, Load::default(), "a bed that does not say its packing has no such force");
     assert_eq!(Effect::Own(effect).unit(), "1");
 }
 
 #[test]
-fn angles_and_time_are_known() {
-    let law = own("q * m * g * sin(theta)", Direction::Up).build(1.0, 0.5);
+fn angles_impact_speeds_and_time_are_known() {
+    let law = own("q * m * g * sin(theta)", Direction::Up)
+        .build(1.0, Approach { angle: 0.5, ..APPROACH });
     let expected = 0.0692 * 9.8 * libm::sin(0.5);
     assert!((load(&*law, 0.01, 1.0).dynamic.z - expected).abs() < 1e-15);
-    let law = own("q * m * g^2 * t / V_s", Direction::Up).build(1.0, 0.5);
+    let law =
+        own("q * m * g^2 * t / V_s", Direction::Up).build(1.0, Approach { angle: 0.5, ..APPROACH });
     let motion = Motion { time: 0.25, ..sinking(1.0) };
     let mut late = Load::default();
     law.act(&SPHERE.at(0.01), &motion, &surroundings(), &mut late);
     let expected = 0.0692 * 9.8 * 9.8 * 0.25 / (9.8_f64 * 0.0254).sqrt();
     assert!((late.dynamic.z - expected).abs() < 1e-14);
+    let law = own("q * m * g * v / v_0", Direction::Up).build(1.0, APPROACH);
+    let expected = 0.0692 * 9.8 * 0.5 / 2.0;
+    assert!((load(&*law, 0.01, 0.5).dynamic.z - expected).abs() < 1e-15);
 }
 
 #[test]
@@ -164,7 +173,7 @@ fn a_force_that_is_not_what_it_says_is_found_in_a_state() {
     let check = |force, direction, speed: f64| {
         let (at, bed) = (SPHERE.at(0.01), surroundings());
         let motion = Motion { velocity: sinking(speed).velocity, ..sinking(speed) };
-        own(force, direction).check(&at, &motion, &bed, 1.0).map_err(|error| error.to_string())
+        own(force, direction).check(&at, &motion, &bed, APPROACH).map_err(|error| error.to_string())
     };
     let at_rest = check("q * m * g", Direction::AgainstMotion, 0.0).unwrap_err();
     // The weight of 69.2 g, ten times over: the amplitude that is tried is the greatest.

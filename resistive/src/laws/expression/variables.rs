@@ -3,6 +3,7 @@
 use crate::{Immersion, Motion, Space, Surroundings};
 use engine::units::Dimension;
 
+use super::super::approach::Approach;
 use super::super::facts::Needs;
 
 /// Something that the force of a user-defined effect may depend on.
@@ -31,14 +32,14 @@ impl StateVariable {
     }
 }
 
-/// What a law is told, and at which speed (m/s) and impact angle (rad).
+/// What a law is told, at which speed (m/s), and in which impact.
 #[derive(Clone, Copy)]
 pub(super) struct Seen<'a> {
     pub(super) at: &'a Immersion,
     pub(super) motion: &'a Motion,
     pub(super) bed: &'a Surroundings,
     pub(super) speed: f64,
-    pub(super) angle: f64,
+    pub(super) approach: Approach,
 }
 
 const AREA: Dimension = Dimension { metre_2: 4, ..Dimension::NONE };
@@ -133,6 +134,7 @@ pub static STATE_VARIABLES: &[StateVariable] = &[
             seen.bed.bed_depth.unwrap_or(f64::NAN)
         })
     },
+    variable(["v_0", ""], Dimension::SPEED, "impact speed (m/s)", |seen| seen.approach.speed),
     variable(["V_s", ""], Dimension::SPEED, "sqrt(g D) (m/s)", |seen| {
         (seen.bed.gravity * seen.at.diameter).sqrt()
     }),
@@ -142,7 +144,7 @@ pub static STATE_VARIABLES: &[StateVariable] = &[
             ["theta", "θ"],
             Dimension::NONE,
             "impact angle below the horizontal (rad)",
-            |seen| seen.angle,
+            |seen| seen.approach.angle,
         )
     },
 ];
