@@ -109,6 +109,8 @@ fn means_beside_drops_are_no_drops() {
     let set = crate::layouts::of_text("a.csv", text.as_bytes(), &[("length_unit", "mm")])
         .expect("two drops");
     assert_eq!(set.understood.len(), 2);
+    let told = "mittelwert: no drop by its name, left out";
+    assert!(set.notes.iter().any(|note| note.contains(told)), "{:?}", set.notes);
 }
 
 #[test]

@@ -23,7 +23,15 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
         let track = grid.track(&layout, Places { t, z, x }, grid.all_rows())?;
         Ok(Track { name: Some(name), ..track })
     };
-    drops(&grid).into_iter().map(one).collect()
+    let mut tracks: Vec<Track> = drops(&grid).into_iter().map(one).collect::<Result<_, _>>()?;
+    let taken = |name: &str| tracks.iter().any(|track| track.name.as_deref() == Some(name));
+    let stems = grid.headings.iter().map(|heading| heading.stem.as_str());
+    let left: Vec<&str> = stems.filter(|stem| is_statistic(stem) && !taken(stem)).collect();
+    if !left.is_empty() {
+        let note = format!("{}: no drop by its name, left out", left.join(", "));
+        tracks.iter_mut().take(1).for_each(|first| first.notes.push(note.clone()));
+    }
+    Ok(tracks)
 }
 
 fn time(grid: &Grid<'_>, columns: &Columns) -> Result<Option<usize>, Fault> {
