@@ -21,8 +21,8 @@ const STEPS: usize = 3;
 const HELD: f64 = 1e9;
 const LOOSE: f64 = 1e-9;
 
-/// Forces that are held at zero, by their place among the numbers: friction, what grows with depth, or both.
-const WITHOUT: [&[usize]; 4] = [&[], &[5], &[4], &[4, 5]];
+/// Forces that are held at zero, by their place among the numbers: drag, what grows with depth, and friction.
+const WITHOUT: [&[usize]; 7] = [&[], &[5], &[4], &[3], &[4, 5], &[3, 5], &[3, 4]];
 
 /// Shares of the body that meet the bed, by that of its section: of drag and friction, and of what grows with depth.
 const EXPOSURES: [fn(f64) -> [f64; 2]; 3] =
@@ -226,7 +226,8 @@ fn solved(
         let mut scaled = scaled;
         held.iter().for_each(|&force| scaled[(force, force)] += HELD);
         let covariance = units * scaled.cholesky()?.inverse() * units;
-        let numbers: Vector6<f64> = covariance * right;
+        let mut numbers: Vector6<f64> = covariance * right;
+        held.iter().for_each(|&force| numbers[force] = 0.0);
         let misfit: f64 = rows.iter().map(|(row, value)| (row.dot(&numbers) - value).powi(2)).sum();
         Some((numbers, covariance, misfit))
     };

@@ -82,7 +82,7 @@ pub use definitions::{Held, Miss, Outcome, Scalar, hold};
 pub use departure::Departure;
 pub use fall::{Fall, reading_noise};
 pub use feasible::{Cost, Feasible};
-pub use level::common_level;
+pub use level::{Levels, levels};
 pub use load::{Loaded, SetError};
 pub use priors::ParameterPrior;
 pub use reading::Reading;

@@ -163,14 +163,23 @@ impl Bodies {
             let right = "known: sphere, disc, cylinder, hemisphere, cone";
             return Err(Fault::new(&flag("shape"), what, right));
         }
-        let apex = quantity("apex", Dimension::ANGLE)?.map(f64::to_degrees);
+        let diameter = needed("diameter", Dimension::LENGTH, "25.4mm")?;
         let height = quantity("height", Dimension::LENGTH)?;
+        let stated = quantity("apex", Dimension::ANGLE)?;
+        let by_height = height.map(|height| 2.0 * libm::atan2(0.5 * diameter, height));
+        // Where a cone is braked first depends much on its angle.
+        let apex = match (stated.or(by_height), shape.as_str()) {
+            (None, "cone") => Some(needed("apex", Dimension::ANGLE, "60deg")?),
+            (Some(apex), "cone") => Some(apex),
+            _ => stated,
+        };
+        let apex = apex.map(f64::to_degrees).map(|apex| (apex * 1e9).round() / 1e9);
         Ok(Body {
-            diameter: needed("diameter", Dimension::LENGTH, "25.4mm")?,
+            diameter,
             mass: needed("mass", Dimension::MASS, "\"67 g\"")?,
             shape,
             height,
-            apex: apex.map(|apex| (apex * 1e9).round() / 1e9),
+            apex,
         })
     }
 }

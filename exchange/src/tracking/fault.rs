@@ -27,6 +27,13 @@ impl Fault {
     pub(super) fn at(self, line: u64) -> Self {
         Self { line: Some(line), ..self }
     }
+
+    /// What is wrong and right, without numbers and what is quoted: the same in several files.
+    fn kind(&self) -> String {
+        let text = format!("{}\n{}", self.what, self.right);
+        let outside = text.split('"').step_by(2);
+        outside.flat_map(str::chars).filter(|c| !c.is_ascii_digit() && *c != '.').collect()
+    }
 }
 
 impl fmt::Display for Fault {
@@ -73,10 +80,26 @@ impl From<Vec<Fault>> for TrackingError {
 /// Most faults that are listed.
 const MOST: usize = 10;
 
+/// Faults as lines; one that several files have is listed once.
 fn listed(faults: &[Fault]) -> String {
-    let mut lines: Vec<String> = faults.iter().take(MOST).map(Fault::to_string).collect();
-    if faults.len() > MOST {
-        lines.push(format!("and {} more", faults.len() - MOST));
+    let mut kinds: Vec<(&Fault, usize)> = Vec::new();
+    for fault in faults {
+        let is_same = |(first, _): &&mut (&Fault, usize)| {
+            first.place != fault.place && first.kind() == fault.kind()
+        };
+        match kinds.iter_mut().find(is_same) {
+            Some((_, others)) => *others += 1,
+            None => kinds.push((fault, 0)),
+        }
+    }
+    let one = |(fault, others): &(&Fault, usize)| match others {
+        0 => fault.to_string(),
+        1 => format!("{fault}\n  one more file has this"),
+        n => format!("{fault}\n  {n} more files have this"),
+    };
+    let mut lines: Vec<String> = kinds.iter().take(MOST).map(one).collect();
+    if kinds.len() > MOST {
+        lines.push(format!("and {} more", kinds.len() - MOST));
     }
     lines.join("\n")
 }

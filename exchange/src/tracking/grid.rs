@@ -10,6 +10,8 @@ use super::units::Unit;
 /// A sheet with its header.
 pub(super) struct Grid<'a> {
     pub(super) sheet: &'a Sheet,
+    /// The row of names, among those of the sheet.
+    pub(super) header: usize,
     pub(super) headings: Vec<Heading>,
     /// Below the header.
     pub(super) rows: &'a [Row],
@@ -39,7 +41,7 @@ impl<'a> Grid<'a> {
             }
         }
         let first = units.map_or(header, |units| units.max(header)) + 1;
-        Self { sheet, headings, rows: &sheet.rows[first..] }
+        Self { sheet, header, headings, rows: &sheet.rows[first..] }
     }
 
     /// The sheet below the names that stand above its first row of numbers, with a row of units between

@@ -243,14 +243,18 @@ fn notes(runs: &[Run], level: &Level, manner: &str, settings: &Settings<'_>) -> 
     let mut notes = Vec::new();
     notes.push(match level {
         Level::Stated => "Surface: as --surface states it.".to_owned(),
-        Level::Common(level) => format!(
-            "Surface: one level for all runs, from their contacts, known to {:.2} mm.",
-            1e3 * level.se
-        ),
-        Level::Own if runs.len() == 1 => {
-            format!("Surface: from the contact, known to {:.2} mm.", 1e3 * runs[0].touch.level.se)
+        Level::Common(level) => {
+            let of = match runs.len() {
+                1 => "from the contact",
+                _ => "one level for all runs, from their contacts",
+            };
+            format!("Surface: {of}, known to {:.2} mm.", 1e3 * level.se)
         }
-        Level::Own => "Surface: a level for each run, from its contact: those of the runs differ by more than their errors.".to_owned(),
+        Level::Own(shared) => format!(
+            "Surface: a level for each run, from its contact: those of the runs differ by more than their errors. All may be off \
+             by {:.2} mm together.",
+            1e3 * shared
+        ),
     });
     notes.push(format!("Conditions: {manner}."));
     if runs.iter().any(|run| run.angle < 90.0) {

@@ -112,6 +112,18 @@ fn is_out_of_order(samples: &[Sample]) -> bool {
     !backs.is_empty() && !backs.iter().zip(ends).any(begins_a_drop)
 }
 
+/// Whether the clock goes back to its start before the reading `at`, and the body goes on as if nothing were: its steps there
+/// are those around.
+fn starts_again(samples: &[Sample], at: usize) -> bool {
+    let step = |at: usize| Some((samples.get(at)?.z - samples.get(at.checked_sub(1)?)?.z).abs());
+    let Some((here, [before, after])) =
+        step(at).zip(step(at - 1).zip(step(at + 1)).map(<[f64; 2]>::from))
+    else {
+        return false;
+    };
+    samples[at].t < samples[at - 1].t && here <= 2.0 * before.max(after)
+}
+
 /// The readings in the order of time; copies of one are dropped.
 fn in_order(track: &mut Track, settings: &Settings<'_>) -> Result<Vec<Sample>, Fault> {
     let mut samples: Vec<Sample> = Vec::with_capacity(track.samples.len());
@@ -121,7 +133,7 @@ fn in_order(track: &mut Track, settings: &Settings<'_>) -> Result<Vec<Sample>, F
         track.samples.sort_by(|a, b| a.t.total_cmp(&b.t));
         track.notes.push("its rows are sorted by time".to_owned());
     }
-    for sample in &track.samples {
+    for (at, sample) in track.samples.iter().enumerate() {
         let Some(last) = samples.last() else {
             samples.push(*sample);
             continue;
@@ -139,6 +151,13 @@ fn in_order(track: &mut Track, settings: &Settings<'_>) -> Result<Vec<Sample>, F
         if counts_rows {
             samples.push(*sample);
             continue;
+        }
+        if starts_again(&track.samples, at) {
+            let step = (last.t - samples[0].t) / (samples.len() - 1) as f64;
+            let what = format!("the clock starts again ({}, behind {})", sample.t, last.t);
+            let lost = last.t + step - sample.t;
+            let right = format!("add {lost:.4} to the times from here on");
+            return Err(Fault::new(&track.file, what, right).at(sample.line));
         }
         let (what, right) = match (same(sample.t, last.t), &track.time.unit) {
             (true, Unit::Clock) => (

@@ -61,11 +61,7 @@ impl Path {
             (Some(_), _) => vec![("s".to_owned(), 1.0)],
             (None, Unit::Unstated) => vec![("s".to_owned(), 1.0), ("ms".to_owned(), 1e-3)],
             (None, Unit::Frame) => {
-                let what = format!(
-                    "the column `{}` counts frames, and nothing says how fast they are",
-                    time.name
-                );
-                return Err(Fault::new(file, what, "write --rate 650Hz"));
+                return Err(self.without_rate(length_unit, settings));
             }
             (None, unit) => {
                 vec![(unit.word().to_owned(), si(unit, Dimension::TIME, &time.name, file)?)]
@@ -118,6 +114,25 @@ impl Path {
     /// Whether another table counts the same.
     fn is_like(&self, other: &Self) -> bool {
         self.track.time == other.track.time && self.track.vertical.unit == other.track.vertical.unit
+    }
+
+    fn without_rate(&self, length_unit: &Unit, settings: &Settings<'_>) -> Fault {
+        let length = match length_unit {
+            Unit::Pixel => settings.scale,
+            unit => unit.si(Dimension::LENGTH),
+        };
+        let right = match (self.acceleration(), length) {
+            (Some(acceleration), Some(length)) => {
+                let rate = (settings.gravity / (acceleration * length)).sqrt();
+                format!(
+                    "write --rate and what the camera makes a second; the fall before contact is that of {rate:.0}Hz"
+                )
+            }
+            _ => "write --rate and what the camera makes a second, as in --rate 650Hz".to_owned(),
+        };
+        let name = &self.track.time.name;
+        let what = format!("the column `{name}` counts frames, and nothing says how fast they are");
+        Fault::new(&self.track.file, what, right)
     }
 
     fn without_scale(&self, times: &[(String, f64)], settings: &Settings<'_>) -> Fault {

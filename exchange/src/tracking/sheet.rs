@@ -70,6 +70,12 @@ impl Sheet {
         row.cells.iter().any(|cell| self.number(cell) == Number::Other)
     }
 
+    /// The same table with nothing in it.
+    pub(super) fn without_rows(&self) -> Self {
+        let (file, stem) = (self.file.clone(), self.stem.clone());
+        Self { file, stem, rows: Vec::new(), notes: Vec::new(), ..*self }
+    }
+
     /// A fault of the whole table.
     pub(super) fn fault(&self, what: impl Into<String>, right: impl Into<String>) -> Fault {
         Fault::new(&self.file, what, right)
@@ -83,6 +89,8 @@ pub(super) fn number(cell: &str, decimal_comma: bool) -> Number {
     if marks.contains(&lower.as_str()) {
         return Number::Missing;
     }
+    let plain = ascii(cell);
+    let cell = plain.as_deref().unwrap_or(cell);
     let cell = match decimal_comma {
         true => without_groups(cell, '.', ','),
         false => without_groups(cell, ',', '.'),
@@ -98,6 +106,14 @@ pub(super) fn number(cell: &str, decimal_comma: bool) -> Number {
         }
         _ => clock(&text).map_or(Number::Other, Number::Value),
     }
+}
+
+/// A number as spreadsheets of other languages write it, with a minus sign for the hyphen and narrow blanks between groups, in
+/// ASCII; `None` where `cell` is in ASCII.
+fn ascii(cell: &str) -> Option<String> {
+    const BLANKS: [char; 3] = ['\u{a0}', '\u{2009}', '\u{202f}'];
+    let narrow = |cell: &str| cell.replace('\u{2212}', "-").replace(BLANKS, "");
+    (!cell.is_ascii()).then(|| narrow(cell))
 }
 
 /// `cell` without the marks between groups of three digits, as in `1.234,5`; as it is where no decimals tell the `mark` from
@@ -152,6 +168,7 @@ mod tests {
         for word in ["1.234", "12.34,5", "1234.567,5", ".234,5"] {
             assert_eq!(number(word, true), Number::Other, "{word}");
         }
+        assert_eq!(number("\u{2212}1\u{202f}234,5", true), Number::Value(-1234.5));
         assert_eq!(number("00:01:12.5", false), Number::Value(72.5));
         assert_eq!(number("1:12,25", true), Number::Value(72.25));
         assert_eq!(number("1:2:3:4.5", false), Number::Other);

@@ -1,6 +1,6 @@
 //! The level of the surface on the axes of the tables, and with it contact time and speed of each run.
 
-use measurements::{Contact, Departure, Reading, common_level};
+use measurements::{Contact, Departure, Levels, Reading, levels};
 
 use super::fault::Fault;
 
@@ -31,8 +31,8 @@ pub(super) struct Touch {
     pub(super) level: Reading,
     /// Downward velocity (m/s).
     pub(super) sinking: Reading,
-    /// Error of the depth of free fall there (m).
-    pub(super) fall_error: f64,
+    /// Error of its level against those of other runs (m).
+    pub(super) level_error: f64,
 }
 
 /// Where the levels come from.
@@ -42,8 +42,8 @@ pub(super) enum Level {
     Stated,
     /// All runs have one (m).
     Common(Reading),
-    /// Each run has its own.
-    Own,
+    /// Each run has its own; the error (m) that these share.
+    Own(f64),
 }
 
 /// The contacts of runs under `gravity` (m/s²).
@@ -64,17 +64,21 @@ pub(super) fn touches(runs: &[Seen], gravity: f64) -> Result<(Level, Vec<Touch>)
         return Ok((Level::Stated, runs.iter().map(at).collect()));
     }
     let departures: Vec<&Departure> = runs.iter().map(|run| &run.departure).collect();
-    match common_level(&departures) {
-        Some(level) => {
+    let at = |run: &Seen, level: Reading| Touch::at(&run.departure.contact, level, gravity);
+    Ok(match levels(&departures) {
+        Some(Levels::One(level)) => {
             let level = Reading { se: level.se.max(LEAST), ..level };
-            let touches =
-                runs.iter().map(|run| Touch::at(&run.departure.contact, level, gravity)).collect();
-            Ok((Level::Common(level), touches))
+            (Level::Common(level), runs.iter().map(|run| at(run, level)).collect())
         }
-        None => {
-            Ok((Level::Own, runs.iter().map(|run| Touch::own(&run.departure.contact)).collect()))
+        Some(Levels::Each { levels, shared }) => {
+            let of = |(run, own): (&Seen, &Reading)| {
+                let level = Reading { se: libm::hypot(own.se, shared), ..*own };
+                Touch { level_error: own.se, ..at(run, level) }
+            };
+            (Level::Own(shared.max(LEAST)), runs.iter().zip(&levels).map(of).collect())
         }
-    }
+        None => (Level::Stated, Vec::new()),
+    })
 }
 
 impl Touch {
@@ -92,17 +96,7 @@ impl Touch {
                 value: v + gravity * later,
                 se: libm::hypot(falling.se, gravity * se),
             },
-            fall_error: at_time.se,
-        }
-    }
-
-    /// Where the path departs from free fall.
-    fn own(contact: &Contact) -> Self {
-        Self {
-            time: contact.time,
-            level: contact.depth,
-            sinking: contact.sinking,
-            fall_error: contact.at_time.se,
+            level_error: at_time.se,
         }
     }
 }
@@ -112,14 +106,16 @@ impl Touch {
 fn off(runs: &[Seen]) -> Vec<Fault> {
     let below = |run: &Seen| Some(run.departure.below(run.stated?));
     let all: Vec<Departure> = runs.iter().filter_map(below).collect();
-    match common_level(&all.iter().collect::<Vec<_>>()) {
-        Some(miss) => one_off("the runs are", miss, &runs[0]).into_iter().collect(),
-        None => {
-            let of = |(run, one): (&Seen, &Departure)| {
-                one_off(&format!("the run {} is", run.name), one.contact.depth, run)
+    match levels(&all.iter().collect::<Vec<_>>()) {
+        Some(Levels::One(miss)) => one_off("the runs are", miss, &runs[0]).into_iter().collect(),
+        Some(Levels::Each { levels, shared }) => {
+            let of = |(run, own): (&Seen, &Reading)| {
+                let miss = Reading { se: libm::hypot(own.se, shared), ..*own };
+                one_off(&format!("the run {} is", run.name), miss, run)
             };
-            runs.iter().zip(&all).filter_map(of).collect()
+            runs.iter().zip(&levels).filter_map(of).collect()
         }
+        None => Vec::new(),
     }
 }
 

@@ -90,12 +90,12 @@ fn measurement(known: &Known<'_>, notes: &[String]) -> Result<String, Fault> {
     let (surface, by) = match level {
         Level::Stated => (STATED, "as it is stated"),
         Level::Common(level) => (level.se, "the one level of all runs, by their contacts"),
-        Level::Own => (of(|run| run.touch.level.se), "the level of each run, by its contact"),
+        Level::Own(shared) => (*shared, "what the levels of all runs share, by their contacts"),
     };
     line(format!("surface_sigma_m = {:<10} # of {by}", significant(surface, 2)));
     line(format!(
-        "level_sigma_m = {:<12} # of one run against the others, by its fall",
-        significant(of(|run| run.touch.fall_error).max(LEAST), 2)
+        "level_sigma_m = {:<12} # of one run against the others",
+        significant(of(|run| run.touch.level_error).max(LEAST), 2)
     ));
     line("\n[bed]".to_owned());
     let is_planar = runs.iter().any(|run| run.body.shape == "disc");

@@ -22,6 +22,16 @@ pub(crate) fn ball() -> Options {
 
 /// Tables in cm and ms with y upward, decimal commas and semicolons, of drops from four heights, three times each.
 fn write_tables(folder: &Path, meets: Meets, camera: Camera) -> Vec<(PathBuf, Drop)> {
+    write_raised(folder, meets, camera, [0.0; 3])
+}
+
+/// The same with the surface of each repeat raised (cm).
+fn write_raised(
+    folder: &Path,
+    meets: Meets,
+    camera: Camera,
+    raised: [f64; 3],
+) -> Vec<(PathBuf, Drop)> {
     let mut all = Vec::new();
     for (at, height) in [0.05, 0.1, 0.2, 0.4].into_iter().enumerate() {
         for repeat in 0..3_u32 {
@@ -30,7 +40,8 @@ fn write_tables(folder: &Path, meets: Meets, camera: Camera) -> Vec<(PathBuf, Dr
             let one = drop_into(meets, height, Camera { hold, duration: 1.0, seed, ..camera });
             let mut text = String::from("\u{feff}t (ms);y (cm)\r\n");
             for (t, z) in &one.readings {
-                let row = format!("{:.3};{:.4}\r\n", 1e3 * t, LEVEL + 1e2 * z);
+                let row =
+                    format!("{:.3};{:.4}\r\n", 1e3 * t, LEVEL + raised[repeat as usize] + 1e2 * z);
                 let _ = write!(text, "{}", row.replace('.', ","));
             }
             let path = folder.join(format!("h{:02.0}_r{repeat}.csv", 1e2 * height));
@@ -85,6 +96,27 @@ fn contact_speed_and_level_are_found_within_their_errors() {
             );
         }
     }
+}
+
+#[test]
+fn levels_that_differ_between_runs_do_not_move_the_speeds() {
+    let mut all = Vec::new();
+    for seed in 1..4 {
+        let here = tempfile::tempdir().expect("a folder");
+        let camera = Camera { seed, ..Camera::USUAL };
+        let drops = write_raised(here.path(), Meets::Section, camera, [-0.4, 0.0, 0.4]);
+        let paths: Vec<PathBuf> = drops.iter().map(|(path, _)| path.clone()).collect();
+        let set = imported(&paths, &ball(), &here.path().join("set"));
+        assert!(
+            set.notes.iter().any(|note| note.contains("a level for each run")),
+            "{:?}",
+            set.notes
+        );
+        all.extend(misses(&set, &drops));
+    }
+    let square = all.iter().map(|miss| miss[1].powi(2)).sum::<f64>() / all.len() as f64;
+    let worst = all.iter().map(|miss| miss[1].abs()).fold(0.0, f64::max);
+    assert!((0.05..2.5).contains(&square) && worst < 4.0, "{square}, {worst}");
 }
 
 #[test]

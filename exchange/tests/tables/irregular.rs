@@ -140,3 +140,71 @@ fn readings_that_are_not_of_the_body_and_rows_out_of_order() {
         assert!(set.notes.iter().any(|note| note.contains(told)), "{:?}", set.notes);
     }
 }
+
+fn runs(set: &exchange::tracking::Set) -> Vec<&str> {
+    set.understood.iter().map(|one| one.run.as_str()).collect()
+}
+
+#[test]
+fn drops_below_each_other_and_beside_each_other() {
+    let drops = formats::two();
+    let titles = ["h 5 cm, a", "h 10 cm, a"];
+    let rows = |one: &Drop| table("t (s),z (mm)", one, |_, t, z| format!("{t:.5},{z:.3}"));
+    let below = |titled: bool| {
+        let block = |(one, title): (&Drop, &str)| match titled {
+            true => format!("{title}\n{}\n", rows(one)),
+            false => rows(one),
+        };
+        drops.iter().zip(titles).map(block).collect::<String>()
+    };
+    let set = check("a.csv", &below(true), &[], &drops, "stacked, commas");
+    assert_eq!(runs(&set), ["h 5 cm a", "h 10 cm a"]);
+    let set = check("a.csv", &below(false), &[], &drops, "stacked, commas");
+    assert_eq!(runs(&set), ["1", "2"]);
+
+    let mut beside = String::from("low;;high;\nt (s);z (mm);t (s);z (mm)\n");
+    let cell = |one: Option<&(f64, f64)>| {
+        one.map_or(";".to_owned(), |(t, z)| format!("{t:.5};{:.3}", 1e3 * z))
+    };
+    let [a, b] = [0, 1].map(|at| &drops[at].readings);
+    for at in 0..a.len().max(b.len()) {
+        let _ = writeln!(beside, "{};{}", cell(a.get(at)), cell(b.get(at)));
+    }
+    let set = check("a.csv", &beside, &[], &drops, "pairs, semicolons");
+    assert_eq!(runs(&set), ["low", "high"]);
+}
+
+#[test]
+fn one_body_in_two_columns_is_asked_for() {
+    let drops = formats::two();
+    let text = table("t (s),z_raw (mm),z_filtered (mm)", &drops[0], |at, t, z| {
+        format!("{t:.5},{z:.3},{:.3}", z + 0.01 * (at % 3) as f64)
+    });
+    let refused = told("a.csv", &text, &[]);
+    has(&refused, &["move together", "--column z=\"z_raw (mm)\""]);
+    check("a.csv", &text, &[("column_z", "z_raw (mm)")], &drops[..1], "one drop");
+}
+
+#[test]
+fn signs_and_blanks_of_other_languages() {
+    let drops = formats::two();
+    let text = table("t (ms);z (um)", &drops[0], |_, t, z| {
+        let (micro, sign) = ((1e3 * z).round().abs(), if z < 0.0 { "\u{2212}" } else { "" });
+        let [thousands, rest] = [libm::floor(micro / 1e3), micro % 1e3];
+        format!("{:.2};{sign}{thousands}\u{202f}{rest:03}", 1e3 * t).replace('.', ",")
+    });
+    check("a.csv", &text, &[], &drops[..1], "one drop, semicolons");
+}
+
+#[test]
+fn a_clock_that_starts_again_is_told_with_what_it_lost() {
+    let drops = formats::two();
+    let step = drops[0].readings[1].0 - drops[0].readings[0].0;
+    let wrap = 100.0 * step;
+    let text = table("t (s),z (mm)", &drops[0], |at, t, z| {
+        let t = if at >= 100 { t - wrap } else { t };
+        format!("{t:.5},{z:.3}")
+    });
+    let refused = told("a.csv", &text, &[]);
+    has(&refused, &["a.csv:102: the clock starts again", &format!("add {wrap:.4} to the times")]);
+}

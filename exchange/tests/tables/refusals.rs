@@ -92,7 +92,10 @@ fn plain_tables() {
 fn units_and_scales() {
     let drops = formats::two();
     let pixels = formats::points(&drops);
-    has(&told("a.csv", &pixels, &[SCALE]), &["`frame` counts frames", "write --rate 650Hz"]);
+    has(
+        &told("a.csv", &pixels, &[SCALE]),
+        &["`frame` counts frames", "write --rate", "the fall before contact is that of 6"],
+    );
     has(
         &told("a.csv", &pixels, &[RATE]),
         &["`y1 (px)` is in pixels", "write --scale 0.2", "mm/px"],
@@ -169,6 +172,11 @@ fn what_no_table_holds_is_asked_for() {
     has(
         &error.to_string(),
         &["no table says the diameter of the body", "write --diameter 25.4mm", "--bodies"],
+    );
+    let text = formats::wide(&formats::two());
+    has(
+        &told("a.csv", &text, &[("shape", "cone")]),
+        &["no table says the apex of the body", "write --apex 60deg"],
     );
 }
 

@@ -7,7 +7,9 @@ mod kinovea;
 mod labview;
 mod loggerpro;
 mod long;
+mod pairs;
 mod single;
+mod stacked;
 mod tracker;
 mod trackmate;
 mod wide;
@@ -26,16 +28,18 @@ pub(super) struct Layout {
 }
 
 /// The layouts; the first that fits reads a sheet, and the last fits all.
-const LAYOUTS: [&Layout; 11] = [
+const LAYOUTS: [&Layout; 13] = [
     &trackmate::LAYOUT,
     &deeplabcut::LAYOUT,
     &dltdv::LAYOUT,
     &labview::LAYOUT,
     &loggerpro::LAYOUT,
+    &stacked::LAYOUT,
     &kinovea::LAYOUT,
     &tracker::LAYOUT,
     &imagej::LAYOUT,
     &long::LAYOUT,
+    &pairs::LAYOUT,
     &wide::LAYOUT,
     &single::LAYOUT,
 ];

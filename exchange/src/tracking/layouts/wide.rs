@@ -6,7 +6,7 @@ use crate::tracking::grid::{Grid, Places};
 use crate::tracking::heading::Role;
 use crate::tracking::settings::Columns;
 use crate::tracking::sheet::{Number, Sheet};
-use crate::tracking::track::Track;
+use crate::tracking::track::{Sample, Track};
 
 pub(super) const LAYOUT: Layout = Layout { fits, read };
 
@@ -25,6 +25,7 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
     };
     let mut tracks: Vec<Track> = drops(&grid).into_iter().map(one).collect::<Result<_, _>>()?;
     let taken = |name: &str| tracks.iter().any(|track| track.name.as_deref() == Some(name));
+    refuse_twice(&tracks, sheet)?;
     let stems = grid.headings.iter().map(|heading| heading.stem.as_str());
     let left: Vec<&str> = stems.filter(|stem| is_statistic(stem) && !taken(stem)).collect();
     if !left.is_empty() {
@@ -62,6 +63,59 @@ fn is_statistic(name: &str) -> bool {
         "error",
     ];
     NAMES.contains(&name.trim().to_lowercase().as_str())
+}
+
+/// Refuses columns that are of one body by their names, such as `raw` and `filtered`, and by their motion.
+fn refuse_twice(tracks: &[Track], sheet: &Sheet) -> Result<(), Fault> {
+    const NAMES: [&str; 20] = [
+        "raw",
+        "filtered",
+        "filt",
+        "smooth",
+        "smoothed",
+        "corrected",
+        "fit",
+        "fitted",
+        "top",
+        "bottom",
+        "upper",
+        "lower",
+        "centre",
+        "center",
+        "middle",
+        "tip",
+        "left",
+        "right",
+        "front",
+        "back",
+    ];
+    let is_part = |name: &str| name.split([' ', '_', '-']).any(|word| NAMES.contains(&word));
+    let parts = tracks.iter().filter(|track| track.name.as_deref().is_some_and(is_part));
+    let parts: Vec<&Track> = parts.collect();
+    let pairs = parts
+        .iter()
+        .enumerate()
+        .flat_map(|(at, one)| parts[at + 1..].iter().map(move |other| (*one, *other)));
+    let Some((one, other)) = pairs.into_iter().find(|(one, other)| move_together(one, other))
+    else {
+        return Ok(());
+    };
+    let [one, other] = [one, other].map(|track| &track.vertical.name);
+    let what = format!("`{one}` and `{other}` move together: they are of one body");
+    Err(sheet.fault(what, format!("say which is imported: --column z=\"{one}\"")))
+}
+
+/// Whether the readings of two tracks of one clock keep their distance.
+fn move_together(one: &Track, other: &Track) -> bool {
+    /// Standard deviation of the distance over that of the position.
+    const STEADY: f64 = 0.05;
+    let deviation = |of: &dyn Fn(&Sample, &Sample) -> f64| {
+        let same = one.samples.iter().zip(&other.samples).filter(|(a, b)| a.line == b.line);
+        let all: Vec<f64> = same.map(|(a, b)| of(a, b)).collect();
+        let mean = all.iter().sum::<f64>() / all.len() as f64;
+        (all.iter().map(|one| (one - mean).powi(2)).sum::<f64>() / all.len() as f64).sqrt()
+    };
+    deviation(&|a, b| a.z - b.z) < STEADY * deviation(&|a, _| a.z)
 }
 
 /// Names of the drops, with the columns of their positions: points of a coordinate (`y1`, `y2`), or, where no

@@ -1,0 +1,83 @@
+//! Plain tables of several drops beside each other, each with its own column of times, and mostly with a title above it.
+
+use super::Layout;
+use crate::tracking::fault::Fault;
+use crate::tracking::grid::{Grid, Places};
+use crate::tracking::heading::Role;
+use crate::tracking::settings::Columns;
+use crate::tracking::sheet::Sheet;
+use crate::tracking::track::Track;
+
+pub(super) const LAYOUT: Layout = Layout { fits, read };
+
+fn fits(sheet: &Sheet, columns: &Columns) -> bool {
+    let asked = columns.of(Role::Vertical).is_some();
+    !asked && Grid::found(sheet).is_ok_and(|grid| drops(&grid).len() > 1)
+}
+
+fn read(sheet: &Sheet, _: &Columns) -> Result<Vec<Track>, Fault> {
+    let grid = Grid::found(sheet)?;
+    let drops = drops(&grid);
+    let titles = grid.header.checked_sub(1).map(|above| &sheet.rows[above]);
+    let ends = drops.iter().skip(1).map(|next| next.t).chain([Some(grid.headings.len())]);
+    let title = |(places, end): (&Places, Option<usize>)| {
+        let cells = (places.t?..end?).map(|at| titles.map_or("", |row| row.cell(at)));
+        let words: Vec<&str> = cells.filter(|cell| !cell.is_empty()).collect();
+        (!words.is_empty()).then(|| words.join(" "))
+    };
+    let titles: Vec<Option<String>> = drops.iter().zip(ends).map(title).collect();
+    let are_told =
+        (0..titles.len()).all(|at| titles[at].is_some() && !titles[..at].contains(&titles[at]));
+    let one = |(at, (places, title)): (usize, (&Places, Option<String>))| {
+        let layout = format!("pairs, {}", sheet.separated);
+        let track = grid.track(&layout, *places, grid.all_rows())?;
+        let name = title.filter(|_| are_told).unwrap_or_else(|| (at + 1).to_string());
+        let notes = if at == 0 { track.notes } else { Vec::new() };
+        Ok(Track { name: Some(name), notes, ..track })
+    };
+    drops.iter().zip(titles).enumerate().map(one).collect()
+}
+
+/// Columns of the drops: each begins with that of its times, and has one of positions.
+fn drops(grid: &Grid<'_>) -> Vec<Places> {
+    let role = |at: usize| grid.headings[at].role();
+    let all = 0..grid.headings.len();
+    let starts = |wanted: Role| all.clone().filter(move |at| role(*at) == Some(wanted));
+    let mut times: Vec<usize> = starts(Role::Time).collect();
+    if times.is_empty() {
+        times = starts(Role::Frame).collect();
+    }
+    let ends = times.iter().skip(1).copied().chain([grid.headings.len()]);
+    let drop = |(&t, end): (&usize, usize)| {
+        let of = |wanted: Role| (t..end).filter(move |at| role(*at) == Some(wanted));
+        let mut vertical = of(Role::Vertical);
+        match (vertical.next(), vertical.next()) {
+            (Some(z), None) => Some(Places { t: Some(t), z, x: of(Role::Forward).next() }),
+            _ => None,
+        }
+    };
+    times.iter().zip(ends).map(drop).collect::<Option<_>>().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tracking::text;
+
+    #[test]
+    fn a_title_stands_above_the_columns_of_its_drop() {
+        let text = "low,,high,,\nt (s),y (mm),t (s),y (mm),note\n0,1,0,5,\n1,2,1,6,\n,,2,7,\n";
+        let sheet = text::read("a.csv", "a", text.as_bytes()).expect("a table");
+        assert!(fits(&sheet, &Columns::default()));
+        let all = read(&sheet, &Columns::default()).expect("tracks");
+        let told: Vec<_> = all.iter().map(|one| (one.name.as_deref(), one.samples.len())).collect();
+        assert_eq!(told, [(Some("low"), 2), (Some("high"), 3)]);
+        assert_eq!(all[1].samples[2].z, 7.0);
+    }
+
+    #[test]
+    fn one_column_of_times_makes_no_pairs() {
+        let sheet = text::read("a.csv", "a", b"t,y1,y2\n0,1,2\n1,2,3\n").expect("a table");
+        assert!(!fits(&sheet, &Columns::default()));
+    }
+}
