@@ -12,7 +12,7 @@ use diagnosis::beds::{
 };
 use diagnosis::bench::Bench;
 use diagnosis::compare::Comparison;
-use diagnosis::where_it_fails::WhereItFails;
+use diagnosis::where_it_fails::{WhereItFails, files_of};
 use runner::beds::{Impacts, Place};
 use runner::{CampaignError, Elsewhere};
 use serde_json::{Value, json};
@@ -141,7 +141,7 @@ fn stand<'a>(model: &'a Candidate, measured: &'a Measured) -> Result<Stand<'a>, 
 /// `plunge diagnose` of a bed of grains.
 pub(crate) fn diagnose(
     beds: &Beds,
-    flags: &Flags,
+    (flags, seeks_force): (&Flags, bool),
     measured: &Measured,
     models: &[Candidate],
 ) -> CommandResult {
@@ -184,7 +184,11 @@ pub(crate) fn diagnose(
     }
     let found = diagnose_bed(&stand, &measured.observed, &place, plan, flags.seed);
     workshop.terminal.clear();
-    let found = found.map_err(|error| workshop.failed(error))?;
+    let mut found = found.map_err(|error| workshop.failed(error))?;
+    if seeks_force {
+        let sought = found.seek_missing_force(&measured.set);
+        sought.map_err(|error| failed(error, &model.name))?;
+    }
     flags.notes(&measured.set.notes);
     flags.notes(&measured.observed.notes);
     let object = found.to_json(&stand).map_err(anyhow::Error::new)?;
@@ -195,6 +199,9 @@ pub(crate) fn diagnose(
     let bench = Bench { set: &measured.set, observed, forward };
     let where_it_fails = WhereItFails::of_diagnosis(&bench, &model.name, diagnosis, flags.seed)
         .map_err(|error| failed(error, &model.name))?;
+    if let Some(force) = &diagnosis.missing_force {
+        files.extend(files_of(force, &measured.set).map_err(anyhow::Error::new)?);
+    }
     files.extend(where_it_fails.files().map_err(anyhow::Error::new)?);
     files.extend(report::of_results(&files, flags.quiet));
     results.write(&files)?;

@@ -37,7 +37,8 @@ pub(crate) struct Args {
     /// what they tell.
     #[arg(long, value_name = "OLD_DIAGNOSIS.json")]
     after: Option<PathBuf>,
-    /// Seek the force that the model lacks, and a formula for it, whatever the verdict: some seconds.
+    /// Seek the force that the model lacks, and a formula for it, whatever the verdict: some seconds. Of a bed of grains,
+    /// the force alone.
     #[arg(long)]
     missing_force: bool,
     #[command(flatten)]
@@ -58,18 +59,13 @@ pub(crate) fn run(args: &Args) -> CommandResult {
             "--calibrate is of resistive-force models: sets of a bed of grains take hours to simulate\n".to_owned(),
         ));
     }
-    if model.loaded.model.grains().is_some() && args.missing_force {
-        return Err(CommandError::BadInput(
-            "--missing-force is of resistive-force models: compare shows the force on a body in a bed of grains\n".to_owned(),
-        ));
-    }
     if model.loaded.model.grains().is_some() && args.after.is_some() {
         return Err(CommandError::BadInput(
             "--after is of resistive-force models: an earlier diagnosis of a bed of grains is not taken up\n".to_owned(),
         ));
     }
     if model.loaded.model.grains().is_some() {
-        return beds::diagnose(&args.beds, flags, &measured, &models);
+        return beds::diagnose(&args.beds, (flags, args.missing_force), &measured, &models);
     }
     if args.beds.plan {
         return output::to_stdout("a resistive-force model takes no impacts on beds: seconds\n");

@@ -77,7 +77,10 @@ pub(crate) fn as_text(
 fn missing_force(force: &MissingForce) -> String {
     let mut text = format!("\nMissing force ({}): {}.\n", force.file, force.words);
     let (Some(formula), Some(q), Some(held_out)) = (&force.formula, force.q, &force.holdout) else {
-        return text + "No formula of the library predicts what was held out.\n";
+        return match force.takes_formulas {
+            true => text + "No formula of the library predicts what was held out.\n",
+            false => text,
+        };
     };
     let se = force.se.map_or(String::new(), |se| format!(" \u{b1} {se:.3}"));
     text.push_str(&format!(

@@ -350,7 +350,8 @@ impl Judge<'_> {
             None => HeldOut::of(bench, before, proposed)?,
         };
         let missing_force = match verdict {
-            Verdict::NoneOfTheCandidates => {
+            // Of a bed it is sought once, when impacts have confirmed the verdict.
+            Verdict::NoneOfTheCandidates if bench.forward.by_formulas().is_some() => {
                 sought(bench, &self.baseline, ranking.scores.first().map(|score| score.delta))?
             }
             _ => None,

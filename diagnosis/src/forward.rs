@@ -73,19 +73,15 @@ pub trait Forward: Sync {
     fn by_formulas(&self) -> Option<&dyn ByFormulas> {
         None
     }
+
+    /// What bodies go through in the model; `None` of one that takes no [`Scatter::field`].
+    fn passages(&self) -> Option<&dyn Passages> {
+        Some(self.by_formulas()?)
+    }
 }
 
-/// A force law to which forces can be added that no list has, by their formulas.
-pub trait ByFormulas: Sync {
-    /// The dimension in which formulas are written.
-    fn space(&self) -> Space;
-
-    /// The model with `drafts` as candidates behind its own; indices of its own stay.
-    ///
-    /// # Errors
-    /// If a draft is not an effect.
-    fn extended(&self, drafts: Vec<Draft>) -> Result<Box<dyn Forward + '_>, OwnEffectError>;
-
+/// A model whose bodies a further force may act on, that of [`Scatter::field`].
+pub trait Passages: Sync {
     /// What the body of `condition` goes through in the bed on the run that `at` asks for, about `n` moments of it, and
     /// what it would meet there by each of `others`; of the first part of a chain.
     ///
@@ -98,6 +94,18 @@ pub trait ByFormulas: Sync {
         others: &[Request<'_>],
         n: usize,
     ) -> Result<Vec<Moment>, PredictError>;
+}
+
+/// A force law to which forces can be added that no list has, by their formulas.
+pub trait ByFormulas: Passages {
+    /// The dimension in which formulas are written.
+    fn space(&self) -> Space;
+
+    /// The model with `drafts` as candidates behind its own; indices of its own stay.
+    ///
+    /// # Errors
+    /// If a draft is not an effect.
+    fn extended(&self, drafts: Vec<Draft>) -> Result<Box<dyn Forward + '_>, OwnEffectError>;
 }
 
 /// A body in the bed at one moment.

@@ -6,6 +6,8 @@
 //! a rail. Of craters it says nothing: to first order they stay as they are. How runs scatter is learned
 //! from the runs themselves (`modes`).
 
+use std::sync::Arc;
+
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
 use measurements::{Instrument, MeasurementSet};
 use nalgebra::{DMatrix, DVector};
@@ -16,7 +18,7 @@ use super::modes::Modes;
 use super::observables::observables;
 use super::stand::Stand;
 use crate::bench::{Bench, BenchError, Fitted};
-use crate::forward::{Forward, PredictError, Request, Scatter};
+use crate::forward::{Forward, Moment, Passages, PredictError, Request, Scatter};
 use crate::noise::Noise;
 use crate::observable::Layout;
 use crate::observed::{Observed, ObservedCondition, reach, reading};
@@ -158,7 +160,7 @@ fn observed_condition(
 impl StandIn {
     /// What `effects` of the force law (indices of its candidates) and what scatters change of the
     /// observables. The change by what scatters is odd in it: means over beds hold its second order
-    /// already, since they are means over beds.
+    /// already, since they are means over beds. A force that the model lacks acts on every run.
     pub(super) fn response(
         &self,
         condition: usize,
@@ -175,11 +177,32 @@ impl StandIn {
         if effects.iter().any(|(_, q)| *q != 0.0) {
             response += predict(effects, &still)? - &base;
         }
+        let scatter = &match &scatter.field {
+            Some(field) => {
+                let lacked = Scatter { field: Some(Arc::clone(field)), ..still.clone() };
+                response += predict(&[], &lacked)? - &base;
+                Scatter { field: None, ..scatter.clone() }
+            }
+            None => scatter.clone(),
+        };
         if !scatter.is_still() {
             response += 0.5 * (predict(&[], scatter)? - predict(&[], &opposite(scatter))?);
         }
         let (answered, all) = self.answered[condition];
         Ok(response.rows(0, answered).into_owned().resize_vertically(all, 0.0))
+    }
+
+    /// What the body of `condition` goes through on the run that differs by `scatter`, and what it would meet there by
+    /// each of `others`, at `n` moments.
+    pub(super) fn passage(
+        &self,
+        condition: usize,
+        (scatter, others): (&Scatter, &[&Scatter]),
+        n: usize,
+    ) -> Result<Vec<Moment>, PredictError> {
+        let at = |scatter| Request { parameters: &self.point.parameters, effects: &[], scatter };
+        let others: Vec<Request<'_>> = others.iter().map(|&scatter| at(scatter)).collect();
+        self.forward.passage(condition, &at(scatter), &others, n)
     }
 
     /// Whether it answers any number of the set.

@@ -13,7 +13,7 @@ use super::switch::Switch;
 use super::switches::are_alike_below;
 use crate::fit::Fit;
 use crate::forward::{
-    Candidate, Forward, Parameter, ParameterKind, PredictError, Request, Scatter,
+    Candidate, Forward, Moment, Parameter, ParameterKind, Passages, PredictError, Request, Scatter,
 };
 use crate::held_out::noise_floor;
 use crate::rounding::rounded;
@@ -379,5 +379,23 @@ impl Forward for BedForward {
 
     fn ways_of_scatter(&self, condition: usize) -> Option<&DMatrix<f64>> {
         Some(&self.baseline.ways[condition])
+    }
+
+    fn passages(&self) -> Option<&dyn Passages> {
+        self.baseline.stand_in.answers_any().then_some(self)
+    }
+}
+
+impl Passages for BedForward {
+    /// By the force law that stands in: what switches change of the force along a path is not known.
+    fn passage(
+        &self,
+        condition: usize,
+        at: &Request<'_>,
+        others: &[Request<'_>],
+        n: usize,
+    ) -> Result<Vec<Moment>, PredictError> {
+        let others: Vec<&Scatter> = others.iter().map(|other| other.scatter).collect();
+        self.baseline.stand_in.passage(condition, (at.scatter, &others), n)
     }
 }

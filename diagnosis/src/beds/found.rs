@@ -1,6 +1,7 @@
 //! A diagnosis of a bed of grains as it is written down, with the models that it proposes.
 
 use configs::Change;
+use measurements::MeasurementSet;
 use serde_json::{Value, json};
 
 use super::confirmation::Confirmation;
@@ -9,7 +10,8 @@ use super::located::Located;
 use super::plan::Plan;
 use super::stand::{Draw, Stand};
 use super::variation::Variation;
-use crate::bench::Bench;
+use crate::bench::{Bench, BenchError};
+use crate::diagnose::seek_missing_force;
 use crate::fitted_parameters::parameters;
 use crate::observed::Observed;
 use crate::rounding::rounded;
@@ -46,6 +48,16 @@ pub(super) fn change_at(stand: &Stand<'_>, forward: &BedForward, point: &Point) 
 }
 
 impl BedDiagnosis {
+    /// Seeks the force that the model lacks in `set`, unless it is known: between the means of its runs and what was
+    /// measured, along the path of a body.
+    ///
+    /// # Errors
+    /// If the force law that stands in for the bed fails.
+    pub fn seek_missing_force(&mut self, set: &MeasurementSet) -> Result<(), BenchError> {
+        let bench = Bench { set, observed: &self.observed, forward: &self.forward };
+        seek_missing_force(&bench, &mut self.diagnosis)
+    }
+
     /// The diagnosis as one JSON object, with what was learned of the beds.
     ///
     /// # Errors

@@ -150,7 +150,7 @@ impl Work<'_> {
         let jobs = self.stand.jobs(&confirm, &draws.confirm, &Variation::default())?;
         let plain = self.run(&jobs)?;
         if let Some(diagnosis) = self.at_once(&forward, measured, &plain)? {
-            return Ok(self.done(diagnosis, forward, None, correlation));
+            return self.done(diagnosis, forward, None, correlation);
         }
 
         let screening = self.plan.screening(self.stand);
@@ -196,7 +196,7 @@ impl Work<'_> {
         }
         self.weigh(&mut diagnosis, confirmation.as_ref());
         let confirmation = confirmation.filter(|_| !diagnosis.amplitudes.is_empty());
-        Ok(self.done(diagnosis, forward, confirmation, correlation))
+        self.done(diagnosis, forward, confirmation, correlation)
     }
 
     /// The end, with what is said of the preparation.
@@ -206,8 +206,8 @@ impl Work<'_> {
         forward: BedForward,
         confirmation: Option<Confirmation>,
         correlation: Option<f64>,
-    ) -> BedDiagnosis {
-        let Self { observed, plan, impacts, preparation, .. } = self;
+    ) -> Result<BedDiagnosis, BedError> {
+        let Self { stand, observed, plan, impacts, preparation, .. } = self;
         diagnosis.preparation = listed(&preparation, diagnosis.preparation);
         let is_nothing = matches!(
             diagnosis.verdict,
@@ -225,7 +225,7 @@ impl Work<'_> {
         diagnosis.probability = of_bed_benchmark(diagnosis.verdict, names);
         diagnosis.warnings.splice(0..0, preparation.sentences.iter().cloned());
         let changes = preparation.changes;
-        BedDiagnosis {
+        let mut found = BedDiagnosis {
             diagnosis,
             forward,
             observed,
@@ -234,7 +234,11 @@ impl Work<'_> {
             plan,
             impacts,
             changes,
+        };
+        if found.diagnosis.verdict == Verdict::NoneOfTheCandidates {
+            found.seek_missing_force(stand.set)?;
         }
+        Ok(found)
     }
 
     /// Adds the packing fraction to what all runs share: impacts on looser and on denser beds say how the observables

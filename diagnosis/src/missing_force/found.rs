@@ -11,7 +11,7 @@ use super::with_field::WithField;
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::field::Field;
 use crate::fit::{Data, Fit};
-use crate::forward::{ByFormulas, Moment, Request, Scatter};
+use crate::forward::{Moment, Passages, Request, Scatter};
 
 /// Moments of each condition at which the force is given.
 pub(super) const MOMENTS: usize = 40;
@@ -39,7 +39,7 @@ impl Found {
     /// be told.
     pub(super) fn from(
         bench: &Bench<'_>,
-        by: &dyn ByFormulas,
+        by: &dyn Passages,
         (baseline, fit): (&Fitted, Fit),
         field: Field,
     ) -> Result<Option<Self>, BenchError> {
@@ -51,7 +51,7 @@ impl Found {
     pub(super) fn settled(
         mut self,
         bench: &Bench<'_>,
-        by: &dyn ByFormulas,
+        by: &dyn Passages,
         baseline: &Fitted,
     ) -> Result<Self, BenchError> {
         for _ in 0..ROUNDS {
@@ -70,7 +70,7 @@ impl Found {
     fn nearer(
         &self,
         bench: &Bench<'_>,
-        by: &dyn ByFormulas,
+        by: &dyn Passages,
         baseline: &Fitted,
     ) -> Result<Option<Self>, BenchError> {
         let whole: DVector<f64> =
@@ -123,7 +123,7 @@ impl Found {
     /// One step of the search, with the answers taken around the force of `field`.
     pub(super) fn around(
         bench: &Bench<'_>,
-        by: &dyn ByFormulas,
+        by: &dyn Passages,
         (baseline, fit): (&Fitted, Fit),
         field: Field,
     ) -> Result<Option<Self>, BenchError> {

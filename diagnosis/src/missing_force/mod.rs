@@ -33,7 +33,7 @@ use crate::bench::{Bench, BenchError, Fitted};
 use crate::between::Between;
 use crate::field::Field;
 use crate::fitted_parameters::parameters;
-use crate::forward::{ByFormulas, Moment};
+use crate::forward::{ByFormulas, Moment, Passages};
 use crate::held_out::HeldOut;
 use crate::rounding::{six_digits, six_digits_or_null};
 
@@ -81,6 +81,9 @@ pub struct MissingForce {
     /// Parameters of the model with the formula, with their units.
     #[serde(skip_serializing_if = "Map::is_empty")]
     pub parameters: Map<String, Value>,
+    /// Whether the model takes forces by their formulas, so that one was looked for.
+    #[serde(skip)]
+    pub takes_formulas: bool,
     /// The table of the formula for a model file.
     pub candidate: Option<String>,
     /// The force along the paths.
@@ -91,8 +94,8 @@ pub struct MissingForce {
     pub fitted: Option<Fitted>,
 }
 
-/// What `baseline` lacks; `fall` is the fall of the deviance by the best listed effect. `None` of models that are no force
-/// laws, and where nothing can be told.
+/// What `baseline` lacks; `fall` is the fall of the deviance by the best listed effect. `None` of models that take no force
+/// beside their own, and where nothing can be told.
 ///
 /// # Errors
 /// If the model fails.
@@ -101,46 +104,13 @@ pub fn missing_force(
     baseline: &Fitted,
     fall: Option<f64>,
 ) -> Result<Option<MissingForce>, BenchError> {
-    let Some(by) = bench.forward.by_formulas() else { return Ok(None) };
-    let Some((under, mut found)) = most_likely(bench, by, baseline)? else { return Ok(None) };
-    let look = |found: &Found| {
-        let states = states(bench, &found.passages);
-        let near = &found.fit.point.parameters;
-        let search = Search {
-            bench,
-            by,
-            baseline: &under,
-            near,
-            response: &found.response,
-            states: &states,
-        };
-        search.refitted()
+    let Some(through) = bench.forward.passages() else { return Ok(None) };
+    let Some((under, found)) = most_likely(bench, through, baseline)? else { return Ok(None) };
+    let (found, formula) = match bench.forward.by_formulas() {
+        Some(by) => with_formula(bench, by, baseline, (&under, found))?,
+        None => (found, None),
     };
-    let mut refitted = look(&found);
-    for _ in 0..AGAIN {
-        // Answers far from the force that is there mislead: once more around the best formula.
-        if found.misfit() <= FAR {
-            break;
-        }
-        let grid = &found.field.grid;
-        let Some((best, field)) =
-            refitted.iter().find_map(|one| Some((one, one.field(bench, grid)?)))
-        else {
-            break;
-        };
-        let with = WithField { forward: bench.forward, field: Arc::new(field.clone()) };
-        let with = Bench { forward: &with, ..*bench };
-        let Ok(fit) = with.data(&under.weights).fit_as_listed(&best.point()) else { break };
-        let Some(next) = Found::from(bench, by, (&under, fit), field)? else { break };
-        if next.fit.chi2 >= found.fit.chi2 {
-            break;
-        }
-        found = next;
-        refitted.extend(look(&found));
-        refitted.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
-    }
-    let formula = Formula::kept(bench, by, baseline, refitted)?;
-    let readings = table::readings(bench, by, (&found, baseline), under.noise.sessions.sd)?;
+    let readings = table::readings(bench, through, (&found, baseline), under.noise.sessions.sd)?;
     let band = in_words(&readings);
     Ok(Some(MissingForce {
         file: FILE,
@@ -159,6 +129,7 @@ pub fn missing_force(
         parameters: formula
             .as_ref()
             .map_or_else(Map::new, |one| parameters(bench.forward, &one.fitted.fit)),
+        takes_formulas: bench.forward.by_formulas().is_some(),
         candidate: formula.as_ref().map(Formula::table),
         formula: formula.as_ref().map(|one| one.force.clone()),
         fitted: formula.map(|one| one.fitted),
@@ -166,11 +137,52 @@ pub fn missing_force(
     }))
 }
 
+/// The best formula for the force that was `found` under the noise of `under`, and the force around it, where that is
+/// more likely.
+fn with_formula(
+    bench: &Bench<'_>,
+    by: &dyn ByFormulas,
+    baseline: &Fitted,
+    (under, mut found): (&Fitted, Found),
+) -> Result<(Found, Option<Formula>), BenchError> {
+    let look = |found: &Found| {
+        let states = states(bench, &found.passages);
+        let near = &found.fit.point.parameters;
+        let search =
+            Search { bench, by, baseline: under, near, response: &found.response, states: &states };
+        search.refitted()
+    };
+    let mut refitted = look(&found);
+    for _ in 0..AGAIN {
+        // Answers far from the force that is there mislead: once more around the best formula.
+        if found.misfit() <= FAR {
+            break;
+        }
+        let grid = &found.field.grid;
+        let Some((best, field)) =
+            refitted.iter().find_map(|one| Some((one, one.field(bench, grid)?)))
+        else {
+            break;
+        };
+        let with = WithField { forward: bench.forward, field: Arc::new(field.clone()) };
+        let with = Bench { forward: &with, ..*bench };
+        let Ok(fit) = with.data(&under.weights).fit_as_listed(&best.point()) else { break };
+        let Some(next) = Found::from(bench, by, (under, fit), field)? else { break };
+        if next.fit.chi2 >= found.fit.chi2 {
+            break;
+        }
+        found = next;
+        refitted.extend(look(&found));
+        refitted.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+    }
+    Ok((found, Formula::kept(bench, by, baseline, refitted)?))
+}
+
 /// The most likely force, with the model fitted under its noise. A model that lacks a force takes it for scatter between
 /// conditions, so the noise of `baseline` is tried with less of that scatter too.
 fn most_likely(
     bench: &Bench<'_>,
-    by: &dyn ByFormulas,
+    by: &dyn Passages,
     baseline: &Fitted,
 ) -> Result<Option<(Fitted, Found)>, BenchError> {
     let look = |under: Fitted| -> Result<Option<(Fitted, Found)>, BenchError> {

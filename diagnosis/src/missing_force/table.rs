@@ -8,7 +8,7 @@ use nalgebra::DVector;
 use super::found::{Found, MOMENTS};
 use crate::bench::{Bench, Fitted};
 use crate::fit::Fit;
-use crate::forward::{ByFormulas, Moment, PredictError, Request, Scatter};
+use crate::forward::{Moment, Passages, PredictError, Request, Scatter};
 
 /// Logarithm by which a coefficient is moved to see what it does.
 const MORE: f64 = 0.1;
@@ -46,7 +46,7 @@ impl Reading {
 /// that differ between conditions by `scatter` (relative) may be a part of it: the band holds that.
 pub(super) fn readings(
     bench: &Bench<'_>,
-    by: &dyn ByFormulas,
+    by: &dyn Passages,
     (found, baseline): (&Found, &Fitted),
     scatter: f64,
 ) -> Result<Vec<Reading>, PredictError> {

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use resistive::{Draft, Effect, Impact, OwnEffect, OwnEffectError, Space};
 
 use super::ResistiveForward;
-use crate::forward::{ByFormulas, Candidate, Forward, Moment, Parameter, PredictError, Request};
+use crate::forward::{
+    ByFormulas, Candidate, Forward, Moment, Parameter, Passages, PredictError, Request,
+};
 
 /// The model, and effects behind those of its list.
 struct Extended<'a> {
@@ -26,7 +28,9 @@ impl ByFormulas for ResistiveForward {
         candidates.extend(effects.iter().map(candidate));
         Ok(Box::new(Extended { model: self, effects, candidates }))
     }
+}
 
+impl Passages for ResistiveForward {
     fn passage(
         &self,
         condition: usize,

@@ -2,6 +2,7 @@
 
 use configs::engine::bed::random;
 use diagnosis::beds::{Plan, Stand, Variation, Wish, diagnose_bed};
+use diagnosis::missing_force::Reading;
 use diagnosis::observed::Observed;
 use measurements::{Condition, Crater, Instrument, Kind, MeasurementSet, Role, Run, Sample};
 use serde_json::json;
@@ -137,6 +138,35 @@ fn the_force_of_a_named_effect_is_what_the_depths_with_and_without_it_say() {
     let more = 0.5 * body.mass * fall * fall * (1.0 / depth(&set) - 1.0 / depth(&plain));
     assert!(more > 0.0 && (number("mean") / more - 1.0).abs() < 0.25, "{more} {force}");
     assert!((number("depth") / depth(&set) - 1.0).abs() < 0.1, "{force}");
+}
+
+#[test]
+fn the_missing_force_of_a_bed_is_that_of_what_is_hidden() {
+    let impacts = Imitation { beds: 0.02, runs: 0.02, fades: false };
+    let strength = 0.2;
+    let sought = |hidden: Hidden| {
+        let case = Case { is_weighed: true, ..Case::alike(hidden, 0) };
+        let (model, set) = case.measured(&impacts, None).unwrap();
+        let (stand, observed) = (Stand::new(&model, &set).unwrap(), Observed::of(&set));
+        let plan = Plan::new(&stand, &observed, &impacts, &Wish::default()).unwrap();
+        let mut found = diagnose_bed(&stand, &observed, &impacts, plan, 1).unwrap();
+        found.seek_missing_force(&set).unwrap();
+        found.diagnosis.missing_force.expect("a force")
+    };
+    // What rolling resistance adds to the force law of the imitation.
+    let added = |one: &Reading| strength * (0.12 * one.speed * one.speed + 4.0 * 4.0 * one.depth);
+    let force = sought(Hidden::Switch("rolling-resistance", strength));
+    assert!(force.formula.is_none() && !force.takes_formulas);
+    let covered =
+        force.readings.iter().filter(|one| (one.force - added(one)).abs() < 1.96 * one.se).count();
+    let share = covered as f64 / force.readings.len() as f64;
+    let sum = |of: &dyn Fn(&Reading) -> f64| force.readings.iter().map(of).sum::<f64>();
+    let ratio = sum(&|one| one.force) / sum(&added);
+    assert!(share > 0.85, "{share} of the band");
+    assert!((ratio - 1.0).abs() < 0.1, "{ratio}");
+    let nothing = sought(Hidden::Nothing);
+    let clear = nothing.readings.iter().filter(|one| one.force.abs() > 1.96 * one.se).count();
+    assert!(10 * clear <= nothing.readings.len(), "{}: {clear}", nothing.words);
 }
 
 #[test]
