@@ -4,6 +4,7 @@ use std::path::{Path as File, PathBuf};
 
 use super::bodies::{Bodies, Body};
 use super::fault::Fault;
+use super::grid::{NO_NUMBERS, NO_TIMES};
 use super::motion::{FEWEST, Path};
 use super::settings::Settings;
 use super::track::Track;
@@ -24,26 +25,74 @@ pub(super) fn tracks(
     settings: &Settings<'_>,
 ) -> Result<(Vec<Track>, Vec<String>), Vec<Fault>> {
     let (mut all, mut hashes, mut faults) = (Vec::new(), Vec::new(), Vec::new());
+    let mut others = Vec::new();
     for path in paths {
-        let read = || -> Result<(Vec<Track>, String), Fault> {
-            let bytes = inputs::bytes(path)?;
-            let mut tracks = Vec::new();
-            for sheet in inputs::sheets(path, &bytes)? {
-                let found = layouts::tracks(&sheet, &settings.columns)?;
-                let found = without_short(found).into_iter();
-                tracks.extend(found.map(|track| named(track, path)));
+        let bytes = match inputs::bytes(path) {
+            Ok(bytes) => bytes,
+            Err(fault) => {
+                faults.push(fault);
+                continue;
             }
-            Ok((tracks, blake3::hash(&bytes).to_hex().to_string()))
         };
-        match read() {
-            Ok((tracks, hash)) => {
-                all.extend(tracks);
-                hashes.push(hash);
+        hashes.push(blake3::hash(&bytes).to_hex().to_string());
+        match of_file(path, &bytes, settings) {
+            Ok(tracks) => all.extend(tracks),
+            Err(fault) if fault.what == NO_NUMBERS => others.push(fault),
+            Err(fault) if fault.what == NO_TIMES && Bodies::read(path).is_ok() => {
+                let what = "it is a table of bodies, for --bodies".to_owned();
+                others.push(Fault { what, ..fault });
             }
             Err(fault) => faults.push(fault),
         }
     }
+    match all.first_mut() {
+        // Others beside the tables of drops in a folder.
+        Some(first) => first.notes.extend(others.iter().map(left_out)),
+        None => faults.append(&mut others),
+    }
+    note_equal(&mut all);
     if faults.is_empty() { Ok((all, hashes)) } else { Err(faults) }
+}
+
+/// The tracks in the file `path` with this content.
+fn of_file(path: &File, bytes: &[u8], settings: &Settings<'_>) -> Result<Vec<Track>, Fault> {
+    let (mut tracks, mut faults) = (Vec::new(), Vec::new());
+    for sheet in inputs::sheets(path, bytes)? {
+        match layouts::tracks(&sheet, &settings.columns) {
+            Ok(found) => {
+                let found = without_short(found).into_iter();
+                tracks.extend(found.map(|track| named(track, path)));
+            }
+            Err(fault) => faults.push(fault),
+        }
+    }
+    // Beside sheets of drops there may be others in a workbook.
+    match tracks.first_mut() {
+        Some(first) => first.notes.extend(faults.iter().map(left_out)),
+        None => faults.pop().map_or(Ok(()), Err)?,
+    }
+    Ok(tracks)
+}
+
+/// A table that is left out beside others, in words.
+fn left_out(fault: &Fault) -> String {
+    format!("{}: {}, left out", fault.place, fault.what)
+}
+
+/// Says which tracks have the readings of one before them.
+fn note_equal(tracks: &mut [Track]) {
+    let same = |one: &Track, other: &Track| {
+        let pairs = || one.samples.iter().zip(&other.samples);
+        let equal = |a: f64, b: f64| a.total_cmp(&b).is_eq();
+        one.samples.len() == other.samples.len()
+            && pairs().all(|(a, b)| equal(a.t, b.t) && equal(a.z, b.z) && equal(a.x, b.x))
+    };
+    for at in 1..tracks.len() {
+        let (before, rest) = tracks.split_at_mut(at);
+        let Some(first) = before.iter().find(|one| same(one, &rest[0])) else { continue };
+        let name = first.name.as_ref().unwrap_or(&first.stem);
+        rest[0].notes.push(format!("its readings are those of {name}"));
+    }
 }
 
 /// Removes tracks that are too short to be drops, such as spots that a program follows for a few frames, or lines of sums. A

@@ -55,7 +55,7 @@ pub(super) struct Bodies(Vec<Named>);
 /// Names of columns of a table of bodies, and what they may be called.
 const COLUMNS: [(&str, &[&str]); 5] = [
     ("diameter", &["diameter", "d", "durchmesser", "diamètre"]),
-    ("mass", &["mass", "m", "masse", "masa"]),
+    ("mass", &["mass", "m", "masse", "masa", "weight"]),
     ("shape", &["shape", "form", "forme"]),
     ("height", &["height", "h", "length"]),
     ("apex", &["apex", "apex_deg", "apex angle"]),

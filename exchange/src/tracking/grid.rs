@@ -1,11 +1,17 @@
 //! Columns of numbers below a header, as tracks.
 
 use super::fault::Fault;
-use super::heading::{Heading, Role};
+use super::heading::{Heading, Role, is_statistic};
 use super::settings::Columns;
 use super::sheet::{Number, Row, Sheet};
 use super::track::{Measure, Sample, Track};
 use super::units::Unit;
+
+/// What is wrong with a text that is no table.
+pub(super) const NO_NUMBERS: &str = "no row of numbers is found";
+
+/// What is wrong with a table that is of no drop.
+pub(super) const NO_TIMES: &str = "no column of times or frames is found";
 
 /// A sheet with its header.
 pub(super) struct Grid<'a> {
@@ -16,6 +22,9 @@ pub(super) struct Grid<'a> {
     /// Below the header.
     pub(super) rows: &'a [Row],
 }
+
+/// A column of labels changes in fewer rows than one in so many.
+const MOST_CHANGES: usize = 6;
 
 /// The columns of one track.
 #[derive(Clone, Copy, Debug)]
@@ -30,10 +39,10 @@ impl<'a> Grid<'a> {
     /// The sheet whose header is the row `header` and whose units are in the row `units`.
     pub(super) fn below(sheet: &'a Sheet, header: usize, units: Option<usize>) -> Self {
         // The mark of a comment is no name of a column.
-        let names = match &sheet.rows[header].cells[..] {
-            [mark, names @ ..] if mark == "#" => names,
-            names => names,
-        };
+        let is_mark =
+            |cell: &&String| ["#", "%", "//", "columns:"].contains(&cell.to_lowercase().as_str());
+        let cells = &sheet.rows[header].cells;
+        let names = &cells[cells.iter().take_while(is_mark).count()..];
         let mut headings: Vec<Heading> = names.iter().map(|name| Heading::of(name)).collect();
         if let Some(units) = units {
             for (heading, unit) in headings.iter_mut().zip(&sheet.rows[units].cells) {
@@ -52,7 +61,7 @@ impl<'a> Grid<'a> {
     pub(super) fn found(sheet: &'a Sheet) -> Result<Self, Fault> {
         let Some(first) = sheet.rows.iter().position(|row| sheet.is_numeric(row, 2)) else {
             let right = "a line of names such as t (ms),y (cm), then rows of numbers";
-            return Err(sheet.fault("no row of numbers is found", right));
+            return Err(sheet.fault(NO_NUMBERS, right));
         };
         // Readings without a position may stand before the first that has one.
         let is_reading = |row: &&Row| sheet.is_numeric(row, 1) && !sheet.has_words(row);
@@ -92,8 +101,12 @@ impl<'a> Grid<'a> {
         if let Some(asked) = columns.of(role) {
             return self.named(asked).map(Some);
         }
-        let all: Vec<usize> =
+        let mut all: Vec<usize> =
             (0..self.headings.len()).filter(|at| self.headings[*at].role() == Some(role)).collect();
+        if all.len() > 1 && role == Role::Vertical {
+            // A height of release stands beside all readings of its drop.
+            all.retain(|at| !self.is_label(*at));
+        }
         match all[..] {
             [] => Ok(None),
             [only] => Ok(Some(only)),
@@ -125,6 +138,12 @@ impl<'a> Grid<'a> {
             };
             self.sheet.fault(format!("no column is called `{name}`"), right)
         })
+    }
+
+    /// Whether a column says the same in most neighbouring rows.
+    pub(super) fn is_label(&self, at: usize) -> bool {
+        let changes = self.rows.windows(2).filter(|pair| pair[0].cell(at) != pair[1].cell(at));
+        MOST_CHANGES * changes.count() < self.rows.len()
     }
 
     fn ambiguous(&self, all: &[usize]) -> Fault {
@@ -163,6 +182,11 @@ impl<'a> Grid<'a> {
         let (mut samples, mut holes) = (Vec::new(), 0);
         for (index, row) in rows {
             self.refuse_wider(row)?;
+            // Below the readings may stand their means.
+            if places.t.is_some_and(|at| is_statistic(row.cell(at))) {
+                holes += 1;
+                continue;
+            }
             let cell = |at: usize| self.number(row, at);
             let t = match places.t {
                 Some(at) => cell(at)?,
@@ -174,6 +198,9 @@ impl<'a> Grid<'a> {
                 _ => holes += 1,
             }
         }
+        let read = samples.len();
+        let samples = without_marks(samples);
+        holes += read - samples.len();
         Ok(Track {
             file: self.sheet.file.clone(),
             stem: self.sheet.stem.clone(),
@@ -247,4 +274,19 @@ impl<'a> Grid<'a> {
         let others = (0..self.headings.len()).filter(|at| !used.contains(at));
         others.filter_map(label).collect()
     }
+}
+
+/// Readings but those of a number that trackers write where they saw nothing, far from all that they saw.
+fn without_marks(samples: Vec<Sample>) -> Vec<Sample> {
+    const MARKS: [f64; 6] = [-1.0, -99.0, -999.0, -9999.0, 999.0, 9999.0];
+    let is = |mark: f64| move |one: &&Sample| one.z.total_cmp(&mark).is_eq();
+    let is_mark = |mark: f64| {
+        let others = || samples.iter().filter(move |one| !is(mark)(one));
+        let steps = others().zip(others().skip(1)).map(|(a, b)| (b.z - a.z).abs());
+        let step = steps.fold(0.0, f64::max);
+        let nearest = others().map(|one| (one.z - mark).abs()).fold(f64::INFINITY, f64::min);
+        nearest.is_finite() && nearest > 3.0 * step && samples.iter().any(|one| is(mark)(&one))
+    };
+    let marks: Vec<f64> = MARKS.into_iter().filter(|mark| is_mark(*mark)).collect();
+    samples.into_iter().filter(|one| !marks.iter().any(|mark| is(*mark)(&one))).collect()
 }

@@ -24,7 +24,7 @@ pub(super) struct Heading {
     pub(super) unit: Unit,
 }
 
-const TIME: [&str; 11] = [
+const TIME: [&str; 14] = [
     "t",
     "time",
     "times",
@@ -36,8 +36,11 @@ const TIME: [&str; 11] = [
     "position_t",
     "x_value",
     "timestamp",
+    "epoch",
+    "seconds",
+    "time stamp",
 ];
-const FRAME: [&str; 11] = [
+const FRAME: [&str; 16] = [
     "frame",
     "frames",
     "frame number",
@@ -49,8 +52,13 @@ const FRAME: [&str; 11] = [
     "frame_idx",
     "bild",
     "bildnummer",
+    "frame #",
+    "frame id",
+    "frame_id",
+    "image_number",
+    "image number",
 ];
-const VERTICAL: [&str; 17] = [
+const VERTICAL: [&str; 25] = [
     "y",
     "z",
     "depth",
@@ -68,8 +76,31 @@ const VERTICAL: [&str; 17] = [
     "hauteur",
     "profondeur",
     "altura",
+    "cy",
+    "yc",
+    "centroid_y",
+    "center_y",
+    "centre_y",
+    "y_center",
+    "y_centre",
+    "bbox_top",
 ];
-const FORWARD: [&str; 6] = ["x", "position_x", "pos_x", "x_pos", "posx", "xpos"];
+const FORWARD: [&str; 14] = [
+    "x",
+    "position_x",
+    "pos_x",
+    "x_pos",
+    "posx",
+    "xpos",
+    "cx",
+    "xc",
+    "centroid_x",
+    "center_x",
+    "centre_x",
+    "x_center",
+    "x_centre",
+    "bbox_left",
+];
 const RUN: [&str; 26] = [
     "run",
     "trial",
@@ -99,6 +130,31 @@ const RUN: [&str; 26] = [
     "aufnahme",
 ];
 
+/// Whether what is called so holds means or errors of the others.
+pub(super) fn is_statistic(name: &str) -> bool {
+    const NAMES: [&str; 18] = [
+        "min",
+        "max",
+        "mean",
+        "average",
+        "avg",
+        "median",
+        "mittel",
+        "mittelwert",
+        "moyenne",
+        "media",
+        "std",
+        "stdev",
+        "stddev",
+        "sd",
+        "se",
+        "sem",
+        "sigma",
+        "error",
+    ];
+    NAMES.contains(&name.trim().to_lowercase().as_str())
+}
+
 impl Heading {
     /// Takes the name of a column apart: `t (ms)`, `y [cm]`, `z_mm`, `t/ms`, `Latest: Position (m)`.
     pub(super) fn of(name: &str) -> Self {
@@ -120,6 +176,10 @@ impl Heading {
             "y" | "z" => Some(Role::Vertical),
             _ => None,
         };
+        let last_word = |text: &str| match text {
+            "position" | "height" | "depth" => Some(Role::Vertical),
+            _ => axis(text),
+        };
         let stem = self.stem.as_str();
         let (first, rest) = stem.split_at_checked(1)?;
         if let Some(role) = axis(first)
@@ -129,7 +189,7 @@ impl Heading {
             return Some((role, rest.trim_matches(['_', ' ', '-']).to_owned()));
         }
         let (rest, last) = stem.rsplit_once(['_', ' ', '.', '-'])?;
-        Some((axis(last)?, rest.trim_matches(['_', ' ', '-', '.']).to_owned()))
+        Some((last_word(last)?, rest.trim_matches(['_', ' ', '-', '.']).to_owned()))
     }
 }
 

@@ -184,11 +184,11 @@ fn see(
     )
     .map_err(|why| {
         let what = format!("the run {}: {why}", one.name);
-        Fault::new(
-            &one.path.track.file,
-            what,
-            format!("--leave-out {} goes on without it", one.name),
-        )
+        let name = match one.name.contains(' ') {
+            true => format!("\"{}\"", one.name),
+            false => one.name.clone(),
+        };
+        Fault::new(&one.path.track.file, what, format!("--leave-out {name} goes on without it"))
     })?;
     let fall = (settings.gravity, one.body.diameter);
     motion::refuse_several(&of_the_body, (&departure.contact, noise), fall, &one.path.track)?;
@@ -218,6 +218,9 @@ fn refuse_far(frames: &[Frame], one: &Begun, scales: &Scales) -> Result<(), Faul
     Err(Fault::new(&one.path.track.file, what, right))
 }
 
+/// Error of a height of release (m).
+const READ: f64 = 1e-3;
+
 /// Replaces speeds by those of stated heights of release.
 fn drop_heights(runs: &mut [Run], settings: &Settings<'_>) -> Result<(), Vec<Fault>> {
     for run in runs {
@@ -233,7 +236,7 @@ fn drop_heights(runs: &mut [Run], settings: &Settings<'_>) -> Result<(), Vec<Fau
                 let right = "give the height of the lowest point above the surface at release, or leave it out";
                 return Err(vec![Fault::new("--drop-height", what, right)]);
             }
-            run.speed = Reading { value, se: 0.0 };
+            run.speed = Reading { value, se: settings.gravity * READ / value };
         }
     }
     Ok(())

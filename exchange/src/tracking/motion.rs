@@ -65,6 +65,13 @@ impl Path {
         (read.value > 0.0 && read.se < TELLS * read.value).then_some(read.value)
     }
 
+    /// Whether its acceleration before contact, over what it should be, differs from 1 by more than `allowed` and than its error.
+    pub(super) fn is_off(&self, ratio: f64, allowed: f64) -> bool {
+        const CLEAR: f64 = 4.0;
+        let relative = self.fall.map_or(0.0, |fall| fall.acceleration.se / fall.acceleration.value);
+        (ratio - 1.0).abs() > allowed.max(CLEAR * relative * ratio)
+    }
+
     /// Its acceleration before contact, if it falls.
     pub(super) fn fall(&self) -> Option<Reading> {
         Some(self.fall?.acceleration)
@@ -267,16 +274,17 @@ pub(super) fn refuse_several(
         let (first, last) = (fall.first()?, fall.last()?);
         let gained = velocity(fastest) - velocity(first);
         let is_free = gained >= FREE * gravity * (fastest[0].t - first[0].t);
-        is_free.then(|| [first[0].z, last[OVER].z])
+        is_free.then(|| [first[0], last[OVER]])
     };
     let falls = parts.chunk_by(|a, b| fast(a) == fast(b)).filter(|chunk| fast(&chunk[0]));
-    let ends: Vec<[f64; 2]> = falls.filter_map(ends_of_fall).collect();
-    let longest = ends.iter().map(|[from, to]| to - from).fold(0.0, f64::max);
-    let (mut n, mut lowest) = (0, f64::INFINITY);
-    for [from, to] in ends.into_iter().filter(|[from, to]| to - from > WAY * longest) {
-        // A fall that noise breaks into parts goes on where it was.
-        n += usize::from(from < lowest - 0.5 * (to - from));
-        lowest = to;
+    let ends: Vec<[Frame; 2]> = falls.filter_map(ends_of_fall).collect();
+    let longest = ends.iter().map(|[from, to]| to.z - from.z).fold(0.0, f64::max);
+    let (mut n, mut end) = (0, None::<Frame>);
+    for [from, to] in ends.into_iter().filter(|[from, to]| to.z - from.z > WAY * longest) {
+        // A fall that noise breaks into parts goes on where and when it was.
+        let is_another = |end: Frame| from.t > end.t && from.z < end.z - 0.5 * (to.z - from.z);
+        n += usize::from(end.is_none_or(is_another));
+        end = Some(to);
     }
     if n < 2 {
         return Ok(());

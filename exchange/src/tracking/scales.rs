@@ -103,7 +103,7 @@ impl Path {
             && let Some(acceleration) = self.acceleration()
         {
             let ratio = ratio(acceleration, time.1, length.1);
-            if (ratio - 1.0).abs() > ALLOWED {
+            if self.is_off(ratio, ALLOWED) {
                 return Err(self.contradicts_gravity(ratio, settings));
             }
         }

@@ -104,7 +104,7 @@ pub(super) fn number(cell: &str, decimal_comma: bool) -> Number {
         Ok(value) if value.is_finite() && text.contains(|c: char| c.is_ascii_digit()) => {
             Number::Value(value)
         }
-        _ => clock(&text).map_or(Number::Other, Number::Value),
+        _ => clock(&text).or_else(|| of_fortran(&text)).map_or(Number::Other, Number::Value),
     }
 }
 
@@ -131,6 +131,13 @@ fn without_groups(cell: &str, mark: char, decimal: char) -> String {
         Some(true) => cell.replace(mark, ""),
         _ => cell.to_owned(),
     }
+}
+
+/// A number whose exponent stands behind a `D`, as in `1.5D-02`.
+fn of_fortran(text: &str) -> Option<f64> {
+    let (digits, exponent) = text.split_once(['D', 'd'])?;
+    let value: f64 = format!("{digits}e{exponent}").parse().ok()?;
+    (value.is_finite() && digits.contains(|c: char| c.is_ascii_digit())).then_some(value)
 }
 
 /// Seconds of a time such as `0:12.3` or `00:00:12.300`.
@@ -172,5 +179,7 @@ mod tests {
         assert_eq!(number("00:01:12.5", false), Number::Value(72.5));
         assert_eq!(number("1:12,25", true), Number::Value(72.25));
         assert_eq!(number("1:2:3:4.5", false), Number::Other);
+        assert_eq!(number("-1.5D-02", false), Number::Value(-0.015));
+        assert_eq!(number("D1", false), Number::Other);
     }
 }

@@ -7,6 +7,9 @@ use super::fault::Fault;
 /// Distance (m) and times its error beyond which a level that is stated is not where the contact is.
 const OFF: (f64, f64) = (1e-3, 3.5);
 
+/// Error of a level that is stated (m).
+pub(super) const STATED: f64 = 1e-3;
+
 /// Least error of a level (m).
 pub(super) const LEAST: f64 = 1e-5;
 
@@ -58,7 +61,7 @@ pub(super) fn touches(runs: &[Seen], gravity: f64) -> Result<(Level, Vec<Touch>)
             return Err(faults);
         }
         let at = |run: &Seen| {
-            let level = Reading { value: run.stated.unwrap_or_default(), se: LEAST };
+            let level = Reading { value: run.stated.unwrap_or_default(), se: STATED };
             Touch::at(&run.departure.contact, level, gravity)
         };
         return Ok((Level::Stated, runs.iter().map(at).collect()));

@@ -9,8 +9,13 @@ use super::sheet::{Number, Row, Sheet, number};
 const SAMPLE: usize = 400;
 
 /// What may stand between cells, with its name; the first that gives most numbers is it.
-const SEPARATORS: [(Option<u8>, &str); 4] =
-    [(Some(b'\t'), "tabs"), (Some(b';'), "semicolons"), (Some(b','), "commas"), (None, "blanks")];
+const SEPARATORS: [(Option<u8>, &str); 5] = [
+    (Some(b'\t'), "tabs"),
+    (Some(b';'), "semicolons"),
+    (Some(b'|'), "bars"),
+    (Some(b','), "commas"),
+    (None, "blanks"),
+];
 
 /// The table in `bytes`, the content of the file that messages call `file`.
 ///
@@ -30,21 +35,28 @@ pub(super) fn read(file: &str, stem: &str, bytes: &[u8]) -> Result<Sheet, Fault>
     let sample = &lines[lines.len().min(lines.len() / 4).min(40)..];
     let sample = &sample[..sample.len().min(SAMPLE)];
     let score = |separator: Option<u8>| -> usize {
-        let comma = separator != Some(b',');
         let count = |line: &str| {
             let cells = split(line, separator).unwrap_or_default();
             let is_number = |cell: &&String| {
                 let with = |comma: bool| matches!(number(cell, comma), Number::Value(_));
-                with(false) || comma && with(true)
+                with(false) || with(true)
             };
             cells.iter().filter(is_number).count()
         };
         sample.iter().map(|(_, line)| count(line)).sum()
     };
+    // Where cells hold words alone, or numbers with their units, the first line tells.
+    let columns = |separator: Option<u8>| match (separator, sample.first()) {
+        (Some(_), Some((_, line))) => split(line, separator).map_or(0, |cells| cells.len()),
+        _ => 0,
+    };
     let (separator, separated) = SEPARATORS
         .into_iter()
         .rev()
-        .max_by_key(|(separator, _)| score(*separator))
+        .max_by_key(|(separator, _)| match score(*separator) {
+            0 => (0, columns(*separator)),
+            numbers => (numbers, 0),
+        })
         .unwrap_or((Some(b','), "commas"));
     let mut rows = Vec::with_capacity(lines.len());
     for (line, text) in lines {
@@ -54,7 +66,7 @@ pub(super) fn read(file: &str, stem: &str, bytes: &[u8]) -> Result<Sheet, Fault>
         rows.push(Row { line, cells });
     }
     rows.retain(|row| !row.is_blank());
-    let decimal_comma = separator != Some(b',') && has_decimal_commas(&rows);
+    let decimal_comma = has_decimal_commas(&rows);
     Ok(Sheet {
         file: file.to_owned(),
         stem: stem.to_owned(),
@@ -93,9 +105,15 @@ fn lines(text: &str) -> impl Iterator<Item = &str> {
 /// The cells of a line, without blanks and quotes around them; `None` where a quote stays open.
 fn split(line: &str, separator: Option<u8>) -> Option<Vec<String>> {
     let Some(separator) = separator else {
-        return Some(
-            line.split_whitespace().map(|cell| cell.trim_matches('"').to_owned()).collect(),
-        );
+        let mut cells: Vec<String> = Vec::new();
+        for cell in line.split_whitespace() {
+            match cells.last_mut() {
+                // The unit of the name before it.
+                Some(name) if is_bracketed(cell) => *name = format!("{name} {cell}"),
+                _ => cells.push(cell.trim_matches('"').to_owned()),
+            }
+        }
+        return Some(cells);
     };
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(separator)
@@ -117,12 +135,22 @@ fn split(line: &str, separator: Option<u8>) -> Option<Vec<String>> {
     Some(record.iter().map(|cell| cell.trim_matches(' ').to_owned()).collect())
 }
 
+fn is_bracketed(cell: &str) -> bool {
+    cell.starts_with('[') && cell.ends_with(']') || cell.starts_with('(') && cell.ends_with(')')
+}
+
+/// Whether decimals stand behind a comma; `1,234` alone may be more than a thousand.
 fn has_decimal_commas(rows: &[Row]) -> bool {
     let cells = || rows.iter().flat_map(|row| &row.cells);
     let has = |comma: bool, mark: char| {
         cells().any(|cell| cell.contains(mark) && matches!(number(cell, comma), Number::Value(_)))
     };
-    has(true, ',') && !has(false, '.')
+    let groups = |cell: &String| {
+        cell.split_once(',').is_none_or(|(_, rest)| rest.split(',').all(|part| part.len() == 3))
+    };
+    let all_group =
+        cells().filter(|cell| matches!(number(cell, true), Number::Value(_))).all(groups);
+    has(true, ',') && !has(false, '.') && !all_group
 }
 
 #[cfg(test)]

@@ -41,3 +41,25 @@ pub(super) struct Track {
     /// What was assumed, in sentences.
     pub(super) notes: Vec<String>,
 }
+
+/// Removes tracks of one table that hardly move beside the others, such as fixed marks on the picture.
+pub(super) fn without_still(mut tracks: Vec<Track>) -> Vec<Track> {
+    /// Share of the way of the farthest track that is no drop.
+    const STILL: f64 = 0.05;
+    let way = |track: &Track| {
+        let ends =
+            track.samples.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], one| {
+                [low.min(one.z), high.max(one.z)]
+            });
+        ends[1] - ends[0]
+    };
+    let farthest = tracks.iter().map(way).fold(0.0, f64::max);
+    let is_still = |track: &Track| way(track) < STILL * farthest;
+    let still: Vec<String> =
+        tracks.iter().filter(|one| is_still(one)).map(|one| one.vertical.name.clone()).collect();
+    tracks.retain(|track| !is_still(track));
+    if let (Some(first), false) = (tracks.first_mut(), still.is_empty()) {
+        first.notes.push(format!("{}: it does not move, left out", still.join(", ")));
+    }
+    tracks
+}

@@ -12,13 +12,10 @@ use super::fault::Fault;
 use super::options::Options;
 use super::run::Run;
 use super::settings::Settings;
-use super::surface::{LEAST, Level};
+use super::surface::{self, LEAST, Level};
 
 /// Relative difference below which speeds count as equal.
 const ROUNDING: f64 = 1e-9;
-
-/// Standard error of a level that the user states (m).
-const STATED: f64 = 1e-3;
 
 /// What is written.
 pub(super) struct Known<'a> {
@@ -88,7 +85,7 @@ fn measurement(known: &Known<'_>, notes: &[String]) -> Result<String, Fault> {
         ));
     }
     let (surface, by) = match level {
-        Level::Stated => (STATED, "as it is stated"),
+        Level::Stated => (surface::STATED, "as it is stated"),
         Level::Common(level) => (level.se, "the one level of all runs, by their contacts"),
         Level::Own(shared) => (*shared, "what the levels of all runs share, by their contacts"),
     };

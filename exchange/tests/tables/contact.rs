@@ -99,6 +99,20 @@ fn contact_speed_and_level_are_found_within_their_errors() {
 }
 
 #[test]
+fn a_slow_drop_before_a_noisy_camera_is_one_drop() {
+    for seed in 1..20 {
+        let here = tempfile::tempdir().expect("a folder");
+        let camera = Camera { noise: 2e-4, seed, ..Camera::USUAL };
+        let drops = write_tables(here.path(), Meets::Whole, camera);
+        let slow: Vec<PathBuf> = drops.into_iter().take(3).map(|(path, _)| path).collect();
+        let mut options = ball();
+        options.set("diameter", "40mm");
+        let set = imported(&slow, &options, &here.path().join("set"));
+        assert_eq!(set.understood.len(), 3);
+    }
+}
+
+#[test]
 fn levels_that_differ_between_runs_do_not_move_the_speeds() {
     let mut all = Vec::new();
     for seed in 1..4 {

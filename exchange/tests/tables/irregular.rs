@@ -208,3 +208,51 @@ fn a_clock_that_starts_again_is_told_with_what_it_lost() {
     let refused = told("a.csv", &text, &[]);
     has(&refused, &["a.csv:102: the clock starts again", &format!("add {wrap:.4} to the times")]);
 }
+
+#[test]
+fn what_is_no_reading_of_the_body_is_left_out() {
+    let drops = formats::two();
+    // A number for nothing, a mark that does not move, and sums below.
+    for nothing in ["-999", "9999", "-1"] {
+        let mut text = table("t (s),y1 (mm),y2 (mm)", &drops[0], |at, t, z| {
+            let z = if at % 17 == 5 { nothing.to_owned() } else { format!("{:.3}", 300.0 + z) };
+            format!("{t:.5},{z},{:.3}", 120.0 + 0.02 * (at % 5) as f64)
+        });
+        text.push_str("mean,210.2,120.0\nmax,420.0,120.1\n");
+        let set = check("a.csv", &text, &[], &drops[..1], "wide, commas");
+        assert_eq!(set.understood[0].run, "a");
+        assert!(set.notes.iter().any(|note| note.contains("y2 (mm): it does not move")));
+    }
+}
+
+#[test]
+fn labels_beside_the_readings_tell_runs_apart() {
+    let drops = formats::two();
+    let mut text = String::from("body,height,rep,t_ms,z_mm\n");
+    for (one, [height, rep]) in drops.iter().zip([["5", "1"], ["10", "1"]]) {
+        for (t, z) in &one.readings {
+            let _ = writeln!(text, "steel,{height},{rep},{:.3},{:.3}", 1e3 * t, 1e3 * z);
+        }
+    }
+    let set = check("a.csv", &text, &[], &drops, "long, commas");
+    assert_eq!(runs(&set), ["steel_5_1", "steel_10_1"]);
+    // One drop with labels is one drop.
+    let one = table("body,t (s),z (mm)", &drops[0], |_, t, z| format!("steel,{t:.5},{z:.3}"));
+    check("a.csv", &one, &[], &drops[..1], "one drop");
+}
+
+#[test]
+fn numbers_as_programs_write_them() {
+    let drops = formats::two();
+    let read = |text: &str, layout: &str| check("a.csv", text, &[], &drops[..1], layout);
+    let quoted = |t: f64, z: f64| {
+        format!("\"{t:.5}\",\"{z:.3}\"").replace('.', ",").replace("\",\"", "\u{1}")
+    };
+    let quoted = table("t (s),z (mm)", &drops[0], |_, t, z| quoted(t, z).replace('\u{1}', "\",\""));
+    read(&quoted, "one drop, commas");
+    read(&table("t (s)|z (mm)", &drops[0], |_, t, z| format!("{t:.5}|{z:.3}")), "one drop, bars");
+    let fortran = |_: usize, t: f64, z: f64| format!("{t:.7e},{z:.5e}").replace('e', "D");
+    read(&table("t (s),z (mm)", &drops[0], fortran), "one drop, commas");
+    let spaced = |_: usize, t: f64, z: f64| format!("{t:.5}  {z:.3}");
+    read(&table("% columns: t [s]  z [mm]", &drops[0], spaced), "one drop, blanks");
+}

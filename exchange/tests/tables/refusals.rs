@@ -163,6 +163,15 @@ fn surfaces_names_and_paths() {
 }
 
 #[test]
+fn a_column_of_runs_that_is_not_there_is_told() {
+    let drops = formats::two();
+    let asked = [("column_run", "NAME")];
+    for text in [formats::wide(&drops), formats::bare(&drops[0])] {
+        has(&told("a.csv", &text, &asked), &["no column is called `NAME`"]);
+    }
+}
+
+#[test]
 fn what_no_table_holds_is_asked_for() {
     let here = tempfile::tempdir().expect("a folder");
     let path = here.path().join("a.csv");

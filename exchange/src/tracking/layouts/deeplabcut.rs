@@ -5,7 +5,7 @@ use crate::tracking::fault::Fault;
 use crate::tracking::grid::{Grid, Places};
 use crate::tracking::settings::Columns;
 use crate::tracking::sheet::{Number, Sheet};
-use crate::tracking::track::Track;
+use crate::tracking::track::{Track, without_still};
 
 pub(super) const LAYOUT: Layout = Layout { fits, read };
 
@@ -55,6 +55,7 @@ fn read(sheet: &Sheet, _: &Columns) -> Result<Vec<Track>, Fault> {
         let right = "export x, y and likelihood of each body part";
         return Err(sheet.fault("no column is called `y`", right).at(sheet.rows[coords].line));
     }
+    let mut tracks = without_still(tracks);
     if let [only] = &mut tracks[..] {
         only.name = None;
     }

@@ -6,7 +6,7 @@ use crate::tracking::grid::{Grid, Places};
 use crate::tracking::heading::Role;
 use crate::tracking::settings::Columns;
 use crate::tracking::sheet::Sheet;
-use crate::tracking::track::Track;
+use crate::tracking::track::{Track, without_still};
 
 pub(super) const LAYOUT: Layout = Layout { fits, read };
 
@@ -51,6 +51,7 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
             tracks.push(Track { name: Some(name.to_owned()), ..track });
         }
     }
+    let mut tracks = without_still(tracks);
     if let [only] = &mut tracks[..] {
         only.name = None;
     }

@@ -15,8 +15,9 @@ fn fits(sheet: &Sheet, columns: &Columns) -> bool {
     !asked && Grid::found(sheet).is_ok_and(|grid| drops(&grid).len() > 1)
 }
 
-fn read(sheet: &Sheet, _: &Columns) -> Result<Vec<Track>, Fault> {
+fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
     let grid = Grid::found(sheet)?;
+    grid.column(Role::Run, columns)?;
     let drops = drops(&grid);
     let titles = grid.header.checked_sub(1).map(|above| &sheet.rows[above]);
     let ends = drops.iter().skip(1).map(|next| next.t).chain([Some(grid.headings.len())]);

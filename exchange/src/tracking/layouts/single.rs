@@ -2,7 +2,7 @@
 
 use super::Layout;
 use crate::tracking::fault::Fault;
-use crate::tracking::grid::{Grid, Places};
+use crate::tracking::grid::{Grid, NO_TIMES, Places};
 use crate::tracking::heading::Role;
 use crate::tracking::settings::Columns;
 use crate::tracking::sheet::{Row, Sheet};
@@ -13,6 +13,7 @@ pub(super) const LAYOUT: Layout = Layout { fits: |_, _| true, read };
 fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
     let grid = Grid::found(sheet)?;
     let places = places(&grid, columns)?;
+    grid.column(Role::Run, columns)?;
     let layout = format!("one drop, {}", sheet.separated);
     let track = grid.track(&layout, places, grid.all_rows())?;
     let used: Vec<usize> = [places.t, Some(places.z), places.x].into_iter().flatten().collect();
@@ -33,16 +34,16 @@ pub(super) fn places(grid: &Grid<'_>, columns: &Columns) -> Result<Places, Fault
             names.join(", ")
         );
         let line = grid.rows.first().map_or(1, |row| row.line.saturating_sub(1).max(1));
-        grid.sheet.fault(format!("no column of {what} is found"), right).at(line)
+        grid.sheet.fault(what, right).at(line)
     };
     let t = match grid.column(Role::Time, columns)? {
         Some(at) => at,
         None => grid
             .column(Role::Frame, columns)?
-            .ok_or_else(|| missing("times or frames", "t", "`t (ms)` or `frame`"))?,
+            .ok_or_else(|| missing(NO_TIMES, "t", "`t (ms)` or `frame`"))?,
     };
     let z = grid
         .column(Role::Vertical, columns)?
-        .ok_or_else(|| missing("vertical positions", "z", "`y (cm)`"))?;
+        .ok_or_else(|| missing("no column of vertical positions is found", "z", "`y (cm)`"))?;
     Ok(Places { t: Some(t), z, x: grid.column(Role::Forward, columns)?.filter(|x| *x != z) })
 }

@@ -24,22 +24,36 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
         block.title.is_some() && others.iter().all(|other| other.title != block.title)
     };
     let are_told = blocks.iter().enumerate().all(is_told);
-    let mut tracks = Vec::new();
+    let mut tracks: Vec<Track> = Vec::new();
     for (at, block) in blocks.iter().enumerate() {
-        let title = block.title.clone().filter(|_| are_told);
-        let title = title.unwrap_or_else(|| (at + 1).to_string());
+        let title = block.title.as_ref().filter(|_| are_told);
         let notes = if at == 0 { sheet.notes.clone() } else { Vec::new() };
         let inside = Sheet { rows: block.rows.to_vec(), notes, ..sheet.without_rows() };
         for track in super::tracks(&inside, columns)? {
-            let name = match &track.name {
-                Some(own) => format!("{title}-{own}"),
-                None => title.clone(),
+            let name = match (title, &track.name) {
+                (Some(title), Some(own)) => Some(format!("{title}-{own}")),
+                (title, own) => title.or(own.as_ref()).cloned(),
             };
             let layout = format!("stacked, {}", sheet.separated);
-            tracks.push(Track { name: Some(name), layout, ..track });
+            let track = Track { name, layout, ..track };
+            // A line of names that is repeated within a drop.
+            match tracks.iter_mut().rfind(|one| one.name == track.name && goes_on(one, &track)) {
+                Some(one) => one.samples.extend(track.samples),
+                None => tracks.push(track),
+            }
         }
     }
+    if tracks.iter().all(|track| track.name.is_none()) {
+        let nth = (1..).map(|nth: usize| Some(nth.to_string()));
+        tracks.iter_mut().zip(nth).for_each(|(track, nth)| track.name = nth);
+    }
     Ok(tracks)
+}
+
+/// Whether the readings of `next` come after those of `one`.
+fn goes_on(one: &Track, next: &Track) -> bool {
+    let ends = one.samples.last().zip(next.samples.first());
+    ends.is_some_and(|(last, first)| last.t < first.t)
 }
 
 /// Tables whose lines of names are that of the first.
@@ -85,8 +99,13 @@ mod tests {
 
     #[test]
     fn without_titles_drops_are_counted() {
-        let all = tracks("t,y1,y2\n0,1,1\n1,2,2\nt,y1,y2\n0,3,1\n1,4,2\n");
-        let told: Vec<_> = all.iter().filter_map(|one| one.name.as_deref()).collect();
-        assert_eq!(told, ["1-1", "1-2", "2-1", "2-2"]);
+        let told = |text: &str| -> Vec<(Option<String>, usize)> {
+            tracks(text).into_iter().map(|one| (one.name, one.samples.len())).collect()
+        };
+        let named = |name: &str, n: usize| (Some(name.to_owned()), n);
+        assert_eq!(told("t,y\n0,1\n1,2\nt,y\n0,3\n1,4\n"), [named("1", 2), named("2", 2)]);
+        assert_eq!(told("t,y\n0,1\n1,2\nt,y\n2,3\n3,4\n"), [named("1", 4)]);
+        let long = "run,t,y\na,0,1\na,1,2\nrun,t,y\na,2,3\nb,0,3\nrun,t,y\nb,1,4\n";
+        assert_eq!(told(long), [named("a", 3), named("b", 2)]);
     }
 }

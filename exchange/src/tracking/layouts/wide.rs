@@ -3,10 +3,10 @@
 use super::Layout;
 use crate::tracking::fault::Fault;
 use crate::tracking::grid::{Grid, Places};
-use crate::tracking::heading::Role;
+use crate::tracking::heading::{Role, is_statistic};
 use crate::tracking::settings::Columns;
 use crate::tracking::sheet::{Number, Sheet};
-use crate::tracking::track::{Sample, Track};
+use crate::tracking::track::{Sample, Track, without_still};
 
 pub(super) const LAYOUT: Layout = Layout { fits, read };
 
@@ -23,7 +23,9 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
         let track = grid.track(&layout, Places { t, z, x }, grid.all_rows())?;
         Ok(Track { name: Some(name), ..track })
     };
-    let mut tracks: Vec<Track> = drops(&grid).into_iter().map(one).collect::<Result<_, _>>()?;
+    grid.column(Role::Run, columns)?;
+    let tracks: Vec<Track> = drops(&grid).into_iter().map(one).collect::<Result<_, _>>()?;
+    let mut tracks = without_still(tracks);
     let taken = |name: &str| tracks.iter().any(|track| track.name.as_deref() == Some(name));
     refuse_twice(&tracks, sheet)?;
     let stems = grid.headings.iter().map(|heading| heading.stem.as_str());
@@ -31,6 +33,10 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
     if !left.is_empty() {
         let note = format!("{}: no drop by its name, left out", left.join(", "));
         tracks.iter_mut().take(1).for_each(|first| first.notes.push(note.clone()));
+    }
+    // The name of the one column of positions is no name of a run.
+    if let [only] = &mut tracks[..] {
+        only.name = None;
     }
     Ok(tracks)
 }
@@ -40,29 +46,6 @@ fn time(grid: &Grid<'_>, columns: &Columns) -> Result<Option<usize>, Fault> {
         Some(at) => Ok(Some(at)),
         None => grid.column(Role::Frame, columns),
     }
-}
-
-/// Whether a column called so holds means or errors of the others.
-fn is_statistic(name: &str) -> bool {
-    const NAMES: [&str; 16] = [
-        "mean",
-        "average",
-        "avg",
-        "median",
-        "mittel",
-        "mittelwert",
-        "moyenne",
-        "media",
-        "std",
-        "stdev",
-        "stddev",
-        "sd",
-        "se",
-        "sem",
-        "sigma",
-        "error",
-    ];
-    NAMES.contains(&name.trim().to_lowercase().as_str())
 }
 
 /// Refuses columns that are of one body by their names, such as `raw` and `filtered`, and by their motion.
