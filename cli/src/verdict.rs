@@ -77,7 +77,7 @@ pub(crate) fn as_text(
 fn missing_force(force: &MissingForce) -> String {
     let mut text = format!("\nMissing force ({}): {}.\n", force.file, force.words);
     let (Some(formula), Some(q), Some(held_out)) = (&force.formula, force.q, &force.holdout) else {
-        return match force.takes_formulas {
+        return match force.formula_sought {
             true => text + "No formula of the library predicts what was held out.\n",
             false => text,
         };

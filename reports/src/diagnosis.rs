@@ -149,6 +149,7 @@ fn missing_force(diagnosis: &Value, texts: &Texts) -> Vec<Part> {
             )));
             parts.push(Part::Listing(table.to_owned()));
         }
+        None if force["formula_sought"] == false => {}
         None => parts.push(Part::Text(
             "No formula of the library predicts conditions that were not fitted to.".to_owned(),
         )),

@@ -81,9 +81,8 @@ pub struct MissingForce {
     /// Parameters of the model with the formula, with their units.
     #[serde(skip_serializing_if = "Map::is_empty")]
     pub parameters: Map<String, Value>,
-    /// Whether the model takes forces by their formulas, so that one was looked for.
-    #[serde(skip)]
-    pub takes_formulas: bool,
+    /// Whether a formula was looked for: beds of grains take none.
+    pub formula_sought: bool,
     /// The table of the formula for a model file.
     pub candidate: Option<String>,
     /// The force along the paths.
@@ -129,7 +128,7 @@ pub fn missing_force(
         parameters: formula
             .as_ref()
             .map_or_else(Map::new, |one| parameters(bench.forward, &one.fitted.fit)),
-        takes_formulas: bench.forward.by_formulas().is_some(),
+        formula_sought: bench.forward.by_formulas().is_some(),
         candidate: formula.as_ref().map(Formula::table),
         formula: formula.as_ref().map(|one| one.force.clone()),
         fitted: formula.map(|one| one.fitted),

@@ -156,7 +156,7 @@ fn the_missing_force_of_a_bed_is_that_of_what_is_hidden() {
     // What rolling resistance adds to the force law of the imitation.
     let added = |one: &Reading| strength * (0.12 * one.speed * one.speed + 4.0 * 4.0 * one.depth);
     let force = sought(Hidden::Switch("rolling-resistance", strength));
-    assert!(force.formula.is_none() && !force.takes_formulas);
+    assert!(force.formula.is_none() && !force.formula_sought);
     let covered =
         force.readings.iter().filter(|one| (one.force - added(one)).abs() < 1.96 * one.se).count();
     let share = covered as f64 / force.readings.len() as f64;

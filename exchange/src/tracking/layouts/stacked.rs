@@ -11,9 +11,9 @@ pub(super) const LAYOUT: Layout = Layout { fits: |sheet, _| blocks(sheet).len() 
 
 /// One of the tables.
 struct Block<'a> {
-    /// The row above its line of names, of another block for the first at most.
+    /// The row of words above its line of names.
     title: Option<String>,
-    /// Its line of names, and what is below it.
+    /// Its line of names and the rows below it.
     rows: &'a [Row],
 }
 
