@@ -73,7 +73,7 @@ mod tests {
         let all = read(&sheet, &Columns::default()).expect("tracks");
         let told: Vec<_> = all.iter().map(|one| (one.name.as_deref(), one.samples.len())).collect();
         assert_eq!(told, [(Some("low"), 2), (Some("high"), 3)]);
-        assert_eq!(all[1].samples[2].z, 7.0);
+        assert_eq!(all[1].samples[2].z.to_bits(), 7.0_f64.to_bits());
     }
 
     #[test]
