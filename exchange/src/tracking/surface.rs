@@ -34,6 +34,8 @@ pub(super) struct Touch {
     pub(super) level: Reading,
     /// Downward velocity (m/s).
     pub(super) sinking: Reading,
+    /// The part of the error of that velocity that a stated level of all runs does not make (m/s).
+    pub(super) own_speed_error: f64,
     /// Error of its level against those of other runs (m).
     pub(super) level_error: f64,
 }
@@ -61,8 +63,9 @@ pub(super) fn touches(runs: &[Seen], gravity: f64) -> Result<(Level, Vec<Touch>)
             return Err(faults);
         }
         let at = |run: &Seen| {
-            let level = Reading { value: run.stated.unwrap_or_default(), se: STATED };
-            Touch::at(&run.departure.contact, level, gravity)
+            let value = run.stated.unwrap_or_default();
+            let with = |se| Touch::at(&run.departure.contact, Reading { value, se }, gravity);
+            Touch { own_speed_error: with(LEAST).own_speed_error, ..with(STATED) }
         };
         return Ok((Level::Stated, runs.iter().map(at).collect()));
     }
@@ -92,13 +95,12 @@ impl Touch {
         let root = (v * v + 2.0 * gravity * ahead).max(0.0).sqrt();
         let later = 2.0 * ahead / (v + root).max(f64::MIN_POSITIVE);
         let se = libm::hypot(level.se, at_time.se) / v;
+        let speed_error = libm::hypot(falling.se, gravity * se);
         Self {
             time: Reading { value: time.value + later, se },
             level,
-            sinking: Reading {
-                value: v + gravity * later,
-                se: libm::hypot(falling.se, gravity * se),
-            },
+            sinking: Reading { value: v + gravity * later, se: speed_error },
+            own_speed_error: speed_error,
             level_error: at_time.se,
         }
     }

@@ -239,7 +239,11 @@ fn speed_scatter(conditions: &[(&str, Vec<&Run>)]) -> Option<f64> {
         let mean = own.iter().map(|run| run.speed.value).sum::<f64>() / n;
         sum += own.iter().map(|run| (run.speed.value / mean - 1.0).powi(2)).sum::<f64>();
         freedom += n - 1.0;
-        errors.extend(own.iter().map(|run| run.speed.se / run.speed.value));
+        let error = |run: &&Run| {
+            let share = run.touch.own_speed_error / run.touch.sinking.se;
+            share * run.speed.se / run.speed.value
+        };
+        errors.extend(own.iter().map(error));
     }
     let fit = median(errors);
     let scatter = if freedom >= 3.0 { f64::sqrt(sum / freedom) } else { 0.0 };
