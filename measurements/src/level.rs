@@ -1,7 +1,8 @@
 //! One level of the surface for several runs, from how their paths depart from free fall.
 //!
 //! A path alone does not say well in which form it departs, and so where. Runs into one bed share level
-//! and form: the level that fits all of them is known much better than by each.
+//! and form: the level that fits all of them is known much better than by each. Where levels differ, form and scatter are
+//! shared, and each run has its own.
 
 use super::departure::{Departure, Trial};
 use super::reading::Reading;

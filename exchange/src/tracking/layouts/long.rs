@@ -18,20 +18,20 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
     let grid = Grid::found(sheet)?;
     let telling = telling(&grid, columns);
     let places = super::single::places(&grid, columns)?;
-    let mut names: Vec<String> = Vec::new();
-    for row in grid.rows {
+    let told: Vec<String> = grid.rows.iter().map(|row| name(row, &telling)).collect();
+    let mut names: Vec<&String> = Vec::new();
+    for (row, name) in grid.rows.iter().zip(&told) {
         if let Some(at) = telling.iter().find(|at| row.cell(**at).is_empty()) {
             let what = format!("the column `{}` is empty", grid.headings[*at].name);
             return Err(sheet.fault(what, "every row needs the name of its run").at(row.line));
         }
-        let name = name(row, &telling);
         if !names.contains(&name) {
             names.push(name);
         }
     }
-    let of = |own_name: String| {
-        let is_own = |row: &Row| name(row, &telling) == own_name;
-        let own: Vec<(usize, &Row)> = grid.all_rows().filter(|(_, row)| is_own(row)).collect();
+    let of = |name: &String| {
+        let own = grid.all_rows().filter(|(at, _)| told[*at] == *name);
+        let own: Vec<(usize, &Row)> = own.collect();
         let rows: Vec<&Row> = own.iter().map(|(_, row)| *row).collect();
         let layout = format!("long, {}", sheet.separated);
         let track = grid.track(&layout, places, own.into_iter())?;
@@ -41,7 +41,7 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
             used.push(run);
         }
         let labels = grid.labels(&used, &rows);
-        Ok(Track { name: Some(own_name), labels, ..track })
+        Ok(Track { name: Some(name.clone()), labels, ..track })
     };
     names.into_iter().map(of).collect()
 }
