@@ -136,7 +136,8 @@ impl GrainModel<'_> {
         let stages = self.preparation_stages(settle);
         let settling =
             Settling::new(&grains, (space, container), self.gravity(), stages, steps.settling)
-                .falling_by(steps.falling);
+                .falling_by(steps.falling)
+                .dragged_by(settle.settling_drag);
         Ok(Some(match self.medium.bed.target_packing_fraction {
             Some(target) => settling.tapped_to(target),
             None => settling,

@@ -22,6 +22,8 @@ pub enum Change {
     ContactLaw(&'static str, f64),
     /// Friction while the bed settles (–).
     PreparationFriction(f64),
+    /// Rate at which velocities and spins decay while the bed settles (1/s).
+    SettlingDrag(f64),
     /// Packing fraction up to which grains grow in place before they fall (–).
     InflatedTo(f64),
     /// Packing fraction up to which a bed at rest is tapped (–).
@@ -98,6 +100,7 @@ impl Change {
             Self::GrainInertia(value) => put("medium", "grain_inertia", number(*value)),
             Self::ContactLaw(key, value) => put("contact_law", key, number(*value)),
             Self::PreparationFriction(value) => put("bed", "preparation_friction", number(*value)),
+            Self::SettlingDrag(value) => put("bed", "settling_drag", number(*value)),
             Self::InflatedTo(value) => put("bed", "inflated_to", number(*value)),
             Self::Grains(kinds) => {
                 let kinds = kinds.iter().map(|kind| of_kind(kind, span)).collect();

@@ -125,6 +125,14 @@ pub(crate) const PREPARATION_FRICTION: ParamSpec = required(
     "the friction of grains while settling, in place of the law's",
 );
 
+pub(crate) const SETTLING_DRAG: ParamSpec = required(
+    "settling_drag",
+    Dimension::RATE,
+    NOT_NEGATIVE,
+    Range::closed(0.0, 200.0),
+    "the rate at which velocities and spins of grains decay while they fall and settle",
+);
+
 pub(crate) fn inflated_to(space: Space) -> ParamSpec {
     let (min, max) = inflation_range(space);
     required(

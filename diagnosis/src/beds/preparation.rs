@@ -43,10 +43,12 @@ const BEDS: usize = 3;
 const NEAR: f64 = 0.001;
 const TRIALS: usize = 5;
 
-/// Rolling friction while a bed settles that makes the loosest beds.
-const ROLLING: f64 = 0.3;
+/// Drag while a bed settles that loosens it without another friction: the rate √(g/d), under which grains sink by half
+/// their diameter in the time in which they would fall through it.
+const DRAG: f64 = 1.0;
 
-/// Preparation friction of the looser beds of a model that settles without.
+/// Preparation friction of the loosest beds, in that of the model, and in a model that settles without.
+const ROUGHER: f64 = 3.0;
 const ROUGH: f64 = 0.3;
 
 /// How a model is prepared to a set.
@@ -309,20 +311,19 @@ pub(super) fn dense(space: Space) -> &'static [f64] {
     }
 }
 
-/// How `model` is prepared at a level from -1, the densest bed that settles, over 0, as it is, to 1, with three times the
-/// friction, and 2, the loosest, where grains do not roll either; `None` without a friction to change.
+/// How `model` is prepared at a level from -1, the densest bed that settles, over 0, as it is, to 1, where grains sink as
+/// in a viscous fluid, and 2, the loosest, where they are rougher too; `None` without a friction to change.
 pub(super) fn at_level(model: GrainModel<'_>, level: f64) -> Option<Vec<Change>> {
     let BedSource::Settle(settle) = &model.medium.bed.source else { return None };
     let own = settle.preparation_friction?;
-    let rough = if own > 0.0 { 3.0 * own } else { ROUGH };
-    let friction = match level {
-        level if level <= 0.0 => own * (1.0 + level),
-        level => own + (rough - own) * level.min(1.0),
-    };
-    let mut changes = vec![Change::PreparationFriction(friction)];
+    if level <= 0.0 {
+        return Some(vec![Change::PreparationFriction(own * (1.0 + level))]);
+    }
+    let rate = DRAG * (model.medium.gravity / model.mean_grain()).sqrt();
+    let mut changes = vec![Change::SettlingDrag(settle.settling_drag + level.min(1.0) * rate)];
     if level > 1.0 {
-        let rolling = vec![("rolling_friction", ROLLING * (level - 1.0))];
-        changes.push(Change::BedEffect("rolling-resistance", rolling));
+        let rough = if own > 0.0 { ROUGHER * own } else { ROUGH };
+        changes.push(Change::PreparationFriction(own + (rough - own) * (level - 1.0)));
     }
     Some(changes)
 }
@@ -387,10 +388,7 @@ fn words(changes: &[Change]) -> String {
     let word = |change: &Change| match change {
         Change::PreparationFriction(friction) => format!("preparation friction {friction:.3}"),
         Change::TargetPackingFraction(_) => "taps".to_owned(),
-        Change::BedEffect(name, values) => {
-            let values = values.iter().map(|(key, value)| format!("{key} {value:.3}"));
-            format!("{name} while it settles ({})", values.collect::<Vec<_>>().join(", "))
-        }
+        Change::SettlingDrag(rate) => format!("a drag of {rate:.1}/s while it settles"),
         other => format!("{other:?}"),
     };
     changes.iter().map(word).collect::<Vec<_>>().join(", ")

@@ -22,6 +22,13 @@ const FALLEN_ENERGY: f64 = 0.02;
 /// … for so many fall times: longer than all grains are slow at the top of a throw.
 const FALLEN_HOLD: f64 = 0.5;
 
+/// It is over too when the highest grain could have fallen to the bottom so often and …
+const FALLS: f64 = 3.0;
+
+/// … this share of the grains touches something. Rough grains do not slide: a wide and high bed of them
+/// breathes for many seconds, as its contacts hardly dampen so long a wave.
+const FALLEN_LYING: f64 = 0.9;
+
 /// Rate of the drag that calms a fallen bed, in inverse fall times: it ends the breathing of the bed
 /// within a few of them, and hardly slows the grains that still roll into a hollow.
 const DRAG: f64 = 1.0;
@@ -49,6 +56,10 @@ pub struct Settling {
     stage: Stage,
     /// Step once the bed has fallen (s).
     dt: f64,
+    /// Time (s) in which the highest grain would fall freely through the height of all.
+    longest_fall: f64,
+    /// Rate (1/s) of the drag from the start on.
+    drag: f64,
     /// The packing fraction that tapping is to reach, if it is wanted.
     target: f64,
     tapping: Tapping,
@@ -90,9 +101,19 @@ impl Settling {
         let start = RestingBed::without_history(space, grains.to_vec());
         let bed = GrainBed::new(&start, container, gravity, stages, 0);
         let scales = Scales::of(&bed);
+        let longest_fall = longest_fall(&bed);
         let world = World::new(bed, Box::new(NoIntruder), dt);
         let stage = Stage::Falling { slow_since: None };
-        Self { world, scales, stage, dt, target: 0.0, tapping: Tapping::NONE }
+        Self {
+            world,
+            scales,
+            stage,
+            dt,
+            longest_fall,
+            drag: 0.0,
+            target: 0.0,
+            tapping: Tapping::NONE,
+        }
     }
 
     /// Takes longer steps of `dt` (s) until the bed has fallen for the first time: collisions that are not
@@ -101,6 +122,13 @@ impl Settling {
     pub fn falling_by(mut self, dt: f64) -> Self {
         self.world.change_step(dt);
         self
+    }
+
+    /// Has the grains fall and settle as in a viscous fluid: their velocities and spins decay at `rate` (1/s)
+    /// until the bed has to show that it stays at rest. A bed that settles so is looser.
+    #[must_use]
+    pub fn dragged_by(self, rate: f64) -> Self {
+        Self { drag: rate, ..self }
     }
 
     /// Has the bed tapped, once it is calm, until its packing fraction is within 0.005 of `target`:
@@ -120,10 +148,14 @@ impl Settling {
     pub fn advance(&mut self) -> Result<(), StepError> {
         self.world.advance()?;
         let step = self.clock().step;
-        if self.stage == Stage::Calming && step.is_multiple_of(BRAKE_EVERY) {
+        let rate = match self.stage {
+            Stage::Falling { .. } => self.drag,
+            Stage::Calming => self.drag.max(DRAG / self.scales.fall_time),
+            Stage::Proving { .. } | Stage::Resting => 0.0,
+        };
+        if rate > 0.0 && step.is_multiple_of(BRAKE_EVERY) {
             let time = BRAKE_EVERY as f64 * self.clock().dt;
-            let left = libm::exp(-DRAG * time / self.scales.fall_time);
-            self.world.bed.slow_down(left);
+            self.world.bed.slow_down(libm::exp(-rate * time));
         }
         if step.is_multiple_of(LOOK_EVERY) {
             self.look();
@@ -136,10 +168,12 @@ impl Settling {
         let time = self.clock().time();
         match self.stage {
             Stage::Falling { slow_since } => {
-                let is_slow = self.scales.mean_energy(self.bed()) < FALLEN_ENERGY;
+                // Grains that a drag holds back fall slowly too.
+                let is_slow = self.scales.mean_energy(self.bed()) < FALLEN_ENERGY
+                    && (self.drag <= 0.0 || self.lies());
                 let since = slow_since.unwrap_or(time);
                 let hold = FALLEN_HOLD * self.scales.fall_time;
-                if is_slow && time - since >= hold {
+                if is_slow && time - since >= hold || self.only_breathes() {
                     self.world.change_step(self.dt);
                     self.stage = Stage::Calming;
                 } else {
@@ -151,6 +185,18 @@ impl Settling {
             Stage::Proving { since } if time - since >= REST_HOLD => self.stage = Stage::Resting,
             Stage::Calming | Stage::Proving { .. } | Stage::Resting => {}
         }
+    }
+
+    /// Whether grains that have had the time to fall lie on each other, however the bed as a whole moves.
+    fn only_breathes(&self) -> bool {
+        self.time_since_tap() >= FALLS * self.longest_fall && self.lies()
+    }
+
+    /// Whether nearly all grains touch something.
+    fn lies(&self) -> bool {
+        let lying = self.bed().lying();
+        let n_lying = lying.iter().filter(|one| **one).count();
+        n_lying as f64 >= FALLEN_LYING * lying.len() as f64
     }
 
     fn is_still(&self) -> bool {
@@ -228,6 +274,13 @@ impl Settling {
     pub fn bed(&self) -> &GrainBed {
         self.world.bed()
     }
+}
+
+/// Time (s) in which the highest grain of `bed` falls freely to where the lowest is.
+fn longest_fall(bed: &GrainBed) -> f64 {
+    let heights = || bed.grains.positions().map(|centre| centre.z);
+    let height = heights().fold(0.0, f64::max) - heights().fold(f64::INFINITY, f64::min);
+    (2.0 * height.max(0.0) / bed.gravity.norm()).sqrt()
 }
 
 /// The state of a settling bed between two steps, bit by bit.

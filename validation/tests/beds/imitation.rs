@@ -199,13 +199,15 @@ impl Impacts for Imitation {
     }
 }
 
-/// How much denser than with a preparation friction of 0.3 a bed is; no friction makes it looser without end.
+/// How much denser than with a preparation friction of 0.3 and no drag a bed is; neither makes it looser without end.
 fn dense(bed: GrainModel<'_>) -> f64 {
-    let friction = match &bed.medium.bed.source {
-        BedSource::Settle(settle) => settle.preparation_friction.unwrap_or(0.0),
-        BedSource::Csv(_) => 0.0,
+    let (friction, drag) = match &bed.medium.bed.source {
+        BedSource::Settle(settle) => {
+            (settle.preparation_friction.unwrap_or(0.0), settle.settling_drag)
+        }
+        BedSource::Csv(_) => (0.0, 0.0),
     };
-    (1.0 - friction / 0.3).max(-1.5)
+    (1.0 - friction / 0.3 - drag / 60.0).max(-1.5)
 }
 
 /// Mass of the first kind of grains over what the benchmark has.

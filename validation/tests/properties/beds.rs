@@ -2,7 +2,7 @@
 
 use engine::bed::{BedReport, GrainKind, Settling, fill};
 use engine::boundary::Container;
-use engine::grains::Space;
+use engine::grains::{Grain, Space};
 use engine::math::Vec3;
 use engine::parallel::with_threads;
 use validation::rig::Linear;
@@ -76,6 +76,52 @@ fn tapped(target: f64, seed: u64) -> Settling {
     Settling::new(&grains, (Space::Planar, container), gravity, vec![rough.stage()], 2.5e-5)
         .falling_by(5e-5)
         .tapped_to(target)
+}
+
+#[test]
+fn beds_that_settle_as_in_a_viscous_fluid_are_looser() {
+    let fraction = |seed: u64, rate: f64| {
+        let mut settling = tapped(0.1, seed).dragged_by(rate);
+        settle(&mut settling);
+        BedReport::of(settling.bed()).packing_fraction
+    };
+    let seeds = 1..=4;
+    let looser: f64 =
+        seeds.map(|seed| fraction(seed, 0.0) - fraction(seed, 50.0)).sum::<f64>() / 4.0;
+    assert!(looser > 0.005, "{looser}");
+}
+
+#[test]
+fn a_column_that_nothing_dampens_breathes_and_comes_to_rest() {
+    let (n, radius, mass) = (20, 1.5e-3, 3.5e-5);
+    let column: Vec<Grain> = (0..n)
+        .map(|id| Grain {
+            position: Vec3::new(radius, 0.0, radius * f64::from(2 * id + 1)),
+            velocity: Vec3::zeros(),
+            spin: Vec3::zeros(),
+            radius,
+            mass,
+            id,
+        })
+        .collect();
+    let gravity = Vec3::new(0.0, 0.0, -9.81);
+    // The weight of a grain compresses a contact by four thousandths of its diameter.
+    let stiffness = mass * 9.81 / (4e-3 * 2.0 * radius);
+    let elastic = Linear {
+        normal_stiffness: stiffness,
+        tangential_stiffness: stiffness,
+        normal_damping_rate: 0.0,
+        tangential_damping_rate: 0.0,
+        friction: 0.0,
+    };
+    let room = (Space::Planar, Container::walled_box(2.0 * radius, 0.0));
+    let mut settling = Settling::new(&column, room, gravity, vec![elastic.stage()], 1e-4);
+    settle(&mut settling);
+    // The static compression of a chain: (n − k + 1) m g / stiffness in contact k from the bottom.
+    let sag = mass * 9.81 / stiffness * f64::from(n * (n + 1) / 2);
+    let top = settling.bed().grains.positions().map(|centre| centre.z).fold(0.0, f64::max);
+    let expected = radius * f64::from(2 * n - 1) - sag;
+    assert!((top - expected).abs() < 1e-3 * sag, "{top} {expected}");
 }
 
 fn settle(settling: &mut Settling) {

@@ -190,6 +190,8 @@ pub struct Settle {
     pub inflated_to: Option<f64>,
     /// Friction while settling, in place of the law's; `None` when the law has no friction at all.
     pub preparation_friction: Option<f64>,
+    /// Rate (1/s) at which velocities and spins decay while settling, as in a viscous fluid.
+    pub settling_drag: f64,
     /// Step while settling.
     pub preparation_time_step: TimeStep,
     /// Effects that act while settling (`[[bed.effect]]`).

@@ -45,6 +45,7 @@ fn settle(
 ) -> Option<Settle> {
     let inflated_to = table.optional_number(&specs::inflated_to(space));
     let friction = preparation_friction(table, law);
+    let drag = table.optional_number(&specs::SETTLING_DRAG);
     let step = time_step(table, &specs::PREPARATION_TIME_STEP, Some("auto"));
     places.preparation_time_step = table.span_of("preparation_time_step");
     let kinds = table.tables("grains", limits::GRAIN_KINDS);
@@ -73,6 +74,7 @@ fn settle(
         grains,
         inflated_to: inflated_to?.map(|found| found.value),
         preparation_friction: friction?,
+        settling_drag: drag?.map_or(0.0, |found| found.value),
         preparation_time_step: step?,
         effects: effects?,
     })

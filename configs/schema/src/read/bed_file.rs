@@ -27,8 +27,14 @@ pub(crate) fn csv_bed(
     folder: &DataFolder<'_>,
 ) -> Option<CsvBed> {
     let mut settles = false;
-    let of_preparation =
-        ["inflated_to", "preparation_friction", "preparation_time_step", "grains", "effect"];
+    let of_preparation = [
+        "inflated_to",
+        "preparation_friction",
+        "settling_drag",
+        "preparation_time_step",
+        "grains",
+        "effect",
+    ];
     for key in of_preparation {
         if table.has(key) {
             table.reader.report(
