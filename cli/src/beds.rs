@@ -51,6 +51,19 @@ pub(crate) struct Beds {
     candidates: Vec<String>,
 }
 
+impl Beds {
+    /// A flag that was given, and says how impacts on beds are run or which candidates they are run for.
+    pub(crate) fn flag_of_impacts(&self) -> Option<&'static str> {
+        [
+            ("--candidate", !self.candidates.is_empty()),
+            ("--free", !self.free.is_empty()),
+            ("--budget", self.budget.is_some()),
+        ]
+        .into_iter()
+        .find_map(|(flag, is_given)| is_given.then_some(flag))
+    }
+}
+
 pub(crate) fn time(text: &str) -> Result<f64, String> {
     let seconds = units::parse(text, Dimension::TIME).map_err(|error| error.to_string())?;
     match seconds > 0.0 {

@@ -67,6 +67,11 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     if model.loaded.model.grains().is_some() {
         return beds::diagnose(&args.beds, (flags, args.missing_force), &measured, &models);
     }
+    if let Some(flag) = args.beds.flag_of_impacts() {
+        return Err(CommandError::BadInput(format!(
+            "{flag} is of beds of grains: with a resistive-force model every effect is ranked, in seconds\n"
+        )));
+    }
     if args.beds.plan {
         return output::to_stdout("a resistive-force model takes no impacts on beds: seconds\n");
     }

@@ -190,11 +190,30 @@ impl Bench<'_> {
     /// How much coefficients scatter between conditions beforehand, relative; `None` where nothing is to be learned of
     /// it: without repeats, from few conditions, where the set says which run is of which session, and where all are one.
     fn between_sigma(&self, noise: &Noise) -> Option<f64> {
+        let is_known = self.observed.fit.len() >= CONDITIONS;
+        self.session_sigma(noise).filter(|_| is_known)
+    }
+
+    /// The same however many conditions there are.
+    fn session_sigma(&self, noise: &Noise) -> Option<f64> {
         let is_said = self.set.runs.iter().any(|run| run.session.is_some());
         let sigma = self.set.instrument.session_sigma_rel.unwrap_or(defaults::SESSION);
-        let is_known =
-            noise.source == NoiseSource::Repeats && self.observed.fit.len() >= CONDITIONS;
-        (is_known && !is_said && sigma > 0.0).then_some(sigma)
+        (noise.source == NoiseSource::Repeats && !is_said && sigma > 0.0).then_some(sigma)
+    }
+
+    /// `fitted` again with conditions of sessions of their own that differ as is known beforehand; `None` where the set
+    /// says its sessions, and where their scatter was learned.
+    ///
+    /// # Errors
+    /// If the model fails.
+    pub(crate) fn with_sessions_of_their_own(
+        &self,
+        fitted: &Fitted,
+    ) -> Result<Option<Fitted>, BenchError> {
+        match (self.between_sigma(&fitted.noise), self.session_sigma(&fitted.noise)) {
+            (None, Some(sigma)) => self.with_scatter_between_conditions(sigma, fitted).map(Some),
+            _ => Ok(None),
+        }
     }
 
     /// The measurements under `weights`.

@@ -10,6 +10,7 @@ use measurements::MeasurementSet;
 
 use crate::added_force::added_forces;
 use crate::bench::{Bench, BenchError, Fitted};
+use crate::doubts::{doubts, evidence};
 use crate::fitted_parameters::parameters;
 use crate::force_error::ForceErrors;
 use crate::frequency::of_benchmark;
@@ -17,13 +18,13 @@ use crate::held_out::HeldOut;
 use crate::lack_of_fit::lack_of_fit;
 use crate::marginal::{Marginals, marginals};
 use crate::missing_force::{MissingForce, missing_force};
-use crate::noise::{Noise, NoiseSource};
+use crate::noise::Noise;
 use crate::pair::{Pair, best_pair};
 use crate::ranked::ranked;
 use crate::score::Ranking;
 use crate::sensitivity::Point;
 use crate::verdict::{
-    Amplitude, ApparatusError, Diagnosis, Evidence, Strength, StrengthReason, Unexplained, Verdict,
+    Amplitude, ApparatusError, Diagnosis, Strength, StrengthReason, Unexplained, Verdict,
 };
 
 /// Probability of error at which something counts as found, or a model as rejected.
@@ -42,9 +43,8 @@ const SEEN: f64 = 4.0;
 /// effects that the second is chosen from.
 const LIKELIER: f64 = 15.0;
 
-/// Fewest deviations of repeats from their means that make more than a suggestion: a standard deviation
-/// from eight is known to a quarter.
-const CONTRASTS: usize = 8;
+/// Relative scatter of the coefficients of repeats from which they are none.
+const NO_REPEATS: f64 = 0.5;
 
 /// Diagnoses the model on `bench`; equal `seed` and measurements give equal bytes.
 ///
@@ -58,6 +58,15 @@ pub fn diagnose(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
         }
         Err(other) => return Err(other),
     };
+    let scatter = baseline.noise.spread.coefficient;
+    if scatter >= NO_REPEATS {
+        let why = format!(
+            "runs of one condition differ by {:.0} % of their resistance, as repeats do not: compare their bodies, masses \
+             and speeds, and what `runs.csv` says of their conditions",
+            100.0 * scatter
+        );
+        return Ok(cannot_tell(bench, why));
+    }
     let candidates: Vec<usize> = (0..bench.forward.candidates().len())
         .filter(|&index| bench.forward.candidates()[index].not_testable.is_none())
         .collect();
@@ -165,14 +174,21 @@ impl Judge<'_> {
     fn verdict(self) -> Result<Diagnosis, BenchError> {
         let p_lof = lack_of_fit(self.bench, &self.baseline, self.seed)?;
         if self.ranking.p > ALPHA {
-            return if adequate(p_lof) {
+            if adequate(p_lof) {
                 let baseline = &self.baseline;
                 let verdict = nothing(self.bench, baseline);
-                self.diagnosis(verdict, baseline, (p_lof, None), (String::new(), None))
-            } else {
-                let hint = "the model is rejected, and no listed effect helps".to_owned();
-                self.refuse((p_lof, None), hint)
-            };
+                return self.diagnosis(verdict, baseline, (p_lof, None), (String::new(), None));
+            }
+            if let Some(wide) = self.bench.with_sessions_of_their_own(&self.baseline)?
+                && adequate(lack_of_fit(self.bench, &wide, self.seed)?)
+            {
+                let verdict = nothing(self.bench, &wide);
+                let hint = "conditions differ by more than their repeats show, as beds do that are poured anew; if they \
+                            were, say which runs are of one pouring in a column `session` of the runs";
+                return self.diagnosis(verdict, &wide, (p_lof, None), (hint.to_owned(), None));
+            }
+            let hint = "the model is rejected, and no listed effect helps".to_owned();
+            return self.refuse((p_lof, None), hint);
         }
         let leader = without_width(self.bench, &self.leader)?;
         let p_leader = lack_of_fit(self.bench, &leader, self.seed)?;
@@ -209,7 +225,7 @@ impl Judge<'_> {
             let mut found = self.one((p_lof, p_leader), held_out)?;
             if !adequate(p_leader) && !found.effects.is_empty() {
                 found.strength_reasons.push(StrengthReason::OfAnotherForm);
-                found.strength = strength(&found.strength_reasons);
+                found.strength = Strength::of(&found.strength_reasons);
             }
             return Ok(found);
         }
@@ -368,7 +384,7 @@ impl Judge<'_> {
         }
         Ok(Diagnosis {
             verdict,
-            strength: strength(&strength_reasons),
+            strength: Strength::of(&strength_reasons),
             probability: match bench.forward.is_judged_by_held_out() {
                 true => of_benchmark(verdict),
                 false => None,
@@ -441,48 +457,6 @@ fn nothing(bench: &Bench<'_>, fitted: &Fitted) -> Verdict {
     }
 }
 
-/// Why a verdict that names `amplitudes`, in the fit `proposed`, is only suggested; nothing where it is confirmed.
-///
-/// Confirmed is what rests on the scatter of repeats, from [`CONTRASTS`] independent deviations at least, and, where
-/// an effect is named, has amplitudes that are no more than two standard errors outside of the usual range of their
-/// effects, takes no error of the apparatus far beyond what is known of it, and predicts better what it has not seen
-/// without leaving out a condition that the model predicts without it.
-fn doubts(
-    bench: &Bench<'_>,
-    proposed: &Fitted,
-    amplitudes: &[Amplitude],
-    held_out: &HeldOut,
-) -> Vec<StrengthReason> {
-    let few = bench.observed.contrasts() < CONTRASTS;
-    let mut doubts: Vec<StrengthReason> = match proposed.noise.source {
-        NoiseSource::Repeats => few.then_some(StrengthReason::FewRepeats).into_iter().collect(),
-        NoiseSource::Stated => vec![StrengthReason::StatedErrors],
-        NoiseSource::AssumedScatter | NoiseSource::Assumed => vec![StrengthReason::AssumedScatter],
-    };
-    if amplitudes.is_empty() {
-        return doubts;
-    }
-    if amplitudes.iter().any(|amplitude| amplitude.unusual) {
-        doubts.push(StrengthReason::AmplitudeOutsideUsualRange);
-    }
-    if bench.data(&proposed.weights).is_strained(&proposed.fit.point) {
-        doubts.push(StrengthReason::ApparatusFarFromStated);
-    }
-    doubts.extend(held_out.doubt());
-    doubts
-}
-
-/// What the noise of `fitted` is known from.
-fn evidence(bench: &Bench<'_>, fitted: &Fitted) -> Evidence {
-    match fitted.noise.source {
-        NoiseSource::Repeats if bench.observed.contrasts() < CONTRASTS => Evidence::FewRepeats,
-        NoiseSource::Repeats => Evidence::Repeats,
-        NoiseSource::Stated | NoiseSource::AssumedScatter | NoiseSource::Assumed => {
-            Evidence::StatedErrors
-        }
-    }
-}
-
 /// What was left aside of the measurements, and what is unusual of what is named.
 fn warnings(bench: &Bench<'_>, proposed: &Fitted, amplitudes: &[Amplitude]) -> Vec<String> {
     let between = proposed.noise.sessions;
@@ -498,10 +472,6 @@ fn warnings(bench: &Bench<'_>, proposed: &Fitted, amplitudes: &[Amplitude]) -> V
         format!("{} of {:.4} is outside of its usual range", amplitude.id, amplitude.q)
     });
     bench.observed.notes.iter().cloned().chain(differ).chain(unusual).collect()
-}
-
-fn strength(doubts: &[StrengthReason]) -> Strength {
-    if doubts.is_empty() { Strength::Confirmed } else { Strength::Suggested }
 }
 
 /// Takes back what `diagnosis` names, since `why`: what is left is whether the model as it is explains the data.
@@ -525,7 +495,7 @@ pub(crate) fn withdraw(
     strength_reasons.retain(|reason| reason.is_of_measurements());
     Ok(Diagnosis {
         verdict,
-        strength: strength(&strength_reasons),
+        strength: Strength::of(&strength_reasons),
         strength_reasons,
         unexplained: unexplained(bench, verdict, baseline, (why, seed))?,
         effects: Vec::new(),

@@ -43,9 +43,9 @@ const STEP: f64 = 1e-3;
 /// Share of the standard deviation of a prior around zero, likewise: above what rounding does to differences.
 const OF_PRIOR: f64 = 0.05;
 
-/// Standard deviations of its prior beyond which an error of the apparatus is strained: a search that takes it there
-/// makes up for what the model lacks.
-const STRAINED: f64 = 2.0;
+/// Standard deviations of its prior beyond which an error of the apparatus is strained: a fit that takes it there may make
+/// up for what the model lacks.
+const STRAINED: f64 = 4.0;
 
 /// An unknown that moves the prediction by less than this share of what the others do is idle.
 const IDLE: f64 = 1e-6;

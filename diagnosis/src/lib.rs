@@ -31,6 +31,7 @@ mod curves;
 pub mod diagnose;
 mod directions;
 mod discovery;
+mod doubts;
 pub mod error_columns;
 pub mod error_unit;
 pub mod errors;

@@ -18,6 +18,9 @@ const POLISHED: usize = 3;
 /// Fall of χ² by which another form of an effect has to be better than the one that is listed: odds of 10 to 1.
 const OTHER_FORM: f64 = 4.6;
 
+/// Fall of χ² by which a fit from another start has to be better to be another minimum, and not the same one again.
+const OTHER_MINIMUM: f64 = 0.1;
+
 /// Twins whose signatures have at least this cosine are one force under these conditions.
 const SAME: f64 = 0.999;
 
@@ -73,9 +76,7 @@ impl Ranking {
         let (signatures, failed) = signatures(bench, fitted, candidates);
         let mut scores: Vec<Score> =
             signatures.into_par_iter().map(|signature| refit(bench, fitted, signature)).collect();
-        if bench.data(&fitted.weights).is_strained(&fitted.fit.point) {
-            scores.par_iter_mut().for_each(|score| start_over(bench, fitted, score));
-        }
+        scores.par_iter_mut().for_each(|score| start_over(bench, fitted, score));
         let id = |score: &Score| &bench.forward.candidates()[score.candidate()].id;
         let (mut leaders, mut rows) = (Vec::new(), Vec::new());
         for row in best_first(&scores) {
@@ -258,12 +259,12 @@ fn polished(bench: &Bench<'_>, fitted: &Fitted, score: &Score) -> Option<Fit> {
     bench.data(&fitted.weights).fit_as_listed(&score.point).ok()
 }
 
-/// The same from where parameters start, if that explains more: around a fit that strains the apparatus, derivatives
-/// say little of what an effect would do.
+/// The same from where parameters start, if that explains more: around a fit in which errors of the apparatus and a scatter
+/// between conditions make up for what the model lacks, derivatives say little of what an effect would do.
 fn start_over(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) {
     let data = bench.data(&fitted.weights);
     let Ok(fit) = data.fit_as_listed_from_start(score.candidate()) else { return };
-    if fitted.fit.chi2 - fit.chi2 > score.delta {
+    if fitted.fit.chi2 - fit.chi2 > score.delta + OTHER_MINIMUM {
         score.take(fitted.fit.chi2, fit);
     }
 }

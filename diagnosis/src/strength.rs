@@ -45,6 +45,13 @@ pub enum StrengthReason {
     FreshBedsNoNearer,
 }
 
+impl Strength {
+    /// That of a verdict with these `doubts`.
+    pub(crate) fn of(doubts: &[StrengthReason]) -> Self {
+        if doubts.is_empty() { Self::Confirmed } else { Self::Suggested }
+    }
+}
+
 impl StrengthReason {
     /// Whether it is of the measurements, whatever effect is named.
     pub(crate) fn is_of_measurements(self) -> bool {

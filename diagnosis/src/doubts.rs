@@ -1,0 +1,52 @@
+//! What a verdict rests on, and why it may be no more than suggested.
+
+use crate::bench::{Bench, Fitted};
+use crate::held_out::HeldOut;
+use crate::noise::NoiseSource;
+use crate::verdict::{Amplitude, Evidence, StrengthReason};
+
+/// Fewest deviations of repeats from their means that make more than a suggestion: a standard deviation
+/// from eight is known to a quarter.
+const CONTRASTS: usize = 8;
+
+/// Why a verdict that names `amplitudes`, in the fit `proposed`, is only suggested; nothing where it is confirmed.
+///
+/// Confirmed is what rests on the scatter of repeats, from [`CONTRASTS`] independent deviations at least, and, where
+/// an effect is named, has amplitudes that are no more than two standard errors outside of the usual range of their
+/// effects, takes no error of the apparatus far beyond what is known of it, and predicts better what it has not seen
+/// without leaving out a condition that the model predicts without it.
+pub(crate) fn doubts(
+    bench: &Bench<'_>,
+    proposed: &Fitted,
+    amplitudes: &[Amplitude],
+    held_out: &HeldOut,
+) -> Vec<StrengthReason> {
+    let few = bench.observed.contrasts() < CONTRASTS;
+    let mut doubts: Vec<StrengthReason> = match proposed.noise.source {
+        NoiseSource::Repeats => few.then_some(StrengthReason::FewRepeats).into_iter().collect(),
+        NoiseSource::Stated => vec![StrengthReason::StatedErrors],
+        NoiseSource::AssumedScatter | NoiseSource::Assumed => vec![StrengthReason::AssumedScatter],
+    };
+    if amplitudes.is_empty() {
+        return doubts;
+    }
+    if amplitudes.iter().any(|amplitude| amplitude.unusual) {
+        doubts.push(StrengthReason::AmplitudeOutsideUsualRange);
+    }
+    if bench.data(&proposed.weights).is_strained(&proposed.fit.point) {
+        doubts.push(StrengthReason::ApparatusFarFromStated);
+    }
+    doubts.extend(held_out.doubt());
+    doubts
+}
+
+/// What the noise of `fitted` is known from.
+pub(crate) fn evidence(bench: &Bench<'_>, fitted: &Fitted) -> Evidence {
+    match fitted.noise.source {
+        NoiseSource::Repeats if bench.observed.contrasts() < CONTRASTS => Evidence::FewRepeats,
+        NoiseSource::Repeats => Evidence::Repeats,
+        NoiseSource::Stated | NoiseSource::AssumedScatter | NoiseSource::Assumed => {
+            Evidence::StatedErrors
+        }
+    }
+}
