@@ -93,6 +93,9 @@ pub(crate) struct Tables {
     /// Name of a column: t=NAME, z=NAME (vertical), x=NAME or run=NAME. Repeatable.
     #[arg(long, value_name = "t=NAME")]
     pub(crate) column: Vec<String>,
+    /// Depth of the bed from its surface to the bottom, such as 14cm.
+    #[arg(long)]
+    pub(crate) bed_depth: Option<String>,
     /// Bulk density of the bed, such as "1.52 g/cc".
     #[arg(long)]
     pub(crate) bulk_density: Option<String>,

@@ -36,6 +36,7 @@ impl Tables {
             ("drop_height", &self.drop_height),
             ("condition", &self.condition),
             ("leave_out", &self.leave_out),
+            ("bed_depth", &self.bed_depth),
             ("bulk_density", &self.bulk_density),
             ("grain_diameter", &self.grain_diameter),
         ];

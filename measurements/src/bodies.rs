@@ -11,7 +11,7 @@ use super::conditions::ConditionPlaces;
 
 /// Least and greatest mean density of a body (kg/m³): below the first it is lighter than any foam, above the
 /// second heavier than any metal.
-const DENSITY: (f64, f64) = (5.0, 3e4);
+const DENSITY: (f64, f64) = (10.0, 3e4);
 
 /// Densities (kg/m³) of which intruders are made.
 const USUAL: (f64, f64) = (100.0, 2.3e4);

@@ -24,9 +24,14 @@ const LOOSE: f64 = 1e-9;
 /// Forces that are held at zero, by their place among the numbers: drag, what grows with depth, and friction.
 const WITHOUT: [&[usize]; 7] = [&[], &[5], &[4], &[3], &[4, 5], &[3, 5], &[3, 4]];
 
-/// Shares of the body that meet the bed, by that of its section: of drag and friction, and of what grows with depth.
-const EXPOSURES: [fn(f64) -> [f64; 2]; 3] =
-    [|_| [1.0, 1.0], |section| [section, 1.0], |section| [section, section]];
+/// Shares of the body that meet the bed, of drag, of what grows with depth and of friction, by its section in the surface
+/// and by how fast its volume immerses: grains that it sets in motion brake it while that grows.
+const EXPOSURES: [fn(f64, f64) -> [f64; 3]; 4] = [
+    |_, _| [1.0, 1.0, 1.0],
+    |section, _| [section, 1.0, section],
+    |section, _| [section, section, section],
+    |_, entering| [1.0 + entering, 1.0, 1.0],
+];
 
 /// The part of a body that meets the bed first.
 #[derive(Clone, Copy, Debug)]
@@ -52,6 +57,20 @@ impl Tip<'_> {
                 (2.0 * share * libm::tan(half)).min(1.0).powi(2)
             }
             _ => 1.0,
+        }
+    }
+
+    /// Immersed volume by depth over the largest section, `depth` (m) below first contact; nothing of a body that is
+    /// below the surface as a whole.
+    fn entering(self, depth: f64) -> f64 {
+        let share = (depth / self.diameter).max(0.0);
+        let chord = (4.0 * share * (1.0 - share)).max(0.0);
+        match self.shape {
+            "sphere" => chord,
+            "disc" => chord.sqrt(),
+            "hemisphere" if share >= 0.5 => 0.0,
+            "cone" if self.section(depth) >= 1.0 => 0.0,
+            _ => self.section(depth),
         }
     }
 }
@@ -106,8 +125,8 @@ pub(super) fn fits(
             let [level, _] = path(contact);
             let forces = |time: f64| {
                 let [z, v] = path(time);
-                let [share, deep] = exposure(tip.section(z - level));
-                [share * v * v, deep * (z - level).max(0.0), share]
+                let [fast, deep, share] = exposure(tip.section(z - level), tip.entering(z - level));
+                [fast * v * v, deep * (z - level).max(0.0), share]
             };
             let braked = braked(readings, contact, forces);
             let behind = frames.iter().filter(|frame| frame.t > contact);

@@ -50,7 +50,7 @@ pub(super) fn tracks(
         Some(first) => first.notes.extend(others.iter().map(left_out)),
         None => faults.append(&mut others),
     }
-    note_equal(&mut all);
+    leave_out_equal(&mut all);
     if faults.is_empty() { Ok((all, hashes)) } else { Err(faults) }
 }
 
@@ -79,19 +79,30 @@ fn left_out(fault: &Fault) -> String {
     format!("{}: {}, left out", fault.place, fault.what)
 }
 
-/// Says which tracks have the readings of one before them.
-fn note_equal(tracks: &mut [Track]) {
+/// Removes tracks whose positions are those of one before them, on whatever clock: no drop is measured twice.
+fn leave_out_equal(tracks: &mut Vec<Track>) {
     let same = |one: &Track, other: &Track| {
         let pairs = || one.samples.iter().zip(&other.samples);
         let equal = |a: f64, b: f64| a.total_cmp(&b).is_eq();
         one.samples.len() == other.samples.len()
-            && pairs().all(|(a, b)| equal(a.t, b.t) && equal(a.z, b.z) && equal(a.x, b.x))
+            && pairs().all(|(a, b)| equal(a.z, b.z) && equal(a.x, b.x))
     };
-    for at in 1..tracks.len() {
-        let (before, rest) = tracks.split_at_mut(at);
-        let Some(first) = before.iter().find(|one| same(one, &rest[0])) else { continue };
-        let name = first.name.as_ref().unwrap_or(&first.stem);
-        rest[0].notes.push(format!("its readings are those of {name}"));
+    let name = |track: &Track| track.name.as_ref().unwrap_or(&track.stem).clone();
+    let mut at = 1;
+    while at < tracks.len() {
+        let first = tracks[..at].iter().position(|one| same(one, &tracks[at]));
+        let Some(first) = first else {
+            at += 1;
+            continue;
+        };
+        let twice = tracks.remove(at);
+        let of = name(&tracks[first]);
+        let note = format!(
+            "the readings of {} in {} are those of {of}, left out",
+            name(&twice),
+            twice.file
+        );
+        tracks[first].notes.push(note);
     }
 }
 
@@ -181,7 +192,7 @@ fn names(tracks: &[Track]) -> Vec<String> {
         let name = match (&track.name, count(short)) {
             (_, 1) => (*short).to_owned(),
             (Some(name), _) => format!("{}-{name}", track.stem),
-            (None, _) => track.stem.clone(),
+            (None, _) => within_folders(track, 1).replace('/', "-"),
         };
         let name = name.trim().to_owned();
         let others = (2..).map(|nth| format!("{name}-{nth}"));
@@ -191,14 +202,25 @@ fn names(tracks: &[Track]) -> Vec<String> {
     names
 }
 
-/// What the pattern says of a run by its name or that of its file.
+/// The name of a run behind those of so many folders around its file, parted by `/`.
+fn within_folders(track: &Track, folders: usize) -> String {
+    let around = File::new(&track.file).parent().map_or(Vec::new(), |folder| {
+        folder.components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect()
+    });
+    let nearest = around[around.len().saturating_sub(folders)..].iter().map(String::as_str);
+    let own = track.name.as_deref().unwrap_or(&track.stem);
+    nearest.chain(std::iter::once(own)).collect::<Vec<_>>().join("/")
+}
+
+/// What the pattern says of a run by its name, that of its file or those of the folders around it.
 fn fields(
     track: &Track,
     name: &str,
     settings: &Settings<'_>,
 ) -> Result<Vec<(String, String)>, Fault> {
     let Some(pattern) = &settings.pattern else { return Ok(Vec::new()) };
-    let names = [track.name.as_deref().unwrap_or(name), name, &track.stem];
+    let within = within_folders(track, pattern.folders());
+    let names = [track.name.as_deref().unwrap_or(name), name, &track.stem, &within];
     names.iter().find_map(|name| pattern.fields(name)).ok_or_else(|| {
         let what = format!("the name `{name}` does not fit {}", pattern.text());
         Fault::new(&track.file, what, "write --condition as the names of files or runs are made")

@@ -53,8 +53,9 @@ type Named = (String, Vec<(&'static str, String)>);
 pub(super) struct Bodies(Vec<Named>);
 
 /// Names of columns of a table of bodies, and what they may be called.
-const COLUMNS: [(&str, &[&str]); 5] = [
-    ("diameter", &["diameter", "d", "durchmesser", "diamètre"]),
+const COLUMNS: [(&str, &[&str]); 6] = [
+    ("diameter", &["diameter", "d", "dia", "durchmesser", "diamètre"]),
+    ("radius", &["radius", "r", "rayon"]),
     ("mass", &["mass", "m", "masse", "masa", "weight"]),
     ("shape", &["shape", "form", "forme"]),
     ("height", &["height", "h", "length"]),
@@ -130,9 +131,10 @@ impl Bodies {
         }
         let said = |key: &str| {
             let of_table = || name.and_then(|name| self.get(name, key));
+            // What the user says stands above a column of that name: trackers call a brightness mass.
             of_table().map(|text| (text, flag("bodies"))).or_else(|| {
                 label(key)
-                    .filter(|_| key != "height")
+                    .filter(|_| key != "height" && settings.text(key).is_none())
                     .map(|text| (text, format!("the column {key}")))
             })
         };
@@ -163,7 +165,14 @@ impl Bodies {
             let right = "known: sphere, disc, cylinder, hemisphere, cone";
             return Err(Fault::new(&flag("shape"), what, right));
         }
-        let diameter = needed("diameter", Dimension::LENGTH, "25.4mm")?;
+        let radius = match said("radius") {
+            Some(_) => quantity("radius", Dimension::LENGTH)?,
+            None => None,
+        };
+        let diameter = match radius {
+            Some(radius) => 2.0 * radius,
+            None => needed("diameter", Dimension::LENGTH, "25.4mm")?,
+        };
         let height = quantity("height", Dimension::LENGTH)?;
         let stated = quantity("apex", Dimension::ANGLE)?;
         let by_height = height.map(|height| 2.0 * libm::atan2(0.5 * diameter, height));

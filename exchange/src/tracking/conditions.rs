@@ -12,6 +12,9 @@ const ALIKE: f64 = 0.05;
 /// Times their errors that speeds of one condition may differ by.
 const ERRORS: f64 = 4.0;
 
+/// Share of the median speed of a condition that is said by name, and times its error, beyond which a run is of another.
+const OTHER: (f64, f64) = (0.25, 6.0);
+
 /// What tells the condition of a run.
 pub(super) struct Member<'a> {
     pub(super) name: &'a str,
@@ -35,7 +38,7 @@ pub(super) fn manner(members: &[Member<'_>], pattern: Option<&Pattern>) -> Strin
 /// The condition of each run.
 ///
 /// # Errors
-/// If runs of one condition have different bodies.
+/// If runs of one condition have different bodies, or speeds that are far apart.
 pub(super) fn group(
     members: &[Member<'_>],
     pattern: Option<&Pattern>,
@@ -61,7 +64,33 @@ pub(super) fn group(
             ));
         }
     }
+    refuse_other_speeds(members, &ids)?;
     Ok(ids)
+}
+
+/// Refuses a condition in which a run meets the bed much faster or slower than most do.
+fn refuse_other_speeds(members: &[Member<'_>], ids: &[String]) -> Result<(), Fault> {
+    for (at, id) in ids.iter().enumerate() {
+        let own = || members.iter().zip(ids).filter(|(_, other)| *other == id).map(|(one, _)| one);
+        let mut speeds: Vec<f64> = own().map(|one| one.speed.value).collect();
+        speeds.sort_by(f64::total_cmp);
+        let (middle, speed) = (speeds[speeds.len() / 2], members[at].speed);
+        if (speed.value - middle).abs() <= (OTHER.0 * middle).max(OTHER.1 * speed.se) {
+            continue;
+        }
+        let others = own().filter(|one| one.name != members[at].name);
+        let others: Vec<String> =
+            others.map(|one| format!("{} at {:.2}", one.name, one.speed.value)).collect();
+        let what = format!(
+            "the run {} meets the bed at {:.2} m/s, and others of its condition `{id}` do otherwise: {}",
+            members[at].name,
+            speed.value,
+            others.join(", ")
+        );
+        let right = "is a file misnamed? name in the pattern what differs, or leave the run out";
+        return Err(Fault::new("--condition", what, right));
+    }
+    Ok(())
 }
 
 fn of_column(member: &Member<'_>) -> Option<String> {

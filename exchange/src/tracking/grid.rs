@@ -75,7 +75,10 @@ impl<'a> Grid<'a> {
             (0..first).rev().take_while(|at| is_header(&sheet.rows[*at])).collect();
         let is_units = |row: &Row| {
             let cells = || row.cells.iter().filter(|cell| !cell.is_empty());
-            cells().all(|cell| Unit::maybe(cell).is_some() && !matches!(cell.as_str(), "t" | "T"))
+            let is_unit =
+                |cell: &String| Unit::maybe(cell).is_some() && !matches!(cell.as_str(), "t" | "T");
+            // Speeds stand beside positions.
+            cells().any(is_unit) && cells().all(|cell| is_unit(cell) || cell.contains('/'))
         };
         match above[..] {
             [] => {
@@ -86,6 +89,10 @@ impl<'a> Grid<'a> {
             }
             [units, header, ..] if is_units(&sheet.rows[units]) => {
                 Ok(Self::below(sheet, header, Some(units)))
+            }
+            // Comments stand below names and units.
+            [_, units, header, ..] if is_units(&sheet.rows[units]) => {
+                Ok(Self { rows: &sheet.rows[first..], ..Self::below(sheet, header, Some(units)) })
             }
             [header, ..] => {
                 Ok(Self { rows: &sheet.rows[first..], ..Self::below(sheet, header, None) })
@@ -278,7 +285,7 @@ impl<'a> Grid<'a> {
 
 /// Readings but those of a number that trackers write where they saw nothing, far from all that they saw.
 fn without_marks(samples: Vec<Sample>) -> Vec<Sample> {
-    const MARKS: [f64; 6] = [-1.0, -99.0, -999.0, -9999.0, 999.0, 9999.0];
+    const MARKS: [f64; 7] = [0.0, -1.0, -99.0, -999.0, -9999.0, 999.0, 9999.0];
     let is = |mark: f64| move |one: &&Sample| one.z.total_cmp(&mark).is_eq();
     let is_mark = |mark: f64| {
         let others = || samples.iter().filter(move |one| !is(mark)(one));

@@ -24,8 +24,9 @@ pub(super) struct Heading {
     pub(super) unit: Unit,
 }
 
-const TIME: [&str; 14] = [
+const TIME: [&str; 15] = [
     "t",
+    "millis",
     "time",
     "times",
     "zeit",

@@ -193,7 +193,8 @@ fn see(
     let fall = (settings.gravity, one.body.diameter);
     motion::refuse_several(&of_the_body, (&departure.contact, noise), fall, &one.path.track)?;
     let soft = one.body.soft_entry();
-    let seen = Seen { name: one.name.clone(), departure, stated, soft, below_centre };
+    let diameter = one.body.diameter;
+    let seen = Seen { name: one.name.clone(), departure, stated, soft, diameter, below_centre };
     Ok((seen, scales, frames, noise))
 }
 
@@ -245,7 +246,11 @@ fn drop_heights(runs: &mut [Run], settings: &Settings<'_>) -> Result<(), Vec<Fau
 fn notes(runs: &[Run], level: &Level, manner: &str, settings: &Settings<'_>) -> Vec<String> {
     let mut notes = Vec::new();
     notes.push(match level {
-        Level::Stated => "Surface: as --surface states it.".to_owned(),
+        Level::Stated(error) if *error > surface::STATED => format!(
+            "Surface: as --surface states it. The bodies are braked up to {:.2} mm from there, which is taken for its error.",
+            1e3 * error
+        ),
+        Level::Stated(_) => "Surface: as --surface states it.".to_owned(),
         Level::Common(level) => {
             let of = match runs.len() {
                 1 => "from the contact",

@@ -43,23 +43,18 @@ pub(super) fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Fault> {
 /// Endings of tables that a folder is searched for.
 const TABLES: [&str; 6] = ["csv", "tsv", "txt", "dat", "lvm", "tab"];
 
-/// The tables in a folder, sorted.
+/// The tables in a folder, or where there is none in the folders within it, sorted.
 ///
 /// # Errors
 /// If the folder cannot be read or holds no table.
 pub(super) fn tables_in(folder: &Path) -> Result<Vec<PathBuf>, Fault> {
     let shown = folder.display().to_string();
-    let entries = std::fs::read_dir(folder).map_err(|error| {
-        Fault::new(&shown, error.to_string(), "name tables, or a folder of tables")
-    })?;
-    let is_table = |path: &PathBuf| {
-        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-        let ending = ending.to_ascii_lowercase();
-        TABLES.contains(&ending.as_str()) || spreadsheet::ENDINGS.contains(&ending.as_str())
-    };
-    let mut found: Vec<PathBuf> =
-        entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_table).collect();
-    found.sort();
+    let mut found = directly_in(folder)?;
+    if found.is_empty() {
+        let mut within: Vec<PathBuf> = entries_of(folder)?.filter(|path| path.is_dir()).collect();
+        within.sort();
+        found = within.iter().map(|one| directly_in(one)).collect::<Result<Vec<_>, _>>()?.concat();
+    }
     match found.is_empty() {
         true => {
             let right = "a table ends in .csv, .tsv, .txt, .dat, .lvm, .xlsx or .ods";
@@ -67,6 +62,26 @@ pub(super) fn tables_in(folder: &Path) -> Result<Vec<PathBuf>, Fault> {
         }
         false => Ok(found),
     }
+}
+
+fn entries_of(folder: &Path) -> Result<impl Iterator<Item = PathBuf>, Fault> {
+    let entries = std::fs::read_dir(folder).map_err(|error| {
+        let shown = folder.display().to_string();
+        Fault::new(&shown, error.to_string(), "name tables, or a folder of tables")
+    })?;
+    Ok(entries.filter_map(|entry| Some(entry.ok()?.path())))
+}
+
+/// The tables in a folder, sorted, and nothing that is in folders within it.
+fn directly_in(folder: &Path) -> Result<Vec<PathBuf>, Fault> {
+    let is_table = |path: &PathBuf| {
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        let ending = ending.to_ascii_lowercase();
+        TABLES.contains(&ending.as_str()) || spreadsheet::ENDINGS.contains(&ending.as_str())
+    };
+    let mut found: Vec<PathBuf> = entries_of(folder)?.filter(is_table).collect();
+    found.sort();
+    Ok(found)
 }
 
 fn fitting(pattern: &str) -> Result<Vec<PathBuf>, Fault> {

@@ -46,6 +46,11 @@ impl Pattern {
         has_field.then(|| Self { text: text.to_owned(), parts }).ok_or("it has no field".to_owned())
     }
 
+    /// How many folders around a file the pattern names.
+    pub(super) fn folders(&self) -> usize {
+        self.text.matches('/').count()
+    }
+
     pub(super) fn text(&self) -> &str {
         &self.text
     }

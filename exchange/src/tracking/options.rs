@@ -8,7 +8,7 @@ pub struct Options(BTreeMap<&'static str, String>);
 
 impl Options {
     /// The keys, with what they mean: those of `import.toml`, and with `-` for `_` the flags of the command.
-    pub const KEYS: [(&'static str, &'static str); 25] = [
+    pub const KEYS: [(&'static str, &'static str); 26] = [
         ("id", "the name of the set"),
         ("shape", "the shape of the body"),
         ("diameter", "the diameter of the body"),
@@ -32,6 +32,7 @@ impl Options {
         ("column_z", "the column of vertical positions"),
         ("column_x", "the column of horizontal positions"),
         ("column_run", "the column of runs"),
+        ("bed_depth", "the depth of the bed"),
         ("bulk_density", "the bulk density of the bed"),
         ("grain_diameter", "the mean diameter of the grains"),
     ];

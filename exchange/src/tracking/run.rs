@@ -20,6 +20,8 @@ pub(super) struct Run {
     pub(super) labels: Vec<(String, String)>,
     pub(super) body: Body,
     pub(super) condition: String,
+    /// 1 where the axis of its table counts downward, −1 upward.
+    pub(super) sign: f64,
     pub(super) touch: Touch,
     pub(super) speed: Reading,
     /// (deg)
@@ -88,6 +90,7 @@ impl Run {
             labels,
             body,
             condition: String::new(),
+            sign: path.sign,
             touch,
             speed,
             angle: if is_oblique { 90.0 - from_vertical } else { 90.0 },

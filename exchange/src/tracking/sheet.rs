@@ -85,7 +85,7 @@ impl Sheet {
 /// The number in `cell`, whose decimals stand behind a comma or a point.
 pub(super) fn number(cell: &str, decimal_comma: bool) -> Number {
     let lower = cell.to_ascii_lowercase();
-    let marks = ["", "nan", "-", "n/a", "na", "#n/a", "none", "null", "#value!", "#div/0!"];
+    let marks = ["", "nan", "-", "--", "n/a", "na", "#n/a", "none", "null", "#value!", "#div/0!"];
     if marks.contains(&lower.as_str()) {
         return Number::Missing;
     }
@@ -140,8 +140,12 @@ fn of_fortran(text: &str) -> Option<f64> {
     (value.is_finite() && digits.contains(|c: char| c.is_ascii_digit())).then_some(value)
 }
 
-/// Seconds of a time such as `0:12.3` or `00:00:12.300`.
+/// Seconds of a time such as `0:12.3` or `00:00:12.300`, the latter behind a date `2024-05-03` or not.
 fn clock(text: &str) -> Option<f64> {
+    let text = text.split_once([' ', 'T']).map_or(text, |(date, time)| {
+        let is_date = date.len() == 10 && date.split('-').all(|part| part.parse::<u32>().is_ok());
+        if is_date { time.trim_end_matches('Z') } else { text }
+    });
     let (rest, seconds) = text.rsplit_once(':')?;
     let is_count = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
     let (whole, share) = seconds.split_once('.')?;
@@ -179,6 +183,10 @@ mod tests {
         assert_eq!(number("00:01:12.5", false), Number::Value(72.5));
         assert_eq!(number("1:12,25", true), Number::Value(72.25));
         assert_eq!(number("1:2:3:4.5", false), Number::Other);
+        for time in ["2024-05-03 14:22:31.25", "2024-05-03T14:22:31.25Z"] {
+            assert_eq!(number(time, false), Number::Value(51_751.25), "{time}");
+        }
+        assert_eq!(number("3 14:22:31.25", false), Number::Other);
         assert_eq!(number("-1.5D-02", false), Number::Value(-0.015));
         assert_eq!(number("D1", false), Number::Other);
     }

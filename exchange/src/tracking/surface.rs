@@ -4,8 +4,11 @@ use measurements::{Contact, Departure, Levels, Reading, levels};
 
 use super::fault::Fault;
 
-/// Distance (m) and times its error beyond which a level that is stated is not where the contact is.
+/// Distance (m) and times its error beyond which a level that is stated is not where the contact is,
 const OFF: (f64, f64) = (1e-3, 3.5);
+
+/// and in diameters beyond which it cannot be: a bed that brakes in an unusual form moves contacts by less.
+const FAR: f64 = 0.25;
 
 /// Error of a level that is stated (m).
 pub(super) const STATED: f64 = 1e-3;
@@ -21,6 +24,8 @@ pub(super) struct Seen {
     pub(super) stated: Option<f64>,
     /// How deep the tip goes before the bed resists noticeably, at most (m).
     pub(super) soft: f64,
+    /// (m)
+    pub(super) diameter: f64,
     /// How far the lowest point is below the centre (m), if that is known.
     pub(super) below_centre: Option<f64>,
 }
@@ -43,8 +48,8 @@ pub(super) struct Touch {
 /// Where the levels come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Level {
-    /// The user states them.
-    Stated,
+    /// The user states them; their error (m).
+    Stated(f64),
     /// All runs have one (m).
     Common(Reading),
     /// Each run has its own; the error (m) that these share.
@@ -58,16 +63,13 @@ pub(super) enum Level {
 pub(super) fn touches(runs: &[Seen], gravity: f64) -> Result<(Level, Vec<Touch>), Vec<Fault>> {
     let is_stated = runs.iter().all(|run| run.stated.is_some());
     if is_stated {
-        let faults = off(runs);
-        if !faults.is_empty() {
-            return Err(faults);
-        }
+        let error = error_of_stated(runs)?;
         let at = |run: &Seen| {
             let value = run.stated.unwrap_or_default();
             let with = |se| Touch::at(&run.departure.contact, Reading { value, se }, gravity);
-            Touch { own_speed_error: with(LEAST).own_speed_error, ..with(STATED) }
+            Touch { own_speed_error: with(LEAST).own_speed_error, ..with(error) }
         };
-        return Ok((Level::Stated, runs.iter().map(at).collect()));
+        return Ok((Level::Stated(error), runs.iter().map(at).collect()));
     }
     let departures: Vec<&Departure> = runs.iter().map(|run| &run.departure).collect();
     let at = |run: &Seen, level: Reading| Touch::at(&run.departure.contact, level, gravity);
@@ -83,7 +85,7 @@ pub(super) fn touches(runs: &[Seen], gravity: f64) -> Result<(Level, Vec<Touch>)
             };
             (Level::Own(shared.max(LEAST)), runs.iter().zip(&levels).map(of).collect())
         }
-        None => (Level::Stated, Vec::new()),
+        None => (Level::Stated(STATED), Vec::new()),
     })
 }
 
@@ -106,30 +108,47 @@ impl Touch {
     }
 }
 
-/// What is wrong where the contacts are not at the levels that are stated: of all runs together where they agree, else
-/// of each.
-fn off(runs: &[Seen]) -> Vec<Fault> {
+/// The error (m) of levels that are stated, by how far from them the contacts are: of all runs together where they agree,
+/// else of each.
+///
+/// # Errors
+/// If contacts are too far from there.
+fn error_of_stated(runs: &[Seen]) -> Result<f64, Vec<Fault>> {
     let below = |run: &Seen| Some(run.departure.below(run.stated?));
     let all: Vec<Departure> = runs.iter().filter_map(below).collect();
-    match levels(&all.iter().collect::<Vec<_>>()) {
-        Some(Levels::One(miss)) => one_off("the runs are", miss, &runs[0]).into_iter().collect(),
+    let each: Vec<Result<f64, Fault>> = match levels(&all.iter().collect::<Vec<_>>()) {
+        Some(Levels::One(miss)) => vec![error_of_one("the runs are", miss, &runs[0])],
         Some(Levels::Each { levels, shared }) => {
             let of = |(run, own): (&Seen, &Reading)| {
                 let miss = Reading { se: libm::hypot(own.se, shared), ..*own };
-                one_off(&format!("the run {} is", run.name), miss, run)
+                error_of_one(&format!("the run {} is", run.name), miss, run)
             };
-            runs.iter().zip(&levels).filter_map(of).collect()
+            runs.iter().zip(&levels).map(of).collect()
         }
         None => Vec::new(),
+    };
+    let (mut error, mut faults) = (STATED, Vec::new());
+    for one in each {
+        match one {
+            Ok(own) => error = error.max(own),
+            Err(fault) => faults.push(fault),
+        }
     }
+    if faults.is_empty() { Ok(error) } else { Err(faults) }
 }
 
-/// What is wrong with a level that contacts, as that of `run`, miss by `miss` (m).
-fn one_off(who: &str, miss: Reading, run: &Seen) -> Option<Fault> {
-    let Seen { soft, below_centre, .. } = *run;
+/// The error (m) of a level that contacts, as that of `run`, miss by `miss` (m).
+///
+/// # Errors
+/// If it cannot be that level.
+fn error_of_one(who: &str, miss: Reading, run: &Seen) -> Result<f64, Fault> {
+    let Seen { soft, diameter, below_centre, .. } = *run;
     let error = OFF.1 * miss.se;
     if (-OFF.0.max(error)..=OFF.0.max(error) + soft).contains(&miss.value) {
-        return None;
+        return Ok(STATED);
+    }
+    if (-FAR * diameter..=FAR * diameter + soft).contains(&miss.value) {
+        return Ok(miss.value.abs());
     }
     let near = |wanted: f64| (miss.value - wanted).abs() <= error.max(0.1 * wanted.abs());
     let half = "this is half of the body: was its";
@@ -148,5 +167,5 @@ fn one_off(who: &str, miss: Reading, run: &Seen) -> Option<Fault> {
         1e3 * miss.value.abs(),
         1e3 * miss.se
     );
-    Some(Fault::new("--surface", what, right))
+    Err(Fault::new("--surface", what, right))
 }

@@ -29,8 +29,10 @@ pub(super) fn read(file: &str, stem: &str, bytes: &[u8]) -> Result<Sheet, Fault>
         let right = "a table is text, or a spreadsheet named .xlsx, .xls or .ods";
         return Err(Fault::new(file, what, right));
     }
-    let lines: Vec<(u64, &str)> =
-        (1..).zip(lines(&text)).filter(|(_, line)| !line.trim().is_empty()).collect();
+    let lines: Vec<(u64, &str)> = (1..)
+        .zip(lines(&text).map(without_stamp))
+        .filter(|(_, line)| !line.trim().is_empty())
+        .collect();
     // What stands above the numbers has other separators.
     let sample = &lines[lines.len().min(lines.len() / 4).min(40)..];
     let sample = &sample[..sample.len().min(SAMPLE)];
@@ -66,6 +68,7 @@ pub(super) fn read(file: &str, stem: &str, bytes: &[u8]) -> Result<Sheet, Fault>
         rows.push(Row { line, cells });
     }
     rows.retain(|row| !row.is_blank());
+    drop_row_names(&mut rows);
     let decimal_comma = has_decimal_commas(&rows);
     Ok(Sheet {
         file: file.to_owned(),
@@ -75,6 +78,26 @@ pub(super) fn read(file: &str, stem: &str, bytes: &[u8]) -> Result<Sheet, Fault>
         rows,
         notes,
     })
+}
+
+/// Removes the numbers of rows that R writes before them without a name in the header.
+fn drop_row_names(rows: &mut [Row]) {
+    let Some((header, below)) = rows.split_first_mut() else { return };
+    let is_numbered = |(nth, row): (usize, &Row)| {
+        row.cells.len() == header.cells.len() + 1 && row.cells[0] == nth.to_string()
+    };
+    if !below.is_empty() && (1..).zip(&*below).all(is_numbered) {
+        below.iter_mut().for_each(|row| drop(row.cells.remove(0)));
+    }
+}
+
+/// A line without the time of day that a serial monitor puts before it, as in `14:22:31.100 -> 12,158.35`.
+fn without_stamp(line: &str) -> &str {
+    let is_time = |text: &str| {
+        text.contains(':')
+            && text.bytes().all(|byte| byte.is_ascii_digit() || b":.".contains(&byte))
+    };
+    line.split_once(" -> ").filter(|(stamp, _)| is_time(stamp)).map_or(line, |(_, rest)| rest)
 }
 
 /// UTF-8 or UTF-16 by its byte order mark, else UTF-8, else Windows-1252, which holds Latin-1.
@@ -182,6 +205,14 @@ mod tests {
         let latin = read("a.csv", "a", b"Slice n\xb0,Y \x96\n1,2\n").expect("a table");
         assert_eq!(latin.rows[0].cells, ["Slice n°", "Y –"]);
         assert_eq!(latin.notes.len(), 1);
+    }
+
+    #[test]
+    fn numbers_of_rows_and_stamps_of_a_monitor_are_no_cells() {
+        let plain = sheet("t,y\n0,1.5\n1,1.6\n").rows;
+        assert_eq!(sheet("\"t\" \"y\"\n\"1\" 0 1.5\n\"2\" 1 1.6\n").rows, plain);
+        let stamped = "10:00:00.1 -> t,y\n10:00:00.2 -> 0,1.5\n10:00:00.3 -> 1,1.6\n";
+        assert_eq!(sheet(stamped).rows, plain);
     }
 
     #[test]

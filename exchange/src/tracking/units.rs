@@ -20,7 +20,7 @@ pub(super) enum Unit {
 }
 
 /// Other spellings.
-const SPELLINGS: [(&str, &[&str]); 9] = [
+const SPELLINGS: [(&str, &[&str]); 10] = [
     ("s", &["sec", "secs", "second", "seconds", "sek", "seg"]),
     ("ms", &["msec", "millisecond", "milliseconds"]),
     ("us", &["µs", "μs", "microsecond", "microseconds"]),
@@ -29,6 +29,7 @@ const SPELLINGS: [(&str, &[&str]); 9] = [
     ("mm", &["millimeter", "millimeters", "millimetre", "millimetres"]),
     ("um", &["µm", "μm", "micron", "microns", "micrometer", "micrometers"]),
     ("inch", &["inches", "in.", "\""]),
+    ("ft", &["feet", "foot"]),
     ("min", &["minute", "minutes"]),
 ];
 

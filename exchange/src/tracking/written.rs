@@ -12,7 +12,7 @@ use super::fault::Fault;
 use super::options::Options;
 use super::run::Run;
 use super::settings::Settings;
-use super::surface::{self, LEAST, Level};
+use super::surface::{LEAST, Level};
 
 /// Relative difference below which speeds count as equal.
 const ROUNDING: f64 = 1e-9;
@@ -85,7 +85,7 @@ fn measurement(known: &Known<'_>, notes: &[String]) -> Result<String, Fault> {
         ));
     }
     let (surface, by) = match level {
-        Level::Stated => (surface::STATED, "as it is stated"),
+        Level::Stated(error) => (*error, "as it is stated"),
         Level::Common(level) => (level.se, "the one level of all runs, by their contacts"),
         Level::Own(shared) => (*shared, "what the levels of all runs share, by their contacts"),
     };
@@ -114,6 +114,9 @@ fn measurement(known: &Known<'_>, notes: &[String]) -> Result<String, Fault> {
     line("\n[files]\nruns = \"runs.csv\"\ntrajectories = \"trajectories.csv\"".to_owned());
     line("delimiter = \",\"\ndecimal = \".\"".to_owned());
     line("\n# Without `role` each condition is left out in turn; role = \"holdout\" never lets one be fitted to.".to_owned());
+    if options.get("bed_depth").is_none() {
+        line("# With bed_depth = \"14 cm\" in each, which --bed-depth writes, an effect of the bottom can be found.".to_owned());
+    }
     for (id, own) in &conditions {
         let speed = mean(own.iter().map(|run| run.speed));
         let from = match options.get("drop_height") {
@@ -130,6 +133,9 @@ fn measurement(known: &Known<'_>, notes: &[String]) -> Result<String, Fault> {
         line(format!("speed = {}  # {from}", significant(speed.value, 5)));
         line(format!("angle_deg = {}", significant(angle, 4)));
         body(&own[0].body, &mut line);
+        if let Some(depth) = settings.quantity("bed_depth", Dimension::LENGTH, &own[0].labels)? {
+            line(format!("bed_depth = {depth:?}"));
+        }
     }
     Ok(text)
 }
@@ -148,7 +154,7 @@ fn body(body: &Body, line: &mut impl FnMut(String)) {
 
 fn runs(known: &Known<'_>) -> String {
     let mut text = String::from(
-        "# contact: on the clock of the table (s); level: depth of the surface on its axis (m)\n",
+        "# contact: on the clock of the table (s); level: that of the surface on its axis (m)\n",
     );
     for run in known.runs {
         let _ = writeln!(
@@ -158,7 +164,7 @@ fn runs(known: &Known<'_>) -> String {
             run.file.escape_debug(),
             run.touch.time.value,
             run.touch.time.se,
-            run.touch.level.value,
+            run.sign * run.touch.level.value,
             run.speed.value,
             run.speed.se
         );

@@ -1,8 +1,10 @@
 //! DeepLabCut: three rows of names (scorer, bodyparts, coords), then a row for each frame.
 
+use super::wide::refuse_together;
 use super::{Layout, first_row};
 use crate::tracking::fault::Fault;
 use crate::tracking::grid::{Grid, Places};
+use crate::tracking::heading::Role;
 use crate::tracking::settings::Columns;
 use crate::tracking::sheet::{Number, Sheet};
 use crate::tracking::track::{Track, without_still};
@@ -16,7 +18,7 @@ fn fits(sheet: &Sheet, _: &Columns) -> bool {
     first_row(sheet).starts_with("scorer\t")
 }
 
-fn read(sheet: &Sheet, _: &Columns) -> Result<Vec<Track>, Fault> {
+fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
     let row = |name: &str| sheet.rows.iter().take(4).position(|row| row.cell(0) == name);
     let (Some(parts), Some(coords)) = (row("bodyparts"), row("coords")) else {
         let right = "the first rows are scorer, bodyparts and coords";
@@ -55,9 +57,26 @@ fn read(sheet: &Sheet, _: &Columns) -> Result<Vec<Track>, Fault> {
         let right = "export x, y and likelihood of each body part";
         return Err(sheet.fault("no column is called `y`", right).at(sheet.rows[coords].line));
     }
-    let mut tracks = without_still(tracks);
+    let mut tracks = match columns.of(Role::Vertical) {
+        Some(asked) => vec![called(asked, tracks, sheet)?],
+        None => without_still(tracks),
+    };
+    refuse_together(&tracks.iter().collect::<Vec<_>>(), sheet)?;
     if let [only] = &mut tracks[..] {
         only.name = None;
     }
     Ok(tracks)
+}
+
+/// The track of the column, or body part, that the user names.
+fn called(asked: &str, tracks: Vec<Track>, sheet: &Sheet) -> Result<Track, Fault> {
+    let names: Vec<String> =
+        tracks.iter().map(|track| format!("`{}`", track.vertical.name)).collect();
+    let is_it = |track: &Track| {
+        track.vertical.name == asked || track.name.as_deref().is_some_and(|name| name == asked)
+    };
+    tracks.into_iter().find(is_it).ok_or_else(|| {
+        let right = format!("found: {}", names.join(", "));
+        sheet.fault(format!("no column is called `{asked}`"), right)
+    })
 }

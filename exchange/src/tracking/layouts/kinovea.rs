@@ -88,12 +88,13 @@ fn add(sheet: &Sheet, row: &Row, track: &mut Track) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Seconds of `h:mm:ss:cc`.
+/// Seconds of `h:mm:ss:cc`, or of `h:mm:ss:mmm`.
 fn clock(text: &str) -> Option<f64> {
     let parts: Vec<f64> = text.split(':').map(|part| part.parse().ok()).collect::<Option<_>>()?;
+    let share = if text.rsplit(':').next()?.len() == 3 { 1000.0 } else { 100.0 };
     match parts[..] {
-        [hours, minutes, seconds, hundredths] => {
-            Some(3600.0 * hours + 60.0 * minutes + seconds + hundredths / 100.0)
+        [hours, minutes, seconds, shares] => {
+            Some(3600.0 * hours + 60.0 * minutes + seconds + shares / share)
         }
         _ => None,
     }

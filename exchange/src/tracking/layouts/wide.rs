@@ -74,7 +74,11 @@ fn refuse_twice(tracks: &[Track], sheet: &Sheet) -> Result<(), Fault> {
     ];
     let is_part = |name: &str| name.split([' ', '_', '-']).any(|word| NAMES.contains(&word));
     let parts = tracks.iter().filter(|track| track.name.as_deref().is_some_and(is_part));
-    let parts: Vec<&Track> = parts.collect();
+    refuse_together(&parts.collect::<Vec<_>>(), sheet)
+}
+
+/// Refuses parts that keep their distance.
+pub(super) fn refuse_together(parts: &[&Track], sheet: &Sheet) -> Result<(), Fault> {
     let pairs = parts
         .iter()
         .enumerate()
