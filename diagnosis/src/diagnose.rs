@@ -43,7 +43,7 @@ const SEEN: f64 = 4.0;
 /// effects that the second is chosen from.
 const LIKELIER: f64 = 15.0;
 
-/// Relative scatter of the coefficients of repeats from which they are none.
+/// Relative scatter of the coefficients of repeats from which they are none, where nothing else is found.
 const NO_REPEATS: f64 = 0.5;
 
 /// Diagnoses the model on `bench`; equal `seed` and measurements give equal bytes.
@@ -58,15 +58,6 @@ pub fn diagnose(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
         }
         Err(other) => return Err(other),
     };
-    let scatter = baseline.noise.spread.coefficient;
-    if scatter >= NO_REPEATS {
-        let why = format!(
-            "runs of one condition differ by {:.0} % of their resistance, as repeats do not: compare their bodies, masses \
-             and speeds, and what `runs.csv` says of their conditions",
-            100.0 * scatter
-        );
-        return Ok(cannot_tell(bench, why));
-    }
     let candidates: Vec<usize> = (0..bench.forward.candidates().len())
         .filter(|&index| bench.forward.candidates()[index].not_testable.is_none())
         .collect();
@@ -176,6 +167,10 @@ impl Judge<'_> {
         if self.ranking.p > ALPHA {
             if adequate(p_lof) {
                 let baseline = &self.baseline;
+                let scatter = baseline.noise.spread.coefficient;
+                if scatter >= NO_REPEATS {
+                    return Ok(cannot_tell(self.bench, no_repeats(scatter)));
+                }
                 let verdict = nothing(self.bench, baseline);
                 return self.diagnosis(verdict, baseline, (p_lof, None), (String::new(), None));
             }
@@ -543,6 +538,15 @@ fn correlation(fitted: &Fitted) -> Option<f64> {
 
 fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {
     Diagnosis { measured: measured(bench.set), ..Diagnosis::cannot_tell(ranked(bench, None), why) }
+}
+
+/// Why repeats whose coefficients scatter so much (relative) hide everything.
+fn no_repeats(scatter: f64) -> String {
+    format!(
+        "runs of one condition differ by {:.0} % of their resistance, as repeats do not: compare their bodies, masses and \
+         speeds, and what `runs.csv` says of their conditions",
+        100.0 * scatter
+    )
 }
 
 /// The names of all runs of `set`, by condition.

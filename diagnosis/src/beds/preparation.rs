@@ -43,11 +43,11 @@ const BEDS: usize = 3;
 const NEAR: f64 = 0.001;
 const TRIALS: usize = 5;
 
-/// Drag while a bed settles that loosens it without another friction: the rate √(g/d), under which grains sink by half
-/// their diameter in the time in which they would fall through it.
-const DRAG: f64 = 1.0;
+/// Drag while looser beds settle and while the loosest do, in √(g/d): under the latter grains sink by half their diameter in
+/// the time in which they would fall through it.
+const DRAG: (f64, f64) = (0.5, 1.5);
 
-/// Preparation friction of the loosest beds, in that of the model, and in a model that settles without.
+/// Preparation friction of looser beds, in that of the model, and in a model that settles without.
 const ROUGHER: f64 = 3.0;
 const ROUGH: f64 = 0.3;
 
@@ -311,21 +311,22 @@ pub(super) fn dense(space: Space) -> &'static [f64] {
     }
 }
 
-/// How `model` is prepared at a level from -1, the densest bed that settles, over 0, as it is, to 1, where grains sink as
-/// in a viscous fluid, and 2, the loosest, where they are rougher too; `None` without a friction to change.
+/// How `model` is prepared at a level from -1, the densest bed that settles, over 0, as it is, to 1, with more friction and a
+/// little drag, and 2, the loosest, where grains sink as in a viscous fluid; `None` without a friction to change.
 pub(super) fn at_level(model: GrainModel<'_>, level: f64) -> Option<Vec<Change>> {
     let BedSource::Settle(settle) = &model.medium.bed.source else { return None };
     let own = settle.preparation_friction?;
     if level <= 0.0 {
         return Some(vec![Change::PreparationFriction(own * (1.0 + level))]);
     }
-    let rate = DRAG * (model.medium.gravity / model.mean_grain()).sqrt();
-    let mut changes = vec![Change::SettlingDrag(settle.settling_drag + level.min(1.0) * rate)];
-    if level > 1.0 {
-        let rough = if own > 0.0 { ROUGHER * own } else { ROUGH };
-        changes.push(Change::PreparationFriction(own + (rough - own) * (level - 1.0)));
-    }
-    Some(changes)
+    let rough = if own > 0.0 { ROUGHER * own } else { ROUGH };
+    let (little, most) = DRAG;
+    let drag = level.min(1.0) * little + (level - 1.0).max(0.0) * (most - little);
+    let rate = drag * (model.medium.gravity / model.mean_grain()).sqrt();
+    Some(vec![
+        Change::PreparationFriction(own + (rough - own) * level.min(1.0)),
+        Change::SettlingDrag(settle.settling_drag + rate),
+    ])
 }
 
 /// The preparation with which the beds of the model come nearest to the packing fraction `stated`, and their packing

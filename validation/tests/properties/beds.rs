@@ -121,7 +121,8 @@ fn a_column_that_nothing_dampens_breathes_and_comes_to_rest() {
     let sag = mass * 9.81 / stiffness * f64::from(n * (n + 1) / 2);
     let top = settling.bed().grains.positions().map(|centre| centre.z).fold(0.0, f64::max);
     let expected = radius * f64::from(2 * n - 1) - sag;
-    assert!((top - expected).abs() < 1e-3 * sag, "{top} {expected}");
+    // A bed at rest may still move with 10⁻⁶ m g d, √(10⁻⁶ / 0.3) of what the fall through the sag gave.
+    assert!((top - expected).abs() < 4e-3 * sag, "{top} {expected}");
 }
 
 fn settle(settling: &mut Settling) {
