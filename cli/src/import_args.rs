@@ -84,7 +84,8 @@ pub(crate) struct Tables {
     /// Height of release of the lowest point above the surface: the speed is that of a free fall from it.
     #[arg(long, value_name = "HEIGHT")]
     pub(crate) drop_height: Option<String>,
-    /// How names of files or runs are made, such as "{body}_h{height}_r{repeat}"; without it, speeds tell conditions.
+    /// How names of files or runs are made, such as "{body}_h{height}_r{repeat}", with {date} or {session} where days or
+    /// pourings differ, and folders before `/`; without it, speeds tell conditions.
     #[arg(long, value_name = "PATTERN")]
     pub(crate) condition: Option<String>,
     /// Runs to go on without, separated by commas.

@@ -14,7 +14,10 @@ enum Part {
 }
 
 /// Fields that do not tell conditions apart.
-const OF_RUN: [&str; 4] = ["repeat", "order", "run", "_"];
+const OF_RUN: [&str; 8] = ["repeat", "rep", "trial", "take", "shot", "order", "run", "_"];
+
+/// Fields that say which runs are of one day or one pouring, and no condition either.
+pub(super) const OF_SESSION: [&str; 3] = ["session", "day", "date"];
 
 impl Pattern {
     /// Reads a pattern.
@@ -62,7 +65,7 @@ impl Pattern {
             match part {
                 Part::Literal(literal) => before = literal,
                 Part::Field(field) => {
-                    if !OF_RUN.contains(&field.as_str()) {
+                    if !OF_RUN.contains(&field.as_str()) && !OF_SESSION.contains(&field.as_str()) {
                         let value = fields.iter().find(|(own, _)| own == field);
                         name.push_str(before);
                         name.push_str(value.map_or("", |(_, value)| value));
@@ -133,6 +136,9 @@ mod tests {
         let values: Vec<&str> = fields.iter().map(|(_, value)| value.as_str()).collect();
         assert_eq!(values, ["steel_ball", "20", "3"]);
         assert_eq!(pattern.condition(&fields), "steel_ball_h20");
+        let dated = Pattern::parse("{date}_{body}_h{height}_{take}").expect("a pattern");
+        let fields_of = dated.fields("2024-05-03_steel_h20_3").expect("it fits");
+        assert_eq!(dated.condition(&fields_of), "steel_h20");
         assert_eq!(pattern.fields("steel_20_3"), None);
         assert_eq!(pattern.fields("_h20_r3"), None);
         assert_eq!(filled("{height} cm", &fields), Ok("20 cm".to_owned()));

@@ -9,6 +9,7 @@ use measurements::Reading;
 
 use super::bodies::Body;
 use super::fault::Fault;
+use super::names::OF_SESSION;
 use super::options::Options;
 use super::run::Run;
 use super::settings::Settings;
@@ -170,7 +171,9 @@ fn runs(known: &Known<'_>) -> String {
         );
     }
     let has_order = known.runs.iter().all(|run| label(run, "order").is_some());
-    let mut rows = vec![["run", "condition", "repeat", "order"].map(str::to_owned)];
+    let has_session = known.runs.iter().all(|run| session(run).is_some());
+    let is_written = [true, true, true, has_order, has_session];
+    let mut rows = vec![["run", "condition", "repeat", "order", "session"].map(str::to_owned)];
     let mut counts: Vec<(&str, i64)> = Vec::new();
     for run in known.runs {
         let at = counts.iter().position(|(id, _)| *id == run.condition).unwrap_or_else(|| {
@@ -180,11 +183,20 @@ fn runs(known: &Known<'_>) -> String {
         counts[at].1 += 1;
         let repeat = label(run, "repeat").unwrap_or(counts[at].1).to_string();
         let order = label(run, "order").map_or(String::new(), |order| order.to_string());
-        rows.push([run.name.clone(), run.condition.clone(), repeat, order]);
+        let session = session(run).unwrap_or_default().to_owned();
+        rows.push([run.name.clone(), run.condition.clone(), repeat, order, session]);
     }
-    let columns = if has_order { 4 } else { 3 };
-    text.push_str(&table(rows.iter().map(|row| row[..columns].to_vec())));
+    let written = |row: &[String; 5]| -> Vec<String> {
+        row.iter().zip(is_written).filter(|(_, is)| *is).map(|(cell, _)| cell.clone()).collect()
+    };
+    text.push_str(&table(rows.iter().map(written)));
     text
+}
+
+/// The day or pouring of a run, by its name or a column.
+fn session(run: &Run) -> Option<&str> {
+    let known = |name: &String| OF_SESSION.contains(&name.as_str());
+    run.labels.iter().find(|(name, _)| known(name)).map(|(_, value)| value.as_str())
 }
 
 fn label(run: &Run, key: &str) -> Option<i64> {
