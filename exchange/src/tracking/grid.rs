@@ -57,7 +57,7 @@ impl<'a> Grid<'a> {
     /// them or not.
     ///
     /// # Errors
-    /// If there is no such header.
+    /// If there is no row of numbers.
     pub(super) fn found(sheet: &'a Sheet) -> Result<Self, Fault> {
         let Some(first) = sheet.rows.iter().position(|row| sheet.is_numeric(row, 2)) else {
             let right = "a line of names such as t (ms),y (cm), then rows of numbers";
@@ -66,7 +66,6 @@ impl<'a> Grid<'a> {
         // Readings without a position may stand before the first that has one.
         let is_reading = |row: &&Row| sheet.is_numeric(row, 1) && !sheet.has_words(row);
         let first = first - sheet.rows[..first].iter().rev().take_while(is_reading).count();
-        let width = sheet.rows[first].cells.len();
         let is_header = |row: &Row| {
             let named = row.cells.iter().filter(|cell| !cell.is_empty()).count();
             named >= 2 && !sheet.is_numeric(row, 1)
@@ -81,12 +80,7 @@ impl<'a> Grid<'a> {
             cells().any(is_unit) && cells().all(|cell| is_unit(cell) || cell.contains('/'))
         };
         match above[..] {
-            [] => {
-                let what =
-                    format!("no names of columns stand above its {width} columns of numbers");
-                let right = "write a line of names above them, such as t (ms),y (cm)";
-                Err(sheet.fault(what, right).at(sheet.rows[first].line))
-            }
+            [] => Ok(Self::without_names(sheet, first)),
             [units, header, ..] if is_units(&sheet.rows[units]) => {
                 Ok(Self::below(sheet, header, Some(units)))
             }
@@ -98,6 +92,25 @@ impl<'a> Grid<'a> {
                 Ok(Self { rows: &sheet.rows[first..], ..Self::below(sheet, header, None) })
             }
         }
+    }
+
+    /// The sheet whose first row is the row `first` of numbers: two columns of which the first grows are times and
+    /// positions, others are called by their numbers.
+    fn without_names(sheet: &'a Sheet, first: usize) -> Self {
+        let rows = &sheet.rows[first..];
+        let width = rows[0].cells.len();
+        let times: Vec<f64> = rows
+            .iter()
+            .filter_map(|row| match sheet.number(row.cell(0)) {
+                Number::Value(t) => Some(t),
+                _ => None,
+            })
+            .collect();
+        let headings = match times.windows(2).all(|pair| pair[1] >= pair[0]) && width == 2 {
+            true => ["t", "z"].map(Heading::of).to_vec(),
+            false => (1..=width).map(|at| Heading::of(&at.to_string())).collect(),
+        };
+        Self { sheet, header: first, headings, rows }
     }
 
     /// The column that the user or its name says is of this role.
@@ -122,7 +135,7 @@ impl<'a> Grid<'a> {
         }
     }
 
-    /// The column that is called `name`, with or without its unit.
+    /// The column that is called `name`, with or without its unit, or whose number from 1 it is.
     pub(super) fn named(&self, name: &str) -> Result<usize, Fault> {
         let lower = name.trim().to_lowercase();
         let with = |is_it: &dyn Fn(&Heading) -> bool| -> Vec<usize> {
@@ -136,7 +149,9 @@ impl<'a> Grid<'a> {
             let what = format!("{} columns are called `{name}`", all.len());
             return Err(self.sheet.fault(what, "give each a name of its own in the table"));
         }
-        all.first().copied().ok_or_else(|| {
+        let by_number =
+            || name.parse::<usize>().ok().filter(|n| (1..=self.headings.len()).contains(n));
+        all.first().copied().or_else(|| Some(by_number()? - 1)).ok_or_else(|| {
             let names: Vec<&str> = self.headings.iter().map(|one| one.name.as_str()).collect();
             let near = configs::nearest(name, names.iter().copied());
             let right = match near {

@@ -170,6 +170,16 @@ impl Heading {
         role(&self.stem)
     }
 
+    /// Whether name or unit is that of an acceleration.
+    pub(super) fn is_acceleration(&self) -> bool {
+        const NAMES: [&str; 6] = ["ax", "ay", "az", "acc", "accel", "acceleration"];
+        const UNITS: [&str; 6] = ["g", "m/s2", "m/s^2", "m/s²", "m s^-2", "m/s/s"];
+        let first = self.stem.split([' ', '_', '-']).next();
+        let is_unit = |unit: &str| UNITS.contains(&unit.to_lowercase().as_str());
+        first.is_some_and(|word| NAMES.contains(&word))
+            || matches!(&self.unit, Unit::Unknown(unit) if is_unit(unit))
+    }
+
     /// The coordinate and the point of names such as `y2`, `x_left`, `ball_y`; none of plain names.
     pub(super) fn point(&self) -> Option<(Role, String)> {
         let axis = |text: &str| match text {
@@ -251,6 +261,9 @@ mod tests {
             assert_eq!(read(name), (Some(role), unit.to_owned()), "{name}");
         }
         assert_eq!(Heading::of("v_y (m/s)").role(), None);
+        let are = ["az", "Acceleration y (m/s²)", "z (g)", "acc_z"].map(Heading::of);
+        assert!(are.iter().all(Heading::is_acceleration));
+        assert!(!["a1", "y", "z (mm)", "t"].map(Heading::of).iter().any(Heading::is_acceleration));
     }
 
     #[test]

@@ -12,6 +12,7 @@
 mod begun;
 mod bodies;
 mod conditions;
+mod even;
 mod fault;
 mod grid;
 mod heading;

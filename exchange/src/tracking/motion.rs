@@ -2,6 +2,7 @@
 
 use measurements::{Contact, Departure, Fall, Frame, Reading, Tip, stray_frames};
 
+use super::even::undo_rounding;
 use super::fault::Fault;
 use super::settings::Settings;
 use super::track::{Sample, Track};
@@ -131,14 +132,34 @@ fn starts_again(samples: &[Sample], at: usize) -> bool {
     samples[at].t < samples[at - 1].t && here <= 2.0 * before.max(after)
 }
 
+/// Whether the rate of frames tells the times of rows: those of the table are of a coarse clock.
+fn counts_rows(samples: &[Sample], track: &Track, settings: &Settings<'_>) -> bool {
+    /// Share of times that repeat the one before.
+    const MANY: f64 = 0.02;
+    let repeated = samples.windows(2).filter(|pair| pair[0].t.total_cmp(&pair[1].t).is_eq());
+    let is_coarse = repeated.count() as f64 > MANY * samples.len() as f64;
+    settings.rate.is_some()
+        && (track.time.unit == Unit::Clock || is_coarse && track.time.unit != Unit::Frame)
+}
+
 /// The readings in the order of time; copies of one are dropped.
 fn in_order(track: &mut Track, settings: &Settings<'_>) -> Result<Vec<Sample>, Fault> {
     let mut samples: Vec<Sample> = Vec::with_capacity(track.samples.len());
     let mut copies = 0;
-    let counts_rows = track.time.unit == Unit::Clock && settings.rate.is_some();
+    let counts_rows = counts_rows(&track.samples, track, settings);
     if !counts_rows && is_out_of_order(&track.samples) {
         track.samples.sort_by(|a, b| a.t.total_cmp(&b.t));
         track.notes.push("its rows are sorted by time".to_owned());
+    }
+    if !counts_rows
+        && track.time.unit != Unit::Frame
+        && let Some(quantum) = undo_rounding(&mut track.samples)
+    {
+        let unit = if track.time.unit == Unit::Unstated { "" } else { track.time.unit.word() };
+        track.notes.push(
+            format!("its times are rounded to {quantum} {unit}: its rows are evenly spaced")
+                .replace(" :", ":"),
+        );
     }
     for (at, sample) in track.samples.iter().enumerate() {
         let Some(last) = samples.last() else {
@@ -171,7 +192,10 @@ fn in_order(track: &mut Track, settings: &Settings<'_>) -> Result<Vec<Sample>, F
                 "a time is listed twice",
                 "its clock is too coarse: --rate 240Hz counts rows instead",
             ),
-            (true, _) => ("a time is listed twice with other positions", "keep one of the rows"),
+            (true, _) => (
+                "a time is listed twice with other positions",
+                "keep one of the rows; if times are rounded, --rate 650Hz counts rows instead",
+            ),
             (false, _) if track.name.is_some() => {
                 ("the time runs back", "sort the rows of the run by time")
             }
@@ -185,6 +209,14 @@ fn in_order(track: &mut Track, settings: &Settings<'_>) -> Result<Vec<Sample>, F
     }
     if copies > 0 {
         track.notes.push(format!("{copies} readings that repeat the one before are left out"));
+    }
+    if samples.is_empty() {
+        let what = format!(
+            "no row has a time and a position in the columns `{}` and `{}`",
+            track.time.name, track.vertical.name
+        );
+        let right = "name the columns that have them: --column t=NAME --column z=NAME";
+        return Err(Fault::new(&track.file, what, right));
     }
     if samples.len() < FEWEST {
         let whose = track.name.as_ref().map_or(String::new(), |name| format!("the run {name}: "));
@@ -200,7 +232,9 @@ fn clock(samples: &[Sample], track: &Track, settings: &Settings<'_>) -> Vec<f64>
     let Some(rate) = settings.rate else { return samples.iter().map(|one| one.t).collect() };
     match track.time.unit {
         Unit::Frame => samples.iter().map(|one| one.t / rate).collect(),
-        Unit::Clock => (0..samples.len()).map(|row| row as f64 / rate).collect(),
+        _ if counts_rows(samples, track, settings) => {
+            (0..samples.len()).map(|row| row as f64 / rate).collect()
+        }
         _ => {
             // The clip counts time in another way: its steps are frames.
             let mut steps: Vec<f64> =

@@ -133,8 +133,30 @@ fn plain_tables() {
     check("wide.csv", &formats::wide(&drops), &[], &drops, "wide, semicolons");
     let set = check("bare.dat", &formats::bare(&drops[0]), &[], &drops[..1], "one drop, blanks");
     assert_eq!(set.understood[0].axis, "y (mm, by the fall), down");
+    let unnamed = formats::bare(&drops[0]).replace("t y\n", "");
+    check("unnamed.dat", &unnamed, &[], &drops[..1], "one drop, blanks");
+    let of_three = |line: &str| line.split_once(' ').map(|(t, y)| format!("7 {y} {t}\n"));
+    let text: String = unnamed.lines().filter_map(of_three).collect();
+    let named = [("column_t", "3"), ("column_z", "2")];
+    check("unnamed.dat", &text, &named, &drops[..1], "one drop, blanks");
     drops.iter_mut().for_each(|one| one.contact += 1000.0 / 650.0);
     check("points.csv", &formats::points(&drops), &[SCALE, RATE], &drops, "wide, commas");
+}
+
+#[test]
+fn times_in_few_digits() {
+    let drops = formats::two();
+    let of = |drop: &Drop, t: &dyn Fn(f64) -> String| -> String {
+        let row = |(at, z): &(f64, f64)| format!("{} {:.4}\n", t(*at), 500.0 - 1e3 * z);
+        format!("t y\n{}", drop.readings.iter().map(row).collect::<String>())
+    };
+    // Frames of 650 Hz: times in ms are told apart, those in hundredths of a second repeat.
+    for decimals in [3, 2] {
+        let text = of(&drops[0], &|t| format!("{t:.decimals$}"));
+        let set = check("rounded.dat", &text, &[], &drops[..1], "one drop, blanks");
+        let notes = &set.notes;
+        assert!(notes.iter().any(|note| note.contains("rounded to 0.0")), "{notes:?}");
+    }
 }
 
 #[test]

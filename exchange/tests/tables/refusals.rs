@@ -70,11 +70,12 @@ fn plain_tables() {
     has(&told("a.csv", &text, &[]), &["a.csv:", "in the column `time [ms]` is not a number"]);
     let text = formats::wide(&drops).replace(';', ",");
     has(&told("a.csv", &text, &[]), &["cells stand below 3 names", "semicolons or tabs"]);
-    let text = formats::bare(&drops[0]).replace("t y\n", "");
-    has(
-        &told("a.dat", &text, &[]),
-        &["a.dat:1: no names of columns stand above its 2 columns", "t (ms),y (cm)"],
-    );
+    let of_three = |line: &str| format!("1 {line}\n");
+    let text: String = formats::bare(&drops[0]).lines().skip(1).map(of_three).collect();
+    has(&told("a.dat", &text, &[]), &["no column of times", "--column t=NAME; found: 1, 2, 3"]);
+    let text = formats::bare(&drops[0]).replace("t y\n", "t (s) az (m/s²)\n");
+    has(&told("a.dat", &text, &[]), &["`az (m/s²)` is an acceleration", "plunge new"]);
+    has(&told("a.dat", "t,y,u\n0,,1\n1,,2\n", &[]), &["no row has a time and a position"]);
     let text = formats::bare(&drops[0]).replace("t y\n", "t q\n");
     let message = told("a.dat", &text, &[("column_z", "p")]);
     has(&message, &["no column is called `p`", "found: t, q"]);

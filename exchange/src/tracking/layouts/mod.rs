@@ -15,6 +15,8 @@ mod trackmate;
 mod wide;
 
 use super::fault::Fault;
+use super::grid::Grid;
+use super::heading::{Heading, Role};
 use super::settings::Columns;
 use super::sheet::Sheet;
 use super::track::Track;
@@ -49,8 +51,28 @@ const LAYOUTS: [&Layout; 13] = [
 /// # Errors
 /// What is wrong with it.
 pub(super) fn tracks(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
+    refuse_accelerations(sheet, columns)?;
     let layout = LAYOUTS.into_iter().find(|layout| (layout.fits)(sheet, columns));
     (layout.unwrap_or(&single::LAYOUT).read)(sheet, columns)
+}
+
+/// Refuses the table of an accelerometer, which has no positions.
+fn refuse_accelerations(sheet: &Sheet, columns: &Columns) -> Result<(), Fault> {
+    let Ok(grid) = Grid::found(sheet) else { return Ok(()) };
+    let is_place = |heading: &Heading| {
+        let is_named = heading.role() == Some(Role::Vertical)
+            || matches!(heading.point(), Some((Role::Vertical, name)) if !matches!(name.as_str(), "a" | "acc" | "accel" | "acceleration"));
+        is_named && !heading.is_acceleration()
+    };
+    let of = grid.headings.iter().find(|heading| heading.is_acceleration());
+    match of {
+        Some(of) if columns.of(Role::Vertical).is_none() && !grid.headings.iter().any(is_place) => {
+            let what = format!("`{}` is an acceleration, and no column is a position", of.name);
+            let right = "import reads positions; a set of accelerations is written by hand: `plunge new real-water-cones-acceleration` shows one";
+            Err(sheet.fault(what, right))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The text of the first row, in small letters.
