@@ -119,6 +119,8 @@ pub struct Moment {
     pub depth: f64,
     /// Speed (m/s).
     pub speed: f64,
+    /// Direction of the motion: forward along the surface, and out of the bed.
+    pub direction: [f64; 2],
     /// ρ g A D (N): bulk density, gravity, area that drag and friction act on, and diameter.
     pub unit: f64,
     /// Force of the model against the motion (N).

@@ -92,7 +92,7 @@ impl Frame<'_> {
             .x_desc(self.names[0])
             .y_desc(self.names[1])
             .axis_desc_style(letters())
-            .light_line_style(WHITE)
+            .max_light_lines(0)
             .bold_line_style(GREY);
         if !self.grid {
             mesh.disable_mesh();

@@ -3,12 +3,14 @@
 use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::calibrate::{self, calibrate};
 use diagnosis::diagnose::diagnose;
+use diagnosis::missing_force::{Reading, missing_force};
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::sensitivity::Point;
 use diagnosis::verdict::{Diagnosis, Status, Verdict};
 use measurements::{MeasurementSet, ParameterPrior};
 use validation::benchmark::design::Design;
+use validation::benchmark::forces::DENSITY;
 use validation::benchmark::hidden::Hidden;
 use validation::benchmark::imperfection::Imperfection;
 use validation::benchmark::plan::{Plan, Row, Seeds, Size};
@@ -85,6 +87,43 @@ fn the_band_holds_a_friction_that_grows_in_the_course_of_the_campaign() {
     let [inside, all] = missing.covered.map(|n| n as f64);
     assert!(inside > 0.9 * all, "{inside} of {all}");
     assert_eq!(missing.formula, None);
+}
+
+#[test]
+fn a_force_across_the_motion_is_found_where_it_is() {
+    let plan = Plan {
+        row: Row::Singles,
+        seed: 506,
+        design: Design::full(),
+        hidden: vec![Hidden::Lift],
+        strength: 0.12,
+    };
+    let (nature, set) = draw(&plan).expect("it can be drawn");
+    let model = baseline().expect("the shipped model loads");
+    let observed = Observed::of(&set);
+    let forward = ResistiveForward::new(&model, &set, &observed.layouts()).expect("it fits");
+    let bench = Bench { set: &set, observed: &observed, forward: &forward };
+    let fitted = bench.fit(&Point::start(&forward)).expect("spheres stop");
+    let missing = missing_force(&bench, &fitted, None).expect("spheres stop").expect("a force");
+    let lift = nature.hidden[0].1;
+    let deep = |one: &&Reading| one.depth > set.conditions[one.condition].diameter;
+    let oblique = |one: &&Reading| set.conditions[one.condition].angle_deg < 80.0;
+    let seen: Vec<&Reading> = missing.readings.iter().filter(oblique).filter(deep).collect();
+    let sideways = |one: &Reading| one.sideways.expect("oblique impacts show it");
+    let is_clear = |one: &&Reading| sideways(one).force.abs() > 1.96 * sideways(one).se;
+    let clear: Vec<&Reading> = seen.iter().copied().filter(is_clear).collect();
+    assert!(2 * clear.len() > seen.len(), "{} of {}", clear.len(), seen.len());
+    assert!(clear.iter().all(|one| sideways(one).force * lift > 0.0));
+    let holds = |one: &&&Reading| {
+        let body = &set.conditions[one.condition];
+        let area = std::f64::consts::FRAC_PI_4 * body.diameter * body.diameter;
+        // It has grown to four fifths of itself at a depth of one diameter.
+        let grown = one.depth / (one.depth + 0.25 * body.diameter);
+        let truth = lift * grown * DENSITY * area * one.speed * one.speed;
+        (sideways(one).force - truth).abs() < 1.96 * sideways(one).se
+    };
+    let inside = seen.iter().filter(holds).count();
+    assert!(100 * inside > 85 * seen.len(), "{inside} of {}", seen.len());
 }
 
 #[test]

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::process::{Averaged, Process, alike};
 use super::response::Response;
-use crate::field::Grid;
+use crate::field::{Grid, Scaled};
 use crate::fit::Fit;
 
 /// Sizes over that of the model's force, and lengths over the extent of each axis, that are tried.
@@ -73,7 +73,7 @@ fn of_each(places: &[(usize, usize)], grid: &Grid, length: f64) -> DMatrix<f64> 
     let mut whole = DMatrix::zeros(places.len(), places.len());
     let mut from = 0;
     for own in places.chunk_by(|a, b| a.0 == b.0) {
-        let scaled: Vec<[f64; 4]> = own.iter().map(|&(_, node)| grid.scaled(node)).collect();
+        let scaled: Vec<Scaled> = own.iter().map(|&(_, node)| grid.scaled(node)).collect();
         let part = alike(&scaled, [length; 4]);
         whole.view_mut((from, from), part.shape()).copy_from(&part);
         from += own.len();

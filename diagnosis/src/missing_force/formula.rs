@@ -248,7 +248,7 @@ impl Refitted {
         let conditions = || fit.iter().map(|&at| &bench.set.conditions[at]);
         let n = fit.len().max(1) as f64;
         let gravity = conditions().map(|one| bench.set.bed_of(one).gravity).sum::<f64>() / n;
-        let states: Vec<State> = (0..grid.len())
+        let states: Vec<State> = (0..grid.against())
             .map(|node| grid.node(node))
             .map(|[depth, speed, angle, diameter]| State {
                 depth,

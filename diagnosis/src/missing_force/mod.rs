@@ -2,7 +2,8 @@
 //! through, with a band; and a formula for it that predicts, where one does.
 //!
 //! The force is a Gaussian process over depth, speed and impact angle, seen through the linear answer of the measurements
-//! to a force around each node of a grid; parameters of the model and errors of the apparatus are projected out. A
+//! to a force around each node of a grid; parameters of the model and errors of the apparatus are projected out. It acts
+//! against the motion; on oblique impacts also normal to it, where that is more likely. A
 //! formula is chosen from a library of dimensionless forms by what it explains in the space of the
 //! measurements, refitted as a part of the model, and kept where it takes a quarter of a clear error on conditions that
 //! were not fitted to. It fits and predicts; it does not explain.
@@ -23,7 +24,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 pub use self::formula::{FOUND, Formula};
-pub use self::table::{Reading, table};
+pub use self::table::{Component, Reading, table};
 
 use self::formula::Search;
 use self::found::Found;
@@ -49,6 +50,9 @@ const AGAIN: usize = 3;
 
 /// Number of noises under which the search is completed: those with the best evidence after its first step.
 const SETTLED: usize = 2;
+
+/// Impacts less steep than this (degrees) tell of a force normal to the motion.
+const OBLIQUE: f64 = 80.0;
 
 /// Parts of the depth over which the force is summed up in words.
 const PARTS: usize = 10;
@@ -184,23 +188,27 @@ fn most_likely(
     by: &dyn Passages,
     baseline: &Fitted,
 ) -> Result<Option<(Fitted, Found)>, BenchError> {
-    let look = |under: Fitted| -> Result<Option<(Fitted, Found)>, BenchError> {
-        let grid = response::grid(bench);
+    let look = |under: Fitted, is_sideways: bool| -> Result<Option<(Fitted, Found)>, BenchError> {
+        let grid = response::grid(bench, is_sideways);
         let nothing = Field { values: vec![0.0; grid.len()], grid };
         let found = Found::around(bench, by, (&under, under.fit.clone()), nothing)?;
         Ok(found.map(|found| (under, found)))
     };
-    let Some(first) = look(baseline.clone())? else { return Ok(None) };
+    let Some(first) = look(baseline.clone(), false)? else { return Ok(None) };
     let mut begun = vec![first];
     let Between { sd, sigma, .. } = baseline.noise.sessions;
     for less in [sigma, 0.0].into_iter().filter(|less| *less < sd) {
         // A noise under which the model cannot be fitted is no candidate.
         let fitted = bench.with_scatter_between_conditions(less, baseline).ok();
-        begun.extend(fitted.and_then(|under| look(under).ok().flatten()));
+        begun.extend(fitted.and_then(|under| look(under, false).ok().flatten()));
     }
     let evidence = |(under, found): &(Fitted, Found)| found.evidence(under);
     begun.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));
     begun.truncate(SETTLED);
+    let is_oblique = |&condition: &usize| bench.set.conditions[condition].angle_deg < OBLIQUE;
+    if bench.observed.fit.iter().any(is_oblique) {
+        begun.extend(look(begun[0].0.clone(), true)?);
+    }
     let mut settled = Vec::with_capacity(begun.len());
     for (under, found) in begun {
         let found = found.settled(bench, by, &under)?;
@@ -225,8 +233,37 @@ fn states(bench: &Bench<'_>, passages: &[Vec<Moment>]) -> Vec<State> {
     .collect()
 }
 
-/// Where the band leaves out zero, in a sentence.
+/// Where the bands leave out zero, in words.
 fn in_words(readings: &[Reading]) -> String {
+    let against = against_in_words(readings);
+    let clearest = |of: fn(&Reading) -> Option<Component>| {
+        let all = readings.iter().filter_map(|one| Some((one, of(one)?)));
+        let clear = all.filter(|(_, part)| part.clarity() > TWO_SIDED_95);
+        clear.max_by(|a, b| a.1.clarity().total_cmp(&b.1.clarity()))
+    };
+    let told = |name: &str, (at, part): (&Reading, Component)| {
+        format!(
+            "; {name} it is clearest at {:.0} mm and {:.2} m/s: {:+.3} \u{b1} {:.3} N",
+            1e3 * at.depth,
+            at.speed,
+            part.force,
+            part.se
+        )
+    };
+    let sideways = clearest(|one| one.sideways);
+    let normal = sideways.map(|one| told("normal to the motion", one)).unwrap_or_default();
+    let forward = match sideways {
+        // Against the motion alone, the horizontal part says nothing new.
+        None => String::new(),
+        Some(_) => clearest(|one| Some(one.horizontal))
+            .map(|one| told("along the surface", one))
+            .unwrap_or_default(),
+    };
+    format!("{against}{normal}{forward}")
+}
+
+/// Where the band of the force against the motion leaves out zero, in a sentence.
+fn against_in_words(readings: &[Reading]) -> String {
     let reach = readings.iter().map(|one| one.depth).fold(0.0, f64::max);
     let is_clear = |one: &&Reading| one.force.abs() > TWO_SIDED_95 * one.se;
     let clearest = (0..PARTS).filter_map(|part| {

@@ -9,7 +9,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 
 use super::response::Response;
-use crate::field::Grid;
+use crate::field::{Grid, Scaled};
 use crate::noise::log_determinant;
 
 /// Sizes of the force over that of the model, and lengths over the extent of each axis, that are tried.
@@ -169,7 +169,7 @@ impl Process {
     pub(super) fn of(response: &Response, grid: &Grid, unit: f64, misfit: f64) -> Option<Self> {
         let gram = response.beside.transpose() * &response.beside / misfit;
         let pull = response.beside.tr_mul(&response.residual) / misfit;
-        let places: Vec<[f64; 4]> = response.nodes.iter().map(|&node| grid.scaled(node)).collect();
+        let places: Vec<Scaled> = response.nodes.iter().map(|&node| grid.scaled(node)).collect();
         let varied = |axis: usize, of: &'static [f64]| match grid.axes[axis].len() {
             1 => &of[..1],
             _ => of,
@@ -202,11 +202,14 @@ fn lengths(angles: &[f64], diameters: &[f64]) -> Vec<[f64; 4]> {
     all
 }
 
-/// The covariance of a force of size 1.
-pub(super) fn alike(places: &[[f64; 4]], lengths: [f64; 4]) -> DMatrix<f64> {
+/// The covariance of a force of size 1, whose component against the motion says nothing of that normal to it.
+pub(super) fn alike(places: &[Scaled], lengths: [f64; 4]) -> DMatrix<f64> {
     DMatrix::from_fn(places.len(), places.len(), |a, b| {
+        if places[a].is_sideways != places[b].is_sideways {
+            return 0.0;
+        }
         let alike = |lengths: [f64; 4]| {
-            let apart = |axis: usize| (places[a][axis] - places[b][axis]) / lengths[axis];
+            let apart = |axis: usize| (places[a].at[axis] - places[b].at[axis]) / lengths[axis];
             libm::exp(-0.5 * (0..4).map(|axis| apart(axis).powi(2)).sum::<f64>())
         };
         0.5 * (alike(lengths) + alike(LONG)) + if a == b { OWN } else { 0.0 }
@@ -226,6 +229,20 @@ fn setting(inner: &DMatrix<f64>, values: &DVector<f64>, size: f64) -> Option<Set
 mod tests {
     use super::*;
 
+    /// A node at this share of the greatest depth.
+    fn against(depth: f64) -> Scaled {
+        Scaled { at: [depth, 0.0, 0.0, 0.0], is_sideways: false }
+    }
+
+    #[test]
+    fn a_force_against_the_motion_says_nothing_of_one_normal_to_it() {
+        let places = [against(0.3), Scaled { is_sideways: true, ..against(0.3) }];
+        let covariance = alike(&places, [0.3; 4]);
+        let answer = DMatrix::from_row_slice(1, 2, &[1e3, 0.0]);
+        let one = said(&covariance, 1.0, &answer, &DVector::from_element(1, 3e3));
+        assert!((one.mean[0] - 3.0).abs() < 1e-4 && one.mean[1].abs() < 1e-12);
+    }
+
     /// What one covariance and one size say.
     fn said(
         covariance: &DMatrix<f64>,
@@ -241,7 +258,7 @@ mod tests {
     #[test]
     fn a_force_without_any_answer_is_what_it_was_beforehand() {
         let n = 4;
-        let places: Vec<[f64; 4]> = (0..n).map(|k| [k as f64 / 3.0, 0.0, 0.0, 0.0]).collect();
+        let places: Vec<Scaled> = (0..n).map(|k| against(k as f64 / 3.0)).collect();
         let covariance = alike(&places, [0.25; 4]);
         let one = said(&covariance, 2.0, &DMatrix::zeros(1, n), &DVector::zeros(1));
         assert!(one.log_odds.abs() < 1e-12, "nothing is learned");
@@ -252,7 +269,7 @@ mod tests {
 
     #[test]
     fn a_node_that_is_measured_exactly_has_the_force_that_was_measured() {
-        let places = [[0.0; 4], [1.0, 0.0, 0.0, 0.0]];
+        let places = [0.0, 1.0].map(against);
         let covariance = alike(&places, [0.12; 4]);
         // One reading of the first node, 3 with a standard deviation of 1e-3.
         let answer = DMatrix::from_row_slice(1, 2, &[1e3, 0.0]);
@@ -271,7 +288,7 @@ mod tests {
 
     #[test]
     fn fewer_numbers_say_what_all_measurements_say() {
-        let places: Vec<[f64; 4]> = (0..5).map(|k| [f64::from(k) / 4.0, 0.0, 0.0, 0.0]).collect();
+        let places: Vec<Scaled> = (0..5).map(|k| against(f64::from(k) / 4.0)).collect();
         let covariance = alike(&places, [0.3; 4]);
         // Seven readings of three kinds.
         let kinds = DMatrix::from_fn(3, 5, |a, b| libm::sin(((1 + a) * (1 + b)) as f64));

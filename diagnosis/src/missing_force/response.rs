@@ -1,4 +1,4 @@
-//! How measurements answer to a small force around each node of depth, speed and angle.
+//! How measurements answer to a small force around each node of depth, speed and angle, against the motion or normal to it.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -31,15 +31,17 @@ const NEAR: f64 = 1e-3;
 /// Angles (rad) and diameters (m) that differ by less are one.
 const SAME: f64 = 1e-6;
 
-/// The grid over what the conditions of the bench that are fitted to go through.
-pub(super) fn grid(bench: &Bench<'_>) -> Grid {
+/// The grid over what the conditions of the bench that are fitted to go through, with a force normal to the motion where
+/// `is_sideways`.
+pub(super) fn grid(bench: &Bench<'_>, is_sideways: bool) -> Grid {
     let conditions = || bench.observed.fit.iter().map(|&at| &bench.set.conditions[at]);
     let depth = bench.observed.fit.iter().map(|&at| bench.observed.conditions[at].reach);
     let depth = depth.fold(f64::MIN_POSITIVE, f64::max);
     let speed = conditions().map(|one| one.speed).fold(f64::MIN_POSITIVE, f64::max);
     let angles = distinct(conditions().map(|one| one.angle_deg.to_radians()), ANGLES);
     let diameters = distinct(conditions().map(|one| one.diameter), DIAMETERS);
-    Grid { axes: [spaced(0.0, depth, DEPTHS), spaced(0.0, speed, SPEEDS), angles, diameters] }
+    let axes = [spaced(0.0, depth, DEPTHS), spaced(0.0, speed, SPEEDS), angles, diameters];
+    Grid { axes, is_sideways }
 }
 
 /// The distinct ones of `values`, or `most` of even distance where there are more.
@@ -78,7 +80,7 @@ struct Block {
     nodes: Vec<usize>,
     /// Change of its whitened observables per ρ g A D at each of these.
     answers: DMatrix<f64>,
-    /// The states at each of these.
+    /// The states at each of these of the force against the motion, which come first.
     states: Vec<State>,
 }
 
@@ -140,8 +142,9 @@ impl Response {
     /// What a force of these values would change beside the parameters; `values` at [`Self::states`], in units of ρ g A D.
     pub(super) fn of_values(&self, values: &[Vec<f64>]) -> DVector<f64> {
         let parts = self.blocks.iter().zip(values);
-        let parts =
-            parts.map(|(block, values)| &block.answers * DVector::from_column_slice(values));
+        let parts = parts.map(|(block, values)| {
+            block.answers.columns(0, values.len()) * DVector::from_column_slice(values)
+        });
         self.basis.rest(&self.placed(parts))
     }
 
@@ -208,7 +211,7 @@ impl Response {
         DVector::from_iterator(self.nodes.len(), self.nodes.iter().map(|&node| values[node]))
     }
 
-    /// The states at the nodes that the path of each fitted condition comes near.
+    /// The states at the nodes of the force against the motion that the path of each fitted condition comes near.
     pub(super) fn states(&self) -> impl Iterator<Item = &[State]> {
         self.blocks.iter().map(|block| &*block.states)
     }
@@ -235,7 +238,9 @@ fn strength(moments: &[Moment]) -> f64 {
 /// The nodes that count on a path, in rising order.
 fn near(grid: &Grid, moments: &[Moment], [angle, diameter]: [f64; 2]) -> Vec<usize> {
     let places = moments.iter().map(|one| [one.depth, one.speed, angle, diameter]);
-    let shares = places.flat_map(|place| grid.shares_at(place));
+    let both =
+        |place: [f64; 4]| grid.shares_at(place).into_iter().chain(grid.sideways_shares_at(place));
+    let shares = places.flat_map(both);
     let near: BTreeSet<usize> =
         shares.filter(|(_, share)| *share > NEAR).map(|(node, _)| node).collect();
     near.into_iter().collect()
@@ -270,8 +275,9 @@ fn columns(
 fn states(bench: &Bench<'_>, grid: &Grid, (condition, nodes): (usize, &[usize])) -> Vec<State> {
     let of = &bench.set.conditions[condition];
     let (gravity, impact_speed) = (bench.set.bed_of(of).gravity, of.speed);
-    let nodes = nodes.iter().map(|&node| grid.node(node));
-    nodes
+    let against = nodes.iter().filter(|node| **node < grid.against());
+    against
+        .map(|&node| grid.node(node))
         .map(|[depth, speed, angle, diameter]| State {
             depth,
             speed,

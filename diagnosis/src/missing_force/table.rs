@@ -32,6 +32,26 @@ pub struct Reading {
     pub se: f64,
     /// Force of the model against the motion (N).
     pub model: f64,
+    /// Force that the model lacks normal to the motion, out of the bed where the body sinks; none where none was looked for.
+    pub sideways: Option<Component>,
+    /// Both together along the surface, positive forward.
+    pub horizontal: Component,
+}
+
+/// A component of the missing force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Component {
+    /// (N)
+    pub force: f64,
+    /// Its standard deviation (N).
+    pub se: f64,
+}
+
+impl Component {
+    /// How clear of zero it is, in standard deviations.
+    pub(super) fn clarity(&self) -> f64 {
+        self.force.abs() / self.se.max(f64::MIN_POSITIVE)
+    }
 }
 
 impl Reading {
@@ -99,20 +119,52 @@ pub(super) fn readings(
             force += weights.dot(&step);
             let by_coefficients = one.others[2 + moved.len()..].iter();
             let scattered = by_coefficients.map(|there| (scatter * (there - own) / MORE).powi(2));
-            let mut variance = found.process.variance(&weights)
-                + slope.dot(&(&covariance * &slope))
-                + scattered.sum::<f64>();
+            let mut beside = slope.dot(&(&covariance * &slope)) + scattered.sum::<f64>();
             if let Some(apart) = &apart {
                 let (mean, spread) = apart.force(fitted, (&shares, one.unit), &slope);
                 force += mean;
-                variance += spread;
+                beside += spread;
             }
+            let mut across = DVector::zeros(weights.len());
+            let mut normal = 0.0;
+            let place_of = [one.depth, one.speed, angle, diameter];
+            for (node, share) in found.field.grid.sideways_shares_at(place_of) {
+                normal += one.unit * share * found.field.values[node];
+                if let Some(at) = place(node) {
+                    across[at] += one.unit * share;
+                }
+            }
+            normal += across.dot(&step);
+            let told = |weights: &DVector<f64>| found.process.variance(weights);
+            let [x, z] = one.direction;
+            let (of_force, of_normal) = (-x, -z * sense(x));
+            let both = &weights * of_force + &across * of_normal;
+            let horizontal = Component {
+                force: of_force * force + of_normal * normal,
+                se: (told(&both) + x * x * beside).sqrt(),
+            };
+            let sideways = Component { force: normal, se: told(&across).sqrt() };
             let Moment { time, way, depth, speed, .. } = one;
-            let se = variance.sqrt();
-            readings.push(Reading { condition, time, way, depth, speed, force, se, model });
+            readings.push(Reading {
+                condition,
+                time,
+                way,
+                depth,
+                speed,
+                force,
+                se: (told(&weights) + beside).sqrt(),
+                model,
+                sideways: found.field.grid.is_sideways.then_some(sideways),
+                horizontal,
+            });
         }
     }
     Ok(readings)
+}
+
+/// The sense of a forward component of the direction of motion: none on a vertical fall.
+fn sense(forward: f64) -> f64 {
+    f64::from(i8::from(forward > 0.0) - i8::from(forward < 0.0))
 }
 
 /// The parameters of `fit` with one of them moved a little, and by how much.
@@ -142,11 +194,19 @@ pub fn table(set: &MeasurementSet, readings: &[Reading]) -> Result<String, csv::
         "missing_force_n",
         "standard_deviation_n",
         "model_force_n",
+        "sideways_force_n",
+        "sideways_standard_deviation_n",
+        "horizontal_force_n",
+        "horizontal_standard_deviation_n",
     ])?;
     for one in readings {
         let numbers = [one.time, one.depth, one.speed, one.force, one.se, one.model];
         let mut row = vec![set.conditions[one.condition].id.clone()];
-        row.extend(numbers.map(|number| format!("{number:.6e}")));
+        let in_six_digits = |number: f64| format!("{number:.6e}");
+        row.extend(numbers.map(in_six_digits));
+        let both = |one: Component| [one.force, one.se].map(in_six_digits);
+        row.extend(one.sideways.map_or_else(Default::default, both));
+        row.extend(both(one.horizontal));
         writer.write_record(row)?;
     }
     let bytes = writer.into_inner().map_err(|error| error.into_error())?;

@@ -7,7 +7,7 @@ use plotters::prelude::*;
 
 use super::TWO_SIDED_95;
 use super::panel::framed;
-use crate::missing_force::Reading;
+use crate::missing_force::{Component, Reading};
 
 /// Size of a panel (pixels), and panels side by side.
 const PANEL: (u32, u32) = (313, 200);
@@ -31,10 +31,17 @@ pub(crate) fn missing_force(
     conditions.truncate(CONDITIONS);
     let rows = conditions.len().div_ceil(COLUMNS).max(1);
     let height = PANEL.1 * rows as u32;
-    let signs = [
+    let mut signs = vec![
         (Sign::Line(colour(1)), "force that the model lacks, against the motion".to_owned()),
-        (Sign::Square(pale()), "its band, 95 %".to_owned()),
+        (Sign::Square(pale(1)), "its band, 95 %".to_owned()),
     ];
+    if readings.iter().any(|one| one.sideways.is_some()) {
+        let normal = "normal to the motion, out of the bed where the body sinks".to_owned();
+        signs.extend([
+            (Sign::Line(colour(2)), normal),
+            (Sign::Square(pale(2)), "its band, 95 %".to_owned()),
+        ]);
+    }
     svg((PANEL.0 * COLUMNS as u32, height + legend::height(signs.len())), |area| {
         let (charts, below) = area.split_vertically(height);
         let panels = charts.split_evenly((rows, COLUMNS));
@@ -47,9 +54,9 @@ pub(crate) fn missing_force(
     })
 }
 
-/// The colour of a band on white.
-fn pale() -> RGBColor {
-    let RGBColor(r, g, b) = colour(1);
+/// The colour of the band of a line in colour `index`, on white.
+fn pale(index: usize) -> RGBColor {
+    let RGBColor(r, g, b) = colour(index);
     let towards = |end: u8| (255.0 + (f64::from(end) - 255.0) * PALE).round() as u8;
     RGBColor(towards(r), towards(g), towards(b))
 }
@@ -57,19 +64,28 @@ fn pale() -> RGBColor {
 fn draw(area: &Area<'_>, name: &str, readings: &[&Reading]) -> Drawn {
     area.draw(&Text::new(fitting(name, PANEL.0 - 60), (52, 5), letters()))?;
     let deepest = readings.iter().map(|one| 1e3 * one.depth).fold(1e-3, f64::max);
-    let ends = |one: &Reading| [-1.0, 1.0].map(|side| one.force + side * TWO_SIDED_95 * one.se);
-    let all = readings.iter().flat_map(|one| ends(one));
+    let against = |one: &Reading| Some(Component { force: one.force, se: one.se });
+    let ends = |part: Component| [-1.0, 1.0].map(|side| part.force + side * TWO_SIDED_95 * part.se);
+    let both = |one: &&Reading| [against(one), one.sideways].into_iter().flatten();
+    let all = readings.iter().flat_map(|one| both(one).flat_map(ends));
     let (least, most) =
         all.fold((0.0_f64, 1e-9_f64), |(least, most), x| (least.min(x), most.max(x)));
     let mut chart =
         framed(area, [padded(0.0, deepest), padded(least, most)], ["depth (mm)", "force (N)"])?;
     let place = |one: &Reading| 1e3 * one.depth;
-    let lower = readings.iter().map(|one| (place(one), ends(one)[0]));
-    let upper = readings.iter().rev().map(|one| (place(one), ends(one)[1]));
-    chart.draw_series([Polygon::new(lower.chain(upper).collect::<Vec<_>>(), pale().filled())])?;
+    let parts: [(usize, &dyn Fn(&Reading) -> Option<Component>); 2] =
+        [(2, &|one| one.sideways), (1, &against)];
+    for (index, part) in parts {
+        let of = |one: &&Reading| Some((place(one), part(one)?));
+        let all: Vec<(f64, Component)> = readings.iter().filter_map(of).collect();
+        let lower = all.iter().map(|(depth, part)| (*depth, ends(*part)[0]));
+        let upper = all.iter().rev().map(|(depth, part)| (*depth, ends(*part)[1]));
+        let band = Polygon::new(lower.chain(upper).collect::<Vec<_>>(), pale(index).filled());
+        chart.draw_series([band])?;
+        let line = all.iter().map(|(depth, part)| (*depth, part.force));
+        chart.draw_series(LineSeries::new(line, colour(index).stroke_width(2)))?;
+    }
     chart.draw_series(LineSeries::new([(0.0, 0.0), (deepest, 0.0)], BLACK.stroke_width(1)))?;
-    let line = readings.iter().map(|one| (place(one), one.force));
-    chart.draw_series(LineSeries::new(line, colour(1).stroke_width(2)))?;
     chart.draw_series(readings.iter().step_by(HOVERS).map(|one| {
         let text = format!(
             "{:.1} mm deep, {:.2} m/s\n{:+.3} \u{b1} {:.3} N; the model: {:.3} N",

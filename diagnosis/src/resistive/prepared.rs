@@ -503,6 +503,7 @@ fn moment(
             way: part.tip.x - from,
             depth,
             speed,
+            direction: [velocity.x / speed, velocity.z / speed],
             unit: bed.bulk_density * bed.gravity * area * part.immersion.diameter,
             force: against(impact),
             others: others.iter().map(against).collect(),

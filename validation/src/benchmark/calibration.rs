@@ -75,7 +75,7 @@ fn draw<'a>(text: &'a mut String, bins: &[Bin]) -> Drawn<'a> {
     let mut mesh = chart.configure_mesh();
     mesh.x_desc("predicted probability")
         .y_desc("share of trials")
-        .light_line_style(WHITE)
+        .max_light_lines(0)
         .draw()?;
     let even = [(0.0, 0.0), (1.0, 1.0)];
     chart.draw_series(DashedLineSeries::new(even, 4, 3, BLACK.stroke_width(1)))?;

@@ -30,7 +30,7 @@ fn draw_depths(area: &Area<'_>, results: &[(Case, Outcome)]) -> Drawn {
         .configure_mesh()
         .x_desc("energy of the impact (mJ)")
         .y_desc("depth (mm)")
-        .light_line_style(WHITE)
+        .max_light_lines(0)
         .draw()?;
     for (number, model) in SHAPES.into_iter().enumerate() {
         let colour = colour(number);
@@ -80,7 +80,7 @@ fn draw_frictions(area: &Area<'_>, results: &[(Case, Outcome)]) -> Drawn {
         .configure_mesh()
         .x_desc("time (ms)")
         .y_desc("speed (m/s)")
-        .light_line_style(WHITE)
+        .max_light_lines(0)
         .draw()?;
     for (number, (friction, runs)) in FRICTIONS.into_iter().zip(&runs).enumerate() {
         let colour = colour(number);
