@@ -73,10 +73,7 @@ fn draw<'a>(text: &'a mut String, bins: &[Bin]) -> Drawn<'a> {
         .y_label_area_size(48)
         .build_cartesian_2d(0.0..1.02, 0.0..1.02)?;
     let mut mesh = chart.configure_mesh();
-    mesh.x_desc("predicted probability")
-        .y_desc("share of trials")
-        .max_light_lines(0)
-        .draw()?;
+    mesh.x_desc("predicted probability").y_desc("share of trials").max_light_lines(0).draw()?;
     let even = [(0.0, 0.0), (1.0, 1.0)];
     chart.draw_series(DashedLineSeries::new(even, 4, 3, BLACK.stroke_width(1)))?;
     let colour = RGBColor(0, 114, 178);

@@ -76,12 +76,7 @@ fn draw_frictions(area: &Area<'_>, results: &[(Case, Outcome)]) -> Drawn {
         .x_label_area_size(40)
         .y_label_area_size(50)
         .build_cartesian_2d(0.0..1e3 * longest, -0.1 * speed..1.05 * speed)?;
-    chart
-        .configure_mesh()
-        .x_desc("time (ms)")
-        .y_desc("speed (m/s)")
-        .max_light_lines(0)
-        .draw()?;
+    chart.configure_mesh().x_desc("time (ms)").y_desc("speed (m/s)").max_light_lines(0).draw()?;
     for (number, (friction, runs)) in FRICTIONS.into_iter().zip(&runs).enumerate() {
         let colour = colour(number);
         for (bed, run) in runs.iter().enumerate() {
