@@ -55,6 +55,11 @@ impl Component {
 }
 
 impl Reading {
+    /// Against the motion, and normal to it.
+    pub(crate) fn components(&self) -> [Option<Component>; 2] {
+        [Some(Component { force: self.force, se: self.se }), self.sideways]
+    }
+
     /// How clear of zero it is, in standard deviations.
     pub(super) fn clarity(&self) -> f64 {
         self.force.abs() / self.se.max(f64::MIN_POSITIVE)

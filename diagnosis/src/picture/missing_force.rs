@@ -64,20 +64,21 @@ fn pale(index: usize) -> RGBColor {
 fn draw(area: &Area<'_>, name: &str, readings: &[&Reading]) -> Drawn {
     area.draw(&Text::new(fitting(name, PANEL.0 - 60), (52, 5), letters()))?;
     let deepest = readings.iter().map(|one| 1e3 * one.depth).fold(1e-3, f64::max);
-    let against = |one: &Reading| Some(Component { force: one.force, se: one.se });
     let ends = |part: Component| [-1.0, 1.0].map(|side| part.force + side * TWO_SIDED_95 * part.se);
-    let both = |one: &&Reading| [against(one), one.sideways].into_iter().flatten();
-    let all = readings.iter().flat_map(|one| both(one).flat_map(ends));
+    let all = readings.iter().flat_map(|one| one.components().into_iter().flatten().flat_map(ends));
     let (least, most) =
         all.fold((0.0_f64, 1e-9_f64), |(least, most), x| (least.min(x), most.max(x)));
     let mut chart =
         framed(area, [padded(0.0, deepest), padded(least, most)], ["depth (mm)", "force (N)"])?;
     let place = |one: &Reading| 1e3 * one.depth;
-    let parts: [(usize, &dyn Fn(&Reading) -> Option<Component>); 2] =
-        [(2, &|one| one.sideways), (1, &against)];
-    for (index, part) in parts {
-        let of = |one: &&Reading| Some((place(one), part(one)?));
+    // The force against the motion lies above.
+    for component in [1, 0] {
+        let index = component + 1;
+        let of = |one: &&Reading| Some((place(one), one.components()[component]?));
         let all: Vec<(f64, Component)> = readings.iter().filter_map(of).collect();
+        if all.is_empty() {
+            continue;
+        }
         let lower = all.iter().map(|(depth, part)| (*depth, ends(*part)[0]));
         let upper = all.iter().rev().map(|(depth, part)| (*depth, ends(*part)[1]));
         let band = Polygon::new(lower.chain(upper).collect::<Vec<_>>(), pale(index).filled());
