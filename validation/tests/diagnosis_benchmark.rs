@@ -107,9 +107,10 @@ fn a_force_across_the_motion_is_found_where_it_is() {
     let missing = missing_force(&bench, &fitted, None).expect("spheres stop").expect("a force");
     let lift = nature.hidden[0].1;
     let deep = |one: &&Reading| one.depth > set.conditions[one.condition].diameter;
-    let oblique = |one: &&Reading| set.conditions[one.condition].angle_deg < 80.0;
+    let oblique = |one: &&Reading| one.sideways.is_some();
     let seen: Vec<&Reading> = missing.readings.iter().filter(oblique).filter(deep).collect();
-    let sideways = |one: &Reading| one.sideways.expect("oblique impacts show it");
+    assert!(seen.len() > 50, "{}", seen.len());
+    let sideways = |one: &Reading| one.sideways.expect("it is oblique");
     let is_clear = |one: &&Reading| sideways(one).force.abs() > 1.96 * sideways(one).se;
     let clear: Vec<&Reading> = seen.iter().copied().filter(is_clear).collect();
     assert!(2 * clear.len() > seen.len(), "{} of {}", clear.len(), seen.len());

@@ -54,6 +54,9 @@ const SETTLED: usize = 2;
 /// Impacts less steep than this (degrees) tell of a force normal to the motion.
 const OBLIQUE: f64 = 80.0;
 
+/// Logarithm of the odds by which a force normal to the motion too has to be more likely than one against it alone: 20 to 1.
+const CLEARLY: f64 = 3.0;
+
 /// Parts of the depth over which the force is summed up in words.
 const PARTS: usize = 10;
 
@@ -202,12 +205,17 @@ fn most_likely(
         let fitted = bench.with_scatter_between_conditions(less, baseline).ok();
         begun.extend(fitted.and_then(|under| look(under, false).ok().flatten()));
     }
-    let evidence = |(under, found): &(Fitted, Found)| found.evidence(under);
+    let evidence = |(under, found): &(Fitted, Found)| {
+        let of_more = if found.field.grid.is_sideways { CLEARLY } else { 0.0 };
+        found.evidence(under) - of_more
+    };
     begun.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));
     begun.truncate(SETTLED);
     let is_oblique = |&condition: &usize| bench.set.conditions[condition].angle_deg < OBLIQUE;
     if bench.observed.fit.iter().any(is_oblique) {
-        begun.extend(look(begun[0].0.clone(), true)?);
+        let best = evidence(&begun[0]);
+        let both = look(begun[0].0.clone(), true)?;
+        begun.extend(both.filter(|both| evidence(both) > best));
     }
     let mut settled = Vec::with_capacity(begun.len());
     for (under, found) in begun {

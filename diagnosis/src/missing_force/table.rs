@@ -10,6 +10,9 @@ use crate::bench::{Bench, Fitted};
 use crate::fit::Fit;
 use crate::forward::{Moment, Passages, PredictError, Request, Scatter};
 
+/// Share of a velocity along the surface from which on a force normal to the motion is given: none acts on a vertical fall.
+const OBLIQUE: f64 = 0.1;
+
 /// Logarithm by which a coefficient is moved to see what it does.
 const MORE: f64 = 0.1;
 
@@ -32,7 +35,7 @@ pub struct Reading {
     pub se: f64,
     /// Force of the model against the motion (N).
     pub model: f64,
-    /// Force that the model lacks normal to the motion, out of the bed where the body sinks; none where none was looked for.
+    /// Force that the model lacks normal to the motion, out of the bed where the body sinks; none where it falls vertically, or none is told.
     pub sideways: Option<Component>,
     /// Both together along the surface, positive forward.
     pub horizontal: Component,
@@ -159,7 +162,7 @@ pub(super) fn readings(
                 force,
                 se: (told(&weights) + beside).sqrt(),
                 model,
-                sideways: found.field.grid.is_sideways.then_some(sideways),
+                sideways: (found.field.grid.is_sideways && x.abs() > OBLIQUE).then_some(sideways),
                 horizontal,
             });
         }

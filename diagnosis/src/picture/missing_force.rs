@@ -71,20 +71,21 @@ fn draw(area: &Area<'_>, name: &str, readings: &[&Reading]) -> Drawn {
     let mut chart =
         framed(area, [padded(0.0, deepest), padded(least, most)], ["depth (mm)", "force (N)"])?;
     let place = |one: &Reading| 1e3 * one.depth;
-    // The force against the motion lies above.
-    for component in [1, 0] {
-        let index = component + 1;
-        let of = |one: &&Reading| Some((place(one), one.components()[component]?));
-        let all: Vec<(f64, Component)> = readings.iter().filter_map(of).collect();
-        if all.is_empty() {
-            continue;
-        }
+    let of = |component: usize| -> Vec<(f64, Component)> {
+        let part = |one: &&Reading| Some((place(one), one.components()[component]?));
+        readings.iter().filter_map(part).collect()
+    };
+    let both = [of(0), of(1)].into_iter().zip([colour(1), colour(2)]);
+    let both: Vec<_> = both.filter(|(all, _)| !all.is_empty()).collect();
+    for (all, colour) in &both {
         let lower = all.iter().map(|(depth, part)| (*depth, ends(*part)[0]));
         let upper = all.iter().rev().map(|(depth, part)| (*depth, ends(*part)[1]));
-        let band = Polygon::new(lower.chain(upper).collect::<Vec<_>>(), pale(index).filled());
-        chart.draw_series([band])?;
+        let band: Vec<(f64, f64)> = lower.chain(upper).collect();
+        chart.draw_series([Polygon::new(band, colour.mix(PALE).filled())])?;
+    }
+    for (all, colour) in &both {
         let line = all.iter().map(|(depth, part)| (*depth, part.force));
-        chart.draw_series(LineSeries::new(line, colour(index).stroke_width(2)))?;
+        chart.draw_series(LineSeries::new(line, colour.stroke_width(2)))?;
     }
     chart.draw_series(LineSeries::new([(0.0, 0.0), (deepest, 0.0)], BLACK.stroke_width(1)))?;
     chart.draw_series(readings.iter().step_by(HOVERS).map(|one| {
