@@ -3,7 +3,7 @@
 //!
 //! The force is a Gaussian process over depth, speed and impact angle, seen through the linear answer of the measurements
 //! to a force around each node of a grid; parameters of the model and errors of the apparatus are projected out. It acts
-//! against the motion; on oblique impacts also normal to it, where that is more likely. A
+//! against the motion; on oblique impacts also normal to it, where that is clearly more likely. A
 //! formula is chosen from a library of dimensionless forms by what it explains in the space of the
 //! measurements, refitted as a part of the model, and kept where it takes a quarter of a clear error on conditions that
 //! were not fitted to. It fits and predicts; it does not explain.

@@ -116,7 +116,8 @@ pub(super) fn readings(
             let slope = DVector::from_iterator(moved.len(), slopes);
             let mut weights = -follow.tr_mul(&slope);
             let mut force = own - model;
-            let shares = found.field.grid.shares_at([one.depth, one.speed, angle, diameter]);
+            let state = [one.depth, one.speed, angle, diameter];
+            let shares = found.field.grid.shares_at(state);
             for (node, share) in shares {
                 force += one.unit * share * found.field.values[node];
                 if let Some(at) = place(node) {
@@ -135,8 +136,7 @@ pub(super) fn readings(
             }
             let mut across = DVector::zeros(weights.len());
             let mut normal = 0.0;
-            let place_of = [one.depth, one.speed, angle, diameter];
-            for (node, share) in found.field.grid.sideways_shares_at(place_of) {
+            for (node, share) in found.field.grid.sideways_shares_at(state) {
                 normal += one.unit * share * found.field.values[node];
                 if let Some(at) = place(node) {
                     across[at] += one.unit * share;
