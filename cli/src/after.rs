@@ -113,7 +113,7 @@ pub(crate) fn as_text(sequel: &Sequel) -> String {
         came.add_row(row.into_iter().map(Cell::new));
     }
     let mut shares =
-        table(&["hypothesis", "probability before", "after", "chi2 per number of the new runs"]);
+        table(&["hypothesis", "probability before", "after", "chi2 per datum of the new runs"]);
     for one in &sequel.hypotheses {
         shares.add_row(
             [

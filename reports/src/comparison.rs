@@ -112,7 +112,7 @@ fn headline(models: &[Value]) -> Vec<Number> {
     }
     let fit = last["chi2_per_n"].as_f64();
     numbers.push(Number::new(
-        "\u{3c7}\u{b2} per number",
+        "\u{3c7}\u{b2} per datum",
         fixed(fit, 2),
         "about 1 if the model is right",
     ));

@@ -398,7 +398,7 @@ fn after(diagnosis: &Value) -> Vec<Part> {
     if hypotheses.is_empty() {
         return Vec::new();
     }
-    let mut shares = Table::new(&["hypothesis", "before", "after", "\u{3c7}\u{b2} per number"]);
+    let mut shares = Table::new(&["hypothesis", "before", "after", "\u{3c7}\u{b2} per datum"]);
     for one in hypotheses {
         shares.rows.push(vec![
             text(&one["id"]),
@@ -423,7 +423,7 @@ fn after(diagnosis: &Value) -> Vec<Part> {
         came.rows.push(row);
     }
     let intro = format!(
-        "The runs that came after the earlier diagnosis tell {} bit of which effect it is. \u{3c7}\u{b2} per number is \
+        "The runs that came after the earlier diagnosis tell {} bit of which effect it is. \u{3c7}\u{b2} per datum is \
          about 1 under a hypothesis that expected them.",
         fixed(after["told_bits"].as_f64(), 2)
     );
