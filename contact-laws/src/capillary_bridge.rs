@@ -104,10 +104,6 @@ impl ContactLaw for CapillaryBridge {
         (stiffness > 0.0).then(|| PI * (encounter.mass_eff / stiffness).sqrt())
     }
 
-    fn damping_time(_: &Pair, _: &Encounter) -> Option<f64> {
-        None
-    }
-
     fn reach(pair: &Pair, _radius_eff: f64) -> f64 {
         pair.rupture_gap
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::contact::{Contact, ContactLaw, Partner, Response, Slot};
 use engine::lanes::Lanes;
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{ParamSpec, ParamTable};
@@ -59,14 +59,6 @@ impl ContactLaw for CohesionDmt {
         let force = R::splat(pair.pull_per_radius) * contact.radius_eff();
         let pull = Pull { force: -force, adhesive_force: force, stored: -force * contact.overlap };
         history.act((contact.overlaps(), pull), contact, response, energy);
-    }
-
-    fn collision_time(_: &Pair, _: &Encounter) -> Option<f64> {
-        None
-    }
-
-    fn damping_time(_: &Pair, _: &Encounter) -> Option<f64> {
-        None
     }
 }
 

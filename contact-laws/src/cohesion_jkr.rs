@@ -127,10 +127,6 @@ impl ContactLaw for CohesionJkr {
         (stiffness > 0.0).then(|| PI * (encounter.mass_eff / stiffness).sqrt())
     }
 
-    fn damping_time(_: &Pair, _: &Encounter) -> Option<f64> {
-        None
-    }
-
     fn reach(pair: &Pair, radius_eff: f64) -> f64 {
         pair.release_gap(radius_eff)
     }

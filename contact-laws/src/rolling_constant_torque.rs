@@ -1,6 +1,6 @@
 //! Rolling resistance as a constant torque.
 
-use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::contact::{Contact, ContactLaw, Partner, Response, Slot};
 use engine::lanes::{Lanes, Vector, length, vector_where};
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{ParamSpec, ParamTable};
@@ -68,14 +68,6 @@ impl ContactLaw for RollingConstantTorque {
         *energy -= R::splat(0.5) * (*history + couple).dot(&turned);
         *history = couple;
         response.couple += couple;
-    }
-
-    fn collision_time(_: &Pair, _: &Encounter) -> Option<f64> {
-        None
-    }
-
-    fn damping_time(_: &Pair, _: &Encounter) -> Option<f64> {
-        None
     }
 }
 

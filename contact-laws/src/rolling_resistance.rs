@@ -1,6 +1,6 @@
 //! Rolling resistance as an elastic–plastic spring with a dashpot.
 
-use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::contact::{Contact, ContactLaw, Partner, Response, Slot};
 use engine::lanes::{Lanes, Vector, length, select_vector, shortened, vector_where};
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{ParamSpec, ParamTable};
@@ -111,14 +111,6 @@ impl ContactLaw for RollingResistance {
         let angle = vector_where(k_r.simd_gt(zero), angle);
         *history = Memory { angle, damping: viscous, stiffness: k_r };
         response.couple += couple;
-    }
-
-    fn collision_time(_: &Pair, _: &Encounter) -> Option<f64> {
-        None
-    }
-
-    fn damping_time(_: &Pair, _: &Encounter) -> Option<f64> {
-        None
     }
 }
 

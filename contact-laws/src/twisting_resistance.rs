@@ -1,6 +1,6 @@
 //! Resistance against twisting about the normal.
 
-use engine::contact::{Contact, ContactLaw, Encounter, Partner, Response, Slot};
+use engine::contact::{Contact, ContactLaw, Partner, Response, Slot};
 use engine::lanes::Lanes;
 use engine::ledger::{Channel, ChannelKind};
 use engine::params::{ParamSpec, ParamTable, Range};
@@ -92,14 +92,6 @@ impl ContactLaw for TwistingResistance {
         response.couple -= contact.normal * (stiffness * angle);
         // Without stiffness nothing was wound up that could come back.
         *history = Memory { angle: angle.select(stiffness.simd_gt(zero), zero), stiffness };
-    }
-
-    fn collision_time(_: &Pair, _: &Encounter) -> Option<f64> {
-        None
-    }
-
-    fn damping_time(_: &Pair, _: &Encounter) -> Option<f64> {
-        None
     }
 }
 

@@ -68,10 +68,6 @@ impl ContactLaw for VelocityRestitution {
         response.normal_force += force;
     }
 
-    fn collision_time(_: &Pair, _: &Encounter) -> Option<f64> {
-        None
-    }
-
     fn damping_time(pair: &Pair, encounter: &Encounter) -> Option<f64> {
         let a = pair.elastic.largest_contact_radius(encounter);
         let rate = pair.viscous_time * pair.elastic.normal_stiffness(a) / encounter.mass_eff;

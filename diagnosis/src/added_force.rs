@@ -127,7 +127,7 @@ fn greatest_force(
     passages: &[(usize, Vec<Moment>)],
     place: usize,
 ) -> Option<AddedForce> {
-    let added = |moment: &Moment| moment.force - moment.others[place];
+    let added = |moment: &Moment| moment.force - moment.others[place][0];
     let all = passages
         .iter()
         .flat_map(|(condition, moments)| moments.iter().map(move |moment| (*condition, moment)));

@@ -125,8 +125,13 @@ pub struct Moment {
     pub unit: f64,
     /// Force of the model against the motion (N).
     pub force: f64,
-    /// The same of other models in this state.
-    pub others: Vec<f64>,
+    /// Forces of other models in this state, against the motion and normal to it, out of the bed where the body sinks (N).
+    pub others: Vec<[f64; 2]>,
+}
+
+/// The sense of the forward component of a direction of motion: none on a vertical fall.
+pub(crate) fn sense(forward: f64) -> f64 {
+    f64::from(i8::from(forward > 0.0) - i8::from(forward < 0.0))
 }
 
 /// Odds of 100 to 1, in χ²: as rare as an error that a verdict allows itself.

@@ -96,12 +96,6 @@ impl ParamSpec {
         Self { default: Default::SameAs(key), ..self }
     }
 
-    /// The same with the value of `key` of the contact law where the file gives none.
-    #[must_use]
-    pub const fn from_base(self, key: &'static str) -> Self {
-        Self { default: Default::FromBase(key), ..self }
-    }
-
     /// The same with these values accepted (SI).
     #[must_use]
     pub const fn allowed(self, allowed: Range) -> Self {

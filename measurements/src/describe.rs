@@ -91,10 +91,7 @@ fn row(condition: &Condition, runs: &[&Run], function: &str) -> Vec<String> {
         measured.iter().filter(|(_, is_there)| *is_there).map(|(name, _)| *name).collect();
     vec![
         condition.id.clone(),
-        match condition.role {
-            Role::Fit => "fit".to_owned(),
-            Role::Holdout => "holdout".to_owned(),
-        },
+        condition.role.word().to_owned(),
         condition.speed.to_string(),
         condition.angle_deg.to_string(),
         condition.shape.clone(),

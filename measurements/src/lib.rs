@@ -343,6 +343,16 @@ pub enum Role {
     Holdout,
 }
 
+impl Role {
+    /// As a set writes it.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Fit => "fit",
+            Self::Holdout => "holdout",
+        }
+    }
+}
+
 /// One setting of the experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {

@@ -17,9 +17,14 @@ const SHARE: f64 = 0.2;
 /// Readings on either side that say where one should be.
 const REACH: usize = 6;
 
-/// Readings at either end that are held against those on one side, and most times that readings are looked at.
+/// Readings at either end that are held against those on one side.
 const ENDS: usize = 2;
+
+/// Most times that readings are looked at.
 const PASSES: usize = 5;
+
+/// Times the usual step beyond which nothing is promised across a gap of readings.
+const GAP: f64 = 2.5;
 
 /// Readings this many standard deviations from a parabola are close to it.
 const CLOSE: f64 = 4.0;
@@ -157,8 +162,13 @@ fn seen_at_once(track: &[[f64; 2]], error: f64, with_ends: bool) -> Vec<bool> {
     for at in (0..n).filter(|&at| misses[at] > 0.5 * FAR * noise) {
         suspects[around(at, n)].fill(true);
     }
+    let gap = GAP * median(track.windows(2).map(|pair| pair[1][0] - pair[0][0]).collect());
     let is_stray = |(at, is_suspect): (usize, bool)| {
         let is_end = with_ends && n > REACH + ENDS && (at < ENDS || at + ENDS >= n);
+        let is_end = is_end && {
+            let beside = if at < ENDS { at + 1 } else { at - 1 };
+            (track[beside][0] - track[at][0]).abs() <= gap
+        };
         is_suspect && is_apart(track, (at, misses[at]), noise)
             || is_end && is_off_the_end(track, at, noise)
     };
@@ -172,7 +182,7 @@ fn is_off_the_end(track: &[[f64; 2]], at: usize, noise: f64) -> bool {
         true => (at + 1..at + 1 + REACH, at + 1),
         false => (at - REACH..at, at - 1),
     };
-    let said = Consensus::of(&track[places], track[at][0], CLOSE * noise);
+    let said = Consensus::of(&track[places], [track[at][0]; 3], CLOSE * noise);
     said.filter(|said| said.near == REACH).is_some_and(|said| {
         let ends = [said.promised, track[beside][1]];
         let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
@@ -187,15 +197,16 @@ fn around(at: usize, n: usize) -> std::ops::Range<usize> {
 }
 
 /// Whether the reading `at`, which misses what three neighbours promise by `miss` at least, is far from what both sides of it
-/// say. Where they say the same, that is all; where a blow is between them, a body on its way is no stray reading.
+/// say. Where they are one course, that is all; where a blow is between them, a body on its way is no stray reading.
 fn is_apart(track: &[[f64; 2]], (at, miss): (usize, f64), noise: f64) -> bool {
     let there = around(at, track.len());
+    let times = [at, at.saturating_sub(1), (at + 1).min(track.len() - 1)].map(|at| track[at][0]);
     let [left, right] = [there.start..at, at + 1..there.end]
-        .map(|places| Consensus::of(&track[places], track[at][0], CLOSE * noise));
+        .map(|places| Consensus::of(&track[places], times, CLOSE * noise));
     let is_far = |one: &Consensus| (track[at][1] - one.promised).abs() > FAR * noise;
     match (left, right) {
         (None, None) => false,
-        (Some(left), Some(right)) if left.agrees_with(&right, CLOSE * noise) => is_far(&left),
+        (Some(left), Some(right)) if left.is_one_with(&right, noise) => is_far(&left),
         (left, right) => {
             let are_far = left.iter().chain(&right).all(is_far);
             are_far && miss > FAR * noise && !is_on_the_way(track, at)
@@ -206,6 +217,8 @@ fn is_apart(track: &[[f64; 2]], (at, miss): (usize, f64), noise: f64) -> bool {
 /// What most of a few readings say of another.
 struct Consensus {
     promised: f64,
+    /// What it says of those beside.
+    beside: [f64; 2],
     /// How many say so.
     near: usize,
     /// Whether that is all but one of them, or all.
@@ -214,8 +227,9 @@ struct Consensus {
 
 impl Consensus {
     /// The parabola through three of `readings` that most of them are close to (Fischler & Bolles, Commun. ACM 24, 381
-    /// (1981), with every triple), at time `t`; `None` where no more than half of them are.
-    fn of(readings: &[[f64; 2]], t: f64, close: f64) -> Option<Self> {
+    /// (1981), with every triple), at the time of that other and of those beside it; `None` where no more than half of them
+    /// are.
+    fn of(readings: &[[f64; 2]], times: [f64; 3], close: f64) -> Option<Self> {
         let n = readings.len();
         if n <= 3 {
             return None;
@@ -230,13 +244,19 @@ impl Consensus {
         });
         let (near, _, three) =
             judged.max_by(|a, b| a.0.cmp(&b.0).then_with(|| b.1.total_cmp(&a.1)))?;
-        let promised = parabola(readings, &three, t)?;
+        let [promised, before, after] = times.map(|t| parabola(readings, &three, t));
+        let (promised, beside) = (promised?, [before?, after?]);
         let is_broad = near + 1 >= n && n + 1 >= REACH;
-        (near > 3 && 2 * near > n).then_some(Self { promised, near, is_broad })
+        (near > 3 && 2 * near > n).then_some(Self { promised, beside, near, is_broad })
     }
 
-    fn agrees_with(&self, other: &Self, close: f64) -> bool {
-        self.is_broad && other.is_broad && (self.promised - other.promised).abs() <= close
+    /// Whether both are of one course: the fall and the rest of a body that is stopped hard cross in a point.
+    fn is_one_with(&self, other: &Self, noise: f64) -> bool {
+        let beside = self.beside.iter().zip(&other.beside);
+        self.is_broad
+            && other.is_broad
+            && (self.promised - other.promised).abs() <= CLOSE * noise
+            && beside.map(|(own, other)| (own - other).abs()).all(|apart| apart <= FAR * noise)
     }
 }
 
@@ -252,9 +272,13 @@ fn is_on_the_way(track: &[[f64; 2]], at: usize) -> bool {
 
 /// The standard deviation of which `sizes` are, by their median.
 fn usual(sizes: &[f64]) -> f64 {
-    let mut sorted: Vec<f64> = sizes.iter().copied().filter(|size| size.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0) / MEDIAN
+    median(sizes.iter().copied().filter(|size| size.is_finite()).collect()) / MEDIAN
+}
+
+/// The middle one of `numbers`; zero of none.
+fn median(mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_by(f64::total_cmp);
+    numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// By how much the reading `at` misses the best of what its neighbours promise: parabolas through three on either
@@ -503,6 +527,25 @@ mod tests {
         }
         let cleaned = without_strays(&set(runs[..2].to_vec()), ERROR);
         assert_eq!(cleaned.notes, Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_body_that_brakes_within_a_few_frames_loses_none() {
+        for (phase, braking) in
+            (0..10).flat_map(|phase| [1.5, 2.0, 2.5, 3.0, 4.0, 5.0].map(|b| (phase, b)))
+        {
+            let tau = braking / 240.0;
+            let frame = |k: i32| {
+                let t = (f64::from(k) + 0.1 * f64::from(phase)) / 240.0;
+                let inside = t.clamp(0.0, tau);
+                let z = 3.0 * t.min(tau) - if t > 0.0 { 1.5 * inside * inside / tau } else { 0.0 };
+                let off = 2e-4 * f64::from((7 * k).rem_euclid(5) - 2) / 2.0;
+                Frame { t, z: z + off, x: 0.0, sigma: None }
+            };
+            let frames: Vec<Frame> = (-20..30).map(frame).collect();
+            let stray = stray_frames(&frames, 2e-4);
+            assert!(!stray.contains(&true), "{phase}, {braking}");
+        }
     }
 
     #[test]

@@ -11,8 +11,7 @@ use thiserror::Error;
 
 use super::curve::Curve;
 use super::{
-    Bed, Condition, Crater, Feasible, FinalDefinition, Geometry, Kind, MeasurementSet,
-    ParameterPrior, Role, Run, StopDefinition,
+    Bed, Condition, Crater, Feasible, Geometry, Kind, MeasurementSet, ParameterPrior, Run,
 };
 
 /// Why a set cannot be written.
@@ -69,20 +68,8 @@ impl MeasurementSet {
             },
         );
         file.text("source", self.source.as_deref());
-        file.word(
-            "stop_definition",
-            match self.stop {
-                StopDefinition::ComponentZero => "component-zero",
-                StopDefinition::SpeedFivePercent => "speed-5-percent",
-            },
-        );
-        file.word(
-            "final",
-            match self.last {
-                FinalDefinition::Deepest => "deepest",
-                FinalDefinition::Resting => "resting",
-            },
-        );
+        file.word("stop_definition", self.stop.word());
+        file.word("final", self.last.word());
         let notes: Vec<String> = self.notes.iter().map(|note| quoted(note)).collect();
         file.line("notes", &format!("[{}]", notes.join(", ")));
         if !self.keep.is_empty() {
@@ -317,13 +304,7 @@ impl Toml {
     fn condition(&mut self, condition: &Condition, bed: Option<&str>, kind: Kind) {
         self.table("[[condition]]");
         self.word("id", &condition.id);
-        self.word(
-            "role",
-            match condition.role {
-                Role::Fit => "fit",
-                Role::Holdout => "holdout",
-            },
-        );
+        self.word("role", condition.role.word());
         self.number("speed", Some(condition.speed));
         self.number("angle_deg", Some(condition.angle_deg));
         self.word("shape", &condition.shape);

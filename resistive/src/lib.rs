@@ -191,8 +191,10 @@ pub enum Flow {
 
 /// A term of the force of the medium, or something that changes the terms.
 pub trait ResistanceLaw: Send + Sync {
-    /// What it books: at most one account per flow.
-    fn accounts(&self) -> &'static [Account];
+    /// What it books: at most one account per flow; nothing unless it says so.
+    fn accounts(&self) -> &'static [Account] {
+        &[]
+    }
 
     /// What its accounts are called in the ledger where that is not known in advance: a law that a model
     /// file defines. kebab-case, and unlike every other account.

@@ -8,7 +8,7 @@ use nalgebra::DVector;
 use super::found::{Found, MOMENTS};
 use crate::bench::{Bench, Fitted};
 use crate::fit::Fit;
-use crate::forward::{Moment, Passages, PredictError, Request, Scatter};
+use crate::forward::{Moment, Passages, PredictError, Request, Scatter, sense};
 
 /// Share of a velocity along the surface from which on a force normal to the motion is given: none acts on a vertical fall.
 const OBLIQUE: f64 = 0.1;
@@ -110,48 +110,50 @@ pub(super) fn readings(
         let [angle, diameter] = [body.angle_deg.to_radians(), body.diameter];
         let moments = by.passage(condition, &at(&fit.point.parameters, &with), &others, MOMENTS)?;
         for one in moments {
-            let (model, own) = (one.others[0], one.others[1]);
-            let slopes =
-                one.others[2..].iter().zip(&moved).map(|(there, (_, by))| (there - own) / by);
-            let slope = DVector::from_iterator(moved.len(), slopes);
-            let mut weights = -follow.tr_mul(&slope);
-            let mut force = own - model;
             let state = [one.depth, one.speed, angle, diameter];
-            let shares = found.field.grid.shares_at(state);
-            for (node, share) in shares {
-                force += one.unit * share * found.field.values[node];
-                if let Some(at) = place(node) {
-                    weights[at] += one.unit * share;
+            let grid = &found.field.grid;
+            let shares = [
+                grid.shares_at(state).to_vec(),
+                grid.sideways_shares_at(state).collect::<Vec<_>>(),
+            ];
+            // The missing force in the direction `of`: so much of it against the motion, so much normal to it.
+            let along = |of: [f64; 2]| {
+                let told = |forces: &[f64; 2]| of[0] * forces[0] + of[1] * forces[1];
+                let (model, own) = (told(&one.others[0]), told(&one.others[1]));
+                let slopes = one.others[2..].iter().zip(&moved);
+                let slopes = slopes.map(|(there, (_, by))| (told(there) - own) / by);
+                let slope = DVector::from_iterator(moved.len(), slopes);
+                let of_nodes = shares.iter().zip(of).flat_map(|(shares, of)| {
+                    shares.iter().map(move |&(node, share)| (node, of * share))
+                });
+                let of_nodes: Vec<(usize, f64)> =
+                    of_nodes.filter(|(_, share)| *share != 0.0).collect();
+                let mut weights = -follow.tr_mul(&slope);
+                let mut force = own - model;
+                for &(node, share) in &of_nodes {
+                    force += one.unit * share * found.field.values[node];
+                    if let Some(at) = place(node) {
+                        weights[at] += one.unit * share;
+                    }
                 }
-            }
-            // From the force of the path to the mean of the process, which the parameters follow.
-            force += weights.dot(&step);
-            let by_coefficients = one.others[2 + moved.len()..].iter();
-            let scattered = by_coefficients.map(|there| (scatter * (there - own) / MORE).powi(2));
-            let mut beside = slope.dot(&(&covariance * &slope)) + scattered.sum::<f64>();
-            if let Some(apart) = &apart {
-                let (mean, spread) = apart.force(fitted, (&shares, one.unit), &slope);
-                force += mean;
-                beside += spread;
-            }
-            let mut across = DVector::zeros(weights.len());
-            let mut normal = 0.0;
-            for (node, share) in found.field.grid.sideways_shares_at(state) {
-                normal += one.unit * share * found.field.values[node];
-                if let Some(at) = place(node) {
-                    across[at] += one.unit * share;
+                // From the force of the path to the mean of the process, which the parameters follow.
+                force += weights.dot(&step);
+                let by_coefficients = one.others[2 + moved.len()..].iter();
+                let scattered =
+                    by_coefficients.map(|there| (scatter * (told(there) - own) / MORE).powi(2));
+                let mut beside = slope.dot(&(&covariance * &slope)) + scattered.sum::<f64>();
+                if let Some(apart) = &apart {
+                    let (mean, spread) = apart.force(fitted, (&of_nodes, one.unit), &slope);
+                    force += mean;
+                    beside += spread;
                 }
-            }
-            normal += across.dot(&step);
-            let told = |weights: &DVector<f64>| found.process.variance(weights);
-            let [x, z] = one.direction;
-            let (of_force, of_normal) = (-x, -z * sense(x));
-            let both = &weights * of_force + &across * of_normal;
-            let horizontal = Component {
-                force: of_force * force + of_normal * normal,
-                se: (told(&both) + x * x * beside).sqrt(),
+                Component { force, se: (found.process.variance(&weights) + beside).sqrt() }
             };
-            let sideways = Component { force: normal, se: told(&across).sqrt() };
+            let [x, z] = one.direction;
+            let against = along([1.0, 0.0]);
+            let sideways = (grid.is_sideways && x.abs() > OBLIQUE).then(|| along([0.0, 1.0]));
+            let horizontal = along([-x, -z * sense(x)]);
+            let model = one.others[0][0];
             let Moment { time, way, depth, speed, .. } = one;
             readings.push(Reading {
                 condition,
@@ -159,20 +161,15 @@ pub(super) fn readings(
                 way,
                 depth,
                 speed,
-                force,
-                se: (told(&weights) + beside).sqrt(),
+                force: against.force,
+                se: against.se,
                 model,
-                sideways: (found.field.grid.is_sideways && x.abs() > OBLIQUE).then_some(sideways),
+                sideways,
                 horizontal,
             });
         }
     }
     Ok(readings)
-}
-
-/// The sense of a forward component of the direction of motion: none on a vertical fall.
-fn sense(forward: f64) -> f64 {
-    f64::from(i8::from(forward > 0.0) - i8::from(forward < 0.0))
 }
 
 /// The parameters of `fit` with one of them moved a little, and by how much.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use engine::math::Vec3;
-use resistive::{Account, Immersion, Load, Motion, ResistanceLaw, Surroundings};
+use resistive::{Immersion, Load, Motion, ResistanceLaw, Surroundings};
 
 use crate::field::Field;
 
@@ -28,10 +28,6 @@ impl FieldForce {
 }
 
 impl ResistanceLaw for FieldForce {
-    fn accounts(&self) -> &'static [Account] {
-        &[]
-    }
-
     fn act(&self, at: &Immersion, motion: &Motion, bed: &Surroundings, load: &mut Load) {
         let [size, sideways] = self.sizes(at, motion, bed);
         let slow = REST * (bed.gravity * at.diameter).sqrt();

@@ -23,7 +23,7 @@ use super::field::FieldForce;
 use super::over_time::{self, DURATION};
 use super::pushed;
 use super::scatter::PathScatter;
-use crate::forward::{Bend, Moment, Scatter};
+use crate::forward::{Bend, Moment, Scatter, sense};
 use crate::observable::{Layout, Observable};
 
 /// Errors near 1e-9 m, far below any camera and small beside every difference that is taken.
@@ -495,7 +495,12 @@ fn moment(
     let part = &sample.parts[0].part;
     let (velocity, speed) = (part.velocity, part.velocity.norm());
     let (depth, area) = (part.immersion.depth, part.immersion.loaded_area);
-    let against = |impact: &Impact| -impact.force_in(0, sample.state).dot(&velocity) / speed;
+    let direction = velocity / speed;
+    let normal = Vec3::new(-direction.z, 0.0, direction.x) * sense(direction.x);
+    let components = |impact: &Impact| {
+        let force = impact.force_in(0, sample.state);
+        [-force.dot(&direction), force.dot(&normal)]
+    };
     (depth > 0.0 && speed > 0.0).then(|| {
         let bed = impact.bed();
         Moment {
@@ -503,10 +508,10 @@ fn moment(
             way: part.tip.x - from,
             depth,
             speed,
-            direction: [velocity.x / speed, velocity.z / speed],
+            direction: [direction.x, direction.z],
             unit: bed.bulk_density * bed.gravity * area * part.immersion.diameter,
-            force: against(impact),
-            others: others.iter().map(against).collect(),
+            force: components(impact)[0],
+            others: others.iter().map(components).collect(),
         }
     })
 }

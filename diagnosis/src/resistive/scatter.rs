@@ -1,7 +1,7 @@
 //! What differs from run to run, as something that laws can be told.
 
 use engine::math::Vec3;
-use resistive::{Account, Immersion, Load, Motion, ResistanceLaw};
+use resistive::{Immersion, Load, Motion, ResistanceLaw};
 
 use crate::forward::Scatter;
 
@@ -34,10 +34,6 @@ impl PathScatter {
 }
 
 impl ResistanceLaw for PathScatter {
-    fn accounts(&self) -> &'static [Account] {
-        &[]
-    }
-
     fn modulate(&self, at: &Immersion, motion: &Motion, load: &mut Load) {
         let factor = 1.0 + self.at(&self.along, at.depth);
         load.dynamic *= factor;

@@ -218,11 +218,15 @@ pub trait ContactLaw: Send + Sync + 'static {
 
     /// How long a head-on collision lasts without damping (s); `None` if this law does not decide it.
     /// Sets `time_step = "auto"`.
-    fn collision_time(pair: &Self::Pair, encounter: &Encounter) -> Option<f64>;
+    fn collision_time(_pair: &Self::Pair, _encounter: &Encounter) -> Option<f64> {
+        None
+    }
 
     /// In how short a time (s) its damping brings the relative motion of two bodies to rest; `None`
     /// if it has none. Damping is explicit, so a longer step than about half of this shakes a bed.
-    fn damping_time(pair: &Self::Pair, encounter: &Encounter) -> Option<f64>;
+    fn damping_time(_pair: &Self::Pair, _encounter: &Encounter) -> Option<f64> {
+        None
+    }
 
     /// How long (s) a surface wave runs through a grain of `radius` (m) and `density` (kg/m³); `None` if
     /// the law has no elastic constants. Bounds `time_step = "auto"`.

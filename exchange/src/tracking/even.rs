@@ -11,19 +11,29 @@ const POWERS: std::ops::RangeInclusive<i32> = -3..=9;
 /// Share of what times are rounded to that a reading may be off its even clock: rounding takes half, the fit of the clock a little.
 const OFF: f64 = 0.7;
 
+/// Steps of an exact clock that differ from the others where the tracker wrote no row for a lost frame: so many at most, or
+/// this share of them.
+const FEW: usize = 3;
+const FEW_OF: f64 = 0.03;
+
 /// Gives evenly spaced times to readings whose own are those times, rounded, and says what they are rounded to.
 ///
 /// Lines of the table are counted, so that rows without a reading are no hindrance.
 pub(super) fn undo_rounding(samples: &mut [Sample]) -> Option<f64> {
-    let first = samples.first()?.line;
+    let (first, start) = samples.first().map(|one| (one.line, one.t))?;
     let row = |sample: &Sample| sample.line as f64 - first as f64;
     let quantum = POWERS.map(|power| 10_f64.powi(-power)).find(|quantum| {
         let are_multiples = |one: &Sample| {
-            let of = one.t / quantum;
-            (of - of.round()).abs() <= 1e-9 * of.abs().max(1.0)
+            let of = (one.t - start) / quantum;
+            // A time since 1970 has few digits left for its fractions.
+            let rounding = 1e-6 + 4.0 * f64::EPSILON * one.t.abs() / quantum;
+            rounding < 0.05 && (of - of.round()).abs() <= rounding
         };
         samples.iter().all(are_multiples)
     })?;
+    if is_exact(samples, quantum) {
+        return None;
+    }
     let n = samples.len() as f64;
     let mean = |of: &dyn Fn(&Sample) -> f64| samples.iter().map(of).sum::<f64>() / n;
     let (middle, time) = (mean(&row), mean(&|one| one.t));
@@ -42,18 +52,36 @@ pub(super) fn undo_rounding(samples: &mut [Sample]) -> Option<f64> {
     Some(quantum)
 }
 
+/// Whether rows beside each other are one step of the clock apart, which is a multiple of `quantum`, but for a few.
+fn is_exact(samples: &[Sample], quantum: f64) -> bool {
+    let beside = samples.windows(2).filter(|pair| pair[1].line == pair[0].line + 1);
+    let steps: Vec<i64> =
+        beside.map(|pair| ((pair[1].t - pair[0].t) / quantum).round() as i64).collect();
+    let mut counts = std::collections::BTreeMap::new();
+    steps.iter().for_each(|step| *counts.entry(*step).or_insert(0_usize) += 1);
+    let commonest = counts.into_iter().max_by_key(|(_, count)| *count);
+    commonest.is_some_and(|(step, count)| {
+        let others = steps.len() - count;
+        step > 0 && others <= FEW.max((FEW_OF * steps.len() as f64) as usize)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn samples(rate: f64, quantum: f64) -> Vec<Sample> {
+        samples_where(rate, quantum, |line| line % 17 != 5)
+    }
+
+    fn samples_where(rate: f64, quantum: f64, is_there: fn(&u64) -> bool) -> Vec<Sample> {
         let of = |line: u64| Sample {
             line: line + 2,
             t: ((0.3 + line as f64 / rate) / quantum).round() * quantum,
             z: 0.0,
             x: 0.0,
         };
-        (0..200).filter(|line| line % 17 != 5).map(of).collect()
+        (0..200).filter(is_there).map(of).collect()
     }
 
     /// Largest deviation from the true clock, whose zero does not matter.
@@ -79,6 +107,15 @@ mod tests {
         assert_eq!(undo_rounding(&mut fine), None);
         let mut even = samples(1000.0, 1e-3);
         assert_eq!(undo_rounding(&mut even), None);
+        // A tracker writes no row for a frame in which it lost the body.
+        for (rate, quantum) in [(1000.0, 1e-3), (100.0, 1e-2), (240.0, 1e-7)] {
+            let mut gaps = samples_where(rate, quantum, |line| ![20, 75, 140].contains(line));
+            gaps.iter_mut().zip(2..).for_each(|(one, line)| {
+                one.line = line;
+                one.t += 1.7e9;
+            });
+            assert_eq!(undo_rounding(&mut gaps), None, "{rate}");
+        }
         let mut uneven = samples(650.0, 1e-3);
         for one in &mut uneven[80..] {
             one.t += 3e-3;

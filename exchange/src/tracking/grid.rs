@@ -19,6 +19,8 @@ pub(super) struct Grid<'a> {
     /// The row of names, among those of the sheet.
     pub(super) header: usize,
     pub(super) headings: Vec<Heading>,
+    /// Whether no line of names stands above the numbers.
+    pub(super) is_without_names: bool,
     /// Below the header.
     pub(super) rows: &'a [Row],
 }
@@ -50,7 +52,7 @@ impl<'a> Grid<'a> {
             }
         }
         let first = units.map_or(header, |units| units.max(header)) + 1;
-        Self { sheet, header, headings, rows: &sheet.rows[first..] }
+        Self { sheet, header, headings, is_without_names: false, rows: &sheet.rows[first..] }
     }
 
     /// The sheet below the names that stand above its first row of numbers, with a row of units between
@@ -110,7 +112,7 @@ impl<'a> Grid<'a> {
             true => ["t", "z"].map(Heading::of).to_vec(),
             false => (1..=width).map(|at| Heading::of(&at.to_string())).collect(),
         };
-        Self { sheet, header: first, headings, rows }
+        Self { sheet, header: first, headings, is_without_names: true, rows }
     }
 
     /// The column that the user or its name says is of this role.

@@ -173,9 +173,14 @@ impl Heading {
     /// Whether name or unit is that of an acceleration.
     pub(super) fn is_acceleration(&self) -> bool {
         const NAMES: [&str; 6] = ["ax", "ay", "az", "acc", "accel", "acceleration"];
-        const UNITS: [&str; 6] = ["g", "m/s2", "m/s^2", "m/s²", "m s^-2", "m/s/s"];
+        const UNITS: [&str; 5] = ["m/s2", "m/s^2", "m/s²", "m s^-2", "m/s/s"];
         let first = self.stem.split([' ', '_', '-']).next();
-        let is_unit = |unit: &str| UNITS.contains(&unit.to_lowercase().as_str());
+        // A mass in grams is none.
+        let is_of_axis = || self.role().is_some() || self.point().is_some() || self.stem == "a";
+        let is_unit = |unit: &str| match unit.to_lowercase().as_str() {
+            "g" => is_of_axis(),
+            unit => UNITS.contains(&unit),
+        };
         first.is_some_and(|word| NAMES.contains(&word))
             || matches!(&self.unit, Unit::Unknown(unit) if is_unit(unit))
     }

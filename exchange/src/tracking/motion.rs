@@ -33,8 +33,9 @@ impl Path {
     /// # Errors
     /// If its times repeat or run back, or it never moves.
     pub(super) fn of(mut track: Track, settings: &Settings<'_>) -> Result<Self, Fault> {
-        let samples = in_order(&mut track, settings)?;
-        let clock = clock(&samples, &track, settings);
+        let counts_rows = counts_rows(&track, settings);
+        let samples = in_order(&mut track, settings, counts_rows)?;
+        let clock = clock(&samples, &track, settings, counts_rows);
         let with = |sign: f64| -> Vec<Frame> {
             let frame = |(sample, t): (&Sample, &f64)| Frame {
                 t: *t,
@@ -133,33 +134,45 @@ fn starts_again(samples: &[Sample], at: usize) -> bool {
 }
 
 /// Whether the rate of frames tells the times of rows: those of the table are of a coarse clock.
-fn counts_rows(samples: &[Sample], track: &Track, settings: &Settings<'_>) -> bool {
-    /// Share of times that repeat the one before.
-    const MANY: f64 = 0.02;
-    let repeated = samples.windows(2).filter(|pair| pair[0].t.total_cmp(&pair[1].t).is_eq());
-    let is_coarse = repeated.count() as f64 > MANY * samples.len() as f64;
+fn counts_rows(track: &Track, settings: &Settings<'_>) -> bool {
+    /// Times that repeat the one before are so many at least, and more than this share.
+    const SEVERAL: usize = 3;
+    const MANY: f64 = 0.05;
+    let pairs = track.samples.windows(2);
+    let repeated = pairs.filter(|pair| pair[0].t.total_cmp(&pair[1].t).is_eq()).count();
+    let is_coarse = repeated >= SEVERAL && repeated as f64 > MANY * track.samples.len() as f64;
     settings.rate.is_some()
-        && (track.time.unit == Unit::Clock || is_coarse && track.time.unit != Unit::Frame)
+        && (track.time.unit == Unit::Clock || is_coarse && !counts_frames(track, settings))
+}
+
+/// Whether the clock of the table counts frames.
+fn counts_frames(track: &Track, settings: &Settings<'_>) -> bool {
+    settings.time_unit.as_ref().unwrap_or(&track.time.unit) == &Unit::Frame
 }
 
 /// The readings in the order of time; copies of one are dropped.
-fn in_order(track: &mut Track, settings: &Settings<'_>) -> Result<Vec<Sample>, Fault> {
+fn in_order(
+    track: &mut Track,
+    settings: &Settings<'_>,
+    counts_rows: bool,
+) -> Result<Vec<Sample>, Fault> {
     let mut samples: Vec<Sample> = Vec::with_capacity(track.samples.len());
     let mut copies = 0;
-    let counts_rows = counts_rows(&track.samples, track, settings);
     if !counts_rows && is_out_of_order(&track.samples) {
         track.samples.sort_by(|a, b| a.t.total_cmp(&b.t));
         track.notes.push("its rows are sorted by time".to_owned());
     }
     if !counts_rows
-        && track.time.unit != Unit::Frame
+        && !counts_frames(track, settings)
         && let Some(quantum) = undo_rounding(&mut track.samples)
     {
-        let unit = if track.time.unit == Unit::Unstated { "" } else { track.time.unit.word() };
-        track.notes.push(
-            format!("its times are rounded to {quantum} {unit}: its rows are evenly spaced")
-                .replace(" :", ":"),
-        );
+        let unit = match track.time.unit {
+            Unit::Unstated => String::new(),
+            ref unit => format!(" {}", unit.word()),
+        };
+        track
+            .notes
+            .push(format!("its times are rounded to {quantum}{unit}: its rows are evenly spaced"));
     }
     for (at, sample) in track.samples.iter().enumerate() {
         let Some(last) = samples.last() else {
@@ -171,13 +184,19 @@ fn in_order(track: &mut Track, settings: &Settings<'_>) -> Result<Vec<Sample>, F
             continue;
         }
         let same = |a: f64, b: f64| a.total_cmp(&b).is_eq();
-        // Trackers write the first frame twice; a coarse clock repeats its times.
-        if same(sample.t, last.t) && same(sample.z, last.z) && same(sample.x, last.x) {
+        let is_copy = same(sample.t, last.t) && same(sample.z, last.z) && same(sample.x, last.x);
+        // A coarse clock repeats its times, and a body that rests its positions; trackers write the first frame twice.
+        if counts_rows && is_copy && samples.len() == 1 {
+            samples[0] = *sample;
             copies += 1;
             continue;
         }
-        if counts_rows {
+        if counts_rows && same(sample.t, last.t) {
             samples.push(*sample);
+            continue;
+        }
+        if is_copy {
+            copies += 1;
             continue;
         }
         if starts_again(&track.samples, at) {
@@ -228,12 +247,22 @@ fn in_order(track: &mut Track, settings: &Settings<'_>) -> Result<Vec<Sample>, F
 }
 
 /// Times of the readings: in s where the rate of frames is given, else in the unit of the table.
-fn clock(samples: &[Sample], track: &Track, settings: &Settings<'_>) -> Vec<f64> {
+fn clock(
+    samples: &[Sample],
+    track: &Track,
+    settings: &Settings<'_>,
+    counts_rows: bool,
+) -> Vec<f64> {
     let Some(rate) = settings.rate else { return samples.iter().map(|one| one.t).collect() };
     match track.time.unit {
         Unit::Frame => samples.iter().map(|one| one.t / rate).collect(),
-        _ if counts_rows(samples, track, settings) => {
-            (0..samples.len()).map(|row| row as f64 / rate).collect()
+        _ if counts_rows => {
+            // Rows without a reading count too; of several drops beside each other each has every so many.
+            let lines = || samples.iter().map(|one| one.line);
+            let gaps = lines().zip(lines().skip(1)).map(|(one, next)| next - one);
+            let apart = gaps.filter(|gap| *gap > 0).min().unwrap_or(1) as f64;
+            let first = lines().next().unwrap_or(0);
+            lines().map(|line| (line - first) as f64 / apart / rate).collect()
         }
         _ => {
             // The clip counts time in another way: its steps are frames.

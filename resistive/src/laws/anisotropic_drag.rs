@@ -1,6 +1,6 @@
 //! Drag that is another one sideways than downward.
 
-use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
+use crate::{Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
 use super::facts::{Facts, Kind, Needs, Twin};
@@ -15,8 +15,6 @@ use super::registry::{ResistanceEntry, Role, amplitude};
 struct AnisotropicDrag {
     q: f64,
 }
-
-const ACCOUNTS: &[Account] = &[];
 
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
@@ -38,15 +36,11 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     )],
     forms: &[],
     variables: &[],
-    accounts: ACCOUNTS,
+    accounts: &[],
     build: |given| Box::new(AnisotropicDrag { q: given.get("q") }),
 };
 
 impl ResistanceLaw for AnisotropicDrag {
-    fn accounts(&self) -> &'static [Account] {
-        ACCOUNTS
-    }
-
     fn expose(&self, at: &mut Immersion, _: &Motion, _: &Surroundings) {
         at.sideways_drag *= 1.0 + self.q;
     }

@@ -1,6 +1,6 @@
 //! Friction that is another one sideways than downward.
 
-use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
+use crate::{Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
 use super::facts::{Facts, Kind, Needs, Twin};
@@ -15,8 +15,6 @@ use super::registry::{ResistanceEntry, Role, amplitude};
 struct AnisotropicFriction {
     q: f64,
 }
-
-const ACCOUNTS: &[Account] = &[];
 
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
@@ -41,15 +39,11 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     )],
     forms: &[],
     variables: &[],
-    accounts: ACCOUNTS,
+    accounts: &[],
     build: |given| Box::new(AnisotropicFriction { q: given.get("q") }),
 };
 
 impl ResistanceLaw for AnisotropicFriction {
-    fn accounts(&self) -> &'static [Account] {
-        ACCOUNTS
-    }
-
     fn expose(&self, at: &mut Immersion, _: &Motion, _: &Surroundings) {
         at.sideways_friction *= 1.0 + self.q;
     }

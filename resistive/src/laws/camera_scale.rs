@@ -1,6 +1,6 @@
 //! A camera whose scale is wrong.
 
-use crate::{Account, ResistanceLaw};
+use crate::ResistanceLaw;
 use engine::params::Range;
 
 use super::facts::{Facts, Kind, Needs, Twin};
@@ -14,8 +14,6 @@ use super::registry::{ResistanceEntry, Role, amplitude};
 struct CameraScale {
     q: f64,
 }
-
-const ACCOUNTS: &[Account] = &[];
 
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
@@ -37,15 +35,11 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     )],
     forms: &[],
     variables: &[],
-    accounts: ACCOUNTS,
+    accounts: &[],
     build: |given| Box::new(CameraScale { q: given.get("q") }),
 };
 
 impl ResistanceLaw for CameraScale {
-    fn accounts(&self) -> &'static [Account] {
-        ACCOUNTS
-    }
-
     fn read(&self, depth: &mut f64, range: &mut f64) {
         *depth *= 1.0 + self.q;
         *range *= 1.0 + self.q;

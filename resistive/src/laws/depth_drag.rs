@@ -1,6 +1,6 @@
 //! Drag that depends on depth.
 
-use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
+use crate::{Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
 use super::facts::{Facts, Kind, Needs, Twin};
@@ -14,8 +14,6 @@ use super::registry::{ResistanceEntry, Role, amplitude};
 struct DepthDrag {
     q: f64,
 }
-
-const ACCOUNTS: &[Account] = &[];
 
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
@@ -40,15 +38,11 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     )],
     forms: &[],
     variables: &[],
-    accounts: ACCOUNTS,
+    accounts: &[],
     build: |given| Box::new(DepthDrag { q: given.get("q") }),
 };
 
 impl ResistanceLaw for DepthDrag {
-    fn accounts(&self) -> &'static [Account] {
-        ACCOUNTS
-    }
-
     fn expose(&self, at: &mut Immersion, _: &Motion, _: &Surroundings) {
         at.drag_factor *= (1.0 + self.q * at.depth / at.diameter).max(0.0);
     }

@@ -1,6 +1,6 @@
 //! Friction that grows with a power of depth.
 
-use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
+use crate::{Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
 use super::facts::{Facts, Kind};
@@ -17,8 +17,6 @@ struct DepthExponent {
     q: f64,
 }
 
-const ACCOUNTS: &[Account] = &[];
-
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     name: "depth-exponent",
@@ -34,15 +32,11 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     )],
     forms: &[],
     variables: &[],
-    accounts: ACCOUNTS,
+    accounts: &[],
     build: |given| Box::new(DepthExponent { q: given.get("q") }),
 };
 
 impl ResistanceLaw for DepthExponent {
-    fn accounts(&self) -> &'static [Account] {
-        ACCOUNTS
-    }
-
     fn expose(&self, at: &mut Immersion, _: &Motion, _: &Surroundings) {
         let ratio = at.effective_depth / at.diameter;
         at.effective_depth = at.diameter * libm::pow(ratio, 1.0 + self.q);

@@ -1,6 +1,6 @@
 //! A depth whose zero is not the surface.
 
-use crate::{Account, ResistanceLaw};
+use crate::ResistanceLaw;
 use engine::params::Range;
 
 use super::facts::{Facts, Kind};
@@ -14,8 +14,6 @@ use super::registry::{ResistanceEntry, Role, amplitude};
 struct DepthZero {
     q: f64,
 }
-
-const ACCOUNTS: &[Account] = &[];
 
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
@@ -37,15 +35,11 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     )],
     forms: &[],
     variables: &[],
-    accounts: ACCOUNTS,
+    accounts: &[],
     build: |given| Box::new(DepthZero { q: given.get("q") }),
 };
 
 impl ResistanceLaw for DepthZero {
-    fn accounts(&self) -> &'static [Account] {
-        ACCOUNTS
-    }
-
     fn read(&self, depth: &mut f64, _: &mut f64) {
         *depth += self.q * 1e-3;
     }

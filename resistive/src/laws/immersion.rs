@@ -1,6 +1,6 @@
 //! Only what is in the bed is loaded.
 
-use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
+use crate::{Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::{ParamSpec, Range};
 
 use super::facts::{Facts, Kind};
@@ -20,8 +20,6 @@ struct ImmersedArea {
     q: f64,
     reach: f64,
 }
-
-const ACCOUNTS: &[Account] = &[];
 
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
@@ -47,15 +45,11 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     ],
     forms: &[OtherForm { values: &[("reach", 0.5)], needs: &[] }],
     variables: &[],
-    accounts: ACCOUNTS,
+    accounts: &[],
     build: |given| Box::new(ImmersedArea { q: given.get("q"), reach: given.get("reach") }),
 };
 
 impl ResistanceLaw for ImmersedArea {
-    fn accounts(&self) -> &'static [Account] {
-        ACCOUNTS
-    }
-
     fn expose(&self, at: &mut Immersion, _: &Motion, _: &Surroundings) {
         let loaded = match self.reach > 0.0 {
             true => at.frontal_area * -libm::expm1(-at.depth.max(0.0) / (self.reach * at.diameter)),

@@ -1,6 +1,6 @@
 //! Friction that saturates with depth, as pressure does in a silo.
 
-use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
+use crate::{Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
 use super::facts::{Facts, Kind, Needs, Twin};
@@ -15,8 +15,6 @@ use super::registry::{ResistanceEntry, Role, amplitude};
 struct Janssen {
     q: f64,
 }
-
-const ACCOUNTS: &[Account] = &[];
 
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
@@ -38,15 +36,11 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     )],
     forms: &[],
     variables: &[],
-    accounts: ACCOUNTS,
+    accounts: &[],
     build: |given| Box::new(Janssen { q: given.get("q") }),
 };
 
 impl ResistanceLaw for Janssen {
-    fn accounts(&self) -> &'static [Account] {
-        ACCOUNTS
-    }
-
     fn expose(&self, at: &mut Immersion, _: &Motion, _: &Surroundings) {
         // exp(x) − 1 keeps its digits as q goes to zero, where z must be left as it is.
         let rate = self.q / at.diameter;

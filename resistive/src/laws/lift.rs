@@ -1,6 +1,6 @@
 //! A force across an oblique path, out of the bed.
 
-use crate::{Account, Immersion, Load, Motion, ResistanceLaw, Surroundings};
+use crate::{Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use engine::math::Vec3;
 use engine::params::Range;
 
@@ -17,8 +17,6 @@ use super::registry::{ResistanceEntry, Role, amplitude};
 struct Lift {
     q: f64,
 }
-
-const ACCOUNTS: &[Account] = &[];
 
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
@@ -40,15 +38,11 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     )],
     forms: &[],
     variables: &[],
-    accounts: ACCOUNTS,
+    accounts: &[],
     build: |given| Box::new(Lift { q: given.get("q") }),
 };
 
 impl ResistanceLaw for Lift {
-    fn accounts(&self) -> &'static [Account] {
-        ACCOUNTS
-    }
-
     fn act(&self, at: &Immersion, motion: &Motion, bed: &Surroundings, load: &mut Load) {
         let Motion { velocity, speed, .. } = *motion;
         let pressure = self.q * bed.bulk_density * at.loaded_area * speed * motion.sense[0];

@@ -1,6 +1,6 @@
 //! A spinning intruder is pushed across its path.
 
-use crate::{Account, Immersion, Load, Motion, ResistanceLaw, Surroundings};
+use crate::{Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use engine::math::Vec3;
 use engine::params::Range;
 
@@ -16,8 +16,6 @@ use super::registry::{ResistanceEntry, Role, amplitude};
 struct Magnus {
     q: f64,
 }
-
-const ACCOUNTS: &[Account] = &[];
 
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
@@ -39,15 +37,11 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     )],
     forms: &[],
     variables: &[],
-    accounts: ACCOUNTS,
+    accounts: &[],
     build: |given| Box::new(Magnus { q: given.get("q") }),
 };
 
 impl ResistanceLaw for Magnus {
-    fn accounts(&self) -> &'static [Account] {
-        ACCOUNTS
-    }
-
     fn act(&self, at: &Immersion, motion: &Motion, bed: &Surroundings, load: &mut Load) {
         let moved = bed.bulk_density * at.loaded_area * 0.5 * at.diameter;
         let spin = Vec3::new(0.0, motion.spin, 0.0);

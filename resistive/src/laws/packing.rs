@@ -1,6 +1,6 @@
 //! Friction that depends on how densely the bed is packed.
 
-use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
+use crate::{Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
 use super::facts::{Facts, Kind, Needs};
@@ -19,8 +19,6 @@ struct Packing {
 
 /// The packing fraction at which the effect does nothing.
 const CRITICAL: f64 = 0.59;
-
-const ACCOUNTS: &[Account] = &[];
 
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
@@ -42,15 +40,11 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     )],
     forms: &[],
     variables: &[],
-    accounts: ACCOUNTS,
+    accounts: &[],
     build: |given| Box::new(Packing { q: given.get("q") }),
 };
 
 impl ResistanceLaw for Packing {
-    fn accounts(&self) -> &'static [Account] {
-        ACCOUNTS
-    }
-
     fn expose(&self, at: &mut Immersion, _: &Motion, bed: &Surroundings) {
         let Some(packing) = bed.packing else { return };
         at.friction_factor *= (1.0 + self.q * (packing - CRITICAL)).max(0.0);

@@ -1,6 +1,6 @@
 //! Friction that depends on the speed.
 
-use crate::{Account, Immersion, Motion, ResistanceLaw, Surroundings};
+use crate::{Immersion, Motion, ResistanceLaw, Surroundings};
 use engine::params::Range;
 
 use super::facts::{Facts, Kind};
@@ -15,8 +15,6 @@ use super::registry::{ResistanceEntry, Role, amplitude};
 struct RateFriction {
     q: f64,
 }
-
-const ACCOUNTS: &[Account] = &[];
 
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
@@ -33,15 +31,11 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     )],
     forms: &[],
     variables: &[],
-    accounts: ACCOUNTS,
+    accounts: &[],
     build: |given| Box::new(RateFriction { q: given.get("q") }),
 };
 
 impl ResistanceLaw for RateFriction {
-    fn accounts(&self) -> &'static [Account] {
-        ACCOUNTS
-    }
-
     fn expose(&self, at: &mut Immersion, motion: &Motion, bed: &Surroundings) {
         let scale = (bed.gravity * at.diameter).sqrt();
         at.friction_factor *= (1.0 + self.q * motion.speed / scale).max(0.0);

@@ -1,6 +1,6 @@
 //! Friction of the spinning front of the intruder.
 
-use crate::{Account, Immersion, Load, Motion, ResistanceLaw, Surroundings};
+use crate::{Immersion, Load, Motion, ResistanceLaw, Surroundings};
 use engine::math::Vec3;
 use engine::params::Range;
 
@@ -17,8 +17,6 @@ use super::registry::{ResistanceEntry, Role, amplitude};
 struct SpinFriction {
     q: f64,
 }
-
-const ACCOUNTS: &[Account] = &[];
 
 /// The registry's line.
 pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
@@ -40,15 +38,11 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
     )],
     forms: &[],
     variables: &[],
-    accounts: ACCOUNTS,
+    accounts: &[],
     build: |given| Box::new(SpinFriction { q: given.get("q") }),
 };
 
 impl ResistanceLaw for SpinFriction {
-    fn accounts(&self) -> &'static [Account] {
-        ACCOUNTS
-    }
-
     fn act(&self, at: &Immersion, motion: &Motion, bed: &Surroundings, load: &mut Load) {
         let pressed = bed.bulk_density * bed.gravity * at.loaded_area * at.effective_depth;
         let slip = 0.5 * at.diameter / (bed.gravity * at.diameter).sqrt();

@@ -49,7 +49,7 @@ const ALLOWED: [(&str, &[&str]); 17] = [
 ];
 
 /// Crates of others that are kept behind one of ours (two where a second reads what the first writes).
-const ONLY: [(&str, &[&str]); 48] = [
+const ONLY: [(&str, &[&str]); 47] = [
     ("annotate-snippets", &["configs"]),
     ("anyhow", &["plunge", "xtask"]),
     ("askama", &["reports"]),
@@ -57,7 +57,6 @@ const ONLY: [(&str, &[&str]); 48] = [
     ("argmin", &["diagnosis", "validation"]),
     ("argmin-math", &["diagnosis", "validation"]),
     ("arrayvec", &["engine"]),
-    ("arrow", &["exchange"]),
     ("calamine", &["exchange"]),
     ("clap", &["plunge"]),
     ("clap_complete", &["plunge"]),

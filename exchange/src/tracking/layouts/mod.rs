@@ -58,17 +58,20 @@ pub(super) fn tracks(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fau
 
 /// Refuses the table of an accelerometer, which has no positions.
 fn refuse_accelerations(sheet: &Sheet, columns: &Columns) -> Result<(), Fault> {
+    /// Names of what has components and is no position.
+    const OTHERS: [&str; 7] = ["a", "acc", "accel", "acceleration", "v", "vel", "velocity"];
     let Ok(grid) = Grid::found(sheet) else { return Ok(()) };
     let is_place = |heading: &Heading| {
         let is_named = heading.role() == Some(Role::Vertical)
-            || matches!(heading.point(), Some((Role::Vertical, name)) if !matches!(name.as_str(), "a" | "acc" | "accel" | "acceleration"));
+            || matches!(heading.point(), Some((Role::Vertical, name)) if !OTHERS.contains(&name.as_str()));
         is_named && !heading.is_acceleration()
     };
     let of = grid.headings.iter().find(|heading| heading.is_acceleration());
     match of {
         Some(of) if columns.of(Role::Vertical).is_none() && !grid.headings.iter().any(is_place) => {
             let what = format!("`{}` is an acceleration, and no column is a position", of.name);
-            let right = "import reads positions; a set of accelerations is written by hand: `plunge new real-water-cones-acceleration` shows one";
+            let right = "import reads positions: name their column, --column z=NAME; a set of accelerations is written by hand, \
+                         as `plunge new real-water-cones-acceleration` shows";
             Err(sheet.fault(what, right))
         }
         _ => Ok(()),

@@ -19,7 +19,11 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
     let used: Vec<usize> = [places.t, Some(places.z), places.x].into_iter().flatten().collect();
     let rows: Vec<&Row> = grid.rows.iter().collect();
     let labels = grid.labels(&used, &rows);
-    Ok(vec![Track { labels, ..track }])
+    let mut track = Track { labels, ..track };
+    if grid.is_without_names && columns.of(Role::Time).is_none() {
+        track.notes.push("two columns without names are taken for times and positions".to_owned());
+    }
+    Ok(vec![track])
 }
 
 /// The columns of time and position.

@@ -60,6 +60,10 @@ fn goes_on(one: &Track, next: &Track) -> bool {
 fn blocks(sheet: &Sheet) -> Vec<Block<'_>> {
     let Ok(Grid { header, .. }) = Grid::found(sheet) else { return Vec::new() };
     let rows = &sheet.rows;
+    // Without names, a row that comes again is a reading.
+    if sheet.is_numeric(&rows[header], 1) {
+        return Vec::new();
+    }
     let headers = (header..rows.len()).filter(|at| rows[*at].cells == rows[header].cells);
     let headers: Vec<usize> = headers.collect();
     // A line of words above the names is a title.
@@ -95,6 +99,12 @@ mod tests {
         let told: Vec<_> = all.iter().map(|one| (one.name.as_deref(), one.samples.len())).collect();
         assert_eq!(told, [(Some("low 5 cm"), 2), (Some("high 9 cm"), 3)]);
         assert_eq!(all[1].samples[0].line, 7);
+    }
+
+    #[test]
+    fn readings_without_names_that_come_again_begin_no_drop() {
+        let sheet = text::read("a.csv", "a", b"0 1\n0 1\n1 2\n2 3\n0 1\n").expect("a table");
+        assert!(!(LAYOUT.fits)(&sheet, &Columns::default()));
     }
 
     #[test]
