@@ -155,11 +155,15 @@ impl Data<'_> {
 
     /// Fits `candidate` as listed from where parameters start, without what another fit has found: first with the
     /// apparatus as it is stated, then with its errors. A search in one stage from so far off may end where errors of
-    /// the apparatus make up for a law.
+    /// the apparatus make up for a law. `None` if χ² does not come below `chi2`.
     ///
     /// # Errors
     /// If the model cannot be integrated at the start or at the end.
-    pub(crate) fn fit_as_listed_from_start(&self, candidate: usize) -> Result<Fit, PredictError> {
+    pub(crate) fn fit_as_listed_from_start(
+        &self,
+        candidate: usize,
+        chi2: f64,
+    ) -> Result<Option<Fit>, PredictError> {
         let start = Point { effects: vec![(candidate, 0.0)], ..Point::start(self.forward) };
         let scales = self.scales(&start);
         let forms = self.forms(&start);
@@ -169,7 +173,11 @@ impl Data<'_> {
         };
         let held = forms.iter().enumerate().map(|(at, &form)| form || is_apparatus(at)).collect();
         let (first, _) = self.search(&start, &scales, held)?;
-        self.fit_but(&first, &scales, forms)
+        let (point, held) = self.search(&first, &scales, forms)?;
+        match self.residual(&point)?.norm_squared() < chi2 {
+            true => self.result(point, &scales, &held).map(Some),
+            false => Ok(None),
+        }
     }
 
     /// What a fit as listed would be that ends at `point`.

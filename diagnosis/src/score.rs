@@ -263,9 +263,10 @@ fn polished(bench: &Bench<'_>, fitted: &Fitted, score: &Score) -> Option<Fit> {
 /// between conditions make up for what the model lacks, derivatives say little of what an effect would do.
 fn start_over(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) {
     let data = bench.data(&fitted.weights);
-    let Ok(fit) = data.fit_as_listed_from_start(score.candidate()) else { return };
-    if fitted.fit.chi2 - fit.chi2 > score.delta + OTHER_MINIMUM {
-        score.take(fitted.fit.chi2, fit);
+    let before = fitted.fit.chi2;
+    let least = before - score.delta - OTHER_MINIMUM;
+    if let Ok(Some(fit)) = data.fit_as_listed_from_start(score.candidate(), least) {
+        score.take(before, fit);
     }
 }
 

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use measurements::MeasurementSet;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
+use super::apart::Apart;
 use super::found::{Found, MOMENTS};
 use crate::bench::{Bench, Fitted};
 use crate::fit::Fit;
@@ -97,13 +98,8 @@ pub(super) fn readings(
     others.push(at(&fit.point.parameters, &alone));
     others.extend(moved.iter().map(|(parameters, _)| at(parameters, &alone)));
     others.extend(more.iter().map(|more| at(&fit.point.parameters, more)));
-    let covariance = fit.free_covariance() * found.misfit().max(1.0);
-    // By how much the parameters follow a force at a node.
-    let follow = fit.free_covariance() * fit.jacobian.tr_mul(&found.response.whole());
-    let apart = found.apart();
-    let values = DVector::from_column_slice(&found.field.values);
-    let step = found.response.at_nodes(&(&found.process.mean - values));
-    let place = |node: usize| found.response.nodes.iter().position(|one| *one == node);
+    let told = Told::of(found, &moved, scatter);
+    let grid = &found.field.grid;
     let mut readings = Vec::new();
     for (fitted, &condition) in bench.observed.fit.iter().enumerate() {
         let body = &bench.set.conditions[condition];
@@ -111,49 +107,14 @@ pub(super) fn readings(
         let moments = by.passage(condition, &at(&fit.point.parameters, &with), &others, MOMENTS)?;
         for one in moments {
             let state = [one.depth, one.speed, angle, diameter];
-            let grid = &found.field.grid;
-            let shares = [
-                grid.shares_at(state).to_vec(),
-                grid.sideways_shares_at(state).collect::<Vec<_>>(),
-            ];
-            // The missing force in the direction `of`: so much of it against the motion, so much normal to it.
-            let along = |of: [f64; 2]| {
-                let told = |forces: &[f64; 2]| of[0] * forces[0] + of[1] * forces[1];
-                let (model, own) = (told(&one.others[0]), told(&one.others[1]));
-                let slopes = one.others[2..].iter().zip(&moved);
-                let slopes = slopes.map(|(there, (_, by))| (told(there) - own) / by);
-                let slope = DVector::from_iterator(moved.len(), slopes);
-                let of_nodes = shares.iter().zip(of).flat_map(|(shares, of)| {
-                    shares.iter().map(move |&(node, share)| (node, of * share))
-                });
-                let of_nodes: Vec<(usize, f64)> =
-                    of_nodes.filter(|(_, share)| *share != 0.0).collect();
-                let mut weights = -follow.tr_mul(&slope);
-                let mut force = own - model;
-                for &(node, share) in &of_nodes {
-                    force += one.unit * share * found.field.values[node];
-                    if let Some(at) = place(node) {
-                        weights[at] += one.unit * share;
-                    }
-                }
-                // From the force of the path to the mean of the process, which the parameters follow.
-                force += weights.dot(&step);
-                let by_coefficients = one.others[2 + moved.len()..].iter();
-                let scattered =
-                    by_coefficients.map(|there| (scatter * (told(there) - own) / MORE).powi(2));
-                let mut beside = slope.dot(&(&covariance * &slope)) + scattered.sum::<f64>();
-                if let Some(apart) = &apart {
-                    let (mean, spread) = apart.force(fitted, (&of_nodes, one.unit), &slope);
-                    force += mean;
-                    beside += spread;
-                }
-                Component { force, se: (found.process.variance(&weights) + beside).sqrt() }
-            };
+            let of_normal = grid.sideways_shares_at(state).collect();
+            let shares = [grid.shares_at(state).to_vec(), of_normal];
+            let along = |of: [f64; 2]| told.component(fitted, &one, &shares, of);
             let [x, z] = one.direction;
-            let against = along([1.0, 0.0]);
+            let Component { force, se } = along([1.0, 0.0]);
             let sideways = (grid.is_sideways && x.abs() > OBLIQUE).then(|| along([0.0, 1.0]));
             let horizontal = along([-x, -z * sense(x)]);
-            let model = one.others[0][0];
+            let [model, _] = one.others[0];
             let Moment { time, way, depth, speed, .. } = one;
             readings.push(Reading {
                 condition,
@@ -161,8 +122,8 @@ pub(super) fn readings(
                 way,
                 depth,
                 speed,
-                force: against.force,
-                se: against.se,
+                force,
+                se,
                 model,
                 sideways,
                 horizontal,
@@ -170,6 +131,79 @@ pub(super) fn readings(
         }
     }
     Ok(readings)
+}
+
+/// What is known of the missing force, wherever a body is.
+struct Told<'a> {
+    found: &'a Found,
+    apart: Option<Apart>,
+    /// By how much each parameter was moved.
+    moved: Vec<f64>,
+    /// Of the parameters.
+    covariance: DMatrix<f64>,
+    /// By how much the parameters follow a force at a node.
+    follow: DMatrix<f64>,
+    /// From the force of the path to the mean of the process.
+    step: DVector<f64>,
+    /// Of the coefficients between conditions (relative).
+    scatter: f64,
+}
+
+impl<'a> Told<'a> {
+    fn of(found: &'a Found, moved: &[(Vec<f64>, f64)], scatter: f64) -> Self {
+        let fit = &found.fit;
+        let values = DVector::from_column_slice(&found.field.values);
+        Self {
+            found,
+            apart: found.apart(),
+            moved: moved.iter().map(|(_, by)| *by).collect(),
+            covariance: fit.free_covariance() * found.misfit().max(1.0),
+            follow: fit.free_covariance() * fit.jacobian.tr_mul(&found.response.whole()),
+            step: found.response.at_nodes(&(&found.process.mean - values)),
+            scatter,
+        }
+    }
+
+    /// The missing force on the fitted condition `fitted` at `moment` in the direction `of`: so much of it against the
+    /// motion, so much normal to it. `shares` are those of the nodes in either.
+    fn component(
+        &self,
+        fitted: usize,
+        moment: &Moment,
+        shares: &[Vec<(usize, f64)>; 2],
+        of: [f64; 2],
+    ) -> Component {
+        let Self { found, moved, .. } = self;
+        let told = |forces: &[f64; 2]| of[0] * forces[0] + of[1] * forces[1];
+        let [model, own] = [&moment.others[0], &moment.others[1]].map(told);
+        let (with_parameters, with_coefficients) = moment.others[2..].split_at(moved.len());
+        let slopes = with_parameters.iter().zip(moved).map(|(there, by)| (told(there) - own) / by);
+        let slope = DVector::from_iterator(moved.len(), slopes);
+        let mut weights = -self.follow.tr_mul(&slope);
+        let mut force = own - model;
+        let mut of_nodes = Vec::new();
+        for (shares, of) in shares.iter().zip(of) {
+            of_nodes.extend(shares.iter().map(|&(node, share)| (node, of * share)));
+        }
+        for &(node, share) in &of_nodes {
+            force += moment.unit * share * found.field.values[node];
+            if let Some(at) = found.response.nodes.iter().position(|one| *one == node) {
+                weights[at] += moment.unit * share;
+            }
+        }
+        // To the mean of the process, which the parameters follow.
+        force += weights.dot(&self.step);
+        let scattered = with_coefficients
+            .iter()
+            .map(|there| (self.scatter * (told(there) - own) / MORE).powi(2));
+        let mut beside = slope.dot(&(&self.covariance * &slope)) + scattered.sum::<f64>();
+        if let Some(apart) = &self.apart {
+            let (mean, spread) = apart.force(fitted, (&of_nodes, moment.unit), &slope);
+            force += mean;
+            beside += spread;
+        }
+        Component { force, se: (found.process.variance(&weights) + beside).sqrt() }
+    }
 }
 
 /// The parameters of `fit` with one of them moved a little, and by how much.
