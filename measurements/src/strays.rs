@@ -20,10 +20,10 @@ const REACH: usize = 6;
 /// Readings at either end that are held against those on one side.
 const ENDS: usize = 2;
 
-/// Most times that readings are looked at.
+/// Most passes over the readings.
 const PASSES: usize = 5;
 
-/// Times the usual step beyond which nothing is promised across a gap of readings.
+/// Longest gap, in median steps, across which an end is compared with the readings beside it.
 const GAP: f64 = 2.5;
 
 /// Readings this many standard deviations from a parabola are close to it.
@@ -197,7 +197,7 @@ fn around(at: usize, n: usize) -> std::ops::Range<usize> {
 }
 
 /// Whether the reading `at`, which misses what three neighbours promise by `miss` at least, is far from what both sides of it
-/// say. Where they are one course, that is all; where a blow is between them, a body on its way is no stray reading.
+/// say. Where both describe one course, that is enough; where a blow is between them, a body on its way is no stray reading.
 fn is_apart(track: &[[f64; 2]], (at, miss): (usize, f64), noise: f64) -> bool {
     let there = around(at, track.len());
     let times = [at, at.saturating_sub(1), (at + 1).min(track.len() - 1)].map(|at| track[at][0]);
@@ -217,7 +217,7 @@ fn is_apart(track: &[[f64; 2]], (at, miss): (usize, f64), noise: f64) -> bool {
 /// What most of a few readings say of another.
 struct Consensus {
     promised: f64,
-    /// What it says of those beside.
+    /// The parabola at the times of the two readings beside that one.
     beside: [f64; 2],
     /// How many say so.
     near: usize,
@@ -227,8 +227,8 @@ struct Consensus {
 
 impl Consensus {
     /// The parabola through three of `readings` that most of them are close to (Fischler & Bolles, Commun. ACM 24, 381
-    /// (1981), with every triple), at the time of that other and of those beside it; `None` where no more than half of them
-    /// are.
+    /// (1981), with every triple), evaluated at `times`: of that other and of the two beside it; `None` where no more
+    /// than half of them are.
     fn of(readings: &[[f64; 2]], times: [f64; 3], close: f64) -> Option<Self> {
         let n = readings.len();
         if n <= 3 {
@@ -250,7 +250,8 @@ impl Consensus {
         (near > 3 && 2 * near > n).then_some(Self { promised, beside, near, is_broad })
     }
 
-    /// Whether both are of one course: the fall and the rest of a body that is stopped hard cross in a point.
+    /// Whether both describe one course. The fall and the rest of a body that stops hard cross in one point, so the
+    /// readings beside it are compared too.
     fn is_one_with(&self, other: &Self, noise: f64) -> bool {
         let beside = self.beside.iter().zip(&other.beside);
         self.is_broad

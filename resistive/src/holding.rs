@@ -176,7 +176,7 @@ pub(super) fn is_held(system: &System<'_>, state: &State, modes: &Modes) -> bool
     share <= 1.0
 }
 
-/// Accelerations of the coordinates (m/s², rad/s²), and what holds the held components still.
+/// Accelerations of the coordinates, and what holds the held components still.
 #[inline]
 pub(super) fn accelerate(
     system: &System<'_>,
@@ -192,21 +192,7 @@ pub(super) fn accelerate(
     }
 }
 
-/// The accelerations alone.
-#[inline]
-pub(super) fn acceleration(
-    system: &System<'_>,
-    state: &State,
-    modes: &Modes,
-) -> [f64; COORDINATES] {
-    if modes.gripping {
-        return accelerate(system, state, modes).0;
-    }
-    let loads = system.on_parts(state, modes);
-    system.assembly.accelerate(state, &loads, system.bed.gravity)
-}
-
-/// Both where frictions hold components: `loads` alone would accelerate the coordinates by `free`.
+/// The same where frictions hold components: `loads` alone would accelerate the coordinates by `free`.
 fn hold(
     system: &System<'_>,
     state: &State,

@@ -191,7 +191,7 @@ pub enum Flow {
 
 /// A term of the force of the medium, or something that changes the terms.
 pub trait ResistanceLaw: Send + Sync {
-    /// What it books: at most one account per flow; nothing unless it says so.
+    /// What it books: at most one account per flow, none by default.
     fn accounts(&self) -> &'static [Account] {
         &[]
     }

@@ -10,7 +10,7 @@ mod tableau;
 use std::cell::Cell;
 
 use super::assembly::{COORDINATES, State};
-use super::holding::acceleration;
+use super::holding::accelerate;
 use super::modes::Modes;
 use super::motion::System;
 use root::root;
@@ -228,7 +228,7 @@ impl<'a> Solver<'a> {
 
     fn slope(&self, time: f64, numbers: &Flat) -> Flat {
         let state = state(time, numbers);
-        let acceleration = acceleration(self.system, &state, self.modes);
+        let (acceleration, _) = accelerate(self.system, &state, self.modes);
         // Later stages of a trial begin where an earlier one had no value.
         let is_cause = numbers.iter().all(|value| value.is_finite());
         if is_cause && acceleration.iter().any(|value| !value.is_finite()) {

@@ -98,7 +98,7 @@ pub(super) fn readings(
     others.push(at(&fit.point.parameters, &alone));
     others.extend(moved.iter().map(|(parameters, _)| at(parameters, &alone)));
     others.extend(more.iter().map(|more| at(&fit.point.parameters, more)));
-    let told = Told::of(found, &moved, scatter);
+    let posterior = Posterior::of(found, &moved, scatter);
     let grid = &found.field.grid;
     let mut readings = Vec::new();
     for (fitted, &condition) in bench.observed.fit.iter().enumerate() {
@@ -109,7 +109,7 @@ pub(super) fn readings(
             let state = [one.depth, one.speed, angle, diameter];
             let of_normal = grid.sideways_shares_at(state).collect();
             let shares = [grid.shares_at(state).to_vec(), of_normal];
-            let along = |of: [f64; 2]| told.component(fitted, &one, &shares, of);
+            let along = |of: [f64; 2]| posterior.component(fitted, &one, &shares, of);
             let [x, z] = one.direction;
             let Component { force, se } = along([1.0, 0.0]);
             let sideways = (grid.is_sideways && x.abs() > OBLIQUE).then(|| along([0.0, 1.0]));
@@ -133,23 +133,23 @@ pub(super) fn readings(
     Ok(readings)
 }
 
-/// What is known of the missing force, wherever a body is.
-struct Told<'a> {
+/// The posterior distribution of the missing force.
+struct Posterior<'a> {
     found: &'a Found,
     apart: Option<Apart>,
-    /// By how much each parameter was moved.
+    /// Step of each parameter in the derivatives.
     moved: Vec<f64>,
-    /// Of the parameters.
+    /// Covariance of the parameters.
     covariance: DMatrix<f64>,
-    /// By how much the parameters follow a force at a node.
+    /// Derivative of the fitted parameters by a force at a node.
     follow: DMatrix<f64>,
-    /// From the force of the path to the mean of the process.
+    /// Mean of the process less the force of the path, by node.
     step: DVector<f64>,
-    /// Of the coefficients between conditions (relative).
+    /// Relative scatter of the coefficients between conditions.
     scatter: f64,
 }
 
-impl<'a> Told<'a> {
+impl<'a> Posterior<'a> {
     fn of(found: &'a Found, moved: &[(Vec<f64>, f64)], scatter: f64) -> Self {
         let fit = &found.fit;
         let values = DVector::from_column_slice(&found.field.values);
@@ -164,8 +164,8 @@ impl<'a> Told<'a> {
         }
     }
 
-    /// The missing force on the fitted condition `fitted` at `moment` in the direction `of`: so much of it against the
-    /// motion, so much normal to it. `shares` are those of the nodes in either.
+    /// The missing force on the fitted condition `fitted` at `moment`, along the unit vector `of`, whose components are
+    /// against the motion and normal to it. `shares` are the weights of the nodes for either.
     fn component(
         &self,
         fitted: usize,
@@ -174,10 +174,11 @@ impl<'a> Told<'a> {
         of: [f64; 2],
     ) -> Component {
         let Self { found, moved, .. } = self;
-        let told = |forces: &[f64; 2]| of[0] * forces[0] + of[1] * forces[1];
-        let [model, own] = [&moment.others[0], &moment.others[1]].map(told);
+        let projected = |forces: &[f64; 2]| of[0] * forces[0] + of[1] * forces[1];
+        let [model, own] = [&moment.others[0], &moment.others[1]].map(projected);
         let (with_parameters, with_coefficients) = moment.others[2..].split_at(moved.len());
-        let slopes = with_parameters.iter().zip(moved).map(|(there, by)| (told(there) - own) / by);
+        let slopes =
+            with_parameters.iter().zip(moved).map(|(there, by)| (projected(there) - own) / by);
         let slope = DVector::from_iterator(moved.len(), slopes);
         let mut weights = -self.follow.tr_mul(&slope);
         let mut force = own - model;
@@ -191,11 +192,11 @@ impl<'a> Told<'a> {
                 weights[at] += moment.unit * share;
             }
         }
-        // To the mean of the process, which the parameters follow.
+        // The mean of the process moves the parameters with it.
         force += weights.dot(&self.step);
         let scattered = with_coefficients
             .iter()
-            .map(|there| (self.scatter * (told(there) - own) / MORE).powi(2));
+            .map(|there| (self.scatter * (projected(there) - own) / MORE).powi(2));
         let mut beside = slope.dot(&(&self.covariance * &slope)) + scattered.sum::<f64>();
         if let Some(apart) = &self.apart {
             let (mean, spread) = apart.force(fitted, (&of_nodes, moment.unit), &slope);

@@ -11,8 +11,7 @@ const POWERS: std::ops::RangeInclusive<i32> = -3..=9;
 /// Share of what times are rounded to that a reading may be off its even clock: rounding takes half, the fit of the clock a little.
 const OFF: f64 = 0.7;
 
-/// Steps of an exact clock that differ from the others where the tracker wrote no row for a lost frame: so many at most, or
-/// this share of them.
+/// An exact clock has so few longer steps at most, or so small a share of them: a tracker that loses the body writes no row.
 const FEW: usize = 3;
 const FEW_OF: f64 = 0.03;
 
@@ -25,7 +24,7 @@ pub(super) fn undo_rounding(samples: &mut [Sample]) -> Option<f64> {
     let quantum = POWERS.map(|power| 10_f64.powi(-power)).find(|quantum| {
         let are_multiples = |one: &Sample| {
             let of = (one.t - start) / quantum;
-            // A time since 1970 has few digits left for its fractions.
+            // A time in seconds since 1970 is itself rounded to 0.2 µs.
             let rounding = 1e-6 + 4.0 * f64::EPSILON * one.t.abs() / quantum;
             rounding < 0.05 && (of - of.round()).abs() <= rounding
         };
@@ -52,7 +51,7 @@ pub(super) fn undo_rounding(samples: &mut [Sample]) -> Option<f64> {
     Some(quantum)
 }
 
-/// Whether rows beside each other are one step of the clock apart, which is a multiple of `quantum`, but for a few.
+/// Whether consecutive rows are one constant number of `quantum` apart, with few exceptions.
 fn is_exact(samples: &[Sample], quantum: f64) -> bool {
     let beside = samples.windows(2).filter(|pair| pair[1].line == pair[0].line + 1);
     let steps: Vec<i64> =
@@ -107,7 +106,7 @@ mod tests {
         assert_eq!(undo_rounding(&mut fine), None);
         let mut even = samples(1000.0, 1e-3);
         assert_eq!(undo_rounding(&mut even), None);
-        // A tracker writes no row for a frame in which it lost the body.
+        // The tracker writes no row for a frame in which it loses the body.
         for (rate, quantum) in [(1000.0, 1e-3), (100.0, 1e-2), (240.0, 1e-7)] {
             let mut gaps = samples_where(rate, quantum, |line| ![20, 75, 140].contains(line));
             gaps.iter_mut().zip(2..).for_each(|(one, line)| {

@@ -175,7 +175,7 @@ impl Heading {
         const NAMES: [&str; 6] = ["ax", "ay", "az", "acc", "accel", "acceleration"];
         const UNITS: [&str; 5] = ["m/s2", "m/s^2", "m/s²", "m s^-2", "m/s/s"];
         let first = self.stem.split([' ', '_', '-']).next();
-        // A mass in grams is none.
+        // `g` is the unit of masses too, so it counts in the column of an axis alone.
         let is_of_axis = || self.role().is_some() || self.point().is_some() || self.stem == "a";
         let is_unit = |unit: &str| match unit.to_lowercase().as_str() {
             "g" => is_of_axis(),
@@ -268,7 +268,8 @@ mod tests {
         assert_eq!(Heading::of("v_y (m/s)").role(), None);
         let are = ["az", "Acceleration y (m/s²)", "z (g)", "acc_z"].map(Heading::of);
         assert!(are.iter().all(Heading::is_acceleration));
-        assert!(!["a1", "y", "z (mm)", "t"].map(Heading::of).iter().any(Heading::is_acceleration));
+        let others = ["a1", "y", "z (mm)", "t", "mass (g)"].map(Heading::of);
+        assert!(!others.iter().any(Heading::is_acceleration));
     }
 
     #[test]

@@ -135,7 +135,7 @@ fn starts_again(samples: &[Sample], at: usize) -> bool {
 
 /// Whether the rate of frames tells the times of rows: those of the table are of a coarse clock.
 fn counts_rows(track: &Track, settings: &Settings<'_>) -> bool {
-    /// Times that repeat the one before are so many at least, and more than this share.
+    /// Fewest times of a coarse clock that repeat the one before, and their least share.
     const SEVERAL: usize = 3;
     const MANY: f64 = 0.05;
     let pairs = track.samples.windows(2);
@@ -185,7 +185,7 @@ fn in_order(
         }
         let same = |a: f64, b: f64| a.total_cmp(&b).is_eq();
         let is_copy = same(sample.t, last.t) && same(sample.z, last.z) && same(sample.x, last.x);
-        // A coarse clock repeats its times, and a body that rests its positions; trackers write the first frame twice.
+        // A coarse clock repeats its times, and a body at rest repeats its positions; some trackers write the first frame twice.
         if counts_rows && is_copy && samples.len() == 1 {
             samples[0] = *sample;
             copies += 1;
@@ -257,12 +257,12 @@ fn clock(
     match track.time.unit {
         Unit::Frame => samples.iter().map(|one| one.t / rate).collect(),
         _ if counts_rows => {
-            // Rows without a reading count too; of several drops beside each other each has every so many.
+            // Rows without a reading are counted. Where drops alternate, the rows of one drop are several lines apart.
             let lines = || samples.iter().map(|one| one.line);
-            let gaps = lines().zip(lines().skip(1)).map(|(one, next)| next - one);
+            let gaps = lines().zip(lines().skip(1)).map(|(one, next)| next.abs_diff(one));
             let apart = gaps.filter(|gap| *gap > 0).min().unwrap_or(1) as f64;
             let first = lines().next().unwrap_or(0);
-            lines().map(|line| (line - first) as f64 / apart / rate).collect()
+            lines().map(|line| line.abs_diff(first) as f64 / apart / rate).collect()
         }
         _ => {
             // The clip counts time in another way: its steps are frames.
@@ -385,4 +385,48 @@ pub(super) fn kept(frames: &[Frame], contact: &Contact, noise: f64) -> std::ops:
     let moves = |frame: &Frame| (frame.z - place).abs() > (4.0 * noise).max(STILL);
     let end = behind.iter().rposition(moves).map_or(hit, |at| hit + at);
     first..(end + 1 + AT_REST).min(frames.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tracking::layouts;
+    use crate::tracking::options::Options;
+    use crate::tracking::settings::Columns;
+    use crate::tracking::text;
+
+    /// Times of the readings of `text` at 100 frames per second.
+    fn times(text: &str) -> Result<Vec<f64>, Fault> {
+        let sheet = text::read("a.csv", "a", text.as_bytes())?;
+        let mut track = layouts::tracks(&sheet, &Columns::default())?.remove(0);
+        let mut options = Options::default();
+        options.set("rate", "100Hz");
+        let settings = Settings::of(&options).expect("options");
+        let counts_rows = counts_rows(&track, &settings);
+        let samples = in_order(&mut track, &settings, counts_rows)?;
+        Ok(clock(&samples, &track, &settings, counts_rows))
+    }
+
+    #[test]
+    fn rows_of_a_coarse_clock_are_counted_by_their_place_in_the_table() {
+        // The body rests in the last rows, and one row has no reading.
+        let row = |k: u32| match k {
+            4 => "0.1,\n".to_owned(),
+            _ => format!("{:.1},{}\n", f64::from(k / 4) / 10.0, 30 - k.min(10)),
+        };
+        let text: String = (0..16).map(row).collect();
+        let found = times(&format!("t (s),y (cm)\n{text}")).expect("a clock");
+        let expected: Vec<f64> =
+            (0..16).filter(|k| *k != 4).map(|k| f64::from(k) / 100.0).collect();
+        assert_eq!(found.len(), expected.len());
+        let off = found.iter().zip(&expected).map(|(found, expected)| (found - expected).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-12, "{found:?}");
+    }
+
+    #[test]
+    fn one_time_that_is_listed_twice_makes_no_clock_coarse() {
+        let row = |k: u32| format!("{},{}\n", if k == 20 { 19 } else { k }, 90 - k);
+        let text: String = (0..40).map(row).collect();
+        assert!(times(&format!("t (s),y (cm)\n{text}")).is_err());
+    }
 }

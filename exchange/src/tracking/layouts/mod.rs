@@ -58,7 +58,7 @@ pub(super) fn tracks(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fau
 
 /// Refuses the table of an accelerometer, which has no positions.
 fn refuse_accelerations(sheet: &Sheet, columns: &Columns) -> Result<(), Fault> {
-    /// Names of what has components and is no position.
+    /// Names of accelerations and velocities, which have components as positions do.
     const OTHERS: [&str; 7] = ["a", "acc", "accel", "acceleration", "v", "vel", "velocity"];
     let Ok(grid) = Grid::found(sheet) else { return Ok(()) };
     let is_place = |heading: &Heading| {

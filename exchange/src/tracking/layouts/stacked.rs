@@ -60,7 +60,7 @@ fn goes_on(one: &Track, next: &Track) -> bool {
 fn blocks(sheet: &Sheet) -> Vec<Block<'_>> {
     let Ok(Grid { header, .. }) = Grid::found(sheet) else { return Vec::new() };
     let rows = &sheet.rows;
-    // Without names, a row that comes again is a reading.
+    // A table without names repeats readings, not a line of names.
     if sheet.is_numeric(&rows[header], 1) {
         return Vec::new();
     }
