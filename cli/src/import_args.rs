@@ -48,6 +48,9 @@ pub(crate) struct Tables {
     /// Full apex angle of a cone, such as 60deg.
     #[arg(long)]
     pub(crate) apex: Option<String>,
+    /// Diameter of a shaft behind a cylinder, hemisphere or cone; the mass is that of both.
+    #[arg(long)]
+    pub(crate) shaft_diameter: Option<String>,
     /// A table of bodies: body, diameter (mm), mass (g), shape.
     #[arg(long, value_name = "TABLE")]
     pub(crate) bodies: Option<PathBuf>,

@@ -25,6 +25,7 @@ impl Tables {
             ("mass", &self.mass),
             ("height", &self.height),
             ("apex", &self.apex),
+            ("shaft_diameter", &self.shaft_diameter),
             ("bodies", &bodies),
             ("surface", &self.surface),
             ("tracked", &self.tracked),

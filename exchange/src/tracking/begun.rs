@@ -4,7 +4,7 @@ use std::path::{Path as File, PathBuf};
 
 use super::bodies::{Bodies, Body};
 use super::fault::Fault;
-use super::grid::{NO_NUMBERS, NO_TIMES};
+use super::grid::{NAMED_ROWS, NO_NUMBERS, NO_TIMES};
 use super::motion::{FEWEST, Path};
 use super::settings::Settings;
 use super::track::Track;
@@ -37,10 +37,15 @@ pub(super) fn tracks(
         hashes.push(blake3::hash(&bytes).to_hex().to_string());
         match of_file(path, &bytes, settings) {
             Ok(tracks) => all.extend(tracks),
-            Err(fault) if fault.what == NO_NUMBERS => others.push(fault),
-            Err(fault) if fault.what == NO_TIMES && Bodies::read(path).is_ok() => {
+            Err(fault)
+                if [NO_TIMES, NAMED_ROWS].contains(&fault.what.as_str())
+                    && Bodies::read(path).is_ok() =>
+            {
                 let what = "it is a table of bodies, for --bodies".to_owned();
                 others.push(Fault { what, ..fault });
+            }
+            Err(fault) if [NO_NUMBERS, NAMED_ROWS].contains(&fault.what.as_str()) => {
+                others.push(fault);
             }
             Err(fault) => faults.push(fault),
         }

@@ -24,6 +24,8 @@ pub(super) struct Body {
     pub(super) height: Option<f64>,
     /// (deg)
     pub(super) apex: Option<f64>,
+    /// Of what follows it into the bed (m).
+    pub(super) shaft_diameter: Option<f64>,
 }
 
 /// Share of its diameter that the tip of a cone may go into a bed without being braked noticeably.
@@ -53,13 +55,14 @@ type Named = (String, Vec<(&'static str, String)>);
 pub(super) struct Bodies(Vec<Named>);
 
 /// Names of columns of a table of bodies, and what they may be called.
-const COLUMNS: [(&str, &[&str]); 6] = [
+const COLUMNS: [(&str, &[&str]); 7] = [
     ("diameter", &["diameter", "d", "dia", "durchmesser", "diamètre"]),
     ("radius", &["radius", "r", "rayon"]),
     ("mass", &["mass", "m", "masse", "masa", "weight"]),
     ("shape", &["shape", "form", "forme"]),
     ("height", &["height", "h", "length"]),
     ("apex", &["apex", "apex_deg", "apex angle"]),
+    ("shaft_diameter", &["shaft_diameter", "shaft diameter", "shaft"]),
 ];
 const NAMES: [&str; 6] = ["body", "name", "ball", "id", "intruder", "projectile"];
 
@@ -182,6 +185,14 @@ impl Bodies {
             (Some(apex), "cone") => Some(apex),
             _ => stated,
         };
+        let shaft_diameter = quantity("shaft_diameter", Dimension::LENGTH)?;
+        if let Some(shaft) = shaft_diameter
+            && !["cylinder", "hemisphere", "cone"].contains(&shape.as_str())
+        {
+            let what = format!("{run} is a {shape} with a shaft of {:.1} mm", 1e3 * shaft);
+            let right = "a cylinder, hemisphere or cone may have one";
+            return Err(Fault::new(&flag("shaft_diameter"), what, right));
+        }
         let apex = apex.map(f64::to_degrees).map(|apex| (apex * 1e9).round() / 1e9);
         Ok(Body {
             diameter,
@@ -189,6 +200,7 @@ impl Bodies {
             shape,
             height,
             apex,
+            shaft_diameter,
         })
     }
 }

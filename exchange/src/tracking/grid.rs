@@ -13,6 +13,9 @@ pub(super) const NO_NUMBERS: &str = "no row of numbers is found";
 /// What is wrong with a table that is of no drop.
 pub(super) const NO_TIMES: &str = "no column of times or frames is found";
 
+/// The same where each row is called something, as in a summary of runs.
+pub(super) const NAMED_ROWS: &str = "its rows are named, and no column of times or frames is found";
+
 /// A sheet with its header.
 pub(super) struct Grid<'a> {
     pub(super) sheet: &'a Sheet,

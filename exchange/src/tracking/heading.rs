@@ -207,6 +207,22 @@ impl Heading {
         let (rest, last) = stem.rsplit_once(['_', ' ', '.', '-'])?;
         Some((last_word(last)?, rest.trim_matches(['_', ' ', '-', '.']).to_owned()))
     }
+
+    /// What stands in the column and of which drop, of names such as `t_h10_r1`, `y2`, `h10_r1 t`; none of plain names.
+    pub(super) fn of_drop(&self) -> Option<(Role, String)> {
+        const ENDS: [char; 4] = ['_', ' ', '.', '-'];
+        let stem = self.stem.as_str();
+        let name = |rest: &str| rest.trim_matches(ENDS).to_owned();
+        let of_word = |word: &str, rest: &str| {
+            role(word).filter(|_| !name(rest).is_empty()).map(|role| (role, name(rest)))
+        };
+        let first = stem.find(ENDS).or_else(|| stem.find(|c: char| c.is_ascii_digit()));
+        let first = first.and_then(|at| of_word(&stem[..at], &stem[at..]));
+        let digits = stem.find(|c: char| c.is_ascii_digit());
+        let numbered = || digits.and_then(|at| of_word(&stem[..at], &stem[at..]));
+        let last = || stem.rfind(ENDS).and_then(|at| of_word(&stem[at + 1..], &stem[..at]));
+        first.or_else(numbered).or_else(last)
+    }
 }
 
 fn role(stem: &str) -> Option<Role> {
@@ -270,6 +286,21 @@ mod tests {
         assert!(are.iter().all(Heading::is_acceleration));
         let others = ["a1", "y", "z (mm)", "t", "mass (g)"].map(Heading::of);
         assert!(!others.iter().any(Heading::is_acceleration));
+    }
+
+    #[test]
+    fn names_of_columns_say_the_drop() {
+        let of = |name: &str| Heading::of(name).of_drop();
+        for (name, role, drop) in [
+            ("t_h10_r1 (ms)", Role::Time, "h10_r1"),
+            ("y2 (cm)", Role::Vertical, "2"),
+            ("h10_r1 t", Role::Time, "h10_r1"),
+            ("height_10_1", Role::Vertical, "10_1"),
+            ("Time 3", Role::Time, "3"),
+        ] {
+            assert_eq!(of(name), Some((role, drop.to_owned())), "{name}");
+        }
+        assert_eq!(["t", "y (mm)", "note"].map(of), [None, None, None]);
     }
 
     #[test]

@@ -226,6 +226,12 @@ fn in_order(
         let what = format!("{what} ({}, behind {} on line {})", sample.t, last.t, last.line);
         return Err(Fault::new(&track.file, what, right).at(sample.line));
     }
+    let repeated = without_repeated(&mut samples);
+    if repeated > 0 {
+        track.notes.push(format!(
+            "{repeated} frames that show the body where it was, though it moves before and behind, are left out"
+        ));
+    }
     if copies > 0 {
         track.notes.push(format!("{copies} readings that repeat the one before are left out"));
     }
@@ -244,6 +250,35 @@ fn in_order(
         return Err(Fault::new(&track.file, what, right));
     }
     Ok(samples)
+}
+
+/// Share of the longest step between two readings above which a body moves.
+const MOVES: f64 = 0.1;
+
+/// Takes readings out that repeat the position before them where the body moves on both sides, and counts them: a video that
+/// was stored at another rate shows some frames twice.
+fn without_repeated(samples: &mut Vec<Sample>) -> usize {
+    let step = |pair: &[Sample]| (pair[1].z - pair[0].z).abs();
+    let steps = || samples.windows(2).map(step);
+    let longest = steps().fold(0.0, f64::max);
+    // A body that moves by a pixel from frame to frame is seen where it was too.
+    let pixel = steps().filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
+    let moves = |pair: &[Sample]| step(pair) > (MOVES * longest).max(2.0 * pixel);
+    let same = |a: f64, b: f64| a.total_cmp(&b).is_eq();
+    let is_repeated = |at: usize| match samples.get(at.wrapping_sub(2)..at + 2) {
+        Some([earlier, before, here, next]) => {
+            same(before.z, here.z)
+                && same(before.x, here.x)
+                && moves(&[*earlier, *before])
+                && moves(&[*here, *next])
+        }
+        _ => false,
+    };
+    let kept: Vec<bool> = (0..samples.len()).map(|at| !is_repeated(at)).collect();
+    let all = samples.len();
+    let mut kept = kept.into_iter();
+    samples.retain(|_| kept.next().unwrap_or(true));
+    all - samples.len()
 }
 
 /// Times of the readings: in s where the rate of frames is given, else in the unit of the table.
@@ -293,8 +328,14 @@ pub(super) fn contact(
         [first, .., last] => (last.z - first.z) / (last.t - first.t),
         _ => f64::INFINITY,
     };
+    let behind = frames.iter().filter(|frame| frame.t > contact.time.value).count();
+    let step = contact.step * (end.len().max(2) - 1) as f64;
+    let error = libm::hypot(contact.falling.se, std::f64::consts::SQRT_2 * noise / step);
+    // A clip may end where the bed hides the body, if it shows well that it is braked.
+    let is_slower = behind >= SHOWN && speed < contact.falling.value - CLEARLY * error;
+    let most = if is_slower { SLOWER } else { BRAKED };
     match () {
-        () if speed > BRAKED * contact.falling.value => {
+        () if speed > most * contact.falling.value => {
             Err("the body is never braked: the frames behind contact are missing")
         }
         () if !sees_surface && departure.is_braked_at_first > LIKELY => Err(
@@ -364,6 +405,11 @@ const LIKELY: f64 = 0.1;
 /// Share of the speed at contact that is left at the end of a clip that shows the body braked.
 const BRAKED: f64 = 0.7;
 
+/// The same of a clip with so many frames behind contact and a speed lower by so many standard errors.
+const SLOWER: f64 = 0.9;
+const SHOWN: usize = 10;
+const CLEARLY: f64 = 10.0;
+
 /// Frames that are kept after the body has come to rest.
 const AT_REST: usize = 10;
 
@@ -428,5 +474,38 @@ mod tests {
         let row = |k: u32| format!("{},{}\n", if k == 20 { 19 } else { k }, 90 - k);
         let text: String = (0..40).map(row).collect();
         assert!(times(&format!("t (s),y (cm)\n{text}")).is_err());
+    }
+
+    #[test]
+    fn frames_that_a_video_shows_twice_are_left_out_and_a_slow_body_keeps_its_readings() {
+        let at = |k: u64, z: f64| Sample { line: k, t: k as f64, z, x: 0.0 };
+        let fall = |k: u64| 0.5 * (k * k) as f64;
+        let mut twice: Vec<Sample> =
+            (0..20).map(|k| at(k, fall(if k % 5 == 4 { k - 1 } else { k }))).collect();
+        // The first repeats too little of the way, and behind the last there is none.
+        assert_eq!(without_repeated(&mut twice), 2);
+        assert!(twice.iter().all(|one| ![9, 14].contains(&one.line)));
+        let mut pixels: Vec<Sample> = (0..40).map(|k| at(k, (0.02 * fall(k)).round())).collect();
+        assert_eq!(without_repeated(&mut pixels), 0);
+    }
+
+    #[test]
+    fn a_clip_may_end_while_the_body_is_braked_if_it_shows_that_well() {
+        let (speed, rate, gravity) = (2.0, 5000.0, 9.81);
+        let frames = |behind: i32, resistance: f64| -> Vec<Frame> {
+            let depth = |t: f64| {
+                let braked = if t > 0.0 { resistance * t.powi(3) } else { 0.0 };
+                speed * t + 0.5 * gravity * t * t - braked
+            };
+            (-300..behind)
+                .map(|k| f64::from(k) / rate)
+                .map(|t| Frame { t, z: depth(t), x: 0.0, sigma: None })
+                .collect()
+        };
+        let tip = Tip { shape: "sphere", diameter: 0.0254, apex_deg: None };
+        let seen = |frames: &[Frame]| contact(frames, (tip, 1e-5), (gravity, false)).map(|_| ());
+        // At the last frame it has 2.0 + 0.196 − 0.6 m/s.
+        assert_eq!(seen(&frames(100, 500.0)), Ok(()));
+        assert!(seen(&frames(100, 20.0)).is_err_and(|why| why.contains("never braked")));
     }
 }

@@ -8,13 +8,14 @@ pub struct Options(BTreeMap<&'static str, String>);
 
 impl Options {
     /// The keys, with what they mean: those of `import.toml`, and with `-` for `_` the flags of the command.
-    pub const KEYS: [(&'static str, &'static str); 26] = [
+    pub const KEYS: [(&'static str, &'static str); 27] = [
         ("id", "the name of the set"),
         ("shape", "the shape of the body"),
         ("diameter", "the diameter of the body"),
         ("mass", "the mass of the body"),
         ("height", "the height of a cylinder or cone"),
         ("apex", "the full apex angle of a cone"),
+        ("shaft_diameter", "the diameter of a shaft behind a cylinder, hemisphere or cone"),
         ("bodies", "a table of bodies"),
         ("surface", "the level of the surface on the axis of the table"),
         ("tracked", "the point of the body that was tracked"),

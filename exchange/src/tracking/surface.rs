@@ -92,19 +92,9 @@ pub(super) fn touches(runs: &[Seen], gravity: f64) -> Result<(Level, Vec<Touch>)
 impl Touch {
     /// Where the path crosses `level` (m).
     fn at(contact: &Contact, level: Reading, gravity: f64) -> Self {
-        let Contact { time, at_time, falling, .. } = contact;
-        let (v, ahead) = (falling.value, level.value - at_time.value);
-        let root = (v * v + 2.0 * gravity * ahead).max(0.0).sqrt();
-        let later = 2.0 * ahead / (v + root).max(f64::MIN_POSITIVE);
-        let se = libm::hypot(level.se, at_time.se) / v;
-        let speed_error = libm::hypot(falling.se, gravity * se);
-        Self {
-            time: Reading { value: time.value + later, se },
-            level,
-            sinking: Reading { value: v + gravity * later, se: speed_error },
-            own_speed_error: speed_error,
-            level_error: at_time.se,
-        }
+        let (time, sinking) = contact.crossing(level, gravity);
+        let (own_speed_error, level_error) = (sinking.se, contact.at_time.se);
+        Self { time, level, sinking, own_speed_error, level_error }
     }
 }
 

@@ -151,6 +151,9 @@ fn body(body: &Body, line: &mut impl FnMut(String)) {
     if let Some(apex) = body.apex {
         line(format!("apex_deg = {apex:?}"));
     }
+    if let Some(shaft) = body.shaft_diameter {
+        line(format!("shaft_diameter = {shaft:?}"));
+    }
 }
 
 fn runs(known: &Known<'_>) -> String {

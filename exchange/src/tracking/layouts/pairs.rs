@@ -1,4 +1,5 @@
-//! Plain tables of several drops beside each other, each with its own column of times, and mostly with a title above it.
+//! Plain tables of several drops beside each other, each with its own column of times; the drops are told by titles above
+//! or in the names of the columns.
 
 use super::Layout;
 use crate::tracking::fault::Fault;
@@ -19,6 +20,10 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
     let grid = Grid::found(sheet)?;
     grid.column(Role::Run, columns)?;
     let drops = drops(&grid);
+    let named: Option<Vec<Option<String>>> = drops
+        .iter()
+        .map(|drop| drop.t.and_then(|t| grid.headings[t].of_drop()).map(|of| Some(of.1)))
+        .collect();
     let titles = grid.header.checked_sub(1).map(|above| &sheet.rows[above]);
     let ends = drops.iter().skip(1).map(|next| next.t).chain([Some(grid.headings.len())]);
     let title = |(places, end): (&Places, Option<usize>)| {
@@ -26,7 +31,7 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
         let words: Vec<&str> = cells.filter(|cell| !cell.is_empty()).collect();
         (!words.is_empty()).then(|| words.join(" "))
     };
-    let titles: Vec<Option<String>> = drops.iter().zip(ends).map(title).collect();
+    let titles = named.unwrap_or_else(|| drops.iter().zip(ends).map(title).collect());
     let are_told =
         (0..titles.len()).all(|at| titles[at].is_some() && !titles[..at].contains(&titles[at]));
     let one = |(at, (places, title)): (usize, (&Places, Option<String>))| {
@@ -39,8 +44,31 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
     drops.iter().zip(titles).enumerate().map(one).collect()
 }
 
-/// Columns of the drops: each begins with that of its times, and has one of positions.
+/// Columns of the drops, by the names of columns or by their order.
 fn drops(grid: &Grid<'_>) -> Vec<Places> {
+    let named = named(grid);
+    if named.len() > 1 { named } else { in_order(grid) }
+}
+
+/// Columns of times and positions whose names have a drop in common.
+fn named(grid: &Grid<'_>) -> Vec<Places> {
+    let all: Vec<(usize, Role, String)> = (0..grid.headings.len())
+        .filter_map(|at| grid.headings[at].of_drop().map(|(role, drop)| (at, role, drop)))
+        .collect();
+    let of = |wanted: Role, drop: &str| {
+        let mut own = all.iter().filter(|(_, role, own)| *role == wanted && own == drop);
+        own.next().map(|one| one.0).filter(|_| own.next().is_none())
+    };
+    let times = all.iter().filter(|(_, role, _)| *role == Role::Time);
+    let places = |(t, _, drop): &(usize, Role, String)| {
+        let z = of(Role::Vertical, drop)?;
+        Some(Places { t: Some(*t), z, x: of(Role::Forward, drop) })
+    };
+    times.map(places).collect::<Option<_>>().unwrap_or_default()
+}
+
+/// Each begins with the column of its times, and has one of positions.
+fn in_order(grid: &Grid<'_>) -> Vec<Places> {
     let role = |at: usize| grid.headings[at].role();
     let all = 0..grid.headings.len();
     let starts = |wanted: Role| all.clone().filter(move |at| role(*at) == Some(wanted));
@@ -74,6 +102,18 @@ mod tests {
         let told: Vec<_> = all.iter().map(|one| (one.name.as_deref(), one.samples.len())).collect();
         assert_eq!(told, [(Some("low"), 2), (Some("high"), 3)]);
         assert_eq!(all[1].samples[2].z.to_bits(), 7.0_f64.to_bits());
+    }
+
+    #[test]
+    fn names_of_columns_tell_drops() {
+        let told = |text: &[u8]| {
+            let sheet = text::read("a.csv", "a", text).expect("a table");
+            assert!(fits(&sheet, &Columns::default()));
+            let all = read(&sheet, &Columns::default()).expect("tracks");
+            all.into_iter().filter_map(|one| one.name).collect::<Vec<_>>()
+        };
+        assert_eq!(told(b"t_a (ms),y_a (cm),t_b (ms),y_b (cm)\n0,1,0,5\n1,2,1,6\n"), ["a", "b"]);
+        assert_eq!(told(b"t0,y0,t1,y1\n0,1,0,5\n1,2,1,6\n"), ["0", "1"]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::Layout;
 use crate::tracking::fault::Fault;
-use crate::tracking::grid::{Grid, NO_TIMES, Places};
+use crate::tracking::grid::{Grid, NAMED_ROWS, NO_TIMES, Places};
 use crate::tracking::heading::Role;
 use crate::tracking::settings::Columns;
 use crate::tracking::sheet::{Row, Sheet};
@@ -40,11 +40,13 @@ pub(super) fn places(grid: &Grid<'_>, columns: &Columns) -> Result<Places, Fault
         let line = grid.rows.first().map_or(1, |row| row.line.saturating_sub(1).max(1));
         grid.sheet.fault(what, right).at(line)
     };
+    let is_named = grid.rows.iter().all(|row| grid.sheet.has_words(row));
+    let no_times = if is_named { NAMED_ROWS } else { NO_TIMES };
     let t = match grid.column(Role::Time, columns)? {
         Some(at) => at,
         None => grid
             .column(Role::Frame, columns)?
-            .ok_or_else(|| missing(NO_TIMES, "t", "`t (ms)` or `frame`"))?,
+            .ok_or_else(|| missing(no_times, "t", "`t (ms)` or `frame`"))?,
     };
     let z = grid
         .column(Role::Vertical, columns)?
