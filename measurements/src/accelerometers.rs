@@ -1,17 +1,24 @@
 //! What no accelerometer in a falling body reads: order, signs, zeros and units.
 
-use configs::Diagnostic;
+use configs::{Diagnostic, shorten};
 
 use super::conditions::ConditionPlaces;
-use super::contradiction::Contradiction;
+use super::contradiction::{Contradiction, ContradictionKind};
 use super::findings::Findings;
-use super::{MeasurementSet, Run, over_time};
+use super::{MeasurementSet, Run, Sample, over_time};
 
 /// Share of gravity by which a reading before contact may miss that of free fall.
 const FALLING: f64 = 0.5;
 
 /// Change of the velocity over that of a stop from the stated speed, beyond which a unit is wrong.
 const MOST: f64 = 3.0;
+
+/// Readings at the end of a run that show what it reads at rest, and how far they may scatter about 1.
+const AT_REST: usize = 8;
+const SCATTER: f64 = 0.1;
+
+/// Equal largest readings in a row that only the end of a range makes.
+const FLAT: usize = 4;
 
 /// Refuses what is no vertical impact, times that run back and signs; names zeros and units.
 pub(super) fn check(
@@ -24,9 +31,10 @@ pub(super) fn check(
     over_time::check_times(set, places, findings);
     if findings.errors() == 0 {
         check_signs(set, places, findings);
+        check_range(set, places, findings);
     }
     match findings.errors() {
-        0 => check_units(set, places).into_iter().collect(),
+        0 => check_rest(set, places).or_else(|| check_units(set, places)).into_iter().collect(),
         _ => Vec::new(),
     }
 }
@@ -87,4 +95,60 @@ fn check_units(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contr
     let told = |ratio| format!("the accelerations take {ratio:.1} times the speed at contact away");
     let help = "are they in g, or the times in ms?";
     over_time::check_unit(set, places, (MOST, ratio), (told, help))
+}
+
+/// Refuses readings beyond the range of the accelerometer where the set does not state it.
+fn check_range(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+    let largest = |run: &Run| {
+        let values = run.samples.iter().map(|one| one.value);
+        values.fold(f64::NEG_INFINITY, f64::max)
+    };
+    let is_flat = |run: &&Run| {
+        let top = largest(run);
+        let is_top = |one: &Sample| one.value.to_bits() == top.to_bits();
+        top > set.gravity_of(run) && run.samples.windows(FLAT).any(|row| row.iter().all(is_top))
+    };
+    if set.instrument.acceleration_range.is_some() {
+        return;
+    }
+    let all: Vec<&Run> = set.runs.iter().filter(is_flat).collect();
+    if let Some(run) = all.first() {
+        let largest = largest(run);
+        let (n, name) = (all.len(), shorten(&run.name));
+        let told = format!(
+            "{n} of {} runs have a flat top: `{name}` reads {largest:.2} m/s^2 {FLAT} times in a row or more",
+            set.runs.len()
+        );
+        findings.report(
+            Diagnostic::error(told)
+                .at(places[run.condition].id, "measured under this condition")
+                .help(format!(
+                    "the accelerometer reads no more: write acceleration_range_m_s2 = {:.2} below [instrument]",
+                    0.99 * largest
+                )),
+        );
+    }
+}
+
+/// Names the unit of readings that are 1 at rest, where gravity is far from it.
+fn check_rest(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contradiction> {
+    let is_one = |run: &&Run| {
+        let last = run.samples.len().checked_sub(AT_REST).map(|from| &run.samples[from..]);
+        let gravity = set.gravity_of(run);
+        let is_near = |all: &[Sample]| all.iter().all(|one| (one.value - 1.0).abs() < SCATTER);
+        !(0.5..2.0).contains(&gravity) && last.is_some_and(is_near)
+    };
+    let of: Vec<&Run> = set.runs.iter().filter(is_one).collect();
+    let first = of.first().filter(|_| 2 * of.len() > set.runs.len())?;
+    Some(Contradiction {
+        kind: ContradictionKind::Speeds,
+        diagnostic: Diagnostic::error(format!(
+            "at rest the readings are 1 m/s^2, and gravity is {:.2} m/s^2",
+            set.gravity_of(first)
+        ))
+        .at(places[first.condition].id, "measured under this condition")
+        .help(
+            "are they in g? [columns] gives the units of a table: acceleration = { unit = \"g\" }",
+        ),
+    })
 }

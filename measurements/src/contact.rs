@@ -45,6 +45,19 @@ pub struct Contact {
 }
 
 impl Contact {
+    /// When free fall at `gravity` (m/s²) passes `level` (m), and the downward velocity (m/s) there.
+    #[must_use]
+    pub fn crossing(&self, level: Reading, gravity: f64) -> (Reading, Reading) {
+        let Self { time, at_time, falling, .. } = self;
+        let (v, ahead) = (falling.value, level.value - at_time.value);
+        let root = (v * v + 2.0 * gravity * ahead).max(0.0).sqrt();
+        let later = 2.0 * ahead / (v + root).max(f64::MIN_POSITIVE);
+        let se = libm::hypot(level.se, at_time.se) / v;
+        let sinking =
+            Reading { value: v + gravity * later, se: libm::hypot(falling.se, gravity * se) };
+        (Reading { value: time.value + later, se }, sinking)
+    }
+
     /// What a clock and a depth of this run alone would have to be counted from (s, m): the surface is taken
     /// to be right where a clock alone explains what is seen.
     #[must_use]
@@ -230,7 +243,7 @@ fn back_to_zero(
 
 /// The power of time with which a path departs from free fall; `None` where its lowest point does not
 /// fall like a mass.
-fn power(condition: &Condition) -> Option<f64> {
+pub(super) fn power(condition: &Condition) -> Option<f64> {
     let round = matches!(condition.shape.as_str(), "sphere" | "disc");
     power_of(&condition.shape).filter(|_| condition.spin == 0.0 || round)
 }

@@ -2,15 +2,22 @@
 
 use configs::{Diagnostic, shorten};
 
+use super::braking::Tip;
 use super::conditions::ConditionPlaces;
 use super::curve::Curve;
+use super::departure::Departure;
 use super::findings::Findings;
 use super::reading::Reading;
-use super::{Kind, MeasurementSet, contact, zeros};
+use super::strays::but_strays;
+use super::zeros::RunContact;
+use super::{Condition, Contact, Kind, MeasurementSet, Run, contact, zeros};
 
 /// Gives the conditions without a stated speed the mean over their runs; where no run shows it, that is
 /// reported.
 pub(super) fn fill(set: &mut MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+    let is_unstated = places.iter().any(|place| place.speed.is_none());
+    let slowed = if is_unstated { zeros::slowed(set) } else { Vec::new() };
+    let mut of_one_run: f64 = 0.0;
     for (index, place) in places.iter().enumerate() {
         if place.speed.is_some() {
             continue;
@@ -18,7 +25,7 @@ pub(super) fn fill(set: &mut MeasurementSet, places: &[ConditionPlaces], finding
         let id = shorten(&set.conditions[index].id);
         let read = match set.kind.curve() {
             Some(curve) => shown(set, index, curve),
-            None => read(set, index),
+            None => read(set, index, &slowed),
         };
         let speed = zeros::mean(read.iter().copied());
         if read.is_empty() {
@@ -40,6 +47,13 @@ pub(super) fn fill(set: &mut MeasurementSet, places: &[ConditionPlaces], finding
             speed.value, speed.se
         ));
         set.conditions[index].speed = speed.value;
+        of_one_run = of_one_run.max((n as f64).sqrt() * speed.se / speed.value);
+    }
+    if of_one_run > 0.0 && set.instrument.speed_sigma_rel.is_none() {
+        findings.note(format!(
+            "speed_sigma_rel is {of_one_run:.5}, the largest of these errors of one run."
+        ));
+        set.instrument.speed_sigma_rel = Some(of_one_run);
     }
 }
 
@@ -50,21 +64,45 @@ fn shown(set: &MeasurementSet, condition: usize, curve: &Curve) -> Vec<Reading> 
 }
 
 /// The speeds at contact (m/s) of the runs of one condition whose frames show it.
-fn read(set: &MeasurementSet, condition: usize) -> Vec<Reading> {
-    let of = super::Condition { speed: 0.0, ..set.conditions[condition].clone() };
-    let own = set.runs.iter().filter(|run| run.condition == condition);
-    let speed = |run: &super::Run| {
-        let known = (set.fall_of(&of), contact::FREE, zeros::position(set, run));
-        let contact = contact::read(run, &of, known, 0.0)?;
-        // Without frames before the contact the bed has braked already.
-        let is_seen = contact.first < contact.time.value - contact.step;
-        let (z, x) = (contact.sinking, contact.forward);
-        let (x, value) = match of.angle_deg >= 90.0 {
-            true => (Reading { value: 0.0, se: 0.0 }, z.value),
-            false => (x, libm::hypot(z.value, x.value)),
-        };
-        let se = libm::hypot(z.value * z.se, x.value * x.se) / value;
-        (is_seen && value > 0.0).then_some(Reading { value, se })
+fn read(set: &MeasurementSet, condition: usize, slowed: &[RunContact]) -> Vec<Reading> {
+    let own = (0..set.runs.len()).filter(|&run| set.runs[run].condition == condition);
+    let speed = |run: usize| {
+        let slowed = slowed.iter().find(|one| one.run == run).map(|one| &one.contact);
+        of_run(set, &set.runs[run], slowed)
     };
     own.filter_map(speed).collect()
+}
+
+/// The speed at contact (m/s) of `run`, if its frames show it; the contact is where the path departs from free fall and
+/// the set has its surface, by the errors of both. Of a body that is `slowed` before, it is where the set has it.
+fn of_run(set: &MeasurementSet, run: &Run, slowed: Option<&Contact>) -> Option<Reading> {
+    let condition = &set.conditions[run.condition];
+    let of = Condition { speed: 0.0, ..condition.clone() };
+    let (gravity, sigma) = (set.fall_of(&of), zeros::position(set, run));
+    let tip = Tip { shape: &of.shape, diameter: of.diameter, apex_deg: of.apex_deg };
+    let frames = but_strays(&run.frames, sigma);
+    let departure = match (contact::power(&of), slowed) {
+        (Some(_), None) => Departure::of_frames(&frames, tip, gravity, sigma),
+        _ => None,
+    };
+    let (contact, sinking) = match (slowed, departure) {
+        (Some(contact), _) => (*contact, contact.sinking),
+        (None, Some(Departure { contact, .. })) => {
+            let level = Reading { value: 0.0, se: zeros::level(set) };
+            (contact, contact.crossing(contact.depth.beside(level), gravity).1)
+        }
+        (None, None) => {
+            let contact = contact::read(run, &of, (gravity, contact::FREE, sigma), 0.0)?;
+            (contact, contact.sinking)
+        }
+    };
+    // Without frames before the contact the bed has braked already.
+    let is_seen = contact.first < contact.time.value - contact.step;
+    let forward = match of.angle_deg >= 90.0 {
+        true => Reading { value: 0.0, se: 0.0 },
+        false => contact.forward,
+    };
+    let value = libm::hypot(sinking.value, forward.value);
+    let se = libm::hypot(sinking.value * sinking.se, forward.value * forward.se) / value;
+    (is_seen && value > 0.0).then_some(Reading { value, se })
 }

@@ -5,10 +5,11 @@ use engine::units::Dimension;
 
 use super::columns::ColumnSpec;
 use super::conditions::ConditionPlaces;
-use super::contradiction::Contradiction;
+use super::contradiction::{Contradiction, ContradictionKind};
 use super::curve::{Along, Axis, Curve};
 use super::findings::Findings;
 use super::reading::Reading;
+use super::smooth::slope;
 use super::{Condition, Kind, MeasurementSet, Run, over_time, zeros};
 
 static OF_MANY: [ColumnSpec; 4] =
@@ -35,6 +36,14 @@ pub(super) static CURVE: Curve = Curve {
 
 /// Greatest velocity over that of the stated speed and a fall by a diameter, beyond which a unit is wrong.
 const MOST: f64 = 2.0;
+
+/// Readings before contact that show how a velocity grows, at least.
+const FALLING: usize = 6;
+
+/// Growth of the velocity over gravity before contact, at least and at most, beyond which a unit is wrong; and the largest
+/// error of it that counts.
+const GROWTH: [f64; 2] = [0.2, 5.0];
+const KNOWN: f64 = 0.05;
 
 /// From the readings before contact, each brought forward to it in free fall.
 fn shown_speed(set: &MeasurementSet, condition: &Condition, run: &Run) -> Option<Reading> {
@@ -83,6 +92,9 @@ fn check(
         );
         return Vec::new();
     }
+    if let Some(wrong) = check_fall(set, places) {
+        return vec![wrong];
+    }
     let ratio = |run: &Run| {
         let condition = &set.conditions[run.condition];
         let fall = (2.0 * set.gravity_of(run) * condition.diameter).sqrt();
@@ -95,4 +107,35 @@ fn check(
     };
     let help = "are they in mm/s or cm/s?";
     over_time::check_unit(set, places, (MOST, ratio), (told, help)).into_iter().collect()
+}
+
+/// Names units with which no body falls: before contact a velocity grows at gravity.
+fn check_fall(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contradiction> {
+    let growth = |run: &Run| {
+        let is_dry = set.bed_of(&set.conditions[run.condition]).stated.fluid.is_none();
+        let gravity = set.gravity_of(run);
+        let before = || run.samples.iter().filter(|one| one.at < 0.0);
+        let sigma = set.instrument.velocity_sigma.unwrap_or(0.0);
+        let slope = slope(before().map(|one| (one.at, one.value)), sigma);
+        let ratio = slope.value / gravity;
+        let is_known = slope.se < KNOWN * slope.value.abs().max(gravity);
+        (is_dry && gravity > 0.0 && is_known && before().count() >= FALLING)
+            .then_some((ratio, run.condition))
+    };
+    let mut all: Vec<(f64, usize)> = set.runs.iter().filter_map(growth).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let &(ratio, condition) = all.get(all.len() / 2)?;
+    let [least, most] = GROWTH;
+    let (times, how) = match ratio.abs() < 1.0 {
+        true => (ratio.abs().recip(), "slowly"),
+        false => (ratio.abs(), "fast"),
+    };
+    (!(least..=most).contains(&ratio)).then(|| Contradiction {
+        kind: ContradictionKind::Speeds,
+        diagnostic: Diagnostic::error(format!(
+            "before contact the velocities grow {times:.0} times as {how} as in a fall"
+        ))
+        .at(places[condition].id, "measured under this condition")
+        .help("are the velocities in cm/s or mm/s, or the times in ms? [columns] gives the units of a table"),
+    })
 }

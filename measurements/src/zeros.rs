@@ -146,7 +146,7 @@ impl Zeros {
         if set.kind != Kind::Trajectory || set.all_beds().any(|bed| bed.gravity <= 0.0) {
             return Self::default();
         }
-        let level = set.instrument.level_sigma.unwrap_or(LEVEL);
+        let level = level(set);
         let contacts = contacts(set, level, 0.0);
         let mut offset = offset(&contacts, level, 0.0);
         // Free fall is known well near its end alone: a clock that is far off is read again from there.
@@ -186,6 +186,21 @@ fn contacts(set: &MeasurementSet, level: f64, zero: f64) -> Vec<RunContact> {
         Some(RunContact { is_slowed: one.is_off, ..slowed })
     };
     fall.iter().map(slowed).collect::<Option<Vec<_>>>().unwrap_or(fall)
+}
+
+/// How well the level of the surface is known (m).
+pub(super) fn level(set: &MeasurementSet) -> f64 {
+    set.instrument.level_sigma.unwrap_or(LEVEL)
+}
+
+/// The contacts of the bodies of `set` that guides or air slow before.
+pub(super) fn slowed(set: &MeasurementSet) -> Vec<RunContact> {
+    match set.kind {
+        Kind::Trajectory => {
+            contacts(set, level(set), 0.0).into_iter().filter(|one| one.is_slowed).collect()
+        }
+        _ => Vec::new(),
+    }
 }
 
 /// Error of one reading of `run` (m).

@@ -37,6 +37,16 @@ pub enum ForwardError {
         /// Name of the shape.
         shape: &'static str,
     },
+    /// A body whose spin no force law changes.
+    #[error(
+        "condition {condition}: a force law keeps the spin of a {shape}; of links alone it says how they turn"
+    )]
+    KeepsSpin {
+        /// Id of the condition.
+        condition: String,
+        /// Name of the shape.
+        shape: &'static str,
+    },
     /// A body whose drag in a fluid is not modelled.
     #[error("condition {condition}: no {shape} is modelled in a fluid; leave the fluid out")]
     InFluid {

@@ -253,6 +253,10 @@ impl Prepared {
             let condition = condition.id.clone();
             return Err(ForwardError::NotPushed { condition, shape: shape.name });
         }
+        if set.kind == Kind::Spin && shape.links.is_none() {
+            let condition = condition.id.clone();
+            return Err(ForwardError::KeepsSpin { condition, shape: shape.name });
+        }
         // What the set states stands above what the model says, as its gravity does.
         let fluid = bed.stated.fluid.or(medium.fluid);
         if fluid.is_some() && shape.slender {

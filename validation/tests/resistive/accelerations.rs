@@ -84,6 +84,8 @@ fn wrong_signs_zeros_and_units_of_accelerations_are_refused() {
         (|one| one.value = -one.value, "the acceleration is negative where it is largest"),
         (|one| one.value -= BED.gravity, "those of a body in free fall are 0"),
         (|one| one.value *= 9.8, "times the speed at contact away"),
+        (|one| one.value /= BED.gravity, "at rest the readings are 1 m/s^2"),
+        (|one| one.value = one.value.min(2.0 * BED.gravity), "have a flat top"),
         (|one| one.at = -one.at, "the time does not go on"),
     ];
     sets::assert_refused(measured, cases);

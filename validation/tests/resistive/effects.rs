@@ -9,7 +9,7 @@ use diagnosis::observable::Layout;
 use diagnosis::resistive::ResistiveForward;
 use measurements::{
     Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedBed, StatedError, StopDefinition,
+    Run, StatedError, StopDefinition,
 };
 
 use super::rig::{BED, DIAMETER, MASS};
@@ -26,22 +26,9 @@ const CURVED: f64 = 0.06;
 
 fn vertical(speed: f64) -> Condition {
     Condition {
-        id: format!("v{speed}"),
-        role: Role::Fit,
-        speed,
-        angle_deg: 90.0,
-        shape: "sphere".into(),
-        diameter: DIAMETER,
-        mass: MASS,
-        spin: 0.0,
         packing: Some(0.58),
         bed_depth: Some(0.1),
-        bed: None,
-        length: None,
-        height: None,
-        shaft_diameter: None,
-        apex_deg: None,
-        link_angle_deg: None,
+        ..Condition::straight_down(format!("v{speed}"), ("sphere", DIAMETER, MASS), speed)
     }
 }
 
@@ -76,13 +63,7 @@ fn set(conditions: Vec<Condition>) -> MeasurementSet {
         kind: Kind::Trajectory,
         // Errors of an exact apparatus are candidates, to be looked for as effects are.
         instrument: Instrument::default().without_shared_errors(),
-        bed: Bed {
-            geometry: Geometry::Spatial,
-            bulk_density: Some(BED.bulk_density),
-            gravity: BED.gravity,
-            grain_diameter: None,
-            stated: StatedBed::default(),
-        },
+        bed: Bed::new(Geometry::Spatial, Some(BED.bulk_density), BED.gravity),
         beds: Vec::new(),
         baseline: None,
         stated: StatedError::default(),

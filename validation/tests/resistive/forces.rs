@@ -14,10 +14,7 @@ use engine::grains::Space;
 use engine::math::Vec3;
 use engine::params::ParamTable;
 use intruders::Casting;
-use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role,
-    Run, Sample, StatedBed, StatedError, StopDefinition,
-};
+use measurements::{Bed, Condition, Geometry, Instrument, Kind, MeasurementSet, Run, Sample};
 use rand_pcg::Pcg64;
 use resistive::{Driven, Impact, Recorder};
 
@@ -44,22 +41,13 @@ const NODES: usize = 6;
 
 fn condition(diameter: f64, speed: f64) -> Condition {
     Condition {
-        id: format!("d{}-v{}", 1e3 * diameter, 1e3 * speed),
-        role: Role::Fit,
-        speed,
-        angle_deg: 90.0,
-        shape: "cylinder".into(),
-        diameter,
-        mass: 0.0,
-        spin: 0.0,
-        packing: None,
-        bed_depth: None,
-        bed: None,
-        length: None,
         height: Some(0.01),
         shaft_diameter: Some(0.01),
-        apex_deg: None,
-        link_angle_deg: None,
+        ..Condition::straight_down(
+            format!("d{}-v{}", 1e3 * diameter, 1e3 * speed),
+            ("cylinder", diameter, 0.0),
+            speed,
+        )
     }
 }
 
@@ -112,33 +100,19 @@ fn measured(hidden: Option<(&str, f64)>, seed: u64) -> MeasurementSet {
     });
     let runs = runs.collect();
     MeasurementSet {
-        id: "plates".into(),
-        source: None,
-        kind: Kind::ForceDepth,
         instrument: Instrument {
             force_sigma: Some(READING),
             level_sigma: Some(1e-4),
             zero_sigma: Some(2e-4),
             ..Instrument::default()
         },
-        bed: Bed {
-            geometry: Geometry::Spatial,
-            bulk_density: Some(BED.bulk_density),
-            gravity: BED.gravity,
-            grain_diameter: None,
-            stated: StatedBed::default(),
-        },
-        beds: Vec::new(),
-        baseline: None,
-        stated: StatedError::default(),
-        stop: StopDefinition::ComponentZero,
-        last: FinalDefinition::Resting,
-        feasible: Feasible::default(),
-        priors: Vec::new(),
-        conditions,
         runs,
-        keep: Vec::new(),
-        notes: Vec::new(),
+        ..MeasurementSet::new(
+            "plates",
+            Kind::ForceDepth,
+            Bed::new(Geometry::Spatial, Some(BED.bulk_density), BED.gravity),
+            conditions,
+        )
     }
 }
 

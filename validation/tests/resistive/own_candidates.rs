@@ -8,8 +8,7 @@ use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::verdict::Verdict;
 use measurements::{
-    Bed, Condition, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role, Run,
-    StatedBed, StatedError, StopDefinition,
+    Bed, Condition, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Run,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -28,22 +27,8 @@ fn model() -> Model {
 
 fn condition(index: usize, speed: f64, angle: f64, mass: f64) -> Condition {
     Condition {
-        id: format!("c{index:02}"),
-        role: Role::Fit,
-        speed,
         angle_deg: angle,
-        shape: "sphere".into(),
-        diameter: 0.0254,
-        mass,
-        spin: 0.0,
-        packing: None,
-        bed_depth: None,
-        bed: None,
-        length: None,
-        height: None,
-        shaft_diameter: None,
-        apex_deg: None,
-        link_angle_deg: None,
+        ..Condition::straight_down(format!("c{index:02}"), ("sphere", 0.0254, mass), speed)
     }
 }
 
@@ -66,9 +51,6 @@ fn empty_set() -> MeasurementSet {
         }
     };
     MeasurementSet {
-        id: "own".into(),
-        source: None,
-        kind: Kind::Scalar,
         instrument: Instrument {
             rate: None,
             position_sigma: Some(1e-4),
@@ -76,24 +58,15 @@ fn empty_set() -> MeasurementSet {
             level_sigma: Some(1e-4),
             ..Instrument::default()
         },
-        bed: Bed {
-            geometry: Geometry::Spatial,
-            bulk_density: Some(1520.0),
-            gravity: 9.81,
-            grain_diameter: None,
-            stated: StatedBed::default(),
-        },
-        beds: Vec::new(),
-        baseline: None,
-        stated: StatedError::default(),
-        stop: StopDefinition::ComponentZero,
         last: FinalDefinition::Deepest,
         runs: (0..conditions.len() * REPEATS).map(run).collect(),
-        conditions,
         feasible: Default::default(),
-        priors: Vec::new(),
-        keep: Vec::new(),
-        notes: Vec::new(),
+        ..MeasurementSet::new(
+            "own",
+            Kind::Scalar,
+            Bed::new(Geometry::Spatial, Some(1520.0), 9.81),
+            conditions,
+        )
     }
 }
 

@@ -23,10 +23,7 @@ fn pushed(
     size: (&'static str, f64),
     laws: Vec<Box<dyn resistive::ResistanceLaw>>,
 ) -> Impact {
-    let mut params = ParamTable::new();
-    for (key, value) in [("diameter", DIAMETER), ("shaft_diameter", 0.0), size] {
-        params.set(key, value);
-    }
+    let params = ParamTable::from_iter([("diameter", DIAMETER), ("shaft_diameter", 0.0), size]);
     let velocity = Vec3::new(0.0, 0.0, -SPEED);
     let casting =
         Casting { params: &params, space: Space::Spatial, mass: 0.1, velocity, spin: 0.0 };

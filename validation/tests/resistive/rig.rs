@@ -70,8 +70,7 @@ pub(crate) fn launched(
     velocity: Vec3,
     spin: f64,
 ) -> Impact {
-    let mut params = ParamTable::new();
-    params.set("diameter", DIAMETER);
+    let params = ParamTable::from_iter([("diameter", DIAMETER)]);
     let casting = Casting { params: &params, space: Space::Spatial, mass: MASS, velocity, spin };
     let shape = intruders::find("sphere").expect("the sphere is registered");
     let made = (shape.assembly)(&casting);

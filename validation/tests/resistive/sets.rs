@@ -6,11 +6,11 @@ use configs::{LoadOptions, Model, ModelSource, find_shipped};
 use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::diagnose::diagnose;
 use diagnosis::observed::Observed;
-use diagnosis::resistive::ResistiveForward;
+use diagnosis::resistive::{ForwardError, ResistiveForward};
 use diagnosis::verdict::{Diagnosis, Verdict};
 use measurements::{
-    Bed, Condition, ContradictionKind, Feasible, FinalDefinition, Geometry, Instrument, Kind,
-    MeasurementSet, Role, Run, Sample, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, ContradictionKind, Geometry, Instrument, Kind, MeasurementSet, Run, Sample,
+    StopDefinition,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -55,24 +55,7 @@ pub(crate) struct Reader {
 
 /// Straight down at `speed` (m/s).
 pub(crate) fn condition(speed: f64) -> Condition {
-    Condition {
-        id: format!("v{speed}"),
-        role: Role::Fit,
-        speed,
-        angle_deg: 90.0,
-        shape: "sphere".into(),
-        diameter: DIAMETER,
-        mass: MASS,
-        spin: 0.0,
-        packing: None,
-        bed_depth: None,
-        bed: None,
-        length: None,
-        height: None,
-        shaft_diameter: None,
-        apex_deg: None,
-        link_angle_deg: None,
-    }
+    Condition::straight_down(format!("v{speed}"), ("sphere", DIAMETER, MASS), speed)
 }
 
 /// A normal number (Box & Muller).
@@ -88,28 +71,13 @@ pub(crate) fn of_spheres(
     conditions: Vec<Condition>,
 ) -> MeasurementSet {
     MeasurementSet {
-        id: id.into(),
-        source: None,
-        kind,
         instrument,
-        bed: Bed {
-            geometry: Geometry::Spatial,
-            bulk_density: Some(BED.bulk_density),
-            gravity: BED.gravity,
-            grain_diameter: None,
-            stated: StatedBed::default(),
-        },
-        beds: Vec::new(),
-        baseline: None,
-        stated: StatedError::default(),
-        stop: StopDefinition::ComponentZero,
-        last: FinalDefinition::Resting,
-        feasible: Feasible::default(),
-        priors: Vec::new(),
-        conditions,
-        runs: Vec::new(),
-        keep: Vec::new(),
-        notes: Vec::new(),
+        ..MeasurementSet::new(
+            id,
+            kind,
+            Bed::new(Geometry::Spatial, Some(BED.bulk_density), BED.gravity),
+            conditions,
+        )
     }
 }
 
@@ -121,17 +89,20 @@ pub(crate) fn diagnosed(set: &MeasurementSet) -> Diagnosis {
 /// What is said of `set` from a shipped model.
 pub(crate) fn diagnosed_from(model: &str, set: &MeasurementSet) -> Diagnosis {
     let observed = Observed::of(set);
-    let shipped = find_shipped(model).expect("a shipped model");
-    let source = ModelSource::Text {
-        name: format!("{model}.toml"),
-        text: shipped.text.to_owned(),
-        folder: ".".into(),
-    };
-    let model = Model::load(source, &LoadOptions::default()).expect("a model").model;
-    let forward =
-        ResistiveForward::new(&model, set, &observed.layouts()).expect("a model for spheres");
+    let forward = forward_of(model, set, &observed).expect("a model for spheres");
     diagnose(&Bench { set, observed: &observed, forward: &forward }, DEFAULT_SEED)
         .expect("spheres stop")
+}
+
+/// The shipped model `model` for what was `observed` of `set`.
+pub(crate) fn forward_of(
+    model: &str,
+    set: &MeasurementSet,
+    observed: &Observed,
+) -> Result<ResistiveForward, ForwardError> {
+    let source = ModelSource::Shipped(find_shipped(model).expect("a shipped model"));
+    let model = Model::load(source, &LoadOptions::default()).expect("a model").model;
+    ResistiveForward::new(&model, set, &observed.layouts())
 }
 
 /// Falls into drag, friction and the effect `hidden` at five speeds, as `reader` reads them.

@@ -1,5 +1,6 @@
 //! Angular velocities of links, as a gyroscope reads them: what they tell without any position.
 
+use diagnosis::observed::Observed;
 use diagnosis::verdict::Verdict;
 use engine::grains::Space;
 use engine::math::Vec3;
@@ -116,4 +117,13 @@ fn spins_in_degrees_that_pass_for_radians_are_named() {
     samples.for_each(|one| one.value = one.value.to_degrees());
     let told = sets::refusal(&set);
     assert!(told.contains("times as fast as its impact can make it"), "{told}");
+}
+
+#[test]
+fn the_spin_of_a_body_that_a_force_law_does_not_turn_is_refused() {
+    let mut set = measured();
+    set.conditions.iter_mut().for_each(|condition| condition.shape = "sphere".into());
+    let found = sets::forward_of("two-term-vector", &set, &Observed::of(&set));
+    let told = found.map(|_| ()).expect_err("a sphere does not turn").to_string();
+    assert!(told.contains("keeps the spin of a sphere"), "{told}");
 }
