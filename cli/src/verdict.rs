@@ -15,7 +15,9 @@ pub(crate) fn as_text(
     (diagnosis, object): (&Diagnosis, &Value),
     [n_fit, n_holdout]: [usize; 2],
 ) -> String {
-    let mut text = format!("Model {model}: {n_fit} conditions to fit, {n_holdout} held out.");
+    let claim = reports::claim_in_words(object);
+    let mut text =
+        format!("{claim}\n\nModel {model}: {n_fit} conditions to fit, {n_holdout} held out.");
     // Without a held-out error nothing was fitted.
     if !diagnosis.noise.is_null() {
         text.push_str(&format!(" Errors {}.", noise_words(&diagnosis.noise)));
@@ -165,7 +167,13 @@ fn apparatus(object: &Value) -> String {
             false => format!("{name}: {}; no effect is credited with these.\n", seen.join(", ")),
         }
     };
-    shared("preparation", "Preparation") + &shared("apparatus", "Apparatus")
+    let apparatus = match object["verdict"].as_str() {
+        Some("none-of-the-candidates" | "below-noise") => {
+            "Apparatus, as a model has it that misses the data"
+        }
+        _ => "Apparatus",
+    };
+    shared("preparation", "Preparation") + &shared("apparatus", apparatus)
 }
 
 /// Those of `errors` that are three standard errors away from zero.

@@ -33,13 +33,28 @@ pub(crate) struct Extended {
 pub(crate) fn extend(data: &Data<'_>, fit: &Fit, added: &[(usize, &DVector<f64>)]) -> Extended {
     let mut start = fit.point.clone();
     start.effects.extend(added.iter().map(|&(candidate, _)| (candidate, 0.0)));
-    let scales = data.scales(&start);
     let slopes: Vec<&DVector<f64>> = added.iter().map(|&(_, slope)| slope).collect();
-    let mut search = Search::new(fit, &start, &slopes, &scales);
-    let mut residual = fit.residual.clone();
+    descend(data, fit, (start, fit.residual.clone()), &slopes, fit.chi2)
+}
+
+/// Refits `fit`, whose effects are among its unknowns, with its derivatives; a fall of χ² is one below `before`.
+/// Parameters may leave their ranges.
+pub(crate) fn improve(data: &Data<'_>, fit: &Fit, before: f64) -> Extended {
+    descend(data, fit, (fit.point.clone(), fit.residual.clone()), &[], before)
+}
+
+fn descend(
+    data: &Data<'_>,
+    fit: &Fit,
+    (start, mut residual): (Point, DVector<f64>),
+    slopes: &[&DVector<f64>],
+    before: f64,
+) -> Extended {
+    let scales = data.scales(&start);
+    let mut search = Search::new(fit, &start, slopes, &scales);
     for _ in 0..STEPS {
         let Some(mut change) = search.step(&residual) else { break };
-        let fall = fit.chi2 - residual.norm_squared();
+        let fall = (before - residual.norm_squared()).max(0.0);
         if (&search.jacobian * &change).norm_squared() < PROMISE * (1.0 + fall) {
             break;
         }
@@ -72,11 +87,11 @@ struct Search {
     unknowns: Vec<f64>,
     /// Which of the unknowns are searched; the amplitudes last.
     free: Vec<usize>,
+    /// Least and greatest values of each of these; of amplitudes alone.
+    bounds: Vec<(f64, f64)>,
     /// Size of an unknown per unit of its column.
     units: Vec<f64>,
     jacobian: DMatrix<f64>,
-    /// Least and greatest amplitudes.
-    bounds: Vec<(f64, f64)>,
 }
 
 impl Search {
@@ -96,12 +111,16 @@ impl Search {
                 column / length
             })
             .collect();
+        let range = |&at: &usize| match at < start.parameters.len() {
+            true => (f64::NEG_INFINITY, f64::INFINITY),
+            false => (scales[at].min, scales[at].max),
+        };
         Self {
             unknowns: unknowns(start, scales),
+            bounds: free.iter().map(range).collect(),
             free,
             units,
             jacobian: DMatrix::from_columns(&columns),
-            bounds: scales[first..].iter().map(|scale| (scale.min, scale.max)).collect(),
         }
     }
 
@@ -126,22 +145,16 @@ impl Search {
 
     /// Whether `change` would take an amplitude out of its range at once.
     fn leaves(&self, column: usize, change: f64) -> bool {
-        let parameters = self.free.len() - self.bounds.len();
-        let bounds = column.checked_sub(parameters).map(|amplitude| self.bounds[amplitude]);
+        let (least, greatest) = self.bounds[column];
         let here = self.unknowns[self.free[column]];
-        bounds.is_some_and(|(least, greatest)| {
-            here <= least && change < 0.0 || here >= greatest && change > 0.0
-        })
+        here <= least && change < 0.0 || here >= greatest && change > 0.0
     }
 
     fn moved(&self, change: &DVector<f64>) -> Vec<f64> {
         let mut unknowns = self.unknowns.clone();
-        for ((&at, unit), change) in self.free.iter().zip(&self.units).zip(change.iter()) {
-            unknowns[at] += unit * change;
-        }
-        let first = unknowns.len() - self.bounds.len();
-        for (amplitude, (least, greatest)) in unknowns[first..].iter_mut().zip(&self.bounds) {
-            *amplitude = amplitude.clamp(*least, *greatest);
+        for (column, (&at, change)) in self.free.iter().zip(change.iter()).enumerate() {
+            let (least, greatest) = self.bounds[column];
+            unknowns[at] = (unknowns[at] + self.units[column] * change).clamp(least, greatest);
         }
         unknowns
     }
@@ -159,9 +172,11 @@ impl Search {
     }
 
     fn standard_error(&self) -> Option<f64> {
-        let last = self.free.len() - 1;
-        let (amplitude, (least, greatest)) = (self.unknowns.last()?, self.bounds.last()?);
-        if amplitude <= least || amplitude >= greatest {
+        let last = self.free.len().checked_sub(1)?;
+        let (least, greatest) = self.bounds[last];
+        let amplitude = self.unknowns[self.free[last]];
+        let is_held = self.free[last] + 1 < self.unknowns.len();
+        if is_held || amplitude <= least || amplitude >= greatest {
             return None;
         }
         let inverse = Cholesky::new(self.jacobian.tr_mul(&self.jacobian))?.inverse();

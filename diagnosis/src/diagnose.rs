@@ -17,7 +17,7 @@ use crate::frequency::of_benchmark;
 use crate::held_out::HeldOut;
 use crate::lack_of_fit::lack_of_fit;
 use crate::marginal::{Marginals, marginals};
-use crate::missing_force::{MissingForce, missing_force};
+use crate::missing_force::{MissingForce, log_odds, missing_force};
 use crate::noise::Noise;
 use crate::pair::{Pair, best_pair};
 use crate::ranked::ranked;
@@ -39,9 +39,12 @@ const ROUNDS: usize = 2;
 /// Fall of the likelihood from which a scatter between conditions is seen: two standard errors.
 const SEEN: f64 = 4.0;
 
-/// By how much more likely two effects have to be than one that explains the data: odds of 100 to 1, times the number of
-/// effects that the second is chosen from.
+/// By how much more likely two effects have to be than one that explains the data, and one that leaves something than a
+/// force of any form: odds of 100 to 1, times the number of effects that one is chosen from.
 const LIKELIER: f64 = 15.0;
+
+/// Share of what exceeds noise on held-out conditions from which an effect leaves nothing that counts.
+const NEARLY_ALL: f64 = 0.95;
 
 /// Relative scatter of the coefficients of repeats from which they are none, where nothing else is found.
 const NO_REPEATS: f64 = 0.5;
@@ -216,7 +219,9 @@ impl Judge<'_> {
         let is_most = self.bench.forward.is_judged_by_held_out()
             && self.alike.len() == 1
             && held_out.takes_most();
-        if is_explained || is_most {
+        let is_named = is_explained || is_most;
+        let is_one_of_many = is_named && self.is_one_of_many(p_leader, &held_out)?;
+        if is_named && !is_one_of_many {
             let mut found = self.one((p_lof, p_leader), held_out)?;
             if !adequate(p_leader) && !found.effects.is_empty() {
                 found.strength_reasons.push(StrengthReason::OfAnotherForm);
@@ -225,9 +230,16 @@ impl Judge<'_> {
             return Ok(found);
         }
         let part = held_out.in_words().map_or(String::new(), |words| format!(": {words}"));
-        let hint = format!(
-            "no one or two listed effects explain the data; {leader} explains a part{part}"
-        );
+        let hint = match is_one_of_many {
+            true => format!(
+                "{leader} leaves a part of what was held out, and a force of another form is about as likely"
+            ),
+            false => {
+                format!(
+                    "no one or two listed effects explain the data; {leader} explains a part{part}"
+                )
+            }
+        };
         if !self.bench.forward.is_judged_by_held_out() {
             // Impacts on fresh beds decide whether what is left matters.
             let verdict = match self.alike.len() {
@@ -247,6 +259,23 @@ impl Judge<'_> {
     /// Whether conditions differ with the best effect by more than their repeats show.
     fn leaves_conditions_apart(&self) -> bool {
         self.leader.noise.sessions.gain >= SEEN
+    }
+
+    /// Whether the best effect leaves something, and is not far more likely than a force of any form: then it is the
+    /// listed one that comes nearest.
+    fn is_one_of_many(&self, p: Option<f64>, held_out: &HeldOut) -> Result<bool, BenchError> {
+        // No real effect follows its formula exactly.
+        let is_nearly_all = held_out.explained.is_some_and(|share| share >= NEARLY_ALL);
+        let leaves = !adequate(p) || held_out.leaves_more_than_noise() == Some(true);
+        if is_nearly_all || !leaves || !self.bench.forward.is_judged_by_held_out() {
+            return Ok(false);
+        }
+        let of_leader = 0.5 * (self.baseline.deviance() - self.leader.deviance());
+        match log_odds(self.bench, &self.baseline) {
+            Ok(of_any) => Ok(of_any.is_some_and(|of_any| of_any + LIKELIER > of_leader)),
+            Err(BenchError::Predict(_) | BenchError::Singular { .. }) => Ok(false),
+            Err(other) => Err(other),
+        }
     }
 
     /// The verdict on the best effect alone, with which the model explains what was fitted.
@@ -367,6 +396,13 @@ impl Judge<'_> {
             }
             _ => None,
         };
+        // What a fit that misses the data makes of the apparatus is no finding.
+        let explains =
+            adequate(if proposed.fit.point.effects.is_empty() { p_lof } else { p_lof_with });
+        let found = |mut errors: Vec<ApparatusError>| {
+            errors.iter_mut().for_each(|error| error.named &= explains);
+            errors
+        };
         let mut strength_reasons = doubts(bench, proposed, &amplitudes, &held_out);
         let is_nothing = matches!(
             verdict,
@@ -398,7 +434,7 @@ impl Judge<'_> {
             holdout: Some(held_out),
             unexplained,
             missing_force,
-            apparatus: ApparatusError::all(bench.forward, proposed),
+            apparatus: found(ApparatusError::all(bench.forward, proposed)),
             preparation: ApparatusError::of_preparation(bench.forward, &proposed.fit),
             next: Vec::new(),
             measured: measured(bench.set),

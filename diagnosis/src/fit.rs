@@ -153,31 +153,27 @@ impl Data<'_> {
         self.fit_but(start, &self.scales(start), self.forms(start))
     }
 
-    /// Fits `candidate` as listed from where parameters start, without what another fit has found: first with the
-    /// apparatus as it is stated, then with its errors. A search in one stage from so far off may end where errors of
-    /// the apparatus make up for a law. `None` if χ² does not come below `chi2`.
+    /// Fits `candidate` as listed from where parameters start, without what another fit has found and with the apparatus
+    /// as it is stated; the derivatives are those by errors of the apparatus too. A search by all of them from so far off
+    /// may end where errors of the apparatus make up for a law.
     ///
     /// # Errors
     /// If the model cannot be integrated at the start or at the end.
-    pub(crate) fn fit_as_listed_from_start(
+    pub(crate) fn fit_with_apparatus_as_stated(
         &self,
         candidate: usize,
-        chi2: f64,
-    ) -> Result<Option<Fit>, PredictError> {
+    ) -> Result<Fit, PredictError> {
         let start = Point { effects: vec![(candidate, 0.0)], ..Point::start(self.forward) };
         let scales = self.scales(&start);
-        let forms = self.forms(&start);
         let is_apparatus = |at: usize| {
             let parameter = self.forward.parameters().get(at);
             parameter.is_some_and(|one| one.kind == ParameterKind::Apparatus)
         };
-        let held = forms.iter().enumerate().map(|(at, &form)| form || is_apparatus(at)).collect();
-        let (first, _) = self.search(&start, &scales, held)?;
-        let (point, held) = self.search(&first, &scales, forms)?;
-        match self.residual(&point)?.norm_squared() < chi2 {
-            true => self.result(point, &scales, &held).map(Some),
-            false => Ok(None),
-        }
+        let forms = self.forms(&start).into_iter().enumerate();
+        let held = forms.map(|(at, is_form)| is_form || is_apparatus(at)).collect();
+        let (point, mut held) = self.search(&start, &scales, held)?;
+        held.iter_mut().enumerate().for_each(|(at, held)| *held &= !is_apparatus(at));
+        self.result(point, &scales, &held)
     }
 
     /// What a fit as listed would be that ends at `point`.

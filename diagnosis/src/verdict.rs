@@ -253,7 +253,7 @@ pub struct ApparatusError {
     /// Standard deviation of what is known beforehand.
     #[serde(serialize_with = "six_digits_or_null")]
     pub prior_sigma: Option<f64>,
-    /// Whether it is there, and larger than one would expect.
+    /// Whether it is there, and larger than one would expect, in a fit that explains the data.
     pub named: bool,
 }
 
@@ -298,7 +298,10 @@ impl ApparatusError {
                     None => (parameter.name.clone(), None),
                 };
                 let unit = parameter.unit.clone();
-                let named = beyond(CLEAR_OF_ZERO, se) && beyond(unexpected, prior_sigma);
+                // The prior draws the fit towards zero: what the data alone say counts.
+                let own = |se: f64, sigma: f64| (1.0 - (se / sigma).powi(2)).max(0.0);
+                let drawn = se.zip(prior_sigma).map_or(1.0, |(se, sigma)| own(se, sigma));
+                let named = beyond(CLEAR_OF_ZERO, se) && beyond(unexpected * drawn, prior_sigma);
                 Self { id, of, value, se, unit, prior_sigma, named }
             })
             .collect()

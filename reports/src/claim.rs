@@ -10,7 +10,7 @@ use crate::page::Part;
 use crate::{ReportError, Texts};
 
 /// What the model lacks, how large that is, and how much better it predicts what was held out.
-pub(crate) fn sentence(diagnosis: &Value) -> String {
+pub fn sentence(diagnosis: &Value) -> String {
     let effects = texts(&diagnosis["effects"]);
     let claim = match diagnosis["verdict"].as_str().unwrap_or_default() {
         "supported" => format!("The model lacks {}{}", effects.join(", "), sizes(diagnosis)),

@@ -143,6 +143,17 @@ pub fn missing_force(
     }))
 }
 
+/// Logarithm of the odds of some force against none; `None` of models that take no force beside their own, and where nothing
+/// can be told.
+///
+/// # Errors
+/// If the model fails.
+pub(crate) fn log_odds(bench: &Bench<'_>, baseline: &Fitted) -> Result<Option<f64>, BenchError> {
+    let Some(through) = bench.forward.passages() else { return Ok(None) };
+    let found = most_likely(bench, through, baseline)?;
+    Ok(found.map(|(under, found)| found.evidence(&under) + 0.5 * baseline.deviance()))
+}
+
 /// The best formula for the force that was `found` under the noise of `under`, and the force around it, where that is
 /// more likely.
 fn with_formula(
