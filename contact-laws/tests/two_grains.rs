@@ -15,8 +15,7 @@ const GRAVITY: f64 = 9.81;
 const STIFFNESS: f64 = 1000.0;
 
 fn law(name: &str, values: &[(&'static str, f64)]) -> Box<dyn ContactStage> {
-    let mut params = ParamTable::new();
-    values.iter().for_each(|&(key, value)| params.set(key, value));
+    let params: ParamTable = values.iter().copied().collect();
     (contact_laws::find(name).expect("it is registered").build)(&params)
 }
 

@@ -1,29 +1,18 @@
 //! Small measurement sets for the tests of this crate.
 
 use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Frame, Geometry, Instrument, Kind, MeasurementSet, Run, StopDefinition,
 };
 
 /// A sphere of an inch at `speed` (m/s) and `angle_deg` (deg), to be fitted to.
 pub(crate) fn condition(speed: f64, angle_deg: f64) -> Condition {
     Condition {
-        id: format!("{speed} m/s at {angle_deg}"),
-        role: Role::Fit,
-        speed,
         angle_deg,
-        shape: "sphere".into(),
-        diameter: 0.0254,
-        mass: 0.0667,
-        spin: 0.0,
-        packing: None,
-        bed_depth: None,
-        bed: None,
-        length: None,
-        height: None,
-        shaft_diameter: None,
-        apex_deg: None,
-        link_angle_deg: None,
+        ..Condition::straight_down(
+            format!("{speed} m/s at {angle_deg}"),
+            ("sphere", 0.0254, 0.0667),
+            speed,
+        )
     }
 }
 
@@ -47,9 +36,6 @@ pub(crate) fn trajectory_run(condition: usize, path: impl Fn(f64) -> (f64, f64))
 /// A set of these, with a camera of 0.1 mm.
 pub(crate) fn set(kind: Kind, conditions: Vec<Condition>, runs: Vec<Run>) -> MeasurementSet {
     MeasurementSet {
-        id: "test".into(),
-        source: None,
-        kind,
         instrument: Instrument {
             rate: Some(500.0),
             position_sigma: Some(1e-4),
@@ -57,23 +43,13 @@ pub(crate) fn set(kind: Kind, conditions: Vec<Condition>, runs: Vec<Run>) -> Mea
             level_sigma: Some(2e-4),
             ..Instrument::default()
         },
-        bed: Bed {
-            geometry: Geometry::Spatial,
-            bulk_density: Some(1480.0),
-            gravity: 9.81,
-            grain_diameter: Some(8e-4),
-            stated: StatedBed::default(),
-        },
-        beds: Vec::new(),
-        baseline: None,
-        stated: StatedError::default(),
         stop: StopDefinition::SpeedFivePercent,
-        last: FinalDefinition::Resting,
-        feasible: Feasible::default(),
-        priors: Vec::new(),
-        conditions,
         runs,
-        keep: Vec::new(),
-        notes: Vec::new(),
+        ..MeasurementSet::new(
+            "test",
+            kind,
+            Bed { grain_diameter: Some(8e-4), ..Bed::new(Geometry::Spatial, Some(1480.0), 9.81) },
+            conditions,
+        )
     }
 }

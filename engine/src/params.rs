@@ -154,3 +154,11 @@ impl ParamTable {
         self.entries.iter().copied()
     }
 }
+
+impl FromIterator<(&'static str, f64)> for ParamTable {
+    fn from_iter<I: IntoIterator<Item = (&'static str, f64)>>(values: I) -> Self {
+        let mut table = Self::new();
+        values.into_iter().for_each(|(key, value)| table.set(key, value));
+        table
+    }
+}

@@ -157,9 +157,7 @@ mod tests {
     use super::*;
 
     fn cone(apex_angle: f64) -> Wedge {
-        let mut params = ParamTable::new();
-        params.set("diameter", 0.04);
-        params.set("apex_angle", apex_angle);
+        let params = ParamTable::from_iter([("diameter", 0.04), ("apex_angle", apex_angle)]);
         Wedge::new(&params, Space::Spatial)
     }
 

@@ -59,8 +59,7 @@ const ROUGH: AtWalls =
 
 /// The law called `name` with SI values for all of its parameters.
 fn law(name: &str, values: &[(&'static str, f64)]) -> Box<dyn ContactStage> {
-    let mut params = ParamTable::new();
-    values.iter().for_each(|&(key, value)| params.set(key, value));
+    let params: ParamTable = values.iter().copied().collect();
     (contact_laws::find(name).expect("it is registered").build)(&params)
 }
 
@@ -87,8 +86,7 @@ impl AtWalls {
 
 /// Its mass goes by no grain: so many kilograms of the shape, at rest at the origin.
 fn body((name, values, space): Shape) -> RigidBody {
-    let mut params = ParamTable::new();
-    values.iter().for_each(|&(key, value)| params.set(key, value));
+    let params: ParamTable = values.iter().copied().collect();
     let body = (intruders::find(name).expect("it is registered").build)(&params, space);
     RigidBody::new(name, body.surface, MASS, body.inertia_per_mass * MASS)
 }

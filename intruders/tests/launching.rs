@@ -57,8 +57,7 @@ fn every_shape_just_touches_the_highest_grain_in_its_way_at_every_attitude() {
         let grains = bumps(space);
         for (name, given) in shapes {
             let entry = intruders::find(name).expect("a registered shape");
-            let mut params = ParamTable::new();
-            given.iter().for_each(|&(key, value)| params.set(key, value));
+            let params: ParamTable = given.iter().copied().collect();
             let surface = (entry.build)(&params, space).surface;
             for step in -6..=6 {
                 let (attitude, x) = (0.26 * f64::from(step), 1.3e-3 * f64::from(step));

@@ -8,10 +8,7 @@ use parry3d_f64::math::Vector;
 use parry3d_f64::shape::{Capsule, Cone, Cylinder, Shape};
 
 fn body(name: &str, params: &[(&'static str, f64)]) -> Body {
-    let mut table = ParamTable::new();
-    for &(key, value) in params {
-        table.set(key, value);
-    }
+    let table: ParamTable = params.iter().copied().collect();
     let entry = intruders::find(name).expect("a registered shape");
     (entry.build)(&table, Space::Spatial)
 }

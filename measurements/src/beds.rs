@@ -87,13 +87,7 @@ impl<'a> Beds<'a> {
             beds.push(own);
         }
         // A list without a bed was reported.
-        let first = beds.first().copied().unwrap_or(Bed {
-            geometry: Geometry::Spatial,
-            bulk_density: None,
-            gravity: 9.81,
-            grain_diameter: None,
-            stated: StatedBed::default(),
-        });
+        let first = beds.first().copied().unwrap_or(Bed::new(Geometry::Spatial, None, 9.81));
         let named = |(name, bed)| NamedBed { name, bed };
         (first, names.into_iter().flatten().zip(beds).map(named).collect())
     }

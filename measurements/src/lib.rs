@@ -130,6 +130,29 @@ pub struct MeasurementSet {
 }
 
 impl MeasurementSet {
+    /// A set in one bed, of which no run is made yet; a body has stopped where it rests.
+    #[must_use]
+    pub fn new(id: impl Into<String>, kind: Kind, bed: Bed, conditions: Vec<Condition>) -> Self {
+        Self {
+            id: id.into(),
+            source: None,
+            kind,
+            instrument: Instrument::default(),
+            bed,
+            beds: Vec::new(),
+            baseline: None,
+            stated: StatedError::default(),
+            stop: StopDefinition::ComponentZero,
+            last: FinalDefinition::Resting,
+            feasible: Feasible::default(),
+            priors: Vec::new(),
+            conditions,
+            runs: Vec::new(),
+            keep: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
     /// The bed of `condition`.
     #[must_use]
     pub fn bed_of(&self, condition: &Condition) -> &Bed {
@@ -273,6 +296,15 @@ pub struct Bed {
     pub stated: StatedBed,
 }
 
+impl Bed {
+    /// A bed of this bulk density (kg/m³, planar kg/m²) under `gravity` (m/s²), of which nothing else is known.
+    #[must_use]
+    pub fn new(geometry: Geometry, bulk_density: Option<f64>, gravity: f64) -> Self {
+        let stated = StatedBed::default();
+        Self { geometry, bulk_density, gravity, grain_diameter: None, stated }
+    }
+}
+
 /// One of several beds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedBed {
@@ -388,6 +420,35 @@ pub struct Condition {
     pub apex_deg: Option<f64>,
     /// Angle of a link's axis to the vertical (deg).
     pub link_angle_deg: Option<f64>,
+}
+
+impl Condition {
+    /// A body, by its shape, diameter (m) and mass (kg), that falls straight down at `speed` (m/s) and is fitted to.
+    #[must_use]
+    pub fn straight_down(
+        id: impl Into<String>,
+        (shape, diameter, mass): (&str, f64, f64),
+        speed: f64,
+    ) -> Self {
+        Self {
+            id: id.into(),
+            role: Role::Fit,
+            speed,
+            angle_deg: 90.0,
+            shape: shape.to_owned(),
+            diameter,
+            mass,
+            spin: 0.0,
+            packing: None,
+            bed_depth: None,
+            bed: None,
+            length: None,
+            height: None,
+            shaft_diameter: None,
+            apex_deg: None,
+            link_angle_deg: None,
+        }
+    }
 }
 
 /// One repeat of a condition.

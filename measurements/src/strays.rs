@@ -390,10 +390,7 @@ fn between(track: &[[f64; 2]], t: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, Role, StatedBed,
-        StatedError, StopDefinition,
-    };
+    use crate::{Bed, Condition, Geometry, Kind, StopDefinition};
 
     const ERROR: f64 = 1e-4;
 
@@ -411,45 +408,14 @@ mod tests {
 
     fn set(runs: Vec<Run>) -> MeasurementSet {
         MeasurementSet {
-            id: "test".into(),
-            source: None,
-            kind: Kind::Trajectory,
-            instrument: Instrument::default(),
-            bed: Bed {
-                geometry: Geometry::Spatial,
-                bulk_density: None,
-                gravity: 9.81,
-                grain_diameter: None,
-                stated: StatedBed::default(),
-            },
-            beds: Vec::new(),
-            baseline: None,
-            stated: StatedError::default(),
             stop: StopDefinition::SpeedFivePercent,
-            last: FinalDefinition::Resting,
-            feasible: Feasible::default(),
-            priors: Vec::new(),
-            conditions: vec![Condition {
-                id: "2 m/s".into(),
-                role: Role::Fit,
-                speed: 2.0,
-                angle_deg: 90.0,
-                shape: "sphere".into(),
-                diameter: 0.02,
-                mass: 0.03,
-                spin: 0.0,
-                packing: None,
-                bed_depth: None,
-                bed: None,
-                length: None,
-                height: None,
-                shaft_diameter: None,
-                apex_deg: None,
-                link_angle_deg: None,
-            }],
             runs,
-            keep: Vec::new(),
-            notes: Vec::new(),
+            ..MeasurementSet::new(
+                "test",
+                Kind::Trajectory,
+                Bed::new(Geometry::Spatial, None, 9.81),
+                vec![Condition::straight_down("2 m/s", ("sphere", 0.02, 0.03), 2.0)],
+            )
         }
     }
 

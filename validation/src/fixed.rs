@@ -17,8 +17,7 @@ impl FixedSpheres {
     /// If the sphere is not among the shapes.
     #[must_use]
     pub fn new(radius: f64, centres: &[Vec3]) -> Self {
-        let mut params = ParamTable::new();
-        params.set("diameter", 2.0 * radius);
+        let params = ParamTable::from_iter([("diameter", 2.0 * radius)]);
         let shape = intruders::find("sphere").expect("the sphere is registered");
         let part = |&centre: &Vec3| Part {
             surface: (shape.build)(&params, Space::Spatial).surface,

@@ -50,8 +50,7 @@ impl Size {
     /// If the disc is not among the shapes.
     #[must_use]
     pub fn disc(self, position: Vec3, velocity: Vec3, spin: Vec3) -> RigidBody {
-        let mut params = ParamTable::new();
-        params.set("diameter", 2.0 * self.radius);
+        let params = ParamTable::from_iter([("diameter", 2.0 * self.radius)]);
         let shape = intruders::find("disc").expect("the disc is registered");
         let body = (shape.build)(&params, Space::Planar);
         let inertia = body.inertia_per_mass * self.mass;
@@ -119,10 +118,7 @@ pub fn rolling(rolling_friction: f64, rolling_damping_ratio: f64) -> Box<dyn Con
 /// If there is no such law, or a value is missing.
 #[must_use]
 pub fn stage(name: &str, values: &[(&'static str, f64)]) -> Box<dyn ContactStage> {
-    let mut params = ParamTable::new();
-    for &(key, value) in values {
-        params.set(key, value);
-    }
+    let params: ParamTable = values.iter().copied().collect();
     (contact_laws::find(name).expect("the law is registered").build)(&params)
 }
 

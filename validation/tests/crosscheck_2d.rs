@@ -48,10 +48,7 @@ fn rows<T: for<'a> Deserialize<'a>>(name: &str) -> Vec<T> {
 }
 
 fn stage(name: &str, values: &[(&'static str, f64)]) -> Box<dyn ContactStage> {
-    let mut params = ParamTable::new();
-    for &(key, value) in values {
-        params.set(key, value);
-    }
+    let params: ParamTable = values.iter().copied().collect();
     (contact_laws::find(name).expect("registered").build)(&params)
 }
 
@@ -95,8 +92,7 @@ fn simulation(impact: &ImpactRow) -> Simulation {
     let gravity = Vec3::new(0.0, 0.0, -9.81);
     let bed = GrainBed::new(&resting, container, gravity, stages(impact.rolling_friction), 1);
 
-    let mut params = ParamTable::new();
-    params.set("diameter", 0.03);
+    let params = ParamTable::from_iter([("diameter", 0.03)]);
     let shape = (intruders::find("disc").expect("registered").build)(&params, Space::Planar);
     let mass = 0.0146;
     let mut disc = RigidBody::new("disc", shape.surface, mass, shape.inertia_per_mass * mass);

@@ -118,15 +118,12 @@ mod tests {
 
     #[test]
     fn equal_bodies_and_a_rigid_wall_have_the_moduli_of_the_books() {
-        let mut params = ParamTable::new();
-        for (key, value) in [
+        let params = ParamTable::from_iter([
             ("young_modulus", 70e9),
             ("poisson_ratio", 0.3),
             ("wall_young_modulus", 1e300),
             ("wall_poisson_ratio", 0.3),
-        ] {
-            params.set(key, value);
-        }
+        ]);
         let (pair, wall) =
             (Elastic::of(&params, Partner::Grain), Elastic::of(&params, Partner::Wall));
         let (modulus, shear) = (70e9 / (1.0 - 0.09), 70e9 / (2.0 * 1.3));

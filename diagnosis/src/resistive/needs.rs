@@ -112,30 +112,10 @@ fn is_vertical(condition: &Condition) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use measurements::{
-        Bed, Feasible, FinalDefinition, Frame, Geometry, Instrument, StatedBed, StatedError,
-        StopDefinition,
-    };
+    use measurements::{Bed, FinalDefinition, Frame, Geometry};
 
     fn condition() -> Condition {
-        Condition {
-            id: "c".into(),
-            role: Role::Fit,
-            speed: 1.0,
-            angle_deg: 90.0,
-            shape: "sphere".into(),
-            diameter: 0.02,
-            mass: 0.05,
-            spin: 0.0,
-            packing: None,
-            bed_depth: None,
-            bed: None,
-            length: None,
-            height: None,
-            shaft_diameter: None,
-            apex_deg: None,
-            link_angle_deg: None,
-        }
+        Condition::straight_down("c", ("sphere", 0.02, 0.05), 1.0)
     }
 
     fn run(condition: usize, final_z: Option<f64>, frames: &[(f64, f64)]) -> Run {
@@ -146,28 +126,14 @@ mod tests {
 
     fn set(conditions: Vec<Condition>, runs: Vec<Run>) -> MeasurementSet {
         MeasurementSet {
-            id: "s".into(),
-            source: None,
-            kind: Kind::Trajectory,
-            instrument: Instrument::default(),
-            bed: Bed {
-                geometry: Geometry::Spatial,
-                bulk_density: None,
-                gravity: 9.81,
-                grain_diameter: None,
-                stated: StatedBed::default(),
-            },
-            beds: Vec::new(),
-            baseline: None,
-            stated: StatedError::default(),
-            stop: StopDefinition::ComponentZero,
             last: FinalDefinition::Deepest,
-            feasible: Feasible::default(),
-            priors: Vec::new(),
-            conditions,
             runs,
-            keep: Vec::new(),
-            notes: Vec::new(),
+            ..MeasurementSet::new(
+                "s",
+                Kind::Trajectory,
+                Bed::new(Geometry::Spatial, None, 9.81),
+                conditions,
+            )
         }
     }
 

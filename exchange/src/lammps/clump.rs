@@ -255,10 +255,7 @@ mod tests {
     const GRAIN: f64 = 0.002;
 
     fn surface(shape: &str, space: Space, params: &[(&'static str, f64)]) -> Arc<dyn Surface> {
-        let mut table = ParamTable::new();
-        for (key, value) in params {
-            table.set(key, *value);
-        }
+        let table: ParamTable = params.iter().map(|(key, value)| (*key, *value)).collect();
         (find(shape).expect("a shape").build)(&table, space).surface
     }
 

@@ -1,8 +1,7 @@
 //! A laboratory of its own: spheres that fall into sand before a camera, well or badly read.
 
 use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Frame, Geometry, Instrument, Kind, MeasurementSet, Run, StopDefinition,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -92,9 +91,6 @@ impl Laboratory {
         }
         let conditions = self.settings.iter().enumerate();
         MeasurementSet {
-            id: "world".into(),
-            source: None,
-            kind: Kind::Trajectory,
             instrument: Instrument {
                 rate: Some(self.rate),
                 position_sigma: Some(self.camera),
@@ -102,45 +98,28 @@ impl Laboratory {
                 level_sigma: Some(self.level),
                 ..Instrument::default()
             },
-            bed: Bed {
-                geometry: Geometry::Spatial,
-                bulk_density: Some(DENSITY),
-                gravity: GRAVITY,
-                grain_diameter: Some(8e-4),
-                stated: StatedBed::default(),
-            },
-            beds: Vec::new(),
-            baseline: None,
-            stated: StatedError::default(),
             stop: self.stop,
-            last: FinalDefinition::Resting,
-            feasible: Feasible::default(),
-            priors: Vec::new(),
-            conditions: conditions.map(|(at, setting)| self.condition(at, *setting)).collect(),
             runs,
-            keep: Vec::new(),
-            notes: Vec::new(),
+            ..MeasurementSet::new(
+                "world",
+                Kind::Trajectory,
+                Bed {
+                    grain_diameter: Some(8e-4),
+                    ..Bed::new(Geometry::Spatial, Some(DENSITY), GRAVITY)
+                },
+                conditions.map(|(at, setting)| self.condition(at, *setting)).collect(),
+            )
         }
     }
 
     fn condition(&self, at: usize, (speed, angle_deg): (f64, f64)) -> Condition {
         Condition {
-            id: format!("c{at:02}"),
-            role: Role::Fit,
-            speed: self.stated_speed * speed,
             angle_deg,
-            shape: "sphere".into(),
-            diameter: DIAMETER,
-            mass: self.mass,
-            spin: 0.0,
-            packing: None,
-            bed_depth: None,
-            bed: None,
-            length: None,
-            height: None,
-            shaft_diameter: None,
-            apex_deg: None,
-            link_angle_deg: None,
+            ..Condition::straight_down(
+                format!("c{at:02}"),
+                ("sphere", DIAMETER, self.mass),
+                self.stated_speed * speed,
+            )
         }
     }
 

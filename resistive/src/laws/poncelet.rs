@@ -76,8 +76,7 @@ mod tests {
 
     #[test]
     fn a_resistance_that_is_an_expression_follows_the_depth() {
-        let mut numbers = ParamTable::new();
-        numbers.set("inertial", 0.3);
+        let numbers = ParamTable::from_iter([("inertial", 0.3)]);
         let beta = Expression::parse("2 + 40 * depth", &["depth"]).unwrap();
         let law = (ENTRY.build)(&Coefficients::new(numbers).with_function("resistance", beta));
         let mut load = Load::default();

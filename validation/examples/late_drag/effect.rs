@@ -102,8 +102,7 @@ pub(crate) fn impacts() -> [Impact; 2] {
     plain.effects.clear();
     let approach = Approach { speed: condition.speed, angle: condition.angle_rad };
     let mut laws = plain.laws_at(approach);
-    let mut numbers = ParamTable::new();
-    numbers.set("q", 0.2);
+    let numbers = ParamTable::from_iter([("q", 0.2)]);
     laws.push((ENTRY.build)(&Coefficients::new(numbers)));
     let launch = model.launch(condition);
     let made = (model.intruder.shape.assembly)(&Casting {

@@ -2,8 +2,7 @@
 
 use diagnosis::missing_force::Reading;
 use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Frame, Geometry, Instrument, Kind, MeasurementSet, Role, Run, StopDefinition,
 };
 
 use super::chance::Chance;
@@ -137,9 +136,7 @@ pub fn measure(
         }
     }
     let mut set = MeasurementSet {
-        id: "benchmark".into(),
         source: Some("a synthetic world".into()),
-        kind: design.kind,
         instrument: Instrument {
             rate: Some(RATE),
             position_sigma: Some(design.camera),
@@ -147,24 +144,18 @@ pub fn measure(
             level_sigma: Some(LEVEL_SCATTER),
             ..Instrument::default()
         },
-        bed: Bed {
-            geometry: Geometry::Spatial,
-            bulk_density: Some(DENSITY),
-            gravity: GRAVITY,
-            grain_diameter: Some(8e-4),
-            stated: StatedBed::default(),
-        },
-        beds: Vec::new(),
         baseline: Some("two-term-vector".into()),
-        stated: StatedError::default(),
         stop: StopDefinition::SpeedFivePercent,
-        last: FinalDefinition::Resting,
-        feasible: Feasible::default(),
-        priors: Vec::new(),
-        conditions: conditions(design),
         runs,
-        keep: Vec::new(),
-        notes: Vec::new(),
+        ..MeasurementSet::new(
+            "benchmark",
+            design.kind,
+            Bed {
+                grain_diameter: Some(8e-4),
+                ..Bed::new(Geometry::Spatial, Some(DENSITY), GRAVITY)
+            },
+            conditions(design),
+        )
     };
     imperfection.spoil(&mut set, &mut other);
     Ok(set)
@@ -251,22 +242,16 @@ fn conditions(design: &Design) -> Vec<Condition> {
     let fitted = design.settings.len() - design.held_out;
     let each = design.settings.iter().enumerate();
     each.map(|(at, setting)| Condition {
-        id: format!("c{:02}", at + 1),
         role: if at < fitted { Role::Fit } else { Role::Holdout },
-        speed: setting.speed,
         angle_deg: setting.angle_deg,
-        shape: "sphere".into(),
-        diameter: setting.diameter,
-        mass: setting.mass,
         spin: setting.spin,
         packing: Some(setting.packing),
         bed_depth: Some(setting.bed_depth),
-        bed: None,
-        length: None,
-        height: None,
-        shaft_diameter: None,
-        apex_deg: None,
-        link_angle_deg: None,
+        ..Condition::straight_down(
+            format!("c{:02}", at + 1),
+            ("sphere", setting.diameter, setting.mass),
+            setting.speed,
+        )
     })
     .collect()
 }

@@ -108,8 +108,7 @@ mod tests {
                          fix sides grains wall/gran granular hertz 1\n";
 
     fn table(values: &[(&'static str, f64)]) -> ParamTable {
-        let mut params = ParamTable::new();
-        values.iter().for_each(|&(key, value)| params.set(key, value));
+        let params: ParamTable = values.iter().copied().collect();
         params
     }
 

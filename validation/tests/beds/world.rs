@@ -2,8 +2,8 @@
 
 use configs::{LoadOptions, Model, ModelSource};
 use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role,
-    StatedBed, StatedError, StopDefinition,
+    Bed, Condition, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Role,
+    StopDefinition,
 };
 
 /// 360 discs of two sizes, twelve wide and fourteen deep, and a disc of four of them.
@@ -73,31 +73,14 @@ fn load(text: String, sets: &[&str]) -> Model {
 /// A vertical impact of the disc of the model.
 pub(crate) fn condition(speed: f64, role: Role) -> Condition {
     Condition {
-        id: format!("{speed} m/s"),
         role,
-        speed,
-        angle_deg: 90.0,
-        shape: "disc".into(),
-        diameter: 0.02,
-        mass: 3e-3,
-        spin: 0.0,
-        packing: None,
-        bed_depth: None,
-        bed: None,
-        length: None,
-        height: None,
-        shaft_diameter: None,
-        apex_deg: None,
-        link_angle_deg: None,
+        ..Condition::straight_down(format!("{speed} m/s"), ("disc", 0.02, 3e-3), speed)
     }
 }
 
 /// A set under these conditions that nobody has measured yet.
 pub(crate) fn empty_set(conditions: Vec<Condition>) -> MeasurementSet {
     MeasurementSet {
-        id: "small".into(),
-        source: None,
-        kind: Kind::Scalar,
         instrument: Instrument {
             rate: Some(1000.0),
             position_sigma: Some(1e-4),
@@ -105,23 +88,13 @@ pub(crate) fn empty_set(conditions: Vec<Condition>) -> MeasurementSet {
             level_sigma: None,
             ..Instrument::default()
         },
-        bed: Bed {
-            geometry: Geometry::Planar,
-            bulk_density: Some(2.4),
-            gravity: 9.81,
-            grain_diameter: Some(0.0048),
-            stated: StatedBed::default(),
-        },
-        beds: Vec::new(),
-        baseline: None,
-        stated: StatedError::default(),
         stop: StopDefinition::SpeedFivePercent,
         last: FinalDefinition::Deepest,
-        feasible: Feasible::default(),
-        priors: Vec::new(),
-        conditions,
-        runs: Vec::new(),
-        keep: Vec::new(),
-        notes: Vec::new(),
+        ..MeasurementSet::new(
+            "small",
+            Kind::Scalar,
+            Bed { grain_diameter: Some(0.0048), ..Bed::new(Geometry::Planar, Some(2.4), 9.81) },
+            conditions,
+        )
     }
 }

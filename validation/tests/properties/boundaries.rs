@@ -289,9 +289,7 @@ fn spheres_settle_inside_of_a_cylinder() {
 fn tumbling_under_a_shaft(dt: f64) -> (f64, f64) {
     let container = Container::walled_box(0.05, 0.05);
     let kinds = [GrainKind { count: 600, radius: SMALL.radius, mass: SMALL.mass }];
-    let mut params = ParamTable::new();
-    params.set("diameter", 0.012);
-    params.set("height", 0.01);
+    let params = ParamTable::from_iter([("diameter", 0.012), ("height", 0.01)]);
     let shape = intruders::find("cylinder").expect("the cylinder is registered");
     let under_shaft = shape.under_shaft.expect("it has a top");
     let surface = under_shaft(&params, Space::Spatial, 0.04);

@@ -19,8 +19,7 @@ fn force(name: &str, value: (&'static str, f64)) -> Box<dyn GrainForce> {
 }
 
 fn force_of(name: &str, values: &[(&'static str, f64)]) -> Box<dyn GrainForce> {
-    let mut params = ParamTable::new();
-    values.iter().for_each(|&(key, value)| params.set(key, value));
+    let params: ParamTable = values.iter().copied().collect();
     (contact_laws::find_grain_force(name).expect("the force is registered").build)(&params)
 }
 
@@ -149,8 +148,7 @@ fn a_bead_sinks_in_water_from_its_reduced_acceleration_to_its_terminal_velocity(
 fn an_intruder_that_is_lighter_than_water_rises_to_its_terminal_velocity() {
     const DT: f64 = 1e-4;
     let (radius, density) = (5e-3, 250.0);
-    let mut params = ParamTable::new();
-    params.set("diameter", 2.0 * radius);
+    let params = ParamTable::from_iter([("diameter", 2.0 * radius)]);
     let shape = intruders::find("sphere").expect("the sphere is registered");
     let body = (shape.build)(&params, Space::Spatial);
     let mass = sphere_mass(density, radius);

@@ -1,8 +1,7 @@
 //! Measurements in the world: repeats whose beds differ, seen by a camera.
 
 use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, Frame, Geometry, Instrument, Kind, MeasurementSet, Role, Run, StopDefinition,
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -81,9 +80,6 @@ impl Laboratory {
         let fit = self.settings.len() - self.holdout;
         let conditions = self.settings.iter().enumerate();
         MeasurementSet {
-            id: "world".into(),
-            source: None,
-            kind: self.kind,
             instrument: Instrument {
                 rate: Some(650.0),
                 position_sigma: Some(1e-4),
@@ -93,28 +89,21 @@ impl Laboratory {
                 session_sigma_rel: Some(0.0),
                 ..Instrument::default()
             },
-            bed: Bed {
-                geometry: Geometry::Spatial,
-                bulk_density: Some(1480.0),
-                gravity: GRAVITY,
-                grain_diameter: Some(8e-4),
-                stated: StatedBed::default(),
-            },
-            beds: Vec::new(),
-            baseline: None,
-            stated: StatedError::default(),
             stop: StopDefinition::SpeedFivePercent,
-            last: FinalDefinition::Resting,
-            feasible: Feasible::default(),
-            priors: Vec::new(),
-            conditions: conditions
-                .map(|(at, setting)| {
-                    condition(at, setting, if at < fit { Role::Fit } else { Role::Holdout })
-                })
-                .collect(),
             runs,
-            keep: Vec::new(),
-            notes: Vec::new(),
+            ..MeasurementSet::new(
+                "world",
+                self.kind,
+                Bed {
+                    grain_diameter: Some(8e-4),
+                    ..Bed::new(Geometry::Spatial, Some(1480.0), GRAVITY)
+                },
+                conditions
+                    .map(|(at, setting)| {
+                        condition(at, setting, if at < fit { Role::Fit } else { Role::Holdout })
+                    })
+                    .collect(),
+            )
         }
     }
 
@@ -172,22 +161,13 @@ impl Laboratory {
 
 fn condition(at: usize, setting: &Setting, role: Role) -> Condition {
     Condition {
-        id: format!("c{at:02}"),
         role,
-        speed: setting.speed,
         angle_deg: setting.angle,
-        shape: "sphere".into(),
-        diameter: setting.diameter,
-        mass: setting.mass,
-        spin: 0.0,
-        packing: None,
-        bed_depth: None,
-        bed: None,
-        length: None,
-        height: None,
-        shaft_diameter: None,
-        apex_deg: None,
-        link_angle_deg: None,
+        ..Condition::straight_down(
+            format!("c{at:02}"),
+            ("sphere", setting.diameter, setting.mass),
+            setting.speed,
+        )
     }
 }
 

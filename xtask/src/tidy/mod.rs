@@ -4,7 +4,6 @@
 
 mod arrows;
 mod circles;
-mod laws;
 mod pages;
 mod promises;
 mod text;
@@ -53,7 +52,6 @@ pub(crate) fn run(sh: &Shell) -> Result<ExitCode> {
 
     let mut problems = arrows::check(&metadata, &files)?;
     problems.extend(circles::check(&files));
-    problems.extend(laws::check(&files));
     problems.extend(pages::check(&files));
     problems.extend(promises::check(&files));
     problems.extend(files.iter().flat_map(|file| text::check(&file.path, &file.text)));

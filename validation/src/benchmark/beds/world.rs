@@ -4,8 +4,8 @@ use configs::{ConfigError, LoadOptions, Model, ModelSource};
 use engine::bed::random;
 use engine::grains::Space;
 use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Role, Run, StatedBed, StatedError, StopDefinition,
+    Bed, Condition, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet, Role, Run,
+    StatedBed, StopDefinition,
 };
 use rand::Rng;
 use runner::beds::{Impacts, Lie, Record};
@@ -89,9 +89,7 @@ pub fn campaign(model: &Model) -> MeasurementSet {
         _ => (Geometry::Planar, 4.8e-3),
     };
     MeasurementSet {
-        id: "beds-benchmark".to_owned(),
         source: Some("impacts on small beds in which something is hidden".to_owned()),
-        kind: Kind::Trajectory,
         instrument: Instrument {
             rate: Some(RATE),
             position_sigma: Some(CAMERA),
@@ -99,45 +97,25 @@ pub fn campaign(model: &Model) -> MeasurementSet {
             level_sigma: None,
             ..Instrument::default()
         },
-        bed: Bed {
-            geometry,
-            bulk_density: None,
-            gravity: 9.81,
-            grain_diameter: Some(grain_diameter),
-            stated: StatedBed::default(),
-        },
-        beds: Vec::new(),
-        baseline: None,
-        stated: StatedError::default(),
         stop: StopDefinition::SpeedFivePercent,
         last: FinalDefinition::Deepest,
-        feasible: Feasible::default(),
-        priors: Vec::new(),
-        conditions: fit.into_iter().chain(held_out).collect(),
-        runs: Vec::new(),
-        keep: Vec::new(),
-        notes: Vec::new(),
+        ..MeasurementSet::new(
+            "beds-benchmark",
+            Kind::Trajectory,
+            Bed { grain_diameter: Some(grain_diameter), ..Bed::new(geometry, None, 9.81) },
+            fit.into_iter().chain(held_out).collect(),
+        )
     }
 }
 
 fn condition(model: &Model, speed: f64, role: Role) -> Condition {
     Condition {
-        id: format!("v{speed}"),
         role,
-        speed,
-        angle_deg: 90.0,
-        shape: model.intruder.shape.name.to_owned(),
-        diameter: model.intruder.params.get("diameter"),
-        mass: model.intruder.mass,
-        spin: 0.0,
-        packing: None,
-        bed_depth: None,
-        bed: None,
-        length: None,
-        height: None,
-        shaft_diameter: None,
-        apex_deg: None,
-        link_angle_deg: None,
+        ..Condition::straight_down(
+            format!("v{speed}"),
+            (model.intruder.shape.name, model.intruder.params.get("diameter"), model.intruder.mass),
+            speed,
+        )
     }
 }
 
