@@ -135,15 +135,16 @@ pub(crate) fn from_diagnosis(object: &Value, effects: &[&str]) -> Result<Additio
     let named = strings(&object["effects"]);
     let empty = Vec::new();
     let ranking = object["ranking"].as_array().unwrap_or(&empty);
-    // What the verdict names was fitted together, a single effect with a strength that varies smoothly: a model file has
-    // the effect as it is listed, which was fitted alone.
-    let are_named = effects.len() == named.len() && effects.iter().all(|name| named.contains(name));
-    let alone = effects.first().and_then(|name| ranking.iter().find(|entry| entry["id"] == *name));
-    let as_listed = alone.map_or(&Value::Null, |entry| &entry["parameters"]);
-    let is_fitted_alone = effects.len() == 1 && as_listed.is_object();
-    let (amplitudes, parameters): (&Vec<Value>, &Value) = match are_named && !is_fitted_alone {
+    // What the verdict names was fitted together; any other effect was fitted alone.
+    let (amplitudes, parameters): (&Vec<Value>, &Value) = match effects.len() == named.len()
+        && effects.iter().all(|name| named.contains(name))
+    {
         true => (object["amplitudes"].as_array().unwrap_or(&empty), &object["parameters"]),
-        false => (ranking, as_listed),
+        false => {
+            let alone =
+                effects.first().and_then(|name| ranking.iter().find(|entry| entry["id"] == *name));
+            (ranking, alone.map_or(&Value::Null, |entry| &entry["parameters"]))
+        }
     };
     let additions = effects
         .iter()

@@ -43,8 +43,8 @@ const SEEN: f64 = 4.0;
 /// force of any form: odds of 100 to 1, times the number of effects that one is chosen from.
 const LIKELIER: f64 = 15.0;
 
-/// Share of what exceeds noise on held-out conditions from which an effect leaves nothing that counts.
-const NEARLY_ALL: f64 = 0.95;
+/// Probability of a lack of fit from which down an effect that leaves a part is held against a force of any form.
+const DOUBTFUL: f64 = 0.1;
 
 /// Relative scatter of the coefficients of repeats from which they are none, where nothing else is found.
 const NO_REPEATS: f64 = 0.5;
@@ -264,10 +264,8 @@ impl Judge<'_> {
     /// Whether the best effect leaves something, and is not far more likely than a force of any form: then it is the
     /// listed one that comes nearest.
     fn is_one_of_many(&self, p: Option<f64>, held_out: &HeldOut) -> Result<bool, BenchError> {
-        // No real effect follows its formula exactly.
-        let is_nearly_all = held_out.explained.is_some_and(|share| share >= NEARLY_ALL);
-        let leaves = !adequate(p) || held_out.leaves_more_than_noise() == Some(true);
-        if is_nearly_all || !leaves || !self.bench.forward.is_judged_by_held_out() {
+        let leaves = held_out.leaves_a_part() && p.is_some_and(|p| p <= DOUBTFUL);
+        if !leaves || !self.bench.forward.is_judged_by_held_out() {
             return Ok(false);
         }
         let of_leader = 0.5 * (self.baseline.deviance() - self.leader.deviance());

@@ -98,6 +98,9 @@ pub const WITHIN: f64 = 1.3;
 /// effects of another form than their formula leave 0.14 to 0.43, and effects that are not there 0.36 or more.
 const MOST: f64 = 1.0 / 3.0;
 
+/// Share of what exceeds noise from which an effect leaves nothing that counts: none follows its formula exactly.
+const NEARLY_ALL: f64 = 0.95;
+
 /// Share of the information on a combination of parameters that has to be left without a condition.
 const ALONE: f64 = 1e-8;
 
@@ -204,6 +207,12 @@ impl HeldOut {
     #[must_use]
     pub fn leaves_more_than_noise(&self) -> Option<bool> {
         Some(self.after? >= CLEAR * self.noise_floor?)
+    }
+
+    /// Whether what is proposed leaves so much of what exceeds the noise that its form is in doubt.
+    #[must_use]
+    pub(crate) fn leaves_a_part(&self) -> bool {
+        self.explained.is_some_and(|share| share < NEARLY_ALL)
     }
 
     /// Whether what is proposed takes at least a quarter of the error away, in most choices of the conditions too;

@@ -57,12 +57,19 @@ pub(crate) fn error_in_words(error: &Value, value: &str, se: &str) -> (String, S
         "kg/m^3" => (1.0, " kg/m³"),
         _ => (1e2, " %"),
     };
+    let number = |key: &str| error[key].as_f64().map(|value| factor * value);
+    // A small error takes more digits.
+    let digits = match number(se) {
+        Some(se) if se > 1e-6 && se < 0.01 => 1 - libm::log10(se).floor() as i32,
+        _ => 2,
+    };
     // What rounds to zero has no sign.
-    let unsigned = |value: f64| if value.abs() < 0.005 { 0.0 } else { value };
-    let number = |key: &str| error[key].as_f64().map(|value| unsigned(factor * value));
+    let least = 0.5 * libm::pow(10.0, -f64::from(digits));
+    let digits = usize::try_from(digits).unwrap_or(2);
+    let shown = |value: f64| format!("{:.digits$}", if value.abs() < least { 0.0 } else { value });
     let size = match (number(value), number(se)) {
-        (Some(value), Some(se)) => format!("{value:.2} ± {se:.2}{unit}"),
-        (Some(value), None) => format!("{value:.2}{unit}"),
+        (Some(value), Some(se)) => format!("{} ± {}{unit}", shown(value), shown(se)),
+        (Some(value), None) => format!("{}{unit}", shown(value)),
         (None, _) => "\u{2013}".to_owned(),
     };
     let id = match error["of"].as_str() {

@@ -253,7 +253,7 @@ impl Prepared {
             let condition = condition.id.clone();
             return Err(ForwardError::NotPushed { condition, shape: shape.name });
         }
-        if set.kind == Kind::Spin && shape.links.is_none() {
+        if set.kind == Kind::Spin && !shape.slender {
             let condition = condition.id.clone();
             return Err(ForwardError::KeepsSpin { condition, shape: shape.name });
         }

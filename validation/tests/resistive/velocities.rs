@@ -62,8 +62,8 @@ fn speeds_that_a_set_leaves_out_are_read_from_the_velocities_before_contact() {
 fn wrong_signs_units_and_times_of_velocities_are_refused() {
     let cases: &[Wrong] = &[
         (|one| one.value = -one.value, "the velocity is negative where it is largest"),
-        (|one| one.value *= 100.0, "grow 100 times as fast as in a fall"),
-        (|one| one.at *= 1000.0, "grow 1000 times as slowly as in a fall"),
+        (|one| one.value *= 100.0, "times as fast as in a fall"),
+        (|one| one.at *= 1000.0, "times as slowly as in a fall"),
         (
             |one| one.value *= if one.at < 0.0 { 1.0 } else { 100.0 },
             "times those of the stated speed",
