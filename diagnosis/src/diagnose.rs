@@ -43,7 +43,7 @@ const SEEN: f64 = 4.0;
 /// force of any form: odds of 100 to 1, times the number of effects that one is chosen from.
 const LIKELIER: f64 = 15.0;
 
-/// Probability of a lack of fit from which down an effect that leaves a part is held against a force of any form.
+/// At or below this probability of a lack of fit, an effect that leaves a part is compared with a force of any form.
 const DOUBTFUL: f64 = 0.1;
 
 /// Relative scatter of the coefficients of repeats from which they are none, where nothing else is found.
@@ -394,7 +394,7 @@ impl Judge<'_> {
             }
             _ => None,
         };
-        // What a fit that misses the data makes of the apparatus is no finding.
+        // A fit that misses the data says nothing of the apparatus.
         let explains =
             adequate(if proposed.fit.point.effects.is_empty() { p_lof } else { p_lof_with });
         let found = |mut errors: Vec<ApparatusError>| {

@@ -154,8 +154,8 @@ impl Data<'_> {
     }
 
     /// Fits `candidate` as listed from where parameters start, without what another fit has found and with the apparatus
-    /// as it is stated; the derivatives are those by errors of the apparatus too. A search by all of them from so far off
-    /// may end where errors of the apparatus make up for a law.
+    /// as it is stated; the derivatives are those by errors of the apparatus too. A search by all of them from there may end
+    /// where errors of the apparatus make up for a law.
     ///
     /// # Errors
     /// If the model cannot be integrated at the start or at the end.

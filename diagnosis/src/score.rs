@@ -266,7 +266,7 @@ fn start_over(bench: &Bench<'_>, fitted: &Fitted, score: &mut Score) {
     let data = bench.data(&fitted.weights);
     let least = fitted.fit.chi2 - score.delta - OTHER_MINIMUM;
     let Ok(stated) = data.fit_with_apparatus_as_stated(score.candidate()) else { return };
-    // Kept derivatives say for a tenth of the cost whether a search can come this far.
+    // Kept derivatives say at little cost whether a search can come this far.
     if improve(&data, &stated, fitted.fit.chi2).chi2 > least {
         return;
     }

@@ -261,7 +261,7 @@ fn without_repeated(samples: &mut Vec<Sample>) -> usize {
     let step = |pair: &[Sample]| (pair[1].z - pair[0].z).abs();
     let steps = || samples.windows(2).map(step);
     let longest = steps().fold(0.0, f64::max);
-    // A body that moves by a pixel from frame to frame is seen where it was too.
+    // A body that moves by less than a pixel per frame repeats positions too.
     let pixel = steps().filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
     let moves = |pair: &[Sample]| step(pair) > (MOVES * longest).max(2.0 * pixel);
     let same = |a: f64, b: f64| a.total_cmp(&b).is_eq();
@@ -482,7 +482,7 @@ mod tests {
         let fall = |k: u64| 0.5 * (k * k) as f64;
         let mut twice: Vec<Sample> =
             (0..20).map(|k| at(k, fall(if k % 5 == 4 { k - 1 } else { k }))).collect();
-        // The first repeats too little of the way, and behind the last there is none.
+        // The first lies where the body is slow, and no reading follows the last.
         assert_eq!(without_repeated(&mut twice), 2);
         assert!(twice.iter().all(|one| ![9, 14].contains(&one.line)));
         let mut pixels: Vec<Sample> = (0..40).map(|k| at(k, (0.02 * fall(k)).round())).collect();
