@@ -92,14 +92,20 @@ fn sizes(diagnosis: &Value) -> String {
             (Some(low), Some(high)) => {
                 format!(" (95 % interval {} to {})", plots::short(low), plots::short(high))
             }
+            _ if of["se"].is_null() => String::new(),
             _ => format!(" \u{b1} {}", four_digits(&of["se"])),
+        };
+        let bound = match of["at_bound"].as_str() {
+            Some("upper") => "at least ",
+            Some("lower") => "at most ",
+            _ => "",
         };
         let q = of["q"].as_f64().map_or_else(String::new, plots::short);
         let unit = list(&diagnosis["ranking"]).iter().find(|effect| effect["id"] == of["id"]);
         let unit = unit.map(|effect| text(&effect["unit"])).filter(|unit| unit != "1");
         let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
         let form = form(of).map_or_else(String::new, |form| format!(", in its form with {form}"));
-        format!("q = {q}{unit}{interval}{form}")
+        format!("q = {bound}{q}{unit}{interval}{form}")
     };
     let sizes: Vec<String> = list(&diagnosis["amplitudes"]).iter().map(size).collect();
     if sizes.is_empty() { String::new() } else { format!(", {}", sizes.join(" and ")) }
