@@ -87,7 +87,7 @@ struct Search {
     unknowns: Vec<f64>,
     /// Which of the unknowns are searched; the amplitudes last.
     free: Vec<usize>,
-    /// Least and greatest values of each of these; of amplitudes alone.
+    /// Least and greatest value of each; infinite for parameters.
     bounds: Vec<(f64, f64)>,
     /// Size of an unknown per unit of its column.
     units: Vec<f64>,

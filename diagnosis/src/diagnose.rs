@@ -269,11 +269,8 @@ impl Judge<'_> {
             return Ok(false);
         }
         let of_leader = 0.5 * (self.baseline.deviance() - self.leader.deviance());
-        match log_odds(self.bench, &self.baseline) {
-            Ok(of_any) => Ok(of_any.is_some_and(|of_any| of_any + LIKELIER > of_leader)),
-            Err(BenchError::Predict(_) | BenchError::Singular { .. }) => Ok(false),
-            Err(other) => Err(other),
-        }
+        let of_any = if_told(log_odds(self.bench, &self.baseline))?;
+        Ok(of_any.is_some_and(|of_any| of_any + LIKELIER > of_leader))
     }
 
     /// The verdict on the best effect alone, with which the model explains what was fitted.
@@ -462,13 +459,18 @@ pub fn seek_missing_force(bench: &Bench<'_>, diagnosis: &mut Diagnosis) -> Resul
     Ok(())
 }
 
-/// The force that `baseline` lacks; none if the model fails, since the verdict does not need it.
+/// The force that `baseline` lacks.
 fn sought(
     bench: &Bench<'_>,
     baseline: &Fitted,
     best: Option<f64>,
 ) -> Result<Option<MissingForce>, BenchError> {
-    match missing_force(bench, baseline, best) {
+    if_told(missing_force(bench, baseline, best))
+}
+
+/// What is `found` of a missing force; none if the model fails, since the verdict does not need it.
+fn if_told<T>(found: Result<Option<T>, BenchError>) -> Result<Option<T>, BenchError> {
+    match found {
         Err(BenchError::Predict(_) | BenchError::Singular { .. }) => Ok(None),
         other => other,
     }

@@ -99,6 +99,9 @@ fn check_units(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contr
 
 /// Refuses readings beyond the range of the accelerometer where the set does not state it.
 fn check_range(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+    if set.instrument.acceleration_range.is_some() {
+        return;
+    }
     let largest = |run: &Run| {
         let values = run.samples.iter().map(|one| one.value);
         values.fold(f64::NEG_INFINITY, f64::max)
@@ -108,9 +111,6 @@ fn check_range(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut 
         let is_top = |one: &Sample| one.value.to_bits() == top.to_bits();
         top > set.gravity_of(run) && run.samples.windows(FLAT).any(|row| row.iter().all(is_top))
     };
-    if set.instrument.acceleration_range.is_some() {
-        return;
-    }
     let all: Vec<&Run> = set.runs.iter().filter(is_flat).collect();
     if let Some(run) = all.first() {
         let largest = largest(run);

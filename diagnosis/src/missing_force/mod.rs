@@ -130,7 +130,7 @@ pub fn missing_force(
             .as_ref()
             .and_then(|one| one.fitted.fit.standard_error(one.fitted.fit.point.parameters.len())),
         holdout: formula.as_ref().map(|one| one.holdout.clone()),
-        log_odds: found.evidence(&under) + 0.5 * baseline.deviance(),
+        log_odds: odds(&under, &found, baseline),
         log_odds_of_best_effect: fall.map(|fall| 0.5 * fall),
         parameters: formula
             .as_ref()
@@ -151,7 +151,12 @@ pub fn missing_force(
 pub(crate) fn log_odds(bench: &Bench<'_>, baseline: &Fitted) -> Result<Option<f64>, BenchError> {
     let Some(through) = bench.forward.passages() else { return Ok(None) };
     let found = most_likely(bench, through, baseline)?;
-    Ok(found.map(|(under, found)| found.evidence(&under) + 0.5 * baseline.deviance()))
+    Ok(found.map(|(under, found)| odds(&under, &found, baseline)))
+}
+
+/// Logarithm of the odds of the force `found` under the noise of `under` against none.
+fn odds(under: &Fitted, found: &Found, baseline: &Fitted) -> f64 {
+    found.evidence(under) + 0.5 * baseline.deviance()
 }
 
 /// The best formula for the force that was `found` under the noise of `under`, and the force around it, where that is

@@ -1,16 +1,11 @@
 //! Every effect as a diagnosis meets it: before a set that could show them all, and before one that
 //! could not.
 
-use std::path::PathBuf;
-
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
 use diagnosis::forward::{Forward, Request, Scatter};
 use diagnosis::observable::Layout;
 use diagnosis::resistive::ResistiveForward;
-use measurements::{
-    Bed, Condition, Feasible, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet,
-    Run, StatedError, StopDefinition,
-};
+use measurements::{Bed, Condition, Frame, Geometry, Instrument, Kind, MeasurementSet, Run};
 
 use super::rig::{BED, DIAMETER, MASS};
 
@@ -58,33 +53,20 @@ fn set(conditions: Vec<Condition>) -> MeasurementSet {
     let depth = |one: &Condition| one.diameter * if one.speed > 2.5 { 3.0 } else { 1.0 };
     let runs = conditions.iter().enumerate().map(|(index, one)| followed(index, depth(one)));
     MeasurementSet {
-        id: "all-round".into(),
-        source: None,
-        kind: Kind::Trajectory,
         // Errors of an exact apparatus are candidates, to be looked for as effects are.
         instrument: Instrument::default().without_shared_errors(),
-        bed: Bed::new(Geometry::Spatial, Some(BED.bulk_density), BED.gravity),
-        beds: Vec::new(),
-        baseline: None,
-        stated: StatedError::default(),
-        stop: StopDefinition::ComponentZero,
-        last: FinalDefinition::Resting,
-        feasible: Feasible::default(),
-        priors: Vec::new(),
         runs: runs.collect(),
-        conditions,
-        keep: Vec::new(),
-        notes: Vec::new(),
+        ..MeasurementSet::new(
+            "all-round",
+            Kind::Trajectory,
+            Bed::new(Geometry::Spatial, Some(BED.bulk_density), BED.gravity),
+            conditions,
+        )
     }
 }
 
 fn forward(set: &MeasurementSet) -> ResistiveForward {
-    let shipped = find_shipped("two-term-vector").expect("a shipped model");
-    let source = ModelSource::Text {
-        name: "two-term-vector.toml".to_owned(),
-        text: shipped.text.to_owned(),
-        folder: PathBuf::from("."),
-    };
+    let source = ModelSource::Shipped(find_shipped("two-term-vector").expect("a shipped model"));
     let loaded = Model::load(source, &LoadOptions::default()).expect("a shipped model loads");
     let layout = Layout {
         times: vec![-0.04, -0.02, 0.0, 0.005, 0.01, 0.02, 0.03, 0.05, 0.08],
