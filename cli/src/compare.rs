@@ -65,7 +65,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         }
         (Found::Other, None) => {}
     }
-    let measured = flags.measured(&args.first)?;
+    let measured = flags.measured(&args.first, &args.models)?;
     let models = flags.models(&args.models, &measured)?;
     let measured = flags.answerable(measured, &models)?;
     let mut workshop = Workshop::new(&args.beds, flags)?;

@@ -50,7 +50,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> CommandResult {
     let flags = &args.flags;
     table_file::refuse(&args.set)?;
-    let measured = flags.measured(&args.set)?;
+    let measured = flags.measured(&args.set, args.model.as_slice())?;
     let models = flags.models(args.model.as_slice(), &measured)?;
     let measured = flags.answerable(measured, &models)?;
     let model = &models[0];

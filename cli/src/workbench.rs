@@ -95,13 +95,20 @@ impl From<SetError> for CommandError {
 }
 
 impl Flags {
-    /// Reads the set at `path` and shows its warnings.
+    /// Reads the set at `path`, which `models` are to answer, and shows its warnings.
     ///
     /// # Errors
     /// Everything that is wrong with it; or where it contradicts its own frames, unless a flag says to go
     /// on.
-    pub(crate) fn measured(&self, path: &Path) -> Result<Measured, CommandError> {
-        let loaded = MeasurementSet::load(path)?;
+    pub(crate) fn measured(
+        &self,
+        path: &Path,
+        models: &[PathBuf],
+    ) -> Result<Measured, CommandError> {
+        // What is wrong with a model is said once the set is read.
+        let each = models.iter().filter_map(|name| self.load(name).ok());
+        let grains = each.filter_map(|loaded| Some(loaded.model.grains()?.largest_grain()));
+        let loaded = MeasurementSet::load_over_grains(path, grains.fold(0.0, f64::max))?;
         let (trusted, doubted) = self.trusted();
         let doubts = loaded.render_contradictions(&doubted, stderr_color());
         if !doubts.is_empty() {
@@ -211,13 +218,17 @@ impl Flags {
         self.out.clone().map(claim).transpose()
     }
 
-    fn model(&self, name: &Path, path: &Path) -> Result<Candidate, CommandError> {
+    fn load(&self, path: &Path) -> Result<Loaded, CommandError> {
         let options = LoadOptions {
             sets: self.sets.clone(),
             seed: None,
             allow_paths: self.allow_paths.clone(),
         };
-        let loaded = Model::load(host::model_source(path), &options)?;
+        Ok(Model::load(host::model_source(path), &options)?)
+    }
+
+    fn model(&self, name: &Path, path: &Path) -> Result<Candidate, CommandError> {
+        let loaded = self.load(path)?;
         if !self.quiet {
             output::show_warnings(&loaded);
         }

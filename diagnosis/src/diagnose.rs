@@ -10,14 +10,14 @@ use measurements::MeasurementSet;
 
 use crate::added_force::added_forces;
 use crate::bench::{Bench, BenchError, Fitted};
-use crate::doubts::{doubts, evidence};
+use crate::doubts::{doubts, evidence, no_repeats};
 use crate::fitted_parameters::parameters;
 use crate::force_error::ForceErrors;
 use crate::frequency::of_benchmark;
 use crate::held_out::HeldOut;
 use crate::lack_of_fit::lack_of_fit;
 use crate::marginal::{Marginals, marginals};
-use crate::missing_force::{MissingForce, log_odds, missing_force};
+use crate::missing_force::{log_odds, missing_force};
 use crate::noise::Noise;
 use crate::pair::{Pair, best_pair};
 use crate::ranked::ranked;
@@ -43,11 +43,11 @@ const SEEN: f64 = 4.0;
 /// force of any form: odds of 100 to 1, times the number of effects that one is chosen from.
 const LIKELIER: f64 = 15.0;
 
+/// Logarithm of the odds from which a force of some form, rather than sessions that nobody declared, makes conditions differ.
+const FAR_LIKELIER: f64 = 7.0;
+
 /// At or below this probability of a lack of fit, an effect that leaves a part is compared with a force of any form.
 const DOUBTFUL: f64 = 0.1;
-
-/// Relative scatter of the coefficients of repeats from which they are none, where nothing else is found.
-const NO_REPEATS: f64 = 0.5;
 
 /// Diagnoses the model on `bench`; equal `seed` and measurements give equal bytes.
 ///
@@ -170,12 +170,16 @@ impl Judge<'_> {
         if self.ranking.p > ALPHA {
             if adequate(p_lof) {
                 let baseline = &self.baseline;
-                let scatter = baseline.noise.spread.coefficient;
-                if scatter >= NO_REPEATS {
-                    return Ok(cannot_tell(self.bench, no_repeats(scatter)));
+                if let Some(why) = no_repeats(baseline) {
+                    return Ok(cannot_tell(self.bench, why));
                 }
-                let verdict = nothing(self.bench, baseline);
-                return self.diagnosis(verdict, baseline, (p_lof, None), (String::new(), None));
+                let hint = self.differ_by_a_force()?;
+                let verdict = match hint {
+                    Some(_) => Verdict::NoneOfTheCandidates,
+                    None => nothing(self.bench, baseline),
+                };
+                let found = (hint.unwrap_or_default(), None);
+                return self.diagnosis(verdict, baseline, (p_lof, None), found);
             }
             if let Some(wide) = self.bench.with_sessions_of_their_own(&self.baseline)?
                 && adequate(lack_of_fit(self.bench, &wide, self.seed)?)
@@ -256,6 +260,21 @@ impl Judge<'_> {
         self.refuse((p_lof, p_leader), hint)
     }
 
+    /// What to say where conditions differ by more than their repeats show, and a force of some form explains these
+    /// differences far better than beds that are poured anew: those differ at random.
+    fn differ_by_a_force(&self) -> Result<Option<String>, BenchError> {
+        if self.baseline.noise.sessions.gain < SEEN || !self.bench.forward.is_judged_by_held_out() {
+            return Ok(None);
+        }
+        let odds = log_odds(self.bench, &self.baseline)?.filter(|odds| *odds >= FAR_LIKELIER);
+        Ok(odds.map(|odds| {
+            format!(
+                "conditions differ by more than their repeats show, and a force that depends on what they are explains it \
+                 better than beds that are poured anew (log odds {odds:.0})"
+            )
+        }))
+    }
+
     /// Whether conditions differ with the best effect by more than their repeats show.
     fn leaves_conditions_apart(&self) -> bool {
         self.leader.noise.sessions.gain >= SEEN
@@ -269,7 +288,7 @@ impl Judge<'_> {
             return Ok(false);
         }
         let of_leader = 0.5 * (self.baseline.deviance() - self.leader.deviance());
-        let of_any = if_told(log_odds(self.bench, &self.baseline))?;
+        let of_any = log_odds(self.bench, &self.baseline)?;
         Ok(of_any.is_some_and(|of_any| of_any + LIKELIER > of_leader))
     }
 
@@ -386,9 +405,11 @@ impl Judge<'_> {
         };
         let missing_force = match verdict {
             // Of a bed it is sought once, when impacts have confirmed the verdict.
-            Verdict::NoneOfTheCandidates if bench.forward.by_formulas().is_some() => {
-                sought(bench, &self.baseline, ranking.scores.first().map(|score| score.delta))?
-            }
+            Verdict::NoneOfTheCandidates if bench.forward.by_formulas().is_some() => missing_force(
+                bench,
+                &self.baseline,
+                ranking.scores.first().map(|score| score.delta),
+            )?,
             _ => None,
         };
         // A fit that misses the data says nothing of the apparatus.
@@ -454,26 +475,9 @@ impl Judge<'_> {
 pub fn seek_missing_force(bench: &Bench<'_>, diagnosis: &mut Diagnosis) -> Result<(), BenchError> {
     if let (Some(baseline), None) = (&diagnosis.baseline, &diagnosis.missing_force) {
         let best = diagnosis.ranking.first().and_then(|effect| effect.delta);
-        diagnosis.missing_force = sought(bench, baseline, best)?;
+        diagnosis.missing_force = missing_force(bench, baseline, best)?;
     }
     Ok(())
-}
-
-/// The force that `baseline` lacks.
-fn sought(
-    bench: &Bench<'_>,
-    baseline: &Fitted,
-    best: Option<f64>,
-) -> Result<Option<MissingForce>, BenchError> {
-    if_told(missing_force(bench, baseline, best))
-}
-
-/// What is `found` of a missing force; none if the model fails, since the verdict does not need it.
-fn if_told<T>(found: Result<Option<T>, BenchError>) -> Result<Option<T>, BenchError> {
-    match found {
-        Err(BenchError::Predict(_) | BenchError::Singular { .. }) => Ok(None),
-        other => other,
-    }
 }
 
 /// The verdict without an effect: it depends on what of the preparation and of the apparatus `fitted` names.
@@ -576,23 +580,12 @@ fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {
     Diagnosis { measured: measured(bench.set), ..Diagnosis::cannot_tell(ranked(bench, None), why) }
 }
 
-/// Why repeats whose coefficients scatter so much (relative) hide everything.
-fn no_repeats(scatter: f64) -> String {
-    format!(
-        "runs of one condition differ by {:.0} % of their resistance, as repeats do not: compare their bodies, masses and \
-         speeds, and what `runs.csv` says of their conditions",
-        100.0 * scatter
-    )
-}
-
 /// The names of all runs of `set`, by condition.
 fn measured(set: &MeasurementSet) -> BTreeMap<String, Vec<String>> {
     let mut measured: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for run in &set.runs {
-        measured
-            .entry(set.conditions[run.condition].id.clone())
-            .or_default()
-            .push(run.name.clone());
+        let condition = set.conditions[run.condition].id.clone();
+        measured.entry(condition).or_default().push(run.name.clone());
     }
     measured
 }

@@ -9,6 +9,9 @@ use crate::verdict::{Amplitude, Evidence, StrengthReason};
 /// from eight is known to a quarter.
 const CONTRASTS: usize = 8;
 
+/// Relative scatter of the coefficients of repeats from which they are none, where nothing else is found.
+const NO_REPEATS: f64 = 0.5;
+
 /// Why a verdict that names `amplitudes`, in the fit `proposed`, is only suggested; nothing where it is confirmed.
 ///
 /// Confirmed is what rests on the scatter of repeats, from [`CONTRASTS`] independent deviations at least, and, where
@@ -49,4 +52,16 @@ pub(crate) fn evidence(bench: &Bench<'_>, fitted: &Fitted) -> Evidence {
             Evidence::StatedErrors
         }
     }
+}
+
+/// Why the repeats under which the model as it is was `fitted` hide everything; `None` of repeats that may be ones.
+pub(crate) fn no_repeats(fitted: &Fitted) -> Option<String> {
+    let scatter = fitted.noise.spread.coefficient;
+    (scatter >= NO_REPEATS).then(|| {
+        format!(
+            "runs of one condition differ by {:.0} % of their resistance, as repeats do not: compare their bodies, masses \
+             and speeds, and what `runs.csv` says of their conditions",
+            100.0 * scatter
+        )
+    })
 }

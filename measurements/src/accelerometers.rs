@@ -13,6 +13,14 @@ const FALLING: f64 = 0.5;
 /// Change of the velocity over that of a stop from the stated speed, beyond which a unit is wrong.
 const MOST: f64 = 3.0;
 
+/// Share of that change below which the readings of a body that comes to rest have another unit, or another clock.
+const LEAST: f64 = 0.3;
+
+/// Share of the largest reading from which a body is braked, and the time before that, over that of a diameter at the speed
+/// at contact, in which it may be braked by less.
+const BRAKED: f64 = 0.15;
+const SOON: f64 = 1.5;
+
 /// Readings at the end of a run that show what it reads at rest, and how far they may scatter about 1.
 const AT_REST: usize = 8;
 const SCATTER: f64 = 0.1;
@@ -34,7 +42,11 @@ pub(super) fn check(
         check_range(set, places, findings);
     }
     match findings.errors() {
-        0 => check_rest(set, places).or_else(|| check_units(set, places)).into_iter().collect(),
+        0 => check_clock(set, places)
+            .or_else(|| check_rest(set, places))
+            .or_else(|| check_units(set, places))
+            .into_iter()
+            .collect(),
         _ => Vec::new(),
     }
 }
@@ -80,7 +92,35 @@ fn check_signs(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut 
     }
 }
 
-/// Names a unit with which bodies would be slowed down by far more than their speed.
+/// Names a clock that does not begin at first contact: long before or behind t = 0 the readings rise.
+fn check_clock(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contradiction> {
+    // The last reading of free fall before the largest one.
+    let contact = |run: &Run| {
+        let all = &run.samples;
+        let peak = (0..all.len()).max_by(|&a, &b| all[a].value.total_cmp(&all[b].value))?;
+        let low = |one: &&Sample| one.value < BRAKED * all[peak].value;
+        let before = all[..peak].iter().rev().find(low)?;
+        let of = &set.conditions[run.condition];
+        let is_off = before.at.abs() > SOON * of.diameter / of.speed;
+        (all[peak].value > set.gravity_of(run)).then_some((before.at, is_off))
+    };
+    let seen: Vec<_> = set.runs.iter().filter_map(|run| Some((contact(run)?, run))).collect();
+    let off: Vec<_> = seen.iter().filter(|((_, is_off), _)| *is_off).collect();
+    let ((at, _), run) = off.first().filter(|_| 2 * off.len() > seen.len())?;
+    Some(Contradiction {
+        kind: ContradictionKind::Zeros,
+        diagnostic: Diagnostic::error(format!(
+            "t = 0 is not first contact in {} of {} runs: the readings of `{}` rise at t = {at:.4} s",
+            off.len(),
+            set.runs.len(),
+            shorten(&run.name)
+        ))
+        .at(places[run.condition].id, "measured under this condition")
+        .help("write the time of first contact into a column `t_zero` of the table of runs"),
+    })
+}
+
+/// Names a unit with which bodies would be slowed down by far more than their speed, or come to rest by far less.
 fn check_units(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contradiction> {
     let ratio = |run: &Run| {
         let (condition, gravity) = (&set.conditions[run.condition], set.gravity_of(run));
@@ -92,9 +132,25 @@ fn check_units(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contr
         let possible = condition.speed + (gravity * condition.diameter).sqrt();
         change.sum::<f64>() / possible
     };
+    let rests = |run: &Run| {
+        let last = run.samples.len().checked_sub(AT_REST).map(|from| &run.samples[from..]);
+        last.is_some_and(|last| {
+            let mean = last.iter().map(|one| one.value).sum::<f64>() / last.len() as f64;
+            let is_near = |one: &Sample| (one.value - mean).abs() < LEAST * mean.abs();
+            mean > 0.0 && last.iter().all(is_near)
+        })
+    };
     let told = |ratio| format!("the accelerations take {ratio:.1} times the speed at contact away");
     let help = "are they in g, or the times in ms?";
-    over_time::check_unit(set, places, (MOST, ratio), (told, help))
+    over_time::check_unit(set, places, (MOST, ratio), (told, help)).or_else(|| {
+        // What is lost beyond one, so that a loss that is too small counts as one that is too large.
+        let lost = |run: &Run| if rests(run) { 1.0 - ratio(run) } else { 0.0 };
+        let told = |lost: f64| {
+            let taken = (1.0 - lost).max(0.0);
+            format!("the bodies come to rest, and the accelerations take {taken:.1} times the speed at contact away")
+        };
+        over_time::check_unit(set, places, (1.0 - LEAST, lost), (told, help))
+    })
 }
 
 /// Refuses readings beyond the range of the accelerometer where the set does not state it.

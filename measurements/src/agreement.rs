@@ -15,9 +15,10 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    pub(super) fn of(set: &MeasurementSet, document: &Document) -> Self {
+    /// Over grains of the diameter `grains` (m), where the set states none.
+    pub(super) fn of(set: &MeasurementSet, grains: f64, document: &Document) -> Self {
         let is_stated = document.definitions.map(|place| place.is_some());
-        Self { zeros: Zeros::of(set), held: definitions::hold(set, is_stated) }
+        Self { zeros: Zeros::over_grains(set, grains), held: definitions::hold(set, is_stated) }
     }
 
     /// As lines for a terminal; empty where the set has no frames that say anything.

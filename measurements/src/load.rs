@@ -105,6 +105,15 @@ impl MeasurementSet {
     /// Everything that is wrong with `measurement.toml`; if nothing is, everything that is wrong
     /// with its tables.
     pub fn load(path: &Path) -> Result<Loaded, SetError> {
+        Self::load_over_grains(path, 0.0)
+    }
+
+    /// The same, where a set that states no grain size is checked over `grains` of this diameter (m) at most: what a
+    /// body meets first lies that far above or below the mean surface.
+    ///
+    /// # Errors
+    /// As [`MeasurementSet::load`].
+    pub fn load_over_grains(path: &Path, grains: f64) -> Result<Loaded, SetError> {
         let mut findings = Findings::default();
         let file = match path.is_dir() {
             true => path.join("measurement.toml"),
@@ -139,7 +148,7 @@ impl MeasurementSet {
         if findings.errors() > 0 {
             return Err(findings.into());
         }
-        let agreement = Agreement::of(&set, &document);
+        let agreement = Agreement::of(&set, grains, &document);
         let contradictions =
             contradictions::find(&set, &agreement, (&document, contradictions, &mut findings));
         set.notes = findings.notes;

@@ -30,6 +30,10 @@ const OF_SPEED: f64 = 5.0;
 const NOTABLE: f64 = 5e-4;
 const WRONG: f64 = 1e-3;
 
+/// Diameters of a grain between the mean height of the surface and the grain that a body meets first: a run may count from
+/// either.
+const UNEVEN: f64 = 1.5;
+
 /// An offset of all runs alike above this (m) is an error; below, a diagnosis takes it into account as that of the zero of
 /// depth.
 const WRONG_ALIKE: f64 = 4e-3;
@@ -143,10 +147,18 @@ impl Zeros {
     /// Reads them from the frames of `set`.
     #[must_use]
     pub fn of(set: &MeasurementSet) -> Self {
+        Self::over_grains(set, 0.0)
+    }
+
+    /// The same over grains of this diameter (m) at most, where the set states none.
+    #[must_use]
+    pub fn over_grains(set: &MeasurementSet, unstated: f64) -> Self {
         if set.kind != Kind::Trajectory || set.all_beds().any(|bed| bed.gravity <= 0.0) {
             return Self::default();
         }
-        let level = level(set);
+        let stated = set.coarsest_grains();
+        let grain = if stated > 0.0 { stated } else { unstated };
+        let level = Level { sigma: level(set), uneven: UNEVEN * grain };
         let contacts = contacts(set, level, 0.0);
         let mut offset = offset(&contacts, level, 0.0);
         // Free fall is known well near its end alone: a clock that is far off is read again from there.
@@ -167,13 +179,13 @@ impl Zeros {
 ///
 /// Guides and air may slow a body before its contact, as a bed does behind it. Zeros that are stated stand where that
 /// explains what frames of every run show.
-fn contacts(set: &MeasurementSet, level: f64, zero: f64) -> Vec<RunContact> {
+fn contacts(set: &MeasurementSet, level: Level, zero: f64) -> Vec<RunContact> {
     let read = |doubt: f64, run: usize| {
         let of = &set.runs[run];
         let condition = &set.conditions[of.condition];
         let known = (set.fall_of(condition), doubt, position(set, of));
         let contact = contact::read(of, condition, known, zero)?;
-        let is_off = clock_is_off(&contact) || depth_is_off(&contact, level);
+        let is_off = level.clock_is_off(&contact) || level.depth_is_off(&contact);
         Some(RunContact { run, contact, is_off, is_slowed: false })
     };
     let fall: Vec<RunContact> =
@@ -197,7 +209,8 @@ pub(super) fn level(set: &MeasurementSet) -> f64 {
 pub(super) fn slowed(set: &MeasurementSet) -> Vec<RunContact> {
     match set.kind {
         Kind::Trajectory => {
-            contacts(set, level(set), 0.0).into_iter().filter(|one| one.is_slowed).collect()
+            let level = Level { sigma: level(set), uneven: UNEVEN * set.coarsest_grains() };
+            contacts(set, level, 0.0).into_iter().filter(|one| one.is_slowed).collect()
         }
         _ => Vec::new(),
     }
@@ -213,22 +226,43 @@ pub(super) fn position(set: &MeasurementSet, run: &Run) -> f64 {
     }
 }
 
-/// Whether the path departs from free fall at another time than zero.
-fn clock_is_off(contact: &Contact) -> bool {
-    let [earliest, latest] = contact.between;
-    earliest > FRAME * contact.step || latest < -FRAME * contact.step
+/// How well the place of the surface is known under one body.
+#[derive(Clone, Copy)]
+struct Level {
+    /// Standard deviation of its mean height (m).
+    sigma: f64,
+    /// How far a grain may lie above or below that (m).
+    uneven: f64,
 }
 
-/// Whether free fall is not at the surface at time zero, a rounding of the contact to a frame granted.
-fn depth_is_off(contact: &Contact, level: f64) -> bool {
-    let way = FRAME * contact.step * contact.sinking.value.abs();
-    contact.depth_at_zero.is_some_and(|depth| {
-        depth.value.abs() > WRONG + way + OF_RUN * libm::hypot(depth.se, level)
-    })
+impl Level {
+    /// The time (s) that the body of `contact` takes over the unevenness.
+    fn lag(self, contact: &Contact) -> f64 {
+        match self.uneven > 0.0 {
+            true => self.uneven / contact.sinking.value.abs(),
+            false => 0.0,
+        }
+    }
+
+    /// Whether the path departs from free fall at another time than zero.
+    fn clock_is_off(self, contact: &Contact) -> bool {
+        let [earliest, latest] = contact.between;
+        let granted = FRAME * contact.step + self.lag(contact);
+        earliest > granted || latest < -granted
+    }
+
+    /// Whether free fall is not at the surface at time zero, a rounding of the contact to a frame granted.
+    fn depth_is_off(self, contact: &Contact) -> bool {
+        let way = FRAME * contact.step * contact.sinking.value.abs();
+        contact.depth_at_zero.is_some_and(|depth| {
+            let error = OF_RUN * libm::hypot(depth.se, self.sigma);
+            depth.value.abs() > WRONG + way + self.uneven + error
+        })
+    }
 }
 
 /// What is off with the zeros, if anything is.
-fn offset(contacts: &[RunContact], level: f64, zero: f64) -> Option<Offset> {
+fn offset(contacts: &[RunContact], level: Level, zero: f64) -> Option<Offset> {
     let found = of_depths(contacts, level, zero);
     let all = || contacts.iter().map(|one| one.contact);
     let time = found.map_or(0.0, |offset| offset.time.value);
@@ -236,27 +270,27 @@ fn offset(contacts: &[RunContact], level: f64, zero: f64) -> Option<Offset> {
         let [earliest, latest] = contact.between;
         (earliest - contact.step..=latest + contact.step).contains(&time)
     };
-    if all().filter(clock_is_off).all(|contact| fits(&contact)) {
+    if all().filter(|contact| level.clock_is_off(contact)).all(|contact| fits(&contact)) {
         return found;
     }
     // The zeros go together along free fall, or they differ from run to run: the departures say when.
     let (time, depth) = (mean(all().map(|one| one.time)), mean(all().map(|one| one.depth)));
     let is_common = all().all(|one| {
         let [near, far] = [one.time.value - time.value, one.depth.value - depth.value];
-        near.abs() <= FRAME * one.step + OF_MEAN * one.time.se
-            && far.abs() <= WRONG + OF_RUN * libm::hypot(one.depth.se, level)
+        near.abs() <= FRAME * one.step + level.lag(&one) + OF_MEAN * one.time.se
+            && far.abs() <= WRONG + level.uneven + OF_RUN * libm::hypot(one.depth.se, level.sigma)
     });
-    let surface = depth.value.abs() > WRONG + OF_MEAN * libm::hypot(depth.se, level);
+    let surface = depth.value.abs() > WRONG + OF_MEAN * libm::hypot(depth.se, level.sigma);
     let zero = if surface { Zero::Both } else { Zero::Clock };
     Some(Offset { zero, severity: Severity::Wrong, time, depth, is_common })
 }
 
 /// The offset that explains how deep free fall is at the time `zero` (s): `z₀ + v (zero − t₀)`.
-fn of_depths(contacts: &[RunContact], level: f64, zero: f64) -> Option<Offset> {
+fn of_depths(contacts: &[RunContact], level: Level, zero: f64) -> Option<Offset> {
     let point = |one: &RunContact| {
         let Contact { depth_at_zero, sinking, step, time, .. } = one.contact;
         let depth = depth_at_zero?;
-        let error = libm::hypot(depth.se, level);
+        let error = libm::hypot(depth.se, level.sigma);
         let time = Reading { value: time.value - zero, ..time };
         Some(Point { depth: depth.value, error, sinking: sinking.value, step, time })
     };
@@ -283,7 +317,7 @@ fn of_depths(contacts: &[RunContact], level: f64, zero: f64) -> Option<Offset> {
     };
     let is_common = points.iter().all(|one| {
         let rounding = FRAME * one.step * one.sinking.abs();
-        line.miss(one).abs() <= NOTABLE + rounding + OF_RUN * one.error
+        line.miss(one).abs() <= NOTABLE + rounding + level.uneven + OF_RUN * one.error
     });
     let what = match (zero == 0.0, off(WRONG)) {
         (true, _) => line.zero,

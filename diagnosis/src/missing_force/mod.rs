@@ -101,11 +101,19 @@ pub struct MissingForce {
 }
 
 /// What `baseline` lacks; `fall` is the fall of the deviance by the best listed effect. `None` of models that take no force
-/// beside their own, and where nothing can be told.
+/// beside their own, and where nothing can be told: the verdict does not need it.
 ///
 /// # Errors
-/// If the model fails.
+/// If predictions do not have the layout of the measurements.
 pub fn missing_force(
+    bench: &Bench<'_>,
+    baseline: &Fitted,
+    fall: Option<f64>,
+) -> Result<Option<MissingForce>, BenchError> {
+    if_told(with_band(bench, baseline, fall))
+}
+
+fn with_band(
     bench: &Bench<'_>,
     baseline: &Fitted,
     fall: Option<f64>,
@@ -147,11 +155,19 @@ pub fn missing_force(
 /// can be told.
 ///
 /// # Errors
-/// If the model fails.
+/// If predictions do not have the layout of the measurements.
 pub(crate) fn log_odds(bench: &Bench<'_>, baseline: &Fitted) -> Result<Option<f64>, BenchError> {
     let Some(through) = bench.forward.passages() else { return Ok(None) };
-    let found = most_likely(bench, through, baseline)?;
+    let found = if_told(most_likely(bench, through, baseline))?;
     Ok(found.map(|(under, found)| odds(&under, &found, baseline)))
+}
+
+/// What is `found`; none if the model fails.
+fn if_told<T>(found: Result<Option<T>, BenchError>) -> Result<Option<T>, BenchError> {
+    match found {
+        Err(BenchError::Predict(_) | BenchError::Singular { .. }) => Ok(None),
+        other => other,
+    }
 }
 
 /// Logarithm of the odds of the force `found` under the noise of `under` against none.

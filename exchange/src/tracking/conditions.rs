@@ -31,6 +31,9 @@ pub(super) fn manner(members: &[Member<'_>], pattern: Option<&Pattern>) -> Strin
     match (pattern, members.iter().all(|one| of_column(one).is_some())) {
         (Some(pattern), _) => format!("by names, {}", pattern.text()),
         (None, true) => "by the column `condition`".to_owned(),
+        (None, false) if by_repeat(members).is_some() => {
+            "by the names of runs without the number of the repeat".to_owned()
+        }
         (None, false) => "by speed at contact".to_owned(),
     }
 }
@@ -48,7 +51,7 @@ pub(super) fn group(
         None if members.iter().all(|one| of_column(one).is_some()) => {
             members.iter().filter_map(of_column).collect()
         }
-        None => by_speed(members),
+        None => by_repeat(members).unwrap_or_else(|| by_speed(members)),
     };
     for (at, id) in ids.iter().enumerate() {
         let first = ids.iter().position(|other| other == id).unwrap_or(at);
@@ -97,6 +100,65 @@ fn of_column(member: &Member<'_>) -> Option<String> {
     member.labels.iter().find(|(name, _)| name == "condition").map(|(_, value)| value.clone())
 }
 
+/// The names of runs without the number of their repeat, such as `h10` of `h10_r2`, where one number tells the conditions
+/// apart and every condition has repeats; `None` of other names.
+fn by_repeat(members: &[Member<'_>]) -> Option<Vec<String>> {
+    let stems: Vec<String> = members.iter().map(|one| stem(one.name)).collect::<Option<_>>()?;
+    let parts: Vec<Vec<String>> = stems.iter().map(|stem| numbers_and_words(stem)).collect();
+    let first = parts.first()?;
+    let differs = |place: usize| parts.iter().any(|own| own.get(place) != first.get(place));
+    let differing: Vec<usize> = (0..first.len()).filter(|place| differs(*place)).collect();
+    let [only] = differing[..] else { return None };
+    let is_number = |own: &Vec<String>| {
+        own.len() == first.len() && own[only].starts_with(|c: char| c.is_ascii_digit())
+    };
+    let is_repeated = |stem: &String| stems.iter().filter(|other| *other == stem).count() > 1;
+    // A number that the speeds contradict is of something else.
+    let agree = |(one, stem): (&Member<'_>, &String)| {
+        let others = members.iter().zip(&stems).filter(|(_, other)| *other == stem);
+        others.map(|(other, _)| other).all(|other| {
+            let errors = ERRORS * libm::hypot(one.speed.se, other.speed.se);
+            let allowed = (2.0 * ALIKE * one.speed.value).max(errors);
+            (one.speed.value - other.speed.value).abs() <= allowed && one.body == other.body
+        })
+    };
+    let is_told = parts.iter().all(is_number)
+        && stems.iter().all(is_repeated)
+        && members.iter().zip(&stems).all(agree);
+    is_told.then_some(stems)
+}
+
+/// A name without the number at its end and what marks it as that of a repeat; `None` where there is none.
+fn stem(name: &str) -> Option<String> {
+    const MARKS: [&str; 9] = ["repeat", "trial", "run", "rep", "take", "drop", "r", "t", "n"];
+    const BETWEEN: [char; 5] = ['_', '-', ' ', '#', '.'];
+    let without = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let bare = without.trim_end_matches(BETWEEN);
+    let lower = bare.to_lowercase();
+    let mark = MARKS.iter().find(|mark| {
+        lower.strip_suffix(**mark).is_some_and(|rest| rest.is_empty() || rest.ends_with(BETWEEN))
+    });
+    let rest = &bare[..bare.len() - mark.map_or(0, |mark| mark.len())];
+    let rest = rest.trim_end_matches(BETWEEN);
+    let is_marked = mark.is_some() || bare.len() < without.len();
+    (without.len() < name.len() && is_marked && !rest.is_empty()).then(|| rest.to_owned())
+}
+
+/// The runs of digits and of other characters in `text`.
+fn numbers_and_words(text: &str) -> Vec<String> {
+    let mut parts: Vec<String> = Vec::new();
+    let mut was_digit = None;
+    for one in text.chars() {
+        let is_digit = one.is_ascii_digit();
+        match parts.last_mut().filter(|_| was_digit == Some(is_digit)) {
+            Some(part) => part.push(one),
+            None => parts.push(one.to_string()),
+        }
+        was_digit = Some(is_digit);
+    }
+    parts
+}
+
 /// Runs of one body whose speeds are alike.
 fn by_speed(members: &[Member<'_>]) -> Vec<String> {
     let mut order: Vec<usize> = (0..members.len()).collect();
@@ -138,4 +200,25 @@ fn by_speed(members: &[Member<'_>]) -> Vec<String> {
     }
     let of = |at: usize| groups.iter().position(|group| group.contains(&at)).unwrap_or_default();
     (0..members.len()).map(|at| names[of(at)].clone()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_at_the_end_of_a_name_is_that_of_the_repeat() {
+        for (name, found) in [
+            ("h10_r2", Some("h10")),
+            ("ball_h10 run 3", Some("ball_h10")),
+            ("h10_3", Some("h10")),
+            ("h10-trial-12", Some("h10")),
+            ("h10", None),
+            ("r2", None),
+            ("left", None),
+        ] {
+            assert_eq!(stem(name).as_deref(), found, "{name}");
+        }
+        assert_eq!(numbers_and_words("a12b3"), ["a", "12", "b", "3"]);
+    }
 }

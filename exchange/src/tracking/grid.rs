@@ -81,8 +81,8 @@ impl<'a> Grid<'a> {
             let cells = || row.cells.iter().filter(|cell| !cell.is_empty());
             let is_unit =
                 |cell: &String| Unit::maybe(cell).is_some() && !matches!(cell.as_str(), "t" | "T");
-            // Speeds stand beside positions.
-            cells().any(is_unit) && cells().all(|cell| is_unit(cell) || cell.contains('/'))
+            // Speeds, forces and triggers stand beside positions.
+            cells().any(is_unit) && cells().all(|cell| is_unit(cell) || Unit::is_of_others(cell))
         };
         match above[..] {
             [] => Ok(Self::without_names(sheet, first)),

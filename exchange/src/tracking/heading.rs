@@ -161,13 +161,36 @@ impl Heading {
     pub(super) fn of(name: &str) -> Self {
         let name = name.trim().trim_start_matches('#').trim();
         let bare = name.rsplit_once(": ").map_or(name, |(_, bare)| bare).trim();
-        let (stem, unit) = stem_and_unit(bare);
-        Self { name: name.to_owned(), stem: stem.trim().to_lowercase(), unit }
+        let (stem, unit) = match with_unit_inside(bare) {
+            Some(taken_apart) => taken_apart,
+            None => {
+                let (stem, unit) = stem_and_unit(bare);
+                (stem.trim().to_owned(), unit)
+            }
+        };
+        Self { name: name.to_owned(), stem: stem.to_lowercase(), unit }
     }
 
     /// What stands in the column, if its name says it.
     pub(super) fn role(&self) -> Option<Role> {
         role(&self.stem)
+    }
+
+    /// Whether name or unit is that of a force or of a pressure.
+    pub(super) fn is_force(&self) -> bool {
+        const NAMES: [&str; 8] = [
+            "force",
+            "load",
+            "kraft",
+            "standardkraft",
+            "prüfkraft",
+            "compressive load",
+            "qc",
+            "cone resistance",
+        ];
+        const UNITS: [&str; 10] = ["n", "kn", "mn", "gf", "kgf", "lbf", "pa", "kpa", "mpa", "bar"];
+        NAMES.contains(&self.stem.as_str())
+            || matches!(&self.unit, Unit::Unknown(unit) if UNITS.contains(&unit.to_lowercase().as_str()))
     }
 
     /// Whether name or unit is that of an acceleration.
@@ -236,6 +259,14 @@ fn role(stem: &str) -> Option<Role> {
     }
 }
 
+/// `Time (s) Run #1`: a drop may stand behind the unit.
+fn with_unit_inside(bare: &str) -> Option<(String, Unit)> {
+    let (stem, rest) = bare.split_once('(')?;
+    let (unit, drop) = rest.split_once(')')?;
+    let is_inside = !drop.trim().is_empty() && !drop.contains('(') && !stem.trim().is_empty();
+    is_inside.then(|| (format!("{} {}", stem.trim(), drop.trim()), Unit::of(unit)))
+}
+
 fn stem_and_unit(bare: &str) -> (&str, Unit) {
     for (open, close) in [('(', ')'), ('[', ']')] {
         if let Some((stem, unit)) = bare.strip_suffix(close).and_then(|text| text.rsplit_once(open))
@@ -297,6 +328,7 @@ mod tests {
             ("h10_r1 t", Role::Time, "h10_r1"),
             ("height_10_1", Role::Vertical, "10_1"),
             ("Time 3", Role::Time, "3"),
+            ("Position (m) Run #12", Role::Vertical, "run #12"),
         ] {
             assert_eq!(of(name), Some((role, drop.to_owned())), "{name}");
         }

@@ -16,6 +16,7 @@ use super::scales::Scales;
 use super::set::{Set, Understood};
 use super::settings::{Settings, Tracked};
 use super::surface::{self, Level, Seen};
+use super::tilt::{Flight, tilt, turned_back};
 use super::{import_file, inputs, written};
 
 /// Reads `paths` under `options` into the set that is to stand in the folder `out`.
@@ -37,7 +38,9 @@ pub fn import(paths: &[PathBuf], options: &Options, out: &File) -> Result<Set, T
     let begun = begin(tracks, &bodies, &settings)?;
     let mut told = told(&begun);
     told.extend(off_gravity(&begun, &settings));
-    let (runs, understood, level) = finish(begun, &settings)?;
+    told.extend(of_one_body(&begun));
+    let Finished { runs, understood, level, tilt } = finish(begun, &settings)?;
+    told.extend(tilt.map(of_tilt));
     let manner = manner(&runs, &settings);
     let mut notes = notes(&runs, &level, &manner, &settings);
     notes.append(&mut told);
@@ -71,6 +74,50 @@ fn told(begun: &[Begun]) -> Vec<String> {
     all
 }
 
+/// A warning if two runs of one table keep their distance: two marks on one body are no repeats.
+fn of_one_body(begun: &[Begun]) -> Option<String> {
+    let keep_their_distance = |one: &Path, other: &Path| {
+        /// Fewest readings on the same lines, and the scatter of the distance in errors of a reading.
+        const LEAST: usize = 20;
+        const STEADY: f64 = 1.3;
+        let [a, b] = [one, other].map(|path| &path.track.samples);
+        let pairs = a.iter().zip(b).filter(|(a, b)| a.line == b.line);
+        let apart: Vec<f64> = pairs.map(|(a, b)| a.z - b.z).collect();
+        let mean = apart.iter().sum::<f64>() / apart.len() as f64;
+        let square = apart.iter().map(|one| (one - mean).powi(2)).sum::<f64>();
+        let scatter = (square / apart.len() as f64).sqrt();
+        apart.len() >= LEAST && scatter < STEADY * libm::hypot(one.noise(), other.noise())
+    };
+    let pairs = (0..begun.len()).flat_map(|at| begun[..at].iter().map(move |one| (one, at)));
+    let mut pairs = pairs.map(|(one, at)| (one, &begun[at]));
+    let is_one = |(one, other): &(&Begun, &Begun)| {
+        let clock = |one: &Begun| (one.path.track.file.clone(), one.path.track.time.name.clone());
+        clock(one) == clock(other) && keep_their_distance(&one.path, &other.path)
+    };
+    pairs.find(is_one).map(|(one, other)| {
+        format!(
+            "Warning: the runs {} and {} of {} keep their distance to within their noise. If they are two marks on one body, leave \
+             one out: --leave-out \"{}\".",
+            one.name,
+            other.name,
+            other.path.track.file,
+            match &other.path.track.name {
+                Some(name) if *name != other.name => format!("*{name}"),
+                _ => other.name.clone(),
+            }
+        )
+    })
+}
+
+/// A note about a camera that was not level.
+fn of_tilt(tilt: Reading) -> String {
+    let [angle, se] = [tilt.value, tilt.se].map(|one| one.abs().to_degrees());
+    format!(
+        "The camera is tilted by {angle:.2} ± {se:.2} deg: before contact the bodies accelerate sideways in its picture. The paths \
+         are turned back around their contacts."
+    )
+}
+
 /// A warning if the acceleration before contact clearly differs from gravity.
 fn off_gravity(begun: &[Begun], settings: &Settings<'_>) -> Option<String> {
     /// Least relative difference, and least difference in standard errors.
@@ -96,33 +143,57 @@ fn off_gravity(begun: &[Begun], settings: &Settings<'_>) -> Option<String> {
     })
 }
 
+/// One run as its picture shows it.
+struct Sight {
+    seen: Seen,
+    scales: Scales,
+    /// Its path in SI.
+    frames: Vec<Frame>,
+    /// Error of one reading (m).
+    noise: f64,
+}
+
+/// How far the picture of a run is turned back, and around which place (way and depth in m).
+struct Turn {
+    tilt: f64,
+    around: [f64; 2],
+}
+
+impl Sight {
+    /// Around its contact, whose depth stays what it is.
+    fn turn(&self, tilt: f64) -> Turn {
+        let contact = &self.seen.departure.contact;
+        let apart = |frame: &Frame| (frame.t - contact.time.value).abs();
+        let nearest = self.frames.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
+        Turn { tilt, around: [nearest.map_or(0.0, |frame| frame.x), contact.depth.value] }
+    }
+}
+
+/// All runs, and what they have in common.
+struct Finished {
+    runs: Vec<Run>,
+    understood: Vec<Understood>,
+    level: Level,
+    /// That of the camera (rad), which is turned back.
+    tilt: Option<Reading>,
+}
+
 /// Contacts, levels and conditions.
-fn finish(
-    begun: Vec<Begun>,
-    settings: &Settings<'_>,
-) -> Result<(Vec<Run>, Vec<Understood>, Level), Vec<Fault>> {
+fn finish(begun: Vec<Begun>, settings: &Settings<'_>) -> Result<Finished, Vec<Fault>> {
     let paths: Vec<Path> = begun.iter().map(|one| one.path.clone()).collect();
-    let (mut faults, mut seen, mut ready) = (Vec::new(), Vec::new(), Vec::new());
-    for one in begun {
-        match see(&one, &paths, settings) {
-            Ok((found, scales, frames, noise)) => {
-                seen.push(found);
-                ready.push((one, scales, frames, noise));
-            }
-            Err(fault) if faults.iter().any(|other: &Fault| other.what == fault.what) => {}
-            Err(fault) => faults.push(fault),
-        }
+    let mut sights = see_all(&begun, (&paths, &[]), settings)?;
+    let tilt = tilt_of(&sights, &begun, settings.gravity);
+    if let Some(tilt) = tilt {
+        let turns: Vec<Turn> = sights.iter().map(|sight| sight.turn(tilt.value)).collect();
+        sights = see_all(&begun, (&paths, &turns), settings)?;
     }
-    if !faults.is_empty() {
-        return Err(faults);
-    }
+    let seen: Vec<Seen> = sights.iter().map(|sight| sight.seen.clone()).collect();
     let (level, touches) = surface::touches(&seen, settings.gravity)?;
-    let mut runs = Vec::with_capacity(ready.len());
-    let mut understood = Vec::with_capacity(ready.len());
-    for ((begun, scales, frames, noise), (seen, touch)) in
-        ready.into_iter().zip(seen.iter().zip(touches))
-    {
-        let (run, words) = Run::of(begun, (&scales, &frames, noise), seen, touch);
+    let mut runs = Vec::with_capacity(begun.len());
+    let mut understood = Vec::with_capacity(begun.len());
+    for (begun, (sight, touch)) in begun.into_iter().zip(sights.iter().zip(touches)) {
+        let Sight { seen, scales, frames, noise } = sight;
+        let (run, words) = Run::of(begun, (scales, frames, *noise), seen, touch);
         runs.push(run);
         understood.push(words);
     }
@@ -135,7 +206,37 @@ fn finish(
         words.condition.clone_from(&id);
         run.condition = id;
     }
-    Ok((runs, understood, level))
+    Ok(Finished { runs, understood, level, tilt })
+}
+
+/// What the runs show of themselves, their pictures turned back by `turns`, if there are any.
+fn see_all(
+    begun: &[Begun],
+    (paths, turns): (&[Path], &[Turn]),
+    settings: &Settings<'_>,
+) -> Result<Vec<Sight>, Vec<Fault>> {
+    let (mut faults, mut sights) = (Vec::new(), Vec::with_capacity(begun.len()));
+    for (at, one) in begun.iter().enumerate() {
+        match see(one, (paths, turns.get(at)), settings) {
+            Ok(sight) => sights.push(sight),
+            Err(fault) if faults.iter().any(|other: &Fault| other.what == fault.what) => {}
+            Err(fault) => faults.push(fault),
+        }
+    }
+    if faults.is_empty() { Ok(sights) } else { Err(faults) }
+}
+
+/// The tilt of the camera (rad), where runs have ways that show it.
+fn tilt_of(sights: &[Sight], begun: &[Begun], gravity: f64) -> Option<Reading> {
+    let with_ways = sights.iter().zip(begun).filter(|(_, one)| one.path.track.forward.is_some());
+    let flight = |(sight, one): (&Sight, &Begun)| {
+        let contact = &sight.seen.departure.contact;
+        let frames = one.path.of_the_body(&sight.frames);
+        (frames, [contact.first, contact.time.value - contact.step])
+    };
+    let flights: Vec<(Vec<Frame>, [f64; 2])> = with_ways.map(flight).collect();
+    let flights = flights.iter().map(|(frames, between)| Flight { frames, between: *between });
+    tilt(&flights.collect::<Vec<_>>(), gravity)
 }
 
 fn member(run: &Run) -> Member<'_> {
@@ -148,14 +249,17 @@ fn manner(runs: &[Run], settings: &Settings<'_>) -> String {
     conditions::manner(&members, settings.pattern.as_ref())
 }
 
-/// What one run shows of itself: its contact, units, path in SI and noise.
+/// What one run shows of itself, its picture turned back by `turn`.
 fn see(
     one: &Begun,
-    paths: &[Path],
+    (paths, turn): (&[Path], Option<&Turn>),
     settings: &Settings<'_>,
-) -> Result<(Seen, Scales, Vec<Frame>, f64), Fault> {
+) -> Result<Sight, Fault> {
     let scales = one.path.scales(paths, settings)?;
-    let frames = scales.in_si(&one.path);
+    let mut frames = scales.in_si(&one.path);
+    if let Some(Turn { tilt, around }) = turn {
+        frames = turned_back(&frames, *tilt, *around);
+    }
     let noise = (one.path.noise() * scales.length.1).max(1e-6);
     let shape = one.body.shape.as_str();
     let of_the_body = one.path.of_the_body(&frames);
@@ -195,7 +299,7 @@ fn see(
     let soft = one.body.soft_entry();
     let diameter = one.body.diameter;
     let seen = Seen { name: one.name.clone(), departure, stated, soft, diameter, below_centre };
-    Ok((seen, scales, frames, noise))
+    Ok(Sight { seen, scales, frames, noise })
 }
 
 /// Refuses units in which the body moves implausibly far.

@@ -43,25 +43,33 @@ pub(super) fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Fault> {
 /// Endings of tables that a folder is searched for.
 const TABLES: [&str; 6] = ["csv", "tsv", "txt", "dat", "lvm", "tab"];
 
+/// How deep folders are searched.
+const DEPTH: usize = 3;
+
 /// The tables in a folder, or where there is none in the folders within it, sorted.
 ///
 /// # Errors
 /// If the folder cannot be read or holds no table.
 pub(super) fn tables_in(folder: &Path) -> Result<Vec<PathBuf>, Fault> {
-    let shown = folder.display().to_string();
-    let mut found = directly_in(folder)?;
-    if found.is_empty() {
-        let mut within: Vec<PathBuf> = entries_of(folder)?.filter(|path| path.is_dir()).collect();
-        within.sort();
-        found = within.iter().map(|one| directly_in(one)).collect::<Result<Vec<_>, _>>()?.concat();
-    }
+    let found = tables_within(folder, DEPTH)?;
     match found.is_empty() {
         true => {
             let right = "a table ends in .csv, .tsv, .txt, .dat, .lvm, .xlsx or .ods";
-            Err(Fault::new(&shown, "no table is in this folder", right))
+            Err(Fault::new(&folder.display().to_string(), "no table is in this folder", right))
         }
         false => Ok(found),
     }
+}
+
+fn tables_within(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, Fault> {
+    let found = directly_in(folder)?;
+    if !found.is_empty() || depth == 0 {
+        return Ok(found);
+    }
+    let mut within: Vec<PathBuf> = entries_of(folder)?.filter(|path| path.is_dir()).collect();
+    within.sort();
+    let each = within.iter().map(|one| tables_within(one, depth - 1));
+    Ok(each.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
 fn entries_of(folder: &Path) -> Result<impl Iterator<Item = PathBuf>, Fault> {
@@ -120,6 +128,18 @@ pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, Fault> {
     })
 }
 
+/// Endings of what programs save their own work in, with the name of the program.
+const PROJECTS: [(&str, &str); 8] = [
+    ("trk", "Tracker"),
+    ("cmbl", "Logger Pro"),
+    ("cap", "Capstone"),
+    ("kva", "Kinovea"),
+    ("xml", "TrackMate or Kinovea"),
+    ("tdms", "LabVIEW"),
+    ("mat", "MATLAB"),
+    ("pxp", "Igor"),
+];
+
 /// The sheets of the file `path` with this content.
 ///
 /// # Errors
@@ -130,6 +150,14 @@ pub(super) fn sheets(path: &Path, bytes: &[u8]) -> Result<Vec<Sheet>, Fault> {
         part.map_or(String::new(), |part| part.to_string_lossy().into_owned())
     };
     let (stem, ending) = (part(path.file_stem()), part(path.extension()).to_ascii_lowercase());
+    if let Some((_, program)) = PROJECTS.iter().find(|(own, _)| *own == ending) {
+        let what = format!("it is a file of {program}, and no table");
+        return Err(Fault::new(
+            &file,
+            what,
+            "export the track as a table of text, and import that",
+        ));
+    }
     // ImageJ saves text under the name of a spreadsheet.
     let is_text = ending == "xls" && spreadsheet::is_text(bytes);
     let is_book = spreadsheet::ENDINGS.contains(&ending.as_str()) && !is_text;

@@ -31,6 +31,7 @@ mod sheet;
 mod spreadsheet;
 mod surface;
 mod text;
+mod tilt;
 mod track;
 mod units;
 mod written;

@@ -228,8 +228,9 @@ fn in_order(
     }
     let repeated = without_repeated(&mut samples);
     if repeated > 0 {
+        let (frames, are) = if repeated == 1 { ("frame", "is") } else { ("frames", "are") };
         track.notes.push(format!(
-            "{repeated} frames that show the body where it was, though it moves before and behind, are left out"
+            "{repeated} {frames} with the body where it was, though it moves before and behind, {are} left out"
         ));
     }
     if copies > 0 {

@@ -17,6 +17,7 @@ pub(super) const STATED: f64 = 1e-3;
 pub(super) const LEAST: f64 = 1e-5;
 
 /// What is known of one run.
+#[derive(Clone)]
 pub(super) struct Seen {
     pub(super) name: String,
     pub(super) departure: Departure,

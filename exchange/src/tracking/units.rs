@@ -37,6 +37,7 @@ impl Unit {
     /// The unit that `text` names; nothing is unstated.
     pub(super) fn of(text: &str) -> Self {
         let text = text.trim().trim_matches(['(', ')', '[', ']']).trim();
+        let text = text.strip_prefix("in ").unwrap_or(text);
         let lower = text.to_lowercase();
         if text.is_empty() {
             return Self::Unstated;
@@ -61,6 +62,18 @@ impl Unit {
             Self::Unknown(_) | Self::Unstated => None,
             unit => Some(unit),
         }
+    }
+
+    /// Whether `text` may be the unit of something else than a length or a time, or a mark for none.
+    pub(super) fn is_of_others(text: &str) -> bool {
+        const OTHERS: [&str; 22] = [
+            "-", "1", "%", "v", "mv", "volt", "volts", "a", "ma", "hz", "khz", "deg", "°", "°c",
+            "counts", "bit", "gf", "kgf", "newton", "a.u.", "adc", "g",
+        ];
+        let text = text.trim().trim_matches(['(', ')', '[', ']']).trim();
+        let text = text.strip_prefix("in ").unwrap_or(text);
+        let is_known = dimension_of(text).is_some() && !matches!(text, "t" | "T");
+        is_known || text.contains(['/', '²', '^']) || OTHERS.contains(&text.to_lowercase().as_str())
     }
 
     /// How many of the SI unit it is, if it is a unit of `dimension`.

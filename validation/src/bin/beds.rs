@@ -23,13 +23,14 @@ const HELP: &str = "\
 How often the diagnosis of a bed of grains names what is hidden in it.
 
 Usage: cargo xtask bench beds [--quick | --prepared | --lammps | --spheres] [--draws N] [--minutes N] [--threads N]
-                             [--on WHERE] [--cache DIR] [--out FILE]
+                             [--only TEXT] [--on WHERE] [--cache DIR] [--out FILE] [--export DIR]
 
   --quick      small beds: every preparation with nothing hidden, two listed effects, one that is not listed
   --prepared   small beds, prepared in seven ways, weighed or not, with nothing hidden and with two effects
   --lammps     small beds that LAMMPS rains and hits, with nothing, two effects, and one that is not listed;
                it is installed below target/peers, unless PLUNGE_LAMMPS names an lmp
   --spheres    beds of 1 000 spheres, prepared in three ways, with nothing, two effects, and one that is not listed
+  --only TEXT  the cases with this in their names, such as friction or LAMMPS
   --draws N    draws of every case (2)
   --minutes N  impacts of one diagnosis at most, as estimated (as long as the largest plan takes)
   --threads N  impacts at a time (one per core)
@@ -37,6 +38,7 @@ Usage: cargo xtask bench beds [--quick | --prepared | --lammps | --spheres] [--d
   --cache DIR  where beds and impacts are kept (runs/.cache); those that are there are not run again
   --out FILE   outcomes so far, one JSON object per line (runs/beds-benchmark.jsonl); those that are
                there are not diagnosed again
+  --export DIR writes the sets and the models of what is asked for to folders in DIR, and diagnoses nothing
 
 Exit status: 0 done, 1 failed, 2 the command line was not understood.
 ";
@@ -48,6 +50,7 @@ struct Wanted {
     elsewhere: Option<Elsewhere>,
     cache: PathBuf,
     out: PathBuf,
+    export: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
@@ -58,6 +61,7 @@ fn main() -> ExitCode {
 fn parse(mut parser: Parser) -> Result<Option<Wanted>, lexopt::Error> {
     let (mut draws, mut minutes) = (2, f64::INFINITY);
     let mut list: fn(u64) -> Vec<Case> = all;
+    let mut only = String::new();
     let mut wanted = Wanted {
         cases: Vec::new(),
         wish: Wish::default(),
@@ -65,6 +69,7 @@ fn parse(mut parser: Parser) -> Result<Option<Wanted>, lexopt::Error> {
         elsewhere: None,
         cache: "runs/.cache".into(),
         out: "runs/beds-benchmark.jsonl".into(),
+        export: None,
     };
     while let Some(argument) = parser.next()? {
         match argument {
@@ -72,17 +77,20 @@ fn parse(mut parser: Parser) -> Result<Option<Wanted>, lexopt::Error> {
             Long("prepared") => list = prepared,
             Long("lammps") => list = by_lammps,
             Long("spheres") => list = of_spheres,
+            Long("only") => only = parser.value()?.string()?,
             Long("draws") => draws = parser.value()?.parse()?,
             Long("minutes") => minutes = parser.value()?.parse()?,
             Long("threads") => wanted.threads = Some(parser.value()?.parse()?),
             Long("on") => wanted.elsewhere = on(&mut parser)?,
             Long("cache") => wanted.cache = parser.value()?.into(),
             Long("out") => wanted.out = parser.value()?.into(),
+            Long("export") => wanted.export = Some(parser.value()?.into()),
             Short('h') | Long("help") => return Ok(None),
             other => return Err(other.unexpected()),
         }
     }
     wanted.cases = list(draws);
+    wanted.cases.retain(|case| case.name().contains(&only));
     wanted.wish.budget = Some(60.0 * minutes);
     Ok(Some(wanted))
 }
@@ -101,6 +109,17 @@ fn bench(wanted: &Wanted, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error
     let lammps =
         is_by_lammps.then(|| Lammps::find_or_install(Path::new("target/peers"))).transpose()?;
     let by = lammps.as_ref().map(|lammps| (lammps, Path::new("target/bench/worlds")));
+    if let Some(folder) = &wanted.export {
+        for (number, case) in wanted.cases.iter().enumerate() {
+            let folder = folder.join(format!("{:03}", number + 1));
+            let (_, set) = case.measured(&place, by)?;
+            fs::create_dir_all(&folder)?;
+            set.write(&folder)?;
+            fs::write(folder.join("model.toml"), case.model_text())?;
+            writeln!(out, "{}: {} ({})", folder.display(), case.name(), case.seed)?;
+        }
+        return Ok(ExitCode::SUCCESS);
+    }
     let mut outcomes = Vec::with_capacity(wanted.cases.len());
     for case in &wanted.cases {
         let same = |one: &&Outcome| one.hidden == case.name() && one.seed == case.seed;

@@ -6,7 +6,7 @@ use diagnosis::missing_force::Reading;
 use diagnosis::observed::Observed;
 use measurements::{Condition, Crater, Instrument, Kind, MeasurementSet, Role, Run, Sample};
 use serde_json::json;
-use validation::benchmark::beds::{Case, Hidden, Outcome, Prepared, campaign, measure, model};
+use validation::benchmark::beds::{Case, Hidden, Outcome, Prepared, campaign, measure};
 
 use crate::imitation::{Imitation, crater, pushed, standard_normal};
 use crate::world;
@@ -89,7 +89,7 @@ fn where_nothing_is_hidden_model_and_measurements_have_one_force_law_within_its_
     let impacts = Imitation { beds: 0.05, runs: 0.02, fades: false };
     let (mut scores, mut scatter) = (Vec::<f64>::new(), Vec::<f64>::new());
     for seed in 0..4 {
-        let model = model(1 + 1000 * seed).unwrap();
+        let model = Case::alike(Hidden::Nothing, seed).model().unwrap();
         let empty = campaign(&model);
         let world = Stand::new(&model, &empty).unwrap();
         let set = measure(&world, &Variation::default(), (10, seed), &impacts).unwrap();

@@ -52,6 +52,7 @@ const LAYOUTS: [&Layout; 13] = [
 /// What is wrong with it.
 pub(super) fn tracks(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
     refuse_accelerations(sheet, columns)?;
+    refuse_forces(sheet, columns)?;
     let layout = LAYOUTS.into_iter().find(|layout| (layout.fits)(sheet, columns));
     (layout.unwrap_or(&single::LAYOUT).read)(sheet, columns)
 }
@@ -72,6 +73,21 @@ fn refuse_accelerations(sheet: &Sheet, columns: &Columns) -> Result<(), Fault> {
             let what = format!("`{}` is an acceleration, and no column is a position", of.name);
             let right = "import reads positions: name their column, --column z=NAME; a set of accelerations is written by hand, \
                          as `plunge new real-water-cones-acceleration` shows";
+            Err(sheet.fault(what, right))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses the table of a testing machine or a penetrometer, which pushes a body.
+fn refuse_forces(sheet: &Sheet, columns: &Columns) -> Result<(), Fault> {
+    let Ok(grid) = Grid::found(sheet) else { return Ok(()) };
+    match grid.headings.iter().find(|heading| heading.is_force()) {
+        Some(of) if columns.of(Role::Vertical).is_none() => {
+            let what =
+                format!("`{}` is a force or a pressure: the body is pushed, not dropped", of.name);
+            let right = "a set of forces over depth is written by hand, as `plunge new real-plates-simulant` shows; \
+                         --column z=NAME says that a column is the position of a body that falls";
             Err(sheet.fault(what, right))
         }
         _ => Ok(()),

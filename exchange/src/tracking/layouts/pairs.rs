@@ -13,7 +13,11 @@ pub(super) const LAYOUT: Layout = Layout { fits, read };
 
 fn fits(sheet: &Sheet, columns: &Columns) -> bool {
     let asked = columns.of(Role::Vertical).is_some();
-    !asked && Grid::found(sheet).is_ok_and(|grid| drops(&grid).len() > 1)
+    let has_times =
+        |grid: &Grid<'_>| grid.headings.iter().any(|one| one.role() == Some(Role::Time));
+    let are_pairs =
+        |grid: Grid<'_>| drops(&grid).len() > 1 || (named(&grid).len() == 1 && !has_times(&grid));
+    !asked && Grid::found(sheet).is_ok_and(are_pairs)
 }
 
 fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
@@ -28,7 +32,8 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
     let ends = drops.iter().skip(1).map(|next| next.t).chain([Some(grid.headings.len())]);
     let title = |(places, end): (&Places, Option<usize>)| {
         let cells = (places.t?..end?).map(|at| titles.map_or("", |row| row.cell(at)));
-        let words: Vec<&str> = cells.filter(|cell| !cell.is_empty()).collect();
+        let mut words: Vec<&str> = cells.filter(|cell| !cell.is_empty()).collect();
+        words.dedup();
         (!words.is_empty()).then(|| words.join(" "))
     };
     let titles = named.unwrap_or_else(|| drops.iter().zip(ends).map(title).collect());
@@ -46,8 +51,8 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
 
 /// Columns of the drops, by the names of columns or by their order.
 fn drops(grid: &Grid<'_>) -> Vec<Places> {
-    let named = named(grid);
-    if named.len() > 1 { named } else { in_order(grid) }
+    let (named, in_order) = (named(grid), in_order(grid));
+    if named.len() > 1 || in_order.is_empty() { named } else { in_order }
 }
 
 /// Columns of times and positions whose names have a drop in common.
@@ -114,6 +119,13 @@ mod tests {
         };
         assert_eq!(told(b"t_a (ms),y_a (cm),t_b (ms),y_b (cm)\n0,1,0,5\n1,2,1,6\n"), ["a", "b"]);
         assert_eq!(told(b"t0,y0,t1,y1\n0,1,0,5\n1,2,1,6\n"), ["0", "1"]);
+        let capstone = b"Time (s) Run #1,Position (m) Run #1,Time (s) Run #2,Position (m) Run #2\n0,1,0,5\n1,2,1,6\n";
+        assert_eq!(told(capstone), ["run #1", "run #2"]);
+        assert_eq!(told(b"Time (s) Run #3,Position (m) Run #3\n0,1\n1,2\n"), ["run #3"]);
+        assert_eq!(
+            told(b"Run #1,Run #1,Run #2,Run #2\nt (s),y (m),t (s),y (m)\n0,1,0,5\n1,2,1,6\n"),
+            ["Run #1", "Run #2"]
+        );
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use configs::Model;
+use configs::{ConfigError, Model};
 use diagnosis::beds::{BaselineError, BedError, Plan, Stand, Wish, diagnose_bed, unaffordable};
 use diagnosis::observed::Observed;
 use diagnosis::verdict::{Diagnosis, Verdict};
@@ -14,7 +14,7 @@ use thiserror::Error;
 use super::hidden::Hidden;
 use super::lammps::{LEVEL, World};
 use super::prepared::Prepared;
-use super::world::{campaign, measure, model, small, spheres, stated, weighed};
+use super::world::{MODEL, SMALL, SPHERES, campaign, load, measure, stated, weighed};
 use crate::speed::SpeedError;
 use crate::speed::lammps::Lammps;
 
@@ -273,6 +273,25 @@ impl Case {
         Ok(self.judged(&diagnosis, impacts, start.elapsed().as_secs_f64()))
     }
 
+    /// The model of the analyst as a file, with beds of seeds of its own.
+    #[must_use]
+    pub fn model_text(&self) -> String {
+        let text = match self.bed {
+            Grains::Discs => MODEL,
+            Grains::FewDiscs => SMALL,
+            Grains::Spheres => SPHERES,
+        };
+        text.replace("seed = 1\n", &format!("seed = {}\n", 1 + 1000 * self.seed))
+    }
+
+    /// The model of the analyst.
+    ///
+    /// # Errors
+    /// Never: the model is ours.
+    pub fn model(&self) -> Result<Model, ConfigError> {
+        load(self.model_text())
+    }
+
     /// The model of the analyst, and what is measured.
     ///
     /// # Errors
@@ -282,13 +301,7 @@ impl Case {
         place: &dyn Impacts,
         lammps: Option<(&Lammps, &Path)>,
     ) -> Result<(Model, MeasurementSet), CaseError> {
-        let first = 1 + 1000 * self.seed;
-        let model = match self.bed {
-            Grains::Discs => model(first),
-            Grains::FewDiscs => small(first),
-            Grains::Spheres => spheres(first),
-        };
-        let model = model.map_err(|why| BedError::from(BaselineError::from(why)))?;
+        let model = self.model().map_err(|why| BedError::from(BaselineError::from(why)))?;
         let empty = campaign(&model);
         let stand = Stand::new(&model, &empty).map_err(BedError::from)?;
         let set = match lammps.filter(|_| self.is_by_lammps) {

@@ -405,7 +405,7 @@ mod tests {
     use configs::Model;
 
     use super::*;
-    use crate::benchmark::beds::world::small;
+    use crate::benchmark::beds::Case;
 
     fn with(model: &Model, hidden: Hidden, prepared: Prepared) -> Option<World<'_>> {
         World::of(model.grains().expect("the model is of grains"), hidden, prepared)
@@ -413,7 +413,7 @@ mod tests {
 
     #[test]
     fn what_is_hidden_acts_during_the_impact_alone_and_a_preparation_before_it_alone() {
-        let model = small(1).unwrap();
+        let model = Case::small(Hidden::Nothing, 0).model().unwrap();
         let rolling = Hidden::Switch("rolling-resistance", 0.25);
         let input = with(&model, rolling, Prepared::Rough).unwrap().input(1.0, 7);
         let (before, during) = input.split_once("create_atoms 3 single").unwrap();
@@ -429,7 +429,7 @@ mod tests {
 
     #[test]
     fn every_grain_has_the_mass_of_the_model_whether_sizes_are_spread_or_not() {
-        let model = small(1).unwrap();
+        let model = Case::small(Hidden::Nothing, 0).model().unwrap();
         for (prepared, heavier) in [(Prepared::Spread, 1.0), (Prepared::Alike, HEAVIER)] {
             let hidden = if heavier > 1.0 { Hidden::Unlisted } else { Hidden::Nothing };
             let world = with(&model, hidden, prepared).unwrap();
@@ -452,14 +452,14 @@ mod tests {
 
     #[test]
     fn a_tapped_bed_and_other_effects_are_no_worlds_of_lammps() {
-        let model = small(1).unwrap();
+        let model = Case::small(Hidden::Nothing, 0).model().unwrap();
         assert!(with(&model, Hidden::Nothing, Prepared::Tapped).is_none());
         assert!(with(&model, Hidden::Switch("pore-air", 5.0), Prepared::Alike).is_none());
     }
 
     #[test]
     fn one_grain_lies_as_high_as_its_area_over_the_width() {
-        let model = small(1).unwrap();
+        let model = Case::small(Hidden::Nothing, 0).model().unwrap();
         let world = with(&model, Hidden::Nothing, Prepared::Alike).unwrap();
         // Across the period, resting on the bottom: a column above the half disc below its middle counts whole.
         let dump = "ITEM: TIMESTEP\n0\nITEM: ATOMS radius mass x y\n0.01 0.004 0.119 0.01\n";
@@ -473,7 +473,7 @@ mod tests {
 
     #[test]
     fn a_path_is_a_depth_below_the_surface_and_stops_where_the_intruder_turns() {
-        let model = small(1).unwrap();
+        let model = Case::small(Hidden::Nothing, 0).model().unwrap();
         let world = with(&model, Hidden::Nothing, Prepared::Alike).unwrap();
         let lie = Lie {
             packing_fraction: 0.8,

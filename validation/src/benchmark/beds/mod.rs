@@ -12,4 +12,4 @@ pub use case::{Case, CaseError, Grains, Outcome, all, by_lammps, of_spheres, pre
 pub use hidden::Hidden;
 pub use prepared::Prepared;
 pub use table::table;
-pub use world::{campaign, measure, model, small, spheres};
+pub use world::{campaign, measure};

@@ -14,13 +14,13 @@ use diagnosis::beds::observables::at;
 use diagnosis::beds::{BedError, Stand, Variation};
 
 /// The analyst's model of the bed.
-const MODEL: &str = include_str!("model.toml");
+pub(super) const MODEL: &str = include_str!("model.toml");
 
 /// The analyst's model of a small bed.
-const SMALL: &str = include_str!("small.toml");
+pub(super) const SMALL: &str = include_str!("small.toml");
 
 /// The analyst's model of a bed of spheres.
-const SPHERES: &str = include_str!("spheres.toml");
+pub(super) const SPHERES: &str = include_str!("spheres.toml");
 
 /// How well a bed is weighed and its packing is known: the packing fraction, and the bulk density, relative.
 const PACKING_SIGMA: f64 = 0.003;
@@ -44,38 +44,14 @@ const FLIGHT: usize = 10;
 /// Frames behind the stop that it still takes.
 const STILL: usize = 5;
 
-/// The analyst's model, with its beds of the seeds from `seed` on.
+/// The model of `text`, which is one of the above.
 ///
 /// # Errors
 /// Never: the model is ours.
-pub fn model(seed: u64) -> Result<Model, ConfigError> {
-    load(MODEL, seed)
-}
-
-/// The analyst's model of a small bed, likewise.
-///
-/// # Errors
-/// Never: the model is ours.
-pub fn small(seed: u64) -> Result<Model, ConfigError> {
-    load(SMALL, seed)
-}
-
-/// The analyst's model of a bed of spheres, likewise.
-///
-/// # Errors
-/// Never: the model is ours.
-pub fn spheres(seed: u64) -> Result<Model, ConfigError> {
-    load(SPHERES, seed)
-}
-
-fn load(text: &str, seed: u64) -> Result<Model, ConfigError> {
-    let source = ModelSource::Text {
-        name: "the bed of the benchmark".to_owned(),
-        text: text.to_owned(),
-        folder: ".".into(),
-    };
-    let options = LoadOptions { seed: Some(seed), ..LoadOptions::default() };
-    Ok(Model::load(source, &options)?.model)
+pub(super) fn load(text: String) -> Result<Model, ConfigError> {
+    let source =
+        ModelSource::Text { name: "the bed of the benchmark".to_owned(), text, folder: ".".into() };
+    Ok(Model::load(source, &LoadOptions::default())?.model)
 }
 
 /// The campaign before anything is measured.
