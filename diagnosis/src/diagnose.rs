@@ -4,67 +4,62 @@
 //! to the best of so many (`p1`). What the data cannot tell apart is named together. Whatever is named
 //! must leave no lack of fit and must predict conditions that were not fitted to.
 
-use std::collections::BTreeMap;
-
-use measurements::MeasurementSet;
-
-use crate::added_force::added_forces;
 use crate::bench::{Bench, BenchError, Fitted};
-use crate::doubts::{doubts, evidence, no_repeats};
 use crate::fitted_parameters::parameters;
-use crate::force_error::ForceErrors;
-use crate::frequency::of_benchmark;
 use crate::held_out::HeldOut;
+use crate::judge::{Judge, adequate, cannot_tell, nothing, unexplained};
 use crate::lack_of_fit::lack_of_fit;
 use crate::marginal::{Marginals, marginals};
-use crate::missing_force::{log_odds, missing_force};
+use crate::missing_force::missing_force;
 use crate::noise::Noise;
-use crate::pair::{Pair, best_pair};
-use crate::ranked::ranked;
 use crate::score::Ranking;
 use crate::sensitivity::Point;
-use crate::verdict::{
-    Amplitude, ApparatusError, Diagnosis, Strength, StrengthReason, Unexplained, Verdict,
-};
+use crate::verdict::{ApparatusError, Diagnosis, Strength, Verdict};
 
-/// Probability of error at which something counts as found, or a model as rejected.
-pub const ALPHA: f64 = 0.01;
-
-/// Standard errors above an amplitude up to which the true one lies, 95 % one-sided.
-const UPPER: f64 = 1.645;
+pub use crate::judge::ALPHA;
 
 /// How often weights and ranking are taken in turn: the weights are those along the best model.
 const ROUNDS: usize = 2;
 
-/// Fall of the likelihood from which a scatter between conditions is seen: two standard errors.
-const SEEN: f64 = 4.0;
-
-/// By how much more likely two effects have to be than one that explains the data, and one that leaves something than a
-/// force of any form: odds of 100 to 1, times the number of effects that one is chosen from.
-const LIKELIER: f64 = 15.0;
-
-/// Logarithm of the odds from which a force of some form, rather than sessions that nobody declared, makes conditions differ.
-const FAR_LIKELIER: f64 = 7.0;
-
-/// At or below this probability of a lack of fit, an effect that leaves a part is compared with a force of any form.
-const DOUBTFUL: f64 = 0.1;
+/// How often the model as it is is fitted again from where the best effect ends, if it then fits better.
+const RESTARTS: usize = 2;
 
 /// Diagnoses the model on `bench`; equal `seed` and measurements give equal bytes.
 ///
 /// # Errors
 /// If the model fails.
 pub fn diagnose(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
-    let baseline = match bench.fit(&Point::start(bench.forward)) {
+    let mut baseline = match bench.fit(&Point::start(bench.forward)) {
         Ok(fitted) => fitted,
         Err(why @ (BenchError::NoErrors | BenchError::TooFew { .. })) => {
             return Ok(cannot_tell(bench, why.to_string()));
         }
         Err(other) => return Err(other),
     };
+    let mut restarts = 0;
+    loop {
+        let Some(judge) = ranked_by(bench, &baseline, seed)? else {
+            let why = "no effect can be tested with these data".to_owned();
+            return Ok(cannot_tell(bench, why));
+        };
+        match judge.lower_baseline().filter(|_| restarts < RESTARTS) {
+            Some(lower) => baseline = lower,
+            None => return judge.verdict(),
+        }
+        restarts += 1;
+    }
+}
+
+/// All effects beside `baseline`; `None` where none can be tested.
+fn ranked_by<'a>(
+    bench: &'a Bench<'a>,
+    baseline: &Fitted,
+    seed: u64,
+) -> Result<Option<Judge<'a>>, BenchError> {
     let candidates: Vec<usize> = (0..bench.forward.candidates().len())
         .filter(|&index| bench.forward.candidates()[index].not_testable.is_none())
         .collect();
-    let marginals = marginals(bench, &baseline, &candidates, seed)?;
+    let marginals = marginals(bench, baseline, &candidates, seed)?;
     let mut weighed = match marginals {
         Some(Marginals { between, .. }) => {
             bench.fit_once(&baseline.fit.point, &Noise { between, ..baseline.noise })?
@@ -83,11 +78,10 @@ pub fn diagnose(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
         weighed = Fitted { fit, ..leader };
         ranking = rank(&weighed);
     }
-    let Some(leader) = lead(bench, &mut ranking, &weighed, marginals.as_ref())? else {
-        return Ok(cannot_tell(bench, "no effect can be tested with these data".to_owned()));
-    };
+    let leader = lead(bench, &mut ranking, &weighed, marginals.as_ref())?;
     let alike = ranking.not_separable(bench);
-    Judge { bench, seed, baseline, weighed, ranking, alike, leader }.verdict()
+    let baseline = baseline.clone();
+    Ok(leader.map(|leader| Judge { bench, seed, baseline, weighed, ranking, alike, leader }))
 }
 
 /// What there is to say of the model as it is, before any effect is looked for.
@@ -113,15 +107,6 @@ pub(crate) fn as_it_is(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchE
     judge.diagnosis(verdict, &judge.baseline, (p_lof, None), (String::new(), None))
 }
 
-/// `fitted` where conditions differ by no more than their runs explain: a misfit is judged by those.
-fn without_width(bench: &Bench<'_>, fitted: &Fitted) -> Result<Fitted, BenchError> {
-    let noise = Noise { between: 0.0, ..fitted.noise };
-    match fitted.noise.between > 0.0 {
-        true => bench.fit_once(&fitted.fit.point, &noise),
-        false => Ok(fitted.clone()),
-    }
-}
-
 /// The model with the best effect under its own noise; effects around whose fit the model cannot be
 /// integrated are taken out on the way.
 fn lead(
@@ -141,333 +126,6 @@ fn lead(
     Ok(None)
 }
 
-/// All that a verdict is made of.
-struct Judge<'a> {
-    bench: &'a Bench<'a>,
-    seed: u64,
-    /// The model as it is, under its own noise.
-    baseline: Fitted,
-    /// The model as it is, under the noise of the best model.
-    weighed: Fitted,
-    ranking: Ranking,
-    /// Places of what is not told from the best, itself included.
-    alike: Vec<usize>,
-    /// The model with the best effect, under its own noise.
-    leader: Fitted,
-}
-
-/// Two effects that explain the data.
-struct Two {
-    pair: Pair,
-    /// Probability of a lack of fit as large as theirs.
-    p_lof: Option<f64>,
-    held_out: HeldOut,
-}
-
-impl Judge<'_> {
-    fn verdict(self) -> Result<Diagnosis, BenchError> {
-        let p_lof = lack_of_fit(self.bench, &self.baseline, self.seed)?;
-        if self.ranking.p > ALPHA {
-            if adequate(p_lof) {
-                let baseline = &self.baseline;
-                if let Some(why) = no_repeats(baseline) {
-                    return Ok(cannot_tell(self.bench, why));
-                }
-                let hint = self.differ_by_a_force()?;
-                let verdict = match hint {
-                    Some(_) => Verdict::NoneOfTheCandidates,
-                    None => nothing(self.bench, baseline),
-                };
-                let found = (hint.unwrap_or_default(), None);
-                return self.diagnosis(verdict, baseline, (p_lof, None), found);
-            }
-            if let Some(wide) = self.bench.with_sessions_of_their_own(&self.baseline)?
-                && adequate(lack_of_fit(self.bench, &wide, self.seed)?)
-            {
-                let verdict = nothing(self.bench, &wide);
-                let hint = "conditions differ by more than their repeats show, as beds do that are poured anew; if they \
-                            were, say which runs are of one pouring in a column `session` of the runs";
-                return self.diagnosis(verdict, &wide, (p_lof, None), (hint.to_owned(), None));
-            }
-            let hint = "the model is rejected, and no listed effect helps".to_owned();
-            return self.refuse((p_lof, None), hint);
-        }
-        let leader = without_width(self.bench, &self.leader)?;
-        let p_leader = lack_of_fit(self.bench, &leader, self.seed)?;
-        if p_leader.is_none() {
-            let leader = self.name(self.ranking.scores[0].candidate());
-            let why = format!("with {leader} as much is free as was measured: nothing judges it");
-            return Ok(cannot_tell(self.bench, why));
-        }
-        let held_out = HeldOut::of(self.bench, &self.weighed, &self.leader)?;
-        let leader = self.name(self.ranking.scores[0].candidate());
-        // Real effects do not follow formulas exactly: a lack of fit counts only if held-out conditions show it.
-        let is_of_its_form =
-            self.bench.forward.is_judged_by_held_out() && held_out.is_within_noise();
-        let is_explained = adequate(p_leader) || is_of_its_form;
-        // Grains are asked again, by impacts on fresh beds: there, two are tried only where one is not enough.
-        let is_enough =
-            !self.bench.forward.is_judged_by_held_out() && !self.leaves_conditions_apart();
-        if is_explained && is_enough {
-            return self.one((p_lof, p_leader), held_out);
-        }
-        if let Some(Two { pair, p_lof: p_pair, held_out }) = self.two(is_explained)? {
-            let by_chance = pair.p;
-            let hint = format!(
-                "both are needed (each by chance: {by_chance:.1e} at most), or one effect outside the list"
-            );
-            let found = (hint, Some(held_out));
-            return self.diagnosis(Verdict::Pair, &pair.fitted, (p_lof, p_pair), found);
-        }
-        // What takes nearly all of a clear error is there, in a form that no formula here has, or not alone.
-        let is_most = self.bench.forward.is_judged_by_held_out()
-            && self.alike.len() == 1
-            && held_out.takes_most();
-        let is_named = is_explained || is_most;
-        let is_one_of_many = is_named && self.is_one_of_many(p_leader, &held_out)?;
-        if is_named && !is_one_of_many {
-            let mut found = self.one((p_lof, p_leader), held_out)?;
-            if !adequate(p_leader) && !found.effects.is_empty() {
-                found.strength_reasons.push(StrengthReason::OfAnotherForm);
-                found.strength = Strength::of(&found.strength_reasons);
-            }
-            return Ok(found);
-        }
-        let part = held_out.in_words().map_or(String::new(), |words| format!(": {words}"));
-        let hint = match is_one_of_many {
-            true => format!(
-                "{leader} leaves a part of what was held out, and a force of another form is about as likely"
-            ),
-            false => {
-                format!(
-                    "no one or two listed effects explain the data; {leader} explains a part{part}"
-                )
-            }
-        };
-        if !self.bench.forward.is_judged_by_held_out() {
-            // Impacts on fresh beds decide whether what is left matters.
-            let verdict = match self.alike.len() {
-                1 => Verdict::Supported,
-                _ => Verdict::NotSeparable,
-            };
-            return self.diagnosis(
-                verdict,
-                &self.leader,
-                (p_lof, p_leader),
-                (hint, Some(held_out)),
-            );
-        }
-        self.refuse((p_lof, p_leader), hint)
-    }
-
-    /// What to say where conditions differ by more than their repeats show, and a force of some form explains these
-    /// differences far better than beds that are poured anew: those differ at random.
-    fn differ_by_a_force(&self) -> Result<Option<String>, BenchError> {
-        if self.baseline.noise.sessions.gain < SEEN || !self.bench.forward.is_judged_by_held_out() {
-            return Ok(None);
-        }
-        let odds = log_odds(self.bench, &self.baseline)?.filter(|odds| *odds >= FAR_LIKELIER);
-        Ok(odds.map(|odds| {
-            format!(
-                "conditions differ by more than their repeats show, and a force that depends on what they are explains it \
-                 better than beds that are poured anew (log odds {odds:.0})"
-            )
-        }))
-    }
-
-    /// Whether conditions differ with the best effect by more than their repeats show.
-    fn leaves_conditions_apart(&self) -> bool {
-        self.leader.noise.sessions.gain >= SEEN
-    }
-
-    /// Whether the best effect leaves something, and is not far more likely than a force of any form: then it is the
-    /// listed one that comes nearest.
-    fn is_one_of_many(&self, p: Option<f64>, held_out: &HeldOut) -> Result<bool, BenchError> {
-        let leaves = held_out.leaves_a_part() && p.is_some_and(|p| p <= DOUBTFUL);
-        if !leaves || !self.bench.forward.is_judged_by_held_out() {
-            return Ok(false);
-        }
-        let of_leader = 0.5 * (self.baseline.deviance() - self.leader.deviance());
-        let of_any = log_odds(self.bench, &self.baseline)?;
-        Ok(of_any.is_some_and(|of_any| of_any + LIKELIER > of_leader))
-    }
-
-    /// The verdict on the best effect alone, with which the model explains what was fitted.
-    fn one(
-        &self,
-        p: (Option<f64>, Option<f64>),
-        held_out: HeldOut,
-    ) -> Result<Diagnosis, BenchError> {
-        if held_out.refutes() {
-            let leader = self.name(self.ranking.scores[0].candidate());
-            let hint = format!(
-                "{leader} explains what was fitted, but predicts what was left out worse than without it"
-            );
-            return self.refuse(p, hint);
-        }
-        if let Some(hint) = self.too_small(&held_out) {
-            return self.below_noise(p, hint, held_out);
-        }
-        let verdict = match self.alike.len() {
-            1 => Verdict::Supported,
-            _ => Verdict::NotSeparable,
-        };
-        self.diagnosis(verdict, &self.leader, p, (String::new(), Some(held_out)))
-    }
-
-    /// The two effects that explain the data, if there are two; where one does (`is_explained`), two have to be far more
-    /// likely.
-    fn two(&self, is_explained: bool) -> Result<Option<Two>, BenchError> {
-        let pair = best_pair(self.bench, &self.weighed, &self.ranking, self.seed)?;
-        let Some(pair) = pair.filter(|pair| pair.p <= ALPHA) else { return Ok(None) };
-        if is_explained && self.leader.deviance() - pair.fitted.deviance() < LIKELIER {
-            return Ok(None);
-        }
-        let narrow = without_width(self.bench, &pair.fitted)?;
-        let p_lof = lack_of_fit(self.bench, &narrow, self.seed)?;
-        let held_out = HeldOut::of(self.bench, &self.weighed, &pair.fitted)?;
-        let stands = adequate(p_lof) && !held_out.refutes() && self.too_small(&held_out).is_none();
-        Ok(stands.then_some(Two { pair, p_lof, held_out }))
-    }
-
-    /// The verdict none-of-the-candidates, or below-noise if the model misses held-out conditions by little more than
-    /// their noise.
-    fn refuse(&self, p: (Option<f64>, Option<f64>), hint: String) -> Result<Diagnosis, BenchError> {
-        let held_out = HeldOut::of(self.bench, &self.baseline, &self.baseline)?;
-        if self.bench.forward.is_judged_by_held_out() && held_out.is_above_noise() == Some(false) {
-            return self.below_noise(p, hint, held_out);
-        }
-        let found = (hint, Some(held_out));
-        self.diagnosis(Verdict::NoneOfTheCandidates, &self.baseline, p, found)
-    }
-
-    fn below_noise(
-        &self,
-        p: (Option<f64>, Option<f64>),
-        hint: String,
-        held_out: HeldOut,
-    ) -> Result<Diagnosis, BenchError> {
-        self.diagnosis(Verdict::BelowNoise, &self.baseline, p, (hint, Some(held_out)))
-    }
-
-    /// The reason why an effect with this error on held-out conditions is too small to be named, with the largest
-    /// amplitude that these data allow; `None` for an effect that is large enough.
-    fn too_small(&self, held_out: &HeldOut) -> Option<String> {
-        if !self.bench.forward.is_judged_by_held_out() {
-            return None;
-        }
-        let best = &self.ranking.scores[0];
-        let candidate = &self.bench.forward.candidates()[best.candidate()];
-        let most = best.amplitude().abs() + UPPER * best.standard_error.unwrap_or(0.0);
-        held_out.too_small(&candidate.id, most)
-    }
-
-    fn diagnosis(
-        &self,
-        verdict: Verdict,
-        proposed: &Fitted,
-        (p_lof, p_lof_with): (Option<f64>, Option<f64>),
-        (hint, held_out): (String, Option<HeldOut>),
-    ) -> Result<Diagnosis, BenchError> {
-        let Self { bench, ranking, .. } = self;
-        let leaders: Vec<String> =
-            self.alike.iter().map(|&place| self.name(ranking.scores[place].candidate())).collect();
-        let not_separable = match verdict {
-            Verdict::NotSeparable => leaders.clone(),
-            _ => Vec::new(),
-        };
-        let left_by = match verdict {
-            Verdict::NoneOfTheCandidates => &self.baseline,
-            _ => proposed,
-        };
-        let unexplained = unexplained(bench, verdict, left_by, (hint, self.seed))?;
-        let before = if proposed.fit.point.effects.is_empty() { proposed } else { &self.weighed };
-        let amplitudes: Vec<Amplitude> = proposed
-            .fit
-            .point
-            .effects
-            .iter()
-            .enumerate()
-            .zip(added_forces(bench, &proposed.fit))
-            .map(|((at, &(index, q)), force)| {
-                let se = proposed.fit.standard_error(proposed.fit.point.parameters.len() + at);
-                let candidate = &bench.forward.candidates()[index];
-                let (at_bound, unusual) = (candidate.bound_at(q), candidate.is_unusual(q, se));
-                let interval_95 = candidate.interval_95(q, se);
-                let form = candidate.form.iter().copied().collect();
-                let id = self.name(index);
-                Amplitude { id, form, q, se, at_bound, interval_95, unusual, force }
-            })
-            .collect();
-        let held_out = match held_out {
-            Some(known) => known,
-            None => HeldOut::of(bench, before, proposed)?,
-        };
-        let missing_force = match verdict {
-            // Of a bed it is sought once, when impacts have confirmed the verdict.
-            Verdict::NoneOfTheCandidates if bench.forward.by_formulas().is_some() => missing_force(
-                bench,
-                &self.baseline,
-                ranking.scores.first().map(|score| score.delta),
-            )?,
-            _ => None,
-        };
-        // A fit that misses the data says nothing of the apparatus.
-        let explains =
-            adequate(if proposed.fit.point.effects.is_empty() { p_lof } else { p_lof_with });
-        let found = |mut errors: Vec<ApparatusError>| {
-            errors.iter_mut().for_each(|error| error.named &= explains);
-            errors
-        };
-        let mut strength_reasons = doubts(bench, proposed, &amplitudes, &held_out);
-        let is_nothing = matches!(
-            verdict,
-            Verdict::NothingDetected
-                | Verdict::ExplainedByApparatus
-                | Verdict::ExplainedByPreparation
-        );
-        if is_nothing && held_out.is_above_noise() == Some(true) {
-            strength_reasons.push(StrengthReason::HeldOutAboveNoise);
-        }
-        Ok(Diagnosis {
-            verdict,
-            strength: Strength::of(&strength_reasons),
-            probability: match bench.forward.is_judged_by_held_out() {
-                true => of_benchmark(verdict),
-                false => None,
-            },
-            evidence: evidence(bench, proposed),
-            warnings: warnings(bench, proposed, &amplitudes),
-            strength_reasons,
-            effects: amplitudes.iter().map(|amplitude| amplitude.id.clone()).collect(),
-            not_separable,
-            leaders,
-            ranking: ranked(bench, Some(ranking)),
-            p1: (!ranking.scores.is_empty()).then_some(ranking.p),
-            p_lof,
-            p_lof_with,
-            noise: proposed.noise.to_json(bench.set, bench.forward),
-            holdout: Some(held_out),
-            unexplained,
-            missing_force,
-            apparatus: found(ApparatusError::all(bench.forward, proposed)),
-            preparation: ApparatusError::of_preparation(bench.forward, &proposed.fit),
-            next: Vec::new(),
-            measured: measured(bench.set),
-            after: None,
-            parameters: parameters(bench.forward, &proposed.fit),
-            amplitudes,
-            amplitude_correlation: correlation(proposed),
-            baseline: Some(self.baseline.clone()),
-            proposed: Some(proposed.clone()),
-        })
-    }
-
-    fn name(&self, candidate: usize) -> String {
-        self.bench.forward.candidates()[candidate].id.clone()
-    }
-}
-
 /// Seeks the force that the model lacks where the verdict of `diagnosis` did not ask for it.
 ///
 /// # Errors
@@ -478,35 +136,6 @@ pub fn seek_missing_force(bench: &Bench<'_>, diagnosis: &mut Diagnosis) -> Resul
         diagnosis.missing_force = missing_force(bench, baseline, best)?;
     }
     Ok(())
-}
-
-/// The verdict without an effect: it depends on what of the preparation and of the apparatus `fitted` names.
-fn nothing(bench: &Bench<'_>, fitted: &Fitted) -> Verdict {
-    let is_named = |errors: Vec<ApparatusError>| errors.iter().any(|error| error.named);
-    if is_named(ApparatusError::of_preparation(bench.forward, &fitted.fit)) {
-        Verdict::ExplainedByPreparation
-    } else if is_named(ApparatusError::all(bench.forward, fitted)) {
-        Verdict::ExplainedByApparatus
-    } else {
-        Verdict::NothingDetected
-    }
-}
-
-/// What was left aside of the measurements, and what is unusual of what is named.
-fn warnings(bench: &Bench<'_>, proposed: &Fitted, amplitudes: &[Amplitude]) -> Vec<String> {
-    let between = proposed.noise.sessions;
-    let differ = (between.gain >= SEEN).then(|| {
-        format!(
-            "conditions differ by {:.1} % of their resistance beyond what their repeats show: if they are of several \
-             days or beds, say which in a column `session` of the runs",
-            100.0 * between.sd
-        )
-    });
-    let unusual = amplitudes.iter().filter(|amplitude| amplitude.unusual);
-    let unusual = unusual.map(|amplitude| {
-        format!("{} of {:.4} is outside of its usual range", amplitude.id, amplitude.q)
-    });
-    bench.observed.notes.iter().cloned().chain(differ).chain(unusual).collect()
 }
 
 /// Takes back what `diagnosis` names, since `why`: what is left is whether the model as it is explains the data.
@@ -544,48 +173,4 @@ pub(crate) fn withdraw(
         proposed: Some(baseline.clone()),
         ..diagnosis
     })
-}
-
-/// What `fitted`, which is what `verdict` says, leaves over, and what to try where nothing listed helps.
-fn unexplained(
-    bench: &Bench<'_>,
-    verdict: Verdict,
-    fitted: &Fitted,
-    (hint, seed): (String, u64),
-) -> Result<Unexplained, BenchError> {
-    let remaining = ForceErrors::of(bench, fitted, seed)?;
-    let depends_on = match verdict {
-        Verdict::NoneOfTheCandidates | Verdict::Pair => remaining.depends_on(),
-        _ => remaining.drifts(),
-    };
-    Ok(Unexplained { depends_on, hint })
-}
-
-/// Whether a model leaves no lack of fit; one that leaves nothing to judge by is not adequate.
-fn adequate(p_lof: Option<f64>) -> bool {
-    p_lof.is_some_and(|p| p > ALPHA)
-}
-
-/// Of the amplitudes of a pair.
-fn correlation(fitted: &Fitted) -> Option<f64> {
-    let first = fitted.fit.point.parameters.len();
-    if fitted.fit.point.effects.len() != 2 {
-        return None;
-    }
-    let (a, b) = (fitted.fit.standard_error(first)?, fitted.fit.standard_error(first + 1)?);
-    Some(fitted.fit.covariance[(first, first + 1)] / (a * b)).filter(|c| c.is_finite())
-}
-
-fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {
-    Diagnosis { measured: measured(bench.set), ..Diagnosis::cannot_tell(ranked(bench, None), why) }
-}
-
-/// The names of all runs of `set`, by condition.
-fn measured(set: &MeasurementSet) -> BTreeMap<String, Vec<String>> {
-    let mut measured: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    for run in &set.runs {
-        let condition = set.conditions[run.condition].id.clone();
-        measured.entry(condition).or_default().push(run.name.clone());
-    }
-    measured
 }

@@ -42,6 +42,7 @@ pub mod force_error;
 pub mod forward;
 mod frequency;
 pub mod held_out;
+mod judge;
 pub mod lack_of_fit;
 mod marginal;
 pub mod missing_force;

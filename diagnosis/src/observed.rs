@@ -12,6 +12,10 @@ use crate::curves::{self, CommonCurve};
 use crate::observable::{Curve, Layout, Observable};
 use crate::resampling::{depth_and_range, seen_grid, stopped_at};
 
+/// Share of the time of an oblique impact to which its stop counts: another component of the velocity is the last to vanish
+/// all at once, and a fit does not get around that.
+const OBLIQUE: f64 = 0.03;
+
 /// Error that a reading of a position is credited with where the set states none (m).
 const UNSTATED: f64 = 1e-4;
 
@@ -453,6 +457,11 @@ pub(crate) fn reading(
         set.instrument.rate.map_or(position / (STOPPED * condition.speed.max(own_speed)), |rate| {
             1.0 / (rate * 12.0_f64.sqrt())
         });
+    // Beside a path along the surface, which has the stop too.
+    let time = match layout.times.last() {
+        Some(last) if layout.along_x => libm::hypot(time, OBLIQUE * last),
+        _ => time,
+    };
     let own = |all: &[Option<f64>], at: usize| all.get(at).copied().flatten();
     let frame = |at: usize| own(frames, at).map_or(position, counted);
     let n = layout.times.len();
