@@ -55,6 +55,7 @@ pub mod picture;
 mod projection;
 mod random;
 mod ranked;
+mod reading_error;
 mod redraw;
 mod resampling;
 pub mod residual;

@@ -14,7 +14,8 @@ use serde_json::{Value, json};
 use crate::between::Between;
 use crate::curves::reading_error;
 use crate::forward::Forward;
-use crate::observed::{Observed, ObservedCondition, least_position_error, position_error};
+use crate::observed::{Observed, ObservedCondition};
+use crate::reading_error::{least_position_error, position_error};
 use crate::rounding::rounded;
 use crate::sensitivity::{Sensitivity, Spread};
 

@@ -21,7 +21,8 @@ use crate::bench::{Bench, BenchError, Fitted};
 use crate::forward::{Forward, Moment, Passages, PredictError, Request, Scatter};
 use crate::noise::Noise;
 use crate::observable::Layout;
-use crate::observed::{Observed, ObservedCondition, reach, reading};
+use crate::observed::{Observed, ObservedCondition, reach};
+use crate::reading_error::reading;
 use crate::resistive::{ForwardError, ResistiveForward};
 use crate::sensitivity::Point;
 

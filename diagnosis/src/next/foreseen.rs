@@ -115,8 +115,11 @@ impl ObservedCondition {
         let kinds: Vec<Observable> = layout.kinds();
         Self {
             id: condition.id.clone(),
-            reading: crate::observed::reading(set, &layout, condition, [&[], &[]]),
-            stated: kinds.iter().map(|kind| crate::observed::stated(&set.stated, *kind)).collect(),
+            reading: crate::reading_error::reading(set, &layout, condition, [&[], &[]]),
+            stated: kinds
+                .iter()
+                .map(|kind| crate::reading_error::stated(&set.stated, *kind))
+                .collect(),
             reach: crate::observed::reach(set, &layout, &mean, condition),
             runs: vec![mean.clone(); repeats],
             order: vec![None; repeats],

@@ -1,7 +1,6 @@
 //! A camera that is not level: bodies that fall freely accelerate sideways in its picture.
 
 use measurements::{Frame, Reading};
-use nalgebra::{DMatrix, DVector};
 
 /// Fewest readings of a free fall that show an acceleration.
 const FEWEST: usize = 8;
@@ -44,18 +43,25 @@ impl Flight<'_> {
         if own.len() < FEWEST {
             return None;
         }
-        let middle = 0.5 * (first + last);
-        let design = DMatrix::from_fn(own.len(), 3, |row, power| {
-            libm::pow(own[row].t - middle, power as f64)
-        });
-        let ways = DVector::from_iterator(own.len(), own.iter().map(|one| one.x));
-        let inverse = (design.transpose() * &design).try_inverse()?;
-        let found = &inverse * (design.transpose() * &ways);
-        let freedom = (own.len() - 3) as f64;
-        let noise = ((&ways - &design * &found).norm_squared() / freedom).sqrt();
-        let se = 2.0 * noise * inverse[(2, 2)].sqrt() / gravity;
+        // Straight line and curvature, each free of what is before it.
+        let n = own.len() as f64;
+        let mean = |of: &dyn Fn(&Frame) -> f64| own.iter().map(|one| of(one)).sum::<f64>() / n;
+        let middle = mean(&|one| one.t);
+        let line = |one: &Frame| one.t - middle;
+        let square = mean(&|one| line(one).powi(2));
+        let lean = mean(&|one| line(one).powi(3)) / square;
+        let bend = |one: &Frame| line(one).powi(2) - lean * line(one) - square;
+        let bends = mean(&|one| bend(one).powi(2));
+        let [level, slope, curvature] = [
+            mean(&|one| one.x),
+            mean(&|one| line(one) * one.x) / square,
+            mean(&|one| bend(one) * one.x) / bends,
+        ];
+        let miss = |one: &Frame| one.x - level - slope * line(one) - curvature * bend(one);
+        let noise = (n * mean(&|one| miss(one).powi(2)) / (n - 3.0)).sqrt();
+        let se = 2.0 * noise / (n * bends).sqrt() / gravity;
         let is_told = se.is_finite() && se > 0.0;
-        is_told.then(|| Reading { value: 2.0 * found[2] / gravity, se })
+        is_told.then(|| Reading { value: 2.0 * curvature / gravity, se })
     }
 }
 
