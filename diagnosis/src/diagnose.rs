@@ -21,32 +21,21 @@ pub use crate::judge::ALPHA;
 /// How often weights and ranking are taken in turn: the weights are those along the best model.
 const ROUNDS: usize = 2;
 
-/// How often the model as it is is fitted again from where the best effect ends, if it then fits better.
-const RESTARTS: usize = 2;
-
 /// Diagnoses the model on `bench`; equal `seed` and measurements give equal bytes.
 ///
 /// # Errors
 /// If the model fails.
 pub fn diagnose(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchError> {
-    let mut baseline = match bench.fit(&Point::start(bench.forward)) {
+    let baseline = match bench.fit(&Point::start(bench.forward)) {
         Ok(fitted) => fitted,
         Err(why @ (BenchError::NoErrors | BenchError::TooFew { .. })) => {
             return Ok(cannot_tell(bench, why.to_string()));
         }
         Err(other) => return Err(other),
     };
-    let mut restarts = 0;
-    loop {
-        let Some(judge) = ranked_by(bench, &baseline, seed)? else {
-            let why = "no effect can be tested with these data".to_owned();
-            return Ok(cannot_tell(bench, why));
-        };
-        match judge.lower_baseline().filter(|_| restarts < RESTARTS) {
-            Some(lower) => baseline = lower,
-            None => return judge.verdict(),
-        }
-        restarts += 1;
+    match ranked_by(bench, &baseline, seed)? {
+        Some(judge) => judge.verdict(),
+        None => Ok(cannot_tell(bench, "no effect can be tested with these data".to_owned())),
     }
 }
 

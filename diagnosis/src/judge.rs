@@ -9,7 +9,6 @@ use crate::bench::{Bench, BenchError, Fitted};
 use crate::doubts::{doubts, evidence, no_repeats};
 use crate::fitted_parameters::parameters;
 use crate::force_error::ForceErrors;
-use crate::forward::ParameterKind;
 use crate::frequency::of_benchmark;
 use crate::held_out::HeldOut;
 use crate::lack_of_fit::lack_of_fit;
@@ -18,7 +17,6 @@ use crate::noise::Noise;
 use crate::pair::{Pair, best_pair};
 use crate::ranked::ranked;
 use crate::score::Ranking;
-use crate::sensitivity::Point;
 use crate::verdict::{
     Amplitude, ApparatusError, Diagnosis, Strength, StrengthReason, Unexplained, Verdict,
 };
@@ -41,9 +39,6 @@ const FAR_LIKELIER: f64 = 7.0;
 
 /// At or below this probability of a lack of fit, an effect that leaves a part is compared with a force of any form.
 const DOUBTFUL: f64 = 0.1;
-
-/// Fall of the deviance that a better fit takes.
-const LOWER: f64 = 1.0;
 
 /// All that a verdict is made of.
 pub(crate) struct Judge<'a> {
@@ -162,21 +157,6 @@ impl Judge<'_> {
             );
         }
         self.refuse((p_lof, p_leader), hint)
-    }
-
-    /// The model as it is, fitted from the parameters and the noise of the best effect, where that fits it better than its own
-    /// search did: else every effect would be credited with what the search missed.
-    pub(crate) fn lower_baseline(&self) -> Option<Fitted> {
-        let Self { bench, baseline, leader, .. } = self;
-        let mut start = Point::start(bench.forward);
-        let each = start.parameters.iter_mut().zip(bench.forward.parameters());
-        for ((own, of), found) in each.zip(&leader.fit.point.parameters) {
-            if of.kind != ParameterKind::Form {
-                *own = *found;
-            }
-        }
-        let lower = bench.fit_from(&start, &leader.noise).ok();
-        lower.filter(|lower| lower.deviance() < baseline.deviance() - LOWER)
     }
 
     /// What to say where conditions differ by more than their repeats show, and a force of some form explains these

@@ -13,17 +13,15 @@ const FALLING: f64 = 0.5;
 /// Change of the velocity over that of a stop from the stated speed, beyond which a unit is wrong.
 const MOST: f64 = 3.0;
 
-/// Share of that change below which the readings of a body that comes to rest have another unit, or another clock.
-const LEAST: f64 = 0.3;
-
 /// Share of the largest reading from which a body is braked, and the time before that, over that of a diameter at the speed
 /// at contact, in which it may be braked by less.
 const BRAKED: f64 = 0.15;
 const SOON: f64 = 1.5;
 
-/// Readings at the end of a run that show what it reads at rest, and how far they may scatter about 1.
+/// Readings at the end of a run that show what it reads at rest, and how far their mean and each of them may be from 1.
 const AT_REST: usize = 8;
 const SCATTER: f64 = 0.1;
+const NOISE: f64 = 0.4;
 
 /// Equal largest readings in a row that only the end of a range makes.
 const FLAT: usize = 4;
@@ -120,7 +118,7 @@ fn check_clock(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contr
     })
 }
 
-/// Names a unit with which bodies would be slowed down by far more than their speed, or come to rest by far less.
+/// Names a unit with which bodies would be slowed down by far more than their speed.
 fn check_units(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contradiction> {
     let ratio = |run: &Run| {
         let (condition, gravity) = (&set.conditions[run.condition], set.gravity_of(run));
@@ -132,25 +130,9 @@ fn check_units(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contr
         let possible = condition.speed + (gravity * condition.diameter).sqrt();
         change.sum::<f64>() / possible
     };
-    let rests = |run: &Run| {
-        let last = run.samples.len().checked_sub(AT_REST).map(|from| &run.samples[from..]);
-        last.is_some_and(|last| {
-            let mean = last.iter().map(|one| one.value).sum::<f64>() / last.len() as f64;
-            let is_near = |one: &Sample| (one.value - mean).abs() < LEAST * mean.abs();
-            mean > 0.0 && last.iter().all(is_near)
-        })
-    };
     let told = |ratio| format!("the accelerations take {ratio:.1} times the speed at contact away");
     let help = "are they in g, or the times in ms?";
-    over_time::check_unit(set, places, (MOST, ratio), (told, help)).or_else(|| {
-        // What is lost beyond one, so that a loss that is too small counts as one that is too large.
-        let lost = |run: &Run| if rests(run) { 1.0 - ratio(run) } else { 0.0 };
-        let told = |lost: f64| {
-            let taken = (1.0 - lost).max(0.0);
-            format!("the bodies come to rest, and the accelerations take {taken:.1} times the speed at contact away")
-        };
-        over_time::check_unit(set, places, (1.0 - LEAST, lost), (told, help))
-    })
+    over_time::check_unit(set, places, (MOST, ratio), (told, help))
 }
 
 /// Refuses readings beyond the range of the accelerometer where the set does not state it.
@@ -191,7 +173,11 @@ fn check_rest(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contra
     let is_one = |run: &&Run| {
         let last = run.samples.len().checked_sub(AT_REST).map(|from| &run.samples[from..]);
         let gravity = set.gravity_of(run);
-        let is_near = |all: &[Sample]| all.iter().all(|one| (one.value - 1.0).abs() < SCATTER);
+        let is_near = |all: &[Sample]| {
+            let mean = all.iter().map(|one| one.value).sum::<f64>() / all.len() as f64;
+            let noise = |one: &Sample| (one.value - 1.0).abs() < NOISE;
+            (mean - 1.0).abs() < SCATTER && all.iter().all(noise)
+        };
         !(0.5..2.0).contains(&gravity) && last.is_some_and(is_near)
     };
     let of: Vec<&Run> = set.runs.iter().filter(is_one).collect();

@@ -66,6 +66,12 @@ fn programs() {
 #[test]
 fn plain_tables() {
     let drops = formats::two();
+    let pushed = "Time (s),Displacement (mm),Load (N)\n0,0,1\n1,2,3\n2,4,6\n";
+    has(
+        &told("a.csv", pushed, &[]),
+        &["a.csv: `Load (N)` is a force or a pressure", "plunge new real-plates-simulant"],
+    );
+    has(&told("a.trk", "<object>\n", &[]), &["it is a file of Tracker, and no table", "export"]);
     let text = formats::long(&drops).replace("a1,10cm,50", "a1,10cm,x50");
     has(&told("a.csv", &text, &[]), &["a.csv:", "in the column `time [ms]` is not a number"]);
     let text = formats::wide(&drops).replace(';', ",");

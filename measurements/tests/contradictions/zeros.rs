@@ -95,6 +95,24 @@ fn the_numbers_that_are_given_mend_the_set() {
 }
 
 #[test]
+fn a_body_may_meet_a_grain_above_or_below_the_mean_surface() {
+    let mut set = Laboratory::default().measure(3);
+    // Runs meet the bed 7 mm below its mean surface, at it, or between.
+    for (at, run) in set.runs.iter_mut().enumerate() {
+        let speed = set.conditions[run.condition].speed;
+        let shift = [0.007, 0.0, 0.0035][at % 3] / speed;
+        run.frames.iter_mut().for_each(|frame| {
+            frame.t += shift;
+            frame.z += shift * speed;
+        });
+    }
+    assert!(Zeros::of(&set).offset.is_some());
+    assert_eq!(Zeros::over_grains(&set, 0.006).offset.map(|one| one.severity), None);
+    set.bed.grain_diameter = Some(0.0005);
+    assert!(Zeros::over_grains(&set, 0.006).offset.is_some(), "what a set states counts");
+}
+
+#[test]
 fn clips_that_begin_at_different_times_are_off_run_by_run() {
     let mut set = Laboratory::default().measure(3);
     let mut late = Vec::new();

@@ -87,6 +87,7 @@ fn wrong_signs_zeros_and_units_of_accelerations_are_refused() {
         (|one| one.value /= BED.gravity, "at rest the readings are 1 m/s^2"),
         (|one| one.value = one.value.min(2.0 * BED.gravity), "have a flat top"),
         (|one| one.at = -one.at, "the time does not go on"),
+        (|one| one.at += 0.3, "t = 0 is not first contact"),
     ];
     sets::assert_refused(measured, cases);
 }

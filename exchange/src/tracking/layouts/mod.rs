@@ -82,7 +82,9 @@ fn refuse_accelerations(sheet: &Sheet, columns: &Columns) -> Result<(), Fault> {
 /// Refuses the table of a testing machine or a penetrometer, which pushes a body.
 fn refuse_forces(sheet: &Sheet, columns: &Columns) -> Result<(), Fault> {
     let Ok(grid) = Grid::found(sheet) else { return Ok(()) };
-    match grid.headings.iter().find(|heading| heading.is_force()) {
+    // Of several runs beside each other, that without a position is named.
+    let is_force = |heading: &&Heading| heading.is_force() && !heading.name.contains(": ");
+    match grid.headings.iter().find(is_force) {
         Some(of) if columns.of(Role::Vertical).is_none() => {
             let what =
                 format!("`{}` is a force or a pressure: the body is pushed, not dropped", of.name);
