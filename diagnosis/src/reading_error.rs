@@ -53,7 +53,9 @@ pub(crate) fn reading(
         });
     // Beside a path along the surface, which has the stop too.
     let time = match layout.times.last() {
-        Some(last) if layout.along_x => libm::hypot(time, OBLIQUE * last),
+        Some(last) if layout.along_x && condition.angle_deg < 90.0 => {
+            libm::hypot(time, OBLIQUE * last)
+        }
         _ => time,
     };
     let own = |all: &[Option<f64>], at: usize| all.get(at).copied().flatten();

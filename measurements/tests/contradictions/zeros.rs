@@ -1,6 +1,6 @@
 //! Zeros of depth and clock, and speeds at contact.
 
-use measurements::{Frame, Severity, SpeedRatio, Zero, Zeros};
+use measurements::{Frame, MeasurementSet, Severity, SpeedRatio, Zero, Zeros};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
@@ -97,19 +97,19 @@ fn the_numbers_that_are_given_mend_the_set() {
 #[test]
 fn a_body_may_meet_a_grain_above_or_below_the_mean_surface() {
     let mut set = Laboratory::default().measure(3);
-    // Runs meet the bed 7 mm below its mean surface, at it, or between.
+    set.bed.grain_diameter = None;
+    // One run of three counts from a grain that lies 12 mm below the mean surface.
     for (at, run) in set.runs.iter_mut().enumerate() {
-        let speed = set.conditions[run.condition].speed;
-        let shift = [0.007, 0.0, 0.0035][at % 3] / speed;
-        run.frames.iter_mut().for_each(|frame| {
-            frame.t += shift;
-            frame.z += shift * speed;
-        });
+        let shift = if at % 3 == 0 { 0.012 } else { 0.0 };
+        run.frames.iter_mut().for_each(|frame| frame.z += shift);
     }
-    assert!(Zeros::of(&set).offset.is_some());
-    assert_eq!(Zeros::over_grains(&set, 0.006).offset.map(|one| one.severity), None);
+    let severity = |set: &MeasurementSet, grains: f64| {
+        Zeros::over_grains(set, grains).offset.map(|offset| offset.severity)
+    };
+    assert_eq!(severity(&set, 0.0), Some(Severity::Wrong));
+    assert_eq!(severity(&set, 0.010), None);
     set.bed.grain_diameter = Some(0.0005);
-    assert!(Zeros::over_grains(&set, 0.006).offset.is_some(), "what a set states counts");
+    assert_eq!(severity(&set, 0.010), Some(Severity::Wrong), "what a set states counts");
 }
 
 #[test]
