@@ -35,7 +35,7 @@ const SEEN: f64 = 4.0;
 const LIKELIER: f64 = 15.0;
 
 /// Logarithm of the odds from which a force of some form, rather than sessions that nobody declared, makes conditions differ.
-const FAR_LIKELIER: f64 = 7.0;
+const MORE_THAN_SESSIONS: f64 = 7.0;
 
 /// At or below this probability of a lack of fit, an effect that leaves a part is compared with a force of any form.
 const DOUBTFUL: f64 = 0.1;
@@ -165,7 +165,7 @@ impl Judge<'_> {
         if self.baseline.noise.sessions.gain < SEEN || !self.bench.forward.is_judged_by_held_out() {
             return Ok(None);
         }
-        let odds = log_odds(self.bench, &self.baseline)?.filter(|odds| *odds >= FAR_LIKELIER);
+        let odds = log_odds(self.bench, &self.baseline)?.filter(|odds| *odds >= MORE_THAN_SESSIONS);
         Ok(odds.map(|odds| {
             format!(
                 "conditions differ by more than their repeats show, and a force that depends on what they are explains it \
