@@ -7,10 +7,6 @@ use runner::beds::STOPPED;
 use crate::curves;
 use crate::observable::{Layout, Observable};
 
-/// Share of the time of an oblique impact to which its stop counts: another component of the velocity is the last to vanish
-/// all at once, and a fit does not get around that.
-const OBLIQUE: f64 = 0.03;
-
 /// Error that a reading of a position is credited with where the set states none (m).
 pub(crate) const UNSTATED: f64 = 1e-4;
 
@@ -51,13 +47,6 @@ pub(crate) fn reading(
         set.instrument.rate.map_or(position / (STOPPED * condition.speed.max(own_speed)), |rate| {
             1.0 / (rate * 12.0_f64.sqrt())
         });
-    // Beside a path along the surface, which has the stop too.
-    let time = match layout.times.last() {
-        Some(last) if layout.along_x && condition.angle_deg < 90.0 => {
-            libm::hypot(time, OBLIQUE * last)
-        }
-        _ => time,
-    };
     let own = |all: &[Option<f64>], at: usize| all.get(at).copied().flatten();
     let frame = |at: usize| own(frames, at).map_or(position, counted);
     let n = layout.times.len();
