@@ -54,7 +54,7 @@ pub(crate) fn evidence(bench: &Bench<'_>, fitted: &Fitted) -> Evidence {
     }
 }
 
-/// Why the repeats under which the model as it is was `fitted` hide everything; `None` of repeats that may be ones.
+/// Why the scatter between repeats in this fit of the model as it is hides every effect; `None` if the scatter is plausible.
 pub(crate) fn no_repeats(fitted: &Fitted) -> Option<String> {
     let scatter = fitted.noise.spread.coefficient;
     (scatter >= NO_REPEATS).then(|| {

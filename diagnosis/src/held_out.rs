@@ -107,7 +107,8 @@ const ALONE: f64 = 1e-8;
 /// A Gauss-Newton step that leaves so many times more of a condition than the fit to all is taken for one too far.
 const FAR: f64 = 2.0;
 
-/// Error without an effect, in that of the noise, of which an effect that leaves only noise explains enough under any conditions.
+/// Least error without an effect, in multiples of the noise, from which a fall to the noise counts although few conditions
+/// show it.
 const FAR_ABOVE: f64 = 2.5;
 
 /// Number of resamples of the conditions, and the least number of conditions to resample.
@@ -218,8 +219,8 @@ impl HeldOut {
         self.explained.is_some_and(|share| share < NEARLY_ALL)
     }
 
-    /// Whether what is proposed takes at least a quarter of the error away, in most choices of the conditions too, or all of
-    /// it but noise; `None` where no error is known.
+    /// Whether what is proposed takes at least a quarter of the error away, in most choices of the conditions too, or reduces
+    /// a large error to the noise; `None` where no error is known.
     #[must_use]
     pub fn is_nearer(&self) -> Option<bool> {
         let ratio = self.after? / self.before?;
@@ -227,8 +228,8 @@ impl HeldOut {
         Some(ratio <= NEARER && (in_most || self.leaves_only_noise()))
     }
 
-    /// Whether it takes most of an error away that is far above the noise, and leaves nothing but that. Where one of a few
-    /// conditions shows most of an effect, others say little of how much it explains.
+    /// Whether what is proposed reduces an error far above the noise to the noise. If one of a few conditions shows most of an
+    /// effect, resamples without this condition say little.
     fn leaves_only_noise(&self) -> bool {
         let errors = self.in_noise(self.before).zip(self.in_noise(self.after));
         errors.is_some_and(|(before, after)| {
@@ -236,8 +237,8 @@ impl HeldOut {
         })
     }
 
-    /// Whether a few conditions show what is proposed, and others do not: it leaves nothing but noise, and less than a quarter
-    /// of the error goes in some choices of them.
+    /// Whether only a few conditions show what is proposed: it reduces a large error to the noise, but takes less than a quarter
+    /// away in some choices of the conditions.
     #[must_use]
     pub(crate) fn is_shown_by_few(&self) -> bool {
         self.ratio_at_most.is_some_and(|most| most > NEARER) && self.leaves_only_noise()

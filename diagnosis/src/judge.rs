@@ -34,7 +34,7 @@ const SEEN: f64 = 4.0;
 /// force of any form: odds of 100 to 1, times the number of effects that one is chosen from.
 const LIKELIER: f64 = 15.0;
 
-/// Logarithm of the odds from which a force of some form, rather than sessions that nobody declared, makes conditions differ.
+/// Least log odds of a force of any form at which differences between conditions are not taken for undeclared sessions.
 const MORE_THAN_SESSIONS: f64 = 7.0;
 
 /// At or below this probability of a lack of fit, an effect that leaves a part is compared with a force of any form.
@@ -159,8 +159,8 @@ impl Judge<'_> {
         self.refuse((p_lof, p_leader), hint)
     }
 
-    /// What to say where conditions differ by more than their repeats show, and a force of some form explains these
-    /// differences far better than beds that are poured anew: those differ at random.
+    /// The hint for conditions that differ by more than their repeats show, if a force of some form explains the differences
+    /// far better than beds that are poured anew, which differ at random.
     fn differ_by_a_force(&self) -> Result<Option<String>, BenchError> {
         if self.baseline.noise.sessions.gain < SEEN || !self.bench.forward.is_judged_by_held_out() {
             return Ok(None);
@@ -168,8 +168,8 @@ impl Judge<'_> {
         let odds = log_odds(self.bench, &self.baseline)?.filter(|odds| *odds >= MORE_THAN_SESSIONS);
         Ok(odds.map(|odds| {
             format!(
-                "conditions differ by more than their repeats show, and a force that depends on what they are explains it \
-                 better than beds that are poured anew (log odds {odds:.0})"
+                "conditions differ by more than their repeats show, and a force that depends on speed, angle or body \
+                 explains this better than beds that are poured anew (log odds {odds:.0})"
             )
         }))
     }
@@ -179,8 +179,8 @@ impl Judge<'_> {
         self.leader.noise.sessions.gain >= SEEN
     }
 
-    /// Whether the best effect leaves something, or few conditions show it, and it is not far more likely than a force of any
-    /// form: then it is the listed one that comes nearest.
+    /// Whether the best effect leaves a part of the error, or few conditions show it, and it is not far more likely than a
+    /// force of any form: then it is only the nearest of the listed effects.
     fn is_one_of_many(&self, p: Option<f64>, held_out: &HeldOut) -> Result<bool, BenchError> {
         let leaves = held_out.leaves_a_part() && p.is_some_and(|p| p <= DOUBTFUL);
         if !(leaves || held_out.is_shown_by_few()) || !self.bench.forward.is_judged_by_held_out() {
@@ -225,7 +225,11 @@ impl Judge<'_> {
         let narrow = without_width(self.bench, &pair.fitted)?;
         let p_lof = lack_of_fit(self.bench, &narrow, self.seed)?;
         let held_out = HeldOut::of(self.bench, &self.weighed, &pair.fitted)?;
-        let stands = adequate(p_lof) && !held_out.refutes() && self.too_small(&held_out).is_none();
+        // Two effects fit what one condition shows more easily than one does.
+        let stands = adequate(p_lof)
+            && !held_out.refutes()
+            && !held_out.is_shown_by_few()
+            && self.too_small(&held_out).is_none();
         Ok(stands.then_some(Two { pair, p_lof, held_out }))
     }
 

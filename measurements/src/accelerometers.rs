@@ -13,9 +13,10 @@ const FALLING: f64 = 0.5;
 /// Change of the velocity over that of a stop from the stated speed, beyond which a unit is wrong.
 const MOST: f64 = 3.0;
 
-/// Share of the largest reading from which a body is braked, and the time before that, over that of a diameter at the speed
-/// at contact, in which it may be braked by less.
+/// Share of the largest reading above which the bed brakes a body.
 const BRAKED: f64 = 0.15;
+
+/// Longest time between contact and such a reading, in times that a body takes for its diameter at the speed at contact.
 const SOON: f64 = 1.5;
 
 /// Readings at the end of a run that show what it reads at rest, and how far their mean and each of them may be from 1.

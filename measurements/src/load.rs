@@ -108,8 +108,8 @@ impl MeasurementSet {
         Self::load_over_grains(path, 0.0)
     }
 
-    /// The same, where a set that states no grain size is checked over `grains` of this diameter (m) at most: what a
-    /// body meets first lies that far above or below the mean surface.
+    /// The same for a set whose zeros are checked with `grains`, the largest grain diameter (m), if it states no grain size: the
+    /// first grain that a body meets may lie above or below the mean surface.
     ///
     /// # Errors
     /// As [`MeasurementSet::load`].

@@ -30,7 +30,7 @@ const OF_SPEED: f64 = 5.0;
 const NOTABLE: f64 = 5e-4;
 const WRONG: f64 = 1e-3;
 
-/// Diameters of a grain between the mean height of the surface and the grain that a body meets first: a run may count from
+/// Largest distance between the mean surface and the grain that a body meets first, in grain diameters: depths may count from
 /// either.
 const UNEVEN: f64 = 1.5;
 
@@ -158,7 +158,7 @@ impl Zeros {
         }
         let stated = set.coarsest_grains();
         let grain = if stated > 0.0 { stated } else { unstated };
-        let level = Level { sigma: level(set), uneven: UNEVEN * grain };
+        let level = Level::of(set, grain);
         let contacts = contacts(set, level, 0.0);
         let mut offset = offset(&contacts, level, 0.0);
         // Free fall is known well near its end alone: a clock that is far off is read again from there.
@@ -209,7 +209,7 @@ pub(super) fn level(set: &MeasurementSet) -> f64 {
 pub(super) fn slowed(set: &MeasurementSet) -> Vec<RunContact> {
     match set.kind {
         Kind::Trajectory => {
-            let level = Level { sigma: level(set), uneven: UNEVEN * set.coarsest_grains() };
+            let level = Level::of(set, set.coarsest_grains());
             contacts(set, level, 0.0).into_iter().filter(|one| one.is_slowed).collect()
         }
         _ => Vec::new(),
@@ -226,7 +226,7 @@ pub(super) fn position(set: &MeasurementSet, run: &Run) -> f64 {
     }
 }
 
-/// How well the place of the surface is known under one body.
+/// How well the height of the surface below a body is known.
 #[derive(Clone, Copy)]
 struct Level {
     /// Standard deviation of its mean height (m).
@@ -236,7 +236,12 @@ struct Level {
 }
 
 impl Level {
-    /// The time (s) that the body of `contact` takes over the unevenness.
+    /// Over grains of the diameter `grain` (m).
+    fn of(set: &MeasurementSet, grain: f64) -> Self {
+        Self { sigma: level(set), uneven: UNEVEN * grain }
+    }
+
+    /// The time (s) in which the body of `contact` passes the unevenness.
     fn lag(self, contact: &Contact) -> f64 {
         match self.uneven > 0.0 {
             true => self.uneven / contact.sinking.value.abs(),

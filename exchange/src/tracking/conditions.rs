@@ -100,8 +100,8 @@ fn of_column(member: &Member<'_>) -> Option<String> {
     member.labels.iter().find(|(name, _)| name == "condition").map(|(_, value)| value.clone())
 }
 
-/// The names of runs without the number of their repeat, such as `h10` of `h10_r2`, where one number tells the conditions
-/// apart and every condition has repeats; `None` of other names.
+/// Conditions by the names of runs, such as `h10` of `h10_r2`; `None` unless the names of conditions differ in one number only
+/// and every condition has repeats.
 fn by_repeat(members: &[Member<'_>]) -> Option<Vec<String>> {
     let stems: Vec<String> = members.iter().map(|one| stem(one.name)).collect::<Option<_>>()?;
     let parts: Vec<Vec<String>> = stems.iter().map(|stem| numbers_and_words(stem)).collect();
@@ -113,7 +113,7 @@ fn by_repeat(members: &[Member<'_>]) -> Option<Vec<String>> {
         own.len() == first.len() && own[only].starts_with(|c: char| c.is_ascii_digit())
     };
     let is_repeated = |stem: &String| stems.iter().filter(|other| *other == stem).count() > 1;
-    // A number that the speeds contradict is of something else.
+    // Where the speeds of a condition disagree, the number means something else.
     let agree = |(one, stem): (&Member<'_>, &String)| {
         let others = members.iter().zip(&stems).filter(|(_, other)| *other == stem);
         others.map(|(other, _)| other).all(|other| {
@@ -128,7 +128,7 @@ fn by_repeat(members: &[Member<'_>]) -> Option<Vec<String>> {
     is_told.then_some(stems)
 }
 
-/// A name without the number at its end and what marks it as that of a repeat; `None` where there is none.
+/// The part of a run's name before its repeat number, such as `h10` of `h10_r2`; `None` for a name without a repeat number.
 fn stem(name: &str) -> Option<String> {
     const MARKS: [&str; 9] = ["repeat", "trial", "run", "rep", "take", "drop", "r", "t", "n"];
     const BETWEEN: [char; 5] = ['_', '-', ' ', '#', '.'];

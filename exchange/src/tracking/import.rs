@@ -17,6 +17,7 @@ use super::set::{Set, Understood};
 use super::settings::{Settings, Tracked};
 use super::surface::{self, Level, Seen};
 use super::tilt::{Flight, tilt, turned_back};
+use super::track::deviation;
 use super::{import_file, inputs, written};
 
 /// Reads `paths` under `options` into the set that is to stand in the folder `out`.
@@ -77,22 +78,20 @@ fn told(begun: &[Begun]) -> Vec<String> {
 /// A warning if two runs of one table keep their distance: two marks on one body are no repeats.
 fn of_one_body(begun: &[Begun]) -> Option<String> {
     let keep_their_distance = |one: &Path, other: &Path| {
-        /// Fewest readings on the same lines, and the scatter of the distance in errors of a reading.
+        /// Fewest readings on the same lines, and largest scatter of the distance in errors of a reading.
         const LEAST: usize = 20;
         const STEADY: f64 = 1.3;
-        let [a, b] = [one, other].map(|path| &path.track.samples);
-        let pairs = a.iter().zip(b).filter(|(a, b)| a.line == b.line);
-        let apart: Vec<f64> = pairs.map(|(a, b)| a.z - b.z).collect();
-        let mean = apart.iter().sum::<f64>() / apart.len() as f64;
-        let square = apart.iter().map(|one| (one - mean).powi(2)).sum::<f64>();
-        let scatter = (square / apart.len() as f64).sqrt();
-        apart.len() >= LEAST && scatter < STEADY * libm::hypot(one.noise(), other.noise())
+        let apart: Vec<f64> =
+            one.track.beside(&other.track).map(|[one, other]| one - other).collect();
+        apart.len() >= LEAST && deviation(&apart) < STEADY * libm::hypot(one.noise(), other.noise())
     };
     let pairs = (0..begun.len()).flat_map(|at| begun[..at].iter().map(move |one| (one, at)));
     let mut pairs = pairs.map(|(one, at)| (one, &begun[at]));
     let is_one = |(one, other): &(&Begun, &Begun)| {
-        let clock = |one: &Begun| (one.path.track.file.clone(), one.path.track.time.name.clone());
-        clock(one) == clock(other) && keep_their_distance(&one.path, &other.path)
+        let [a, b] = [one, other].map(|one| &one.path.track);
+        a.file == b.file
+            && a.time.name == b.time.name
+            && keep_their_distance(&one.path, &other.path)
     };
     pairs.find(is_one).map(|(one, other)| {
         format!(

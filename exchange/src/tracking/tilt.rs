@@ -20,8 +20,8 @@ pub(super) struct Flight<'a> {
     pub(super) between: [f64; 2],
 }
 
-/// The angle (rad) between gravity and the downward axis of the picture, toward the forward axis, as all `flights` show it
-/// under `gravity` (m/s²); `None` where it is not clear, or not one.
+/// The angle (rad) of gravity in the picture, from the downward toward the forward axis, by all `flights` under `gravity`
+/// (m/s²); `None` if it is not clear, or differs between runs.
 pub(super) fn tilt(flights: &[Flight<'_>], gravity: f64) -> Option<Reading> {
     let each: Vec<Reading> = flights.iter().filter_map(|one| one.sideways(gravity)).collect();
     let weight = |one: &Reading| one.se.powi(-2);
@@ -43,7 +43,7 @@ impl Flight<'_> {
         if own.len() < FEWEST {
             return None;
         }
-        // Straight line and curvature, each free of what is before it.
+        // Least squares with orthogonal polynomials in time: constant, line and parabola.
         let n = own.len() as f64;
         let mean = |of: &dyn Fn(&Frame) -> f64| own.iter().map(|one| of(one)).sum::<f64>() / n;
         let middle = mean(&|one| one.t);
@@ -65,7 +65,7 @@ impl Flight<'_> {
     }
 }
 
-/// `frames` as a level camera sees them that has the same reading at the place `around` (way and depth in m).
+/// `frames` rotated by `tilt` (rad) around the point `around` (way and depth in m), as a level camera records them.
 pub(super) fn turned_back(frames: &[Frame], tilt: f64, around: [f64; 2]) -> Vec<Frame> {
     let (sine, cosine) = libm::sincos(tilt);
     let turn = |one: &Frame| {

@@ -42,6 +42,23 @@ pub(super) struct Track {
     pub(super) notes: Vec<String>,
 }
 
+impl Track {
+    /// The positions of both tracks in the rows that have both.
+    pub(super) fn beside<'a>(&'a self, other: &'a Self) -> impl Iterator<Item = [f64; 2]> {
+        self.samples.iter().filter_map(|own| {
+            let at = other.samples.binary_search_by_key(&own.line, |one| one.line).ok()?;
+            Some([own.z, other.samples[at].z])
+        })
+    }
+}
+
+/// Standard deviation of `values`.
+pub(super) fn deviation(values: &[f64]) -> f64 {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (values.iter().map(|one| (one - mean).powi(2)).sum::<f64>() / n).sqrt()
+}
+
 /// Removes tracks of one table that hardly move beside the others, such as fixed marks on the picture.
 pub(super) fn without_still(mut tracks: Vec<Track>) -> Vec<Track> {
     /// Share of the way of the farthest track that is no drop.

@@ -33,11 +33,16 @@ const SPELLINGS: [(&str, &[&str]); 10] = [
     ("min", &["minute", "minutes"]),
 ];
 
+/// `text` without brackets and the word `in` before a unit.
+fn bare(text: &str) -> &str {
+    let text = text.trim().trim_matches(['(', ')', '[', ']']).trim();
+    text.strip_prefix("in ").unwrap_or(text)
+}
+
 impl Unit {
     /// The unit that `text` names; nothing is unstated.
     pub(super) fn of(text: &str) -> Self {
-        let text = text.trim().trim_matches(['(', ')', '[', ']']).trim();
-        let text = text.strip_prefix("in ").unwrap_or(text);
+        let text = bare(text);
         let lower = text.to_lowercase();
         if text.is_empty() {
             return Self::Unstated;
@@ -64,14 +69,13 @@ impl Unit {
         }
     }
 
-    /// Whether `text` may be the unit of something else than a length or a time, or a mark for none.
+    /// Whether `text` may be the unit of another quantity than length or time, or a mark for no unit.
     pub(super) fn is_of_others(text: &str) -> bool {
         const OTHERS: [&str; 22] = [
             "-", "1", "%", "v", "mv", "volt", "volts", "a", "ma", "hz", "khz", "deg", "°", "°c",
             "counts", "bit", "gf", "kgf", "newton", "a.u.", "adc", "g",
         ];
-        let text = text.trim().trim_matches(['(', ')', '[', ']']).trim();
-        let text = text.strip_prefix("in ").unwrap_or(text);
+        let text = bare(text);
         let is_known = dimension_of(text).is_some() && !matches!(text, "t" | "T");
         is_known || text.contains(['/', '²', '^']) || OTHERS.contains(&text.to_lowercase().as_str())
     }

@@ -15,9 +15,6 @@ use crate::world::{Effect, Setting};
 /// Amplitudes, of which some are seen and not told from their twins.
 const STRENGTHS: [f64; 6] = [4.0, 3.0, 2.0, 1.5, 1.2, 0.9];
 
-/// Sets of each strength, at most.
-const DRAWN: u64 = 4;
-
 /// One sphere straight down at six speeds, and what is hidden.
 fn vertical(effect: Effect, amplitude: f64) -> Laboratory {
     let setting = |speed| Setting { speed, angle: 90.0, mass: 0.0667, diameter: 0.0254 };
@@ -147,26 +144,22 @@ fn expected_of_the_rest(set: &MeasurementSet) -> Sequel {
 #[test]
 fn new_runs_come_as_what_is_there_expects_and_it_stays_the_likeliest() {
     let effect = Effect::Buoyancy;
-    let sequel_of = |(seed, q): (u64, f64)| {
-        let mut laboratory = vertical(effect, q);
-        let like = laboratory.settings[0];
-        let best = next(&laboratory.measure(seed)).1?.best;
-        laboratory.settings.extend(best.iter().map(|one| {
-            let Condition { speed, angle_deg: angle, mass, .. } = one.condition;
-            Setting { speed, angle, mass, ..like }
-        }));
-        // Other runs are drawn of the first conditions too, which may show nothing.
-        let sequel = expected_of_the_rest(&laboratory.measure(seed));
-        let is_open = sequel.hypotheses.iter().any(|one| one.id == effect.id());
-        is_open.then_some((sequel, best.len()))
-    };
-    let mut drawn = (1..=DRAWN).flat_map(|seed| STRENGTHS.map(|q| (seed, q)));
-    let (sequel, measured) = drawn.find_map(sequel_of).expect("it is open in one of them");
+    let set = left_open(effect, MeasurementSet::clone);
+    let amplitude = |q: &f64| vertical(effect, *q).measure(1) == set;
+    let q = STRENGTHS.into_iter().find(amplitude).expect("it is one of these");
+    let mut laboratory = vertical(effect, q);
+    let like = laboratory.settings[0];
+    let best = next(&set).1.expect("it is open").best;
+    laboratory.settings.extend(best.iter().map(|one| {
+        let Condition { speed, angle_deg: angle, mass, .. } = one.condition;
+        Setting { speed, angle, mass, ..like }
+    }));
+    let sequel = expected_of_the_rest(&laboratory.measure(1));
     let truth = sequel.hypotheses.iter().find(|one| one.id == effect.id()).expect("it is open");
     let most = sequel.hypotheses.iter().map(|one| one.after).fold(0.0, f64::max);
     assert!((truth.after - most).abs() == 0.0, "{sequel:?}");
     assert!(truth.chi2_per_number < 2.0, "{sequel:?}");
-    assert_eq!(sequel.came.len(), measured);
+    assert_eq!(sequel.came.len(), best.len());
     for came in &sequel.came {
         let of_truth = came.expected.iter().find(|one| one.id == effect.id()).expect("it is there");
         let off = (came.measured - of_truth.value) / of_truth.se;

@@ -6,7 +6,7 @@ use crate::tracking::grid::{Grid, Places};
 use crate::tracking::heading::{Role, is_statistic};
 use crate::tracking::settings::Columns;
 use crate::tracking::sheet::{Number, Sheet};
-use crate::tracking::track::{Sample, Track, without_still};
+use crate::tracking::track::{Track, deviation, without_still};
 
 pub(super) const LAYOUT: Layout = Layout { fits, read };
 
@@ -96,13 +96,9 @@ pub(super) fn refuse_together(parts: &[&Track], sheet: &Sheet) -> Result<(), Fau
 fn move_together(one: &Track, other: &Track) -> bool {
     /// Standard deviation of the distance over that of the position.
     const STEADY: f64 = 0.05;
-    let deviation = |of: &dyn Fn(&Sample, &Sample) -> f64| {
-        let same = one.samples.iter().zip(&other.samples).filter(|(a, b)| a.line == b.line);
-        let all: Vec<f64> = same.map(|(a, b)| of(a, b)).collect();
-        let mean = all.iter().sum::<f64>() / all.len() as f64;
-        (all.iter().map(|one| (one - mean).powi(2)).sum::<f64>() / all.len() as f64).sqrt()
-    };
-    deviation(&|a, b| a.z - b.z) < STEADY * deviation(&|a, _| a.z)
+    let (apart, own): (Vec<f64>, Vec<f64>) =
+        one.beside(other).map(|[one, other]| (one - other, one)).unzip();
+    deviation(&apart) < STEADY * deviation(&own)
 }
 
 /// Names of the drops, with the columns of their positions: points of a coordinate (`y1`, `y2`), or, where no
