@@ -10,6 +10,7 @@ use crate::between::Between;
 use crate::fit::{Data, Fit};
 use crate::forward::{Forward, PredictError};
 use crate::noise::{Noise, NoiseSource};
+use crate::observable::Observable;
 use crate::observed::Observed;
 use crate::restricted_likelihood::between;
 use crate::sensitivity::{Point, Sensitivity};
@@ -261,10 +262,15 @@ impl Bench<'_> {
         sensitivity: &Sensitivity,
         noise: &Noise,
     ) -> Result<Weight, BenchError> {
-        let own = self.own_covariance(condition, &point.effects, noise);
-        Weight::new(&self.observed.conditions[condition], sensitivity, noise, own).ok_or_else(
-            || BenchError::Singular { id: self.observed.conditions[condition].id.clone() },
-        )
+        let observed = &self.observed.conditions[condition];
+        let mut own = self.own_covariance(condition, &point.effects, noise);
+        let stop = observed.layout.kinds().iter().position(|kind| *kind == Observable::StopTime);
+        if let (Some(stop), Some(error)) = (stop, self.forward.stop_error(condition)) {
+            let n = observed.mean.len();
+            own.get_or_insert_with(|| DMatrix::zeros(n, n))[(stop, stop)] += error * error;
+        }
+        Weight::new(observed, sensitivity, noise, own)
+            .ok_or_else(|| BenchError::Singular { id: observed.id.clone() })
     }
 
     /// Covariance of what the model predicts with `effects`: of the means of its runs, and of what conditions differ by

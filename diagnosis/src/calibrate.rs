@@ -321,7 +321,8 @@ impl Calibration {
         };
         Probability {
             counted_in: Counted::Design,
-            right: share(&|set| set.is_right()),
+            right: share(&|set| set.is_right())
+                .filter(|_| same.iter().any(|set| !set.named.is_empty())),
             nothing: share(&|set| set.truth == "nothing"),
             unlisted: share(&|set| set.truth == "unlisted"),
         }

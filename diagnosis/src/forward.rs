@@ -50,6 +50,13 @@ pub trait Forward: Sync {
         None
     }
 
+    /// Error (s) that the stopping time of `condition` counts with, where it has a kink in the parameters at which a fit
+    /// would end; `None` where it is smooth.
+    fn stop_error(&self, condition: usize) -> Option<f64> {
+        let _ = condition;
+        None
+    }
+
     /// Whether an error on held-out conditions decides here whether an effect is named; of a bed, impacts on fresh beds
     /// do so afterwards.
     fn is_judged_by_held_out(&self) -> bool {

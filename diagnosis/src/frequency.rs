@@ -76,7 +76,7 @@ fn weighed(
     let of = |share: f64| Some(share / all);
     Probability {
         counted_in,
-        right: of(shares[0]),
+        right: (counts[0] > 0.0).then(|| shares[0] / all),
         nothing: of(shares[2]),
         unlisted: of(shares[3]),
     }
@@ -104,7 +104,7 @@ mod tests {
         let named = of_bed_benchmark(Verdict::Supported, true).expect("it is counted");
         assert!(named.right > Some(0.5) && named.nothing < Some(0.1), "{named:?}");
         let unnamed = of_bed_benchmark(Verdict::BelowNoise, false).expect("it is counted");
-        assert!(unnamed.right < Some(0.1), "{unnamed:?}");
+        assert_eq!(unnamed.right, None);
         assert!(unnamed.nothing > unnamed.unlisted, "{unnamed:?}");
         assert_eq!(of_bed_benchmark(Verdict::CannotTell, false), None);
     }

@@ -254,7 +254,7 @@ impl HeldOut {
     pub(crate) fn in_words(&self) -> Option<String> {
         let (before, after) = (self.in_noise(self.before)?, self.in_noise(self.after)?);
         Some(format!(
-            "held-out conditions are missed by {after:.2} times their noise with it, after {before:.2} without"
+            "held-out conditions are missed by {before:.2} times their noise without it and {after:.2} times with it"
         ))
     }
 
@@ -308,8 +308,12 @@ impl HeldOut {
     /// conditions have errors that hang together, so the density alone refutes some true effects.
     #[must_use]
     pub fn refutes(&self) -> bool {
-        let no_nearer = self.before.zip(self.after).is_some_and(|(before, after)| after >= before);
-        self.log_density_gain < -REFUTED && no_nearer
+        self.log_density_gain < -REFUTED && self.is_no_nearer()
+    }
+
+    /// Whether its predictions are no nearer to what was held out.
+    pub(crate) fn is_no_nearer(&self) -> bool {
+        self.before.zip(self.after).is_some_and(|(before, after)| after >= before)
     }
 }
 

@@ -132,14 +132,17 @@ impl Judge<'_> {
             }
             return Ok(found);
         }
-        let part = held_out.in_words().map_or(String::new(), |words| format!(": {words}"));
-        let hint = match is_one_of_many {
-            true => format!(
+        let errors = held_out.in_words().map_or(String::new(), |words| format!(": {words}"));
+        let hint = match (is_one_of_many, held_out.is_no_nearer()) {
+            (true, _) => format!(
                 "{leader} leaves a part of what was held out, and a force of another form is about as likely"
             ),
-            false => {
+            (false, true) => format!(
+                "no one or two listed effects explain the data; {leader} fits best and predicts no better{errors}"
+            ),
+            (false, false) => {
                 format!(
-                    "no one or two listed effects explain the data; {leader} explains a part{part}"
+                    "no one or two listed effects explain the data; {leader} explains a part{errors}"
                 )
             }
         };

@@ -57,7 +57,7 @@ pub enum Counted {
 pub struct Probability {
     /// Where such verdicts were counted.
     pub counted_in: Counted,
-    /// The effect that is named, or one of those named, is missing.
+    /// The effect that is named, or one of those named, is missing; none where nothing is named.
     #[serde(serialize_with = "six_digits_or_null")]
     pub right: Option<f64>,
     /// Nothing is missing.

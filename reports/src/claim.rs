@@ -4,6 +4,7 @@ use diagnosis::error_unit::Unit;
 use plots::sheet::{Anchor, Layer, Mark, Sheet};
 use serde_json::Value;
 
+use crate::about::About;
 use crate::figure::{figure, panel};
 use crate::numbers::{four_digits, list, text, texts};
 use crate::page::Part;
@@ -13,16 +14,22 @@ use crate::{ReportError, Texts};
 pub fn sentence(diagnosis: &Value) -> String {
     let effects = texts(&diagnosis["effects"]);
     let claim = match diagnosis["verdict"].as_str().unwrap_or_default() {
-        "supported" => format!("The model lacks {}{}", effects.join(", "), sizes(diagnosis)),
+        "supported" => {
+            format!(
+                "The model lacks {}{}",
+                explained(diagnosis, &effects).join(", "),
+                sizes(diagnosis)
+            )
+        }
         "not-separable" => format!(
             "The model lacks one of {}; these data cannot tell which. The best is {}{}",
             texts(&diagnosis["not_separable"]).join(", "),
-            effects.join(", "),
+            explained(diagnosis, &effects).join(", "),
             sizes(diagnosis)
         ),
         "pair" => format!(
             "The model lacks {} together, or one effect outside of the list{}",
-            effects.join(" and "),
+            explained(diagnosis, &effects).join(" and "),
             sizes(diagnosis)
         ),
         "none-of-the-candidates" => {
@@ -44,9 +51,22 @@ pub fn sentence(diagnosis: &Value) -> String {
         Some([before, after, noise]) if !list(&diagnosis["amplitudes"]).is_empty() => {
             let goes = if falls(diagnosis) { "falls" } else { "goes" };
             let held_out = held_out(diagnosis);
-            format!(
-                "{claim}. The error on {held_out} {goes} from {before} to {after}, where the noise is {noise}."
-            )
+            let error = format!(
+                "error on {held_out} {goes} from {before} to {after}, where the noise is {noise}"
+            );
+            match diagnosis["holdout"]["explained"].as_f64().filter(|share| *share > 0.0) {
+                Some(share) => {
+                    format!(
+                        "{claim}. It explains {:.0} % of what exceeds noise: the {error}.",
+                        1e2 * share
+                    )
+                }
+                None => format!("{claim}. The {error}."),
+            }
+        }
+        Some([before, _, noise]) if misses(diagnosis) => {
+            let held_out = held_out(diagnosis);
+            format!("{claim}. The error on {held_out} is {before}, where the noise is {noise}.")
         }
         _ => format!("{claim}."),
     }
@@ -80,6 +100,23 @@ fn explained_by_none(diagnosis: &Value) -> String {
     }
 }
 
+/// The names of `effects`, each with what it does.
+fn explained(diagnosis: &Value, effects: &[String]) -> Vec<String> {
+    let is_of_a_bed = diagnosis["bed"].is_object();
+    let explained = |id: &String| {
+        let summary = About::of(id, is_of_a_bed).summary;
+        let mut letters = summary.trim_end_matches('.').chars();
+        let first = letters.next().map_or_else(String::new, |first| first.to_lowercase().collect());
+        format!("{id} ({first}{})", letters.as_str())
+    };
+    effects.iter().map(explained).collect()
+}
+
+/// Whether held-out conditions are missed by more than noise though no effect is named.
+pub(crate) fn misses(diagnosis: &Value) -> bool {
+    texts(&diagnosis["strength_reasons"]).iter().any(|one| one == "held-out-above-noise")
+}
+
 fn falls(diagnosis: &Value) -> bool {
     let [before, after] = ["before", "after"].map(|key| diagnosis["holdout"][key].as_f64());
     before > after
@@ -105,7 +142,9 @@ fn sizes(diagnosis: &Value) -> String {
         let unit = unit.map(|effect| text(&effect["unit"])).filter(|unit| unit != "1");
         let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
         let form = form(of).map_or_else(String::new, |form| format!(", in its form with {form}"));
-        format!("q = {bound}{q}{unit}{interval}{form}")
+        let meaning = About::of(&text(&of["id"]), diagnosis["bed"].is_object()).amplitude;
+        let meaning = meaning.map_or_else(String::new, |meaning| format!(": {meaning}"));
+        format!("q = {bound}{q}{unit}{interval}{form}{meaning}")
     };
     let sizes: Vec<String> = list(&diagnosis["amplitudes"]).iter().map(size).collect();
     if sizes.is_empty() { String::new() } else { format!(", {}", sizes.join(" and ")) }
@@ -191,8 +230,7 @@ fn bars(diagnosis: &Value) -> Option<String> {
 pub fn probability(diagnosis: &Value) -> Option<String> {
     let of = &diagnosis["probability"];
     let share = |key: &str| of[key].as_f64();
-    let shares = (share("right"), share("nothing"), share("unlisted"));
-    let (Some(right), Some(nothing), Some(unlisted)) = shares else {
+    let (Some(nothing), Some(unlisted)) = (share("nothing"), share("unlisted")) else {
         let is_of_a_law = diagnosis["bed"].is_null() && diagnosis["verdict"] != "cannot-tell";
         return is_of_a_law.then(|| {
             "How often such a verdict is right: `--calibrate` counts in simulated sets of your design.".to_owned()
@@ -214,11 +252,11 @@ pub fn probability(diagnosis: &Value) -> Option<String> {
             " `--calibrate` counts in simulated sets of your design.",
         ),
     };
-    let named = match names_nothing {
-        true => {
+    let named = match share("right").filter(|_| !names_nothing) {
+        Some(right) => format!("what is missing is named in {:.0} %", 100.0 * right),
+        None => {
             format!("a listed effect is missing in {:.0} %", 100.0 * (1.0 - nothing - unlisted))
         }
-        false => format!("what is missing is named in {:.0} %", 100.0 * right),
     };
     Some(format!(
         "Of {sets}, where nothing, a listed and an unlisted effect are equally likely, {named}, nothing is \

@@ -1,10 +1,8 @@
 //! The report of a diagnosis: which effect is missing, what else it could be, and what to measure next.
 
-use configs::contact_laws::{self, find_grain_force};
-use configs::resistive::find_resistance;
-use diagnosis::beds::SWITCHES;
 use serde_json::Value;
 
+use crate::about::About;
 use crate::claim;
 use crate::comparison::{by_kind, views};
 use crate::figure::figure;
@@ -239,41 +237,6 @@ fn effects(diagnosis: &Value) -> Vec<Part> {
     if cards.is_empty() { Vec::new() } else { vec![Part::Cards(cards)] }
 }
 
-/// An effect of no registry.
-const OWN: &str = "A formula of your own.";
-
-/// What an effect is.
-struct About {
-    summary: String,
-    law: Option<&'static str>,
-    source: Option<&'static str>,
-}
-
-impl About {
-    /// Of a bed of grains, what the simulation has under this name comes before what a force law has.
-    fn of(id: &str, is_of_a_bed: bool) -> Self {
-        let listed = |summary: &str, law, source| Self {
-            summary: summary.to_owned(),
-            law: Some(law),
-            source: Some(source),
-        };
-        let switch = SWITCHES.iter().find(|switch| is_of_a_bed && switch.id == id);
-        match (switch, contact_laws::find(id), find_grain_force(id)) {
-            (Some(switch), ..) if switch.is_change() => Self {
-                summary: format!("A change of the bed. Amplitude: {}.", switch.amplitude),
-                law: None,
-                source: None,
-            },
-            (Some(_), Some(law), _) => listed(law.summary, law.formula, law.source),
-            (Some(_), _, Some(force)) => listed(force.summary, force.formula, force.source),
-            _ => match find_resistance(id) {
-                Some(law) => listed(law.summary, law.formula, law.source),
-                None => Self { summary: OWN.to_owned(), law: None, source: None },
-            },
-        }
-    }
-}
-
 /// The effect in the place `at`, with its amplitude in the verdict, if it has one there.
 fn card(
     at: usize,
@@ -294,6 +257,7 @@ fn card(
         ("detection limit", four_digits(&effect["detection_limit"])),
     ]);
     let mut notes: Vec<_> = about.law.map(|law| ("law", law.to_owned())).into_iter().collect();
+    notes.extend(about.amplitude.map(|meaning| ("q", meaning.to_owned())));
     let note = text(&effect["note"]);
     if !note.is_empty() {
         let name = if note.starts_with("from ") { "separable" } else { "note" };
@@ -504,7 +468,7 @@ mod tests {
     fn what_a_bed_may_lack_is_described_by_its_registry() {
         for switch in SWITCHES.iter() {
             let about = About::of(switch.id, true);
-            assert_ne!(about.summary, OWN, "{}", switch.id);
+            assert_eq!(about.amplitude, Some(switch.amplitude), "{}", switch.id);
             assert_eq!(about.law.is_none(), switch.is_change(), "{}", switch.id);
         }
         assert!(About::of("packing", true).law.is_none(), "a bed is prepared again");

@@ -6,6 +6,7 @@
 //!
 //! What a page consists of is in `page.rs`, what it looks like in `templates/`.
 
+mod about;
 mod campaign;
 mod claim;
 mod comparison;

@@ -10,6 +10,9 @@ use crate::numbers::{text, texts};
 pub fn verdict_in_words(diagnosis: &Value) -> String {
     let effects = texts(&diagnosis["effects"]);
     match diagnosis["verdict"].as_str().unwrap_or_default() {
+        "nothing-detected" if claim::misses(diagnosis) => {
+            "nothing detected in what was fitted; held-out conditions are missed by more than their noise".to_owned()
+        }
         "nothing-detected" => "nothing detected: the data are explained".to_owned(),
         "supported" => format!("supported: {}", effects.join(", ")),
         "not-separable" => format!(
@@ -82,11 +85,10 @@ pub(crate) fn error_in_words(error: &Value, value: &str, se: &str) -> (String, S
 /// What the verdict of a diagnosis rests on, in a sentence; none where nothing is named.
 #[must_use]
 pub fn strength_in_words(diagnosis: &Value) -> Option<String> {
-    let names =
-        matches!(
-            diagnosis["verdict"].as_str(),
-            Some("supported" | "not-separable" | "pair" | "none-of-the-candidates")
-        ) || texts(&diagnosis["strength_reasons"]).iter().any(|one| one == "held-out-above-noise");
+    let names = matches!(
+        diagnosis["verdict"].as_str(),
+        Some("supported" | "not-separable" | "pair" | "none-of-the-candidates")
+    ) || claim::misses(diagnosis);
     match diagnosis["strength"].as_str().filter(|_| names)? {
         "suggested" => {
             let reasons = texts(&diagnosis["strength_reasons"]);

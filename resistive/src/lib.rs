@@ -218,6 +218,11 @@ pub trait ResistanceLaw: Send + Sync {
     /// motion (m). A fault of the instrument; the motion itself knows nothing of it.
     fn read(&self, _depth: &mut f64, _range: &mut f64) {}
 
+    /// Whether its friction holds each component of the motion by itself: a body then stops with the later of the two.
+    fn holds_components(&self) -> bool {
+        false
+    }
+
     /// Whether a body that falls straight down can be pushed out of line by it.
     fn deflects(&self) -> bool {
         false

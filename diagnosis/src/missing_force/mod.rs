@@ -315,7 +315,7 @@ fn against_in_words(readings: &[Reading]) -> String {
     });
     let clearest: Vec<&Reading> = clearest.collect();
     if clearest.is_empty() {
-        return "within its band the missing force is zero everywhere".to_owned();
+        return "its band holds zero at every depth: these data show that a force is missing, not where".to_owned();
     }
     let ends = clearest.iter().fold((f64::INFINITY, 0.0_f64), |(least, most), one| {
         (least.min(one.depth), most.max(one.depth))
@@ -323,10 +323,15 @@ fn against_in_words(readings: &[Reading]) -> String {
     let Some(best) = clearest.iter().max_by(|a, b| a.clarity().total_cmp(&b.clarity())) else {
         return String::new();
     };
+    // Where a body comes to rest, the model may have no force.
     let share = 100.0 * best.force / best.model;
+    let share = match share.abs() < 1e3 {
+        true => format!("{share:+.0} % of the model's"),
+        false => format!("where the model has {:.3} N", best.model),
+    };
     format!(
         "the missing force is clear of zero from {:.0} to {:.0} mm deep, and clearest at {:.0} mm and {:.2} m/s: \
-         {:+.3} \u{b1} {:.3} N, {share:+.0} % of the model's",
+         {:+.3} \u{b1} {:.3} N, {share}",
         1e3 * ends.0,
         1e3 * ends.1,
         1e3 * best.depth,

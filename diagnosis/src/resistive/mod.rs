@@ -12,11 +12,11 @@ mod pushed;
 mod scatter;
 mod slow;
 
-use configs::{FreeParameter, Medium, Model};
+use configs::{FreeParameter, Medium, Model, ResistiveMedium};
 use std::sync::Arc;
 
-use measurements::{Kind, MeasurementSet, ParameterPrior};
-use resistive::{Effect, RESISTANCE_LAWS};
+use measurements::{Condition, Kind, MeasurementSet, ParameterPrior};
+use resistive::{Approach, Effect, RESISTANCE_LAWS};
 
 use crate::apparatus::{Apparatus, is_looked_for};
 use crate::forward::{
@@ -29,6 +29,10 @@ use prepared::{Prepared, extent};
 
 /// By this share a parameter is moved to see whether anything depends on it.
 const PROBE: f64 = 1e-2;
+
+/// Error of the stopping time of an oblique impact, of the time of its last frame, where each component of the motion stops
+/// by itself: which of them is the last changes at once with a coefficient.
+const STOP_OF_COMPONENTS: f64 = 0.1;
 
 /// Standard deviation of what is known of each change of form beforehand.
 const FORM: f64 = 0.3;
@@ -50,6 +54,8 @@ pub struct ResistiveForward {
     effects: Vec<Effect>,
     scattering: Vec<&'static str>,
     apparatus: Apparatus,
+    /// Of each condition, as [`Forward::stop_error`] has it.
+    stop_errors: Vec<Option<f64>>,
 }
 
 impl ResistiveForward {
@@ -114,6 +120,7 @@ impl ResistiveForward {
             effects,
             scattering,
             apparatus: Apparatus::default(),
+            stop_errors: stop_errors(medium, set, layouts),
         };
         forward.drop_idle(set.kind);
         forward.parameters.extend_from_slice(apparatus.parameters());
@@ -201,6 +208,10 @@ impl Forward for ResistiveForward {
         self.predict_with(condition, at, &self.added(at.effects))
     }
 
+    fn stop_error(&self, condition: usize) -> Option<f64> {
+        self.stop_errors[condition]
+    }
+
     fn by_formulas(&self) -> Option<&dyn ByFormulas> {
         Some(self)
     }
@@ -244,6 +255,24 @@ impl ResistiveForward {
     fn failed(&self, condition: usize, why: String) -> PredictError {
         PredictError { condition, id: self.conditions[condition].id().to_owned(), why }
     }
+}
+
+/// Of each condition of `set`, the error of a stopping time that has a kink in the coefficients of `medium`.
+fn stop_errors(
+    medium: &ResistiveMedium,
+    set: &MeasurementSet,
+    layouts: &[Layout],
+) -> Vec<Option<f64>> {
+    let each = set.conditions.iter().zip(layouts);
+    let error = |(condition, layout): (&Condition, &Layout)| {
+        let angle = condition.angle_deg.to_radians();
+        let laws = medium.laws_at(Approach { speed: condition.speed, angle });
+        let has_kink = condition.angle_deg < 90.0 && laws.iter().any(|law| law.holds_components());
+        // Without frames the stop is most of what is known.
+        let last = layout.times.last().filter(|_| has_kink)?;
+        Some(STOP_OF_COMPONENTS * last)
+    };
+    each.map(error).collect()
 }
 
 /// By how much effects that are added may differ from their formulas, a parameter per polynomial: nature does not use

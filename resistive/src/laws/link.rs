@@ -140,6 +140,10 @@ impl ResistanceLaw for Link {
         ACCOUNTS
     }
 
+    fn holds_components(&self) -> bool {
+        true
+    }
+
     fn act(&self, at: &Immersion, motion: &Motion, bed: &Surroundings, load: &mut Load) {
         let density = bed.bulk_density;
         let area = at.reference_area + self.end_face * at.end_area;

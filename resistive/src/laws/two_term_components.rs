@@ -61,6 +61,10 @@ impl ResistanceLaw for TwoTermComponents {
         ACCOUNTS
     }
 
+    fn holds_components(&self) -> bool {
+        true
+    }
+
     fn act(&self, at: &Immersion, motion: &Motion, _: &Surroundings, load: &mut Load) {
         // The coefficients contain the frontal area.
         let loaded = at.loaded_area / at.frontal_area;

@@ -1,0 +1,50 @@
+//! What an effect is, as its registry says.
+
+use configs::contact_laws::{self, find_grain_force};
+use configs::resistive::find_resistance;
+use diagnosis::beds::SWITCHES;
+
+/// An effect of no registry.
+const OWN: &str = "A formula of your own.";
+
+/// An effect in words.
+pub(crate) struct About {
+    /// What it does, a sentence.
+    pub(crate) summary: String,
+    /// What its amplitude q is; none of a formula of the user's own.
+    pub(crate) amplitude: Option<&'static str>,
+    /// Its law, as a formula.
+    pub(crate) law: Option<&'static str>,
+    /// Where the law is from.
+    pub(crate) source: Option<&'static str>,
+}
+
+impl About {
+    /// The effect `id`. Of a bed of grains, what the simulation has under this name comes before what a force law has.
+    pub(crate) fn of(id: &str, is_of_a_bed: bool) -> Self {
+        let switch = SWITCHES.iter().find(|switch| is_of_a_bed && switch.id == id);
+        let listed = |summary: &str, law, source| Self {
+            summary: summary.to_owned(),
+            amplitude: switch.map(|switch| switch.amplitude),
+            law: Some(law),
+            source: Some(source),
+        };
+        match (switch, contact_laws::find(id), find_grain_force(id)) {
+            (Some(switch), ..) if switch.is_change() => Self {
+                summary: "A change of the bed.".to_owned(),
+                amplitude: Some(switch.amplitude),
+                law: None,
+                source: None,
+            },
+            (Some(_), Some(law), _) => listed(law.summary, law.formula, law.source),
+            (Some(_), _, Some(force)) => listed(force.summary, force.formula, force.source),
+            _ => match find_resistance(id) {
+                Some(law) => Self {
+                    amplitude: law.params.iter().find(|one| one.key == "q").map(|one| one.meaning),
+                    ..listed(law.summary, law.formula, law.source)
+                },
+                None => Self { summary: OWN.to_owned(), amplitude: None, law: None, source: None },
+            },
+        }
+    }
+}
