@@ -8,9 +8,10 @@ use comfy_table::Cell;
 use configs::printable;
 use diagnosis::bench::Bench;
 use diagnosis::diagnose::diagnose;
-use diagnosis::next::{Came, Sequel, sequel};
+use diagnosis::error_columns::named;
+use diagnosis::next::{Sequel, sequel};
 use diagnosis::observed::Observed;
-use measurements::{MeasurementSet, Run};
+use measurements::{Axis, MeasurementSet, Run};
 use serde::Deserialize;
 
 use crate::output::CommandError;
@@ -101,8 +102,10 @@ pub(crate) fn as_text(sequel: &Sequel) -> String {
     let head: Vec<&str> = head.iter().map(String::as_str).collect();
     let mut came = table(&head);
     for one in &sequel.came {
-        let (unit, scale) = unit(one);
-        let at = one.at.map_or(String::new(), |at| format!(" at {:.1} ms", 1e3 * at));
+        let Axis { unit, scale, .. } = named(one.quantity);
+        let [place, ..] = one.quantity.axes();
+        let at = one.at.map(|at| format!(" at {:.1} {}", place.scale * at, place.unit));
+        let at = at.unwrap_or_default();
         let mut row = vec![
             one.condition.clone(),
             one.runs.to_string(),
@@ -134,14 +137,4 @@ pub(crate) fn as_text(sequel: &Sequel) -> String {
         lines(&came),
         lines(&shares)
     )
-}
-
-/// Unit of the number that is shown of `one`, and how many of it are in one SI unit.
-fn unit(one: &Came) -> (&'static str, f64) {
-    match one.quantity {
-        "stop_time_s" => ("ms", 1e3),
-        "force_N" => ("N", 1.0),
-        "acceleration_m_s2" => ("m/s²", 1.0),
-        _ => ("mm", 1e3),
-    }
 }

@@ -65,6 +65,11 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         }
         (Found::Other, None) => {}
     }
+    if let Some(flag) = args.beds.flag_of_ranking() {
+        return Err(CommandError::bad_input(format!(
+            "{flag} is of `plunge diagnose`: a comparison ranks no candidates and runs every condition"
+        )));
+    }
     let measured = flags.measured(&args.first, &args.models)?;
     let models = flags.models(&args.models, &measured)?;
     let measured = flags.answerable(measured, &models)?;

@@ -20,7 +20,7 @@ use crate::output::{self, CommandError, CommandResult};
 use crate::report;
 use crate::table_file;
 use crate::verdict::{as_text, calibration_as_text};
-use crate::workbench::{Candidate, Flags, failed};
+use crate::workbench::{CALIBRATION, Candidate, Flags, failed};
 
 /// Arguments of `plunge diagnose`.
 #[derive(clap::Args, Debug)]
@@ -72,6 +72,11 @@ pub(crate) fn run(args: &Args) -> CommandResult {
             "{flag} is of beds of grains: with a resistive-force model every effect is ranked, in seconds\n"
         )));
     }
+    if args.beds.plan && flags.json {
+        return output::json_to_stdout(
+            &json!({ "set": measured.set.id, "cost": { "impacts": 0 } }),
+        );
+    }
     if args.beds.plan {
         return output::to_stdout("a resistive-force model takes no impacts on beds: seconds\n");
     }
@@ -107,7 +112,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     files.insert(0, ("diagnosis.json".to_owned(), text.clone()));
     if let Some(calibration) = &calibration {
         let object = json!({ "rows": calibration.rows(), "sets": calibration.sets });
-        files.push(("calibration.json".to_owned(), format!("{object:#}\n")));
+        files.push((CALIBRATION.to_owned(), format!("{object:#}\n")));
     }
     let where_it_fails = WhereItFails::of_diagnosis(&bench, &model.name, &diagnosis, flags.seed)
         .map_err(|error| failed(error, &model.name))?;

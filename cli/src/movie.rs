@@ -34,7 +34,7 @@ pub(crate) struct Args {
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
     /// How many frames of the log to show, evenly in time; all without it.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", conflicts_with = "at", value_parser = clap::value_parser!(u32).range(1..))]
     frames: Option<u32>,
     /// What grains are coloured by.
     #[arg(long, value_enum, value_name = "QUANTITY", default_value = "speed", alias = "color")]
@@ -52,7 +52,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
     /// Frames shown in a second; without it, so that the film lasts about 6 s.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100))]
+    #[arg(long, value_name = "N", conflicts_with = "at", value_parser = clap::value_parser!(u32).range(1..=100))]
     per_second: Option<u32>,
     /// A clip of the measured impact to show on the right of an .mp4, at the same pace and with contact at the same moment.
     #[arg(long, value_name = "CLIP", conflicts_with = "at")]
@@ -286,10 +286,15 @@ fn stills(args: &Args, kind: Kind, film: &Film<'_>) -> CommandResult {
     let wanted = times(args, film.impact)?;
     let scenes = film.scenes().map_err(failed)?;
     let mut written = Vec::new();
+    for (at, text) in args.at.iter().enumerate() {
+        if args.at[..at].contains(text) {
+            return Err(CommandError::bad_input(format!("--at names {text} twice")));
+        }
+        refuse_to_replace(args, &still_name(args, text))?;
+    }
     for (text, frame) in args.at.iter().zip(&wanted) {
         let Some(scene) = scenes.iter().find(|scene| scene.frame == *frame) else { continue };
         let out = still_name(args, text);
-        refuse_to_replace(args, &out)?;
         whole(&out, |path| still(kind, film, scene, path))?;
         written.push((out, Some(scene.time)));
     }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
+use configs::engine::checkpoint;
 use configs::engine::parallel::with_threads;
 use configs::estimate::{MEMORY_SHARE, available_memory_bytes};
 use runner::beds::{Impacts, Place};
@@ -23,7 +24,6 @@ use crate::common::{On, cache_folder, of_scheduler};
 use crate::control::Terminal;
 use crate::output::{self, CommandError, CommandResult};
 use crate::signals;
-use crate::workbench::write_whole;
 
 /// Most failed points that are named in the text.
 const MOST_NAMED: usize = 5;
@@ -206,7 +206,9 @@ fn refuse_too_large(planned: &Planned, n: usize) -> CommandResult {
 fn report(folder: &Folder, results: &Results, terminal: &Terminal) {
     let file = folder.path().join(reports::FILE);
     let written = match reports::of_campaign(results) {
-        Ok(page) => write_whole(&file, &page).map_err(|_| "it cannot be written".to_owned()),
+        Ok(page) => {
+            checkpoint::write_whole(&file, page.as_bytes()).map_err(|error| error.to_string())
+        }
         Err(error) => Err(error.to_string()),
     };
     if let Err(why) = written {
@@ -261,12 +263,15 @@ fn plan(args: &Args, folder: &Folder, planned: &Planned, place: &Place<'_>) -> C
         hashes.len(),
         beds.len()
     );
+    let memory = match memory {
+        0 => String::new(),
+        bytes => format!(" and about {} of memory", output::bytes(bytes)),
+    };
     let _ = writeln!(
         text,
-        "  at most {at_most:.0} s, {} at a time, in about {}; beds that are not in the cache come on top{}",
+        "  at most {at_most:.0} s with {} at a time{memory}, plus the time to prepare beds that are not in the cache{}",
         place.n_workers(),
-        output::bytes(memory),
-        bed_time.map_or(String::new(), |time| format!(": {time:.1} s each"))
+        bed_time.map_or(String::new(), |time| format!(", {time:.1} s each"))
     );
     output::to_stdout(&text)
 }

@@ -8,6 +8,7 @@ use clap::Args;
 use configs::engine::checkpoint;
 use configs::{LoadOptions, Loaded, Model};
 use diagnosis::bench::BenchError;
+use diagnosis::missing_force;
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::where_it_fails;
@@ -32,8 +33,19 @@ const UNFINISHED: &str = "unfinished";
 const STAGING: &str = ".partial";
 
 /// What these commands write, besides proposed models and [`where_it_fails::FILES`].
-const RESULTS: [&str; 5] =
-    ["comparison.json", "comparison.svg", "diagnosis.json", "paths.svg", reports::FILE];
+const RESULTS: [&str; 8] = [
+    "comparison.json",
+    "comparison.svg",
+    "diagnosis.json",
+    "paths.svg",
+    CALIBRATION,
+    missing_force::FILE,
+    where_it_fails::MISSING_FORCE,
+    reports::FILE,
+];
+
+/// How often verdicts come true, where it was asked.
+pub(crate) const CALIBRATION: &str = "calibration.json";
 
 /// The flags of commands about a measurement set.
 #[derive(Args, Clone, Debug)]

@@ -117,9 +117,10 @@ impl ColumnNames {
     }
 }
 
-/// Columns of differences, which have no zero of their own.
-const WITHOUT_ZERO: [&str; 5] =
-    ["sigma_z", "sigma_force", "sigma_acceleration", "t_zero", "z_zero"];
+/// Whether the column `key` may have a zero: errors and zeros are differences, which have none.
+fn may_have_zero(key: &str) -> bool {
+    !key.starts_with("sigma_") && !key.ends_with("_zero")
+}
 
 fn renamed(table: TableReader<'_>, spec: &ColumnSpec, span: Option<Span>) -> Option<Renamed> {
     table.header()?;
@@ -142,7 +143,7 @@ fn renamed(table: TableReader<'_>, spec: &ColumnSpec, span: Option<Span>) -> Opt
                         .help("the unit is the place for a factor"),
                 );
             }
-            let zero = match WITHOUT_ZERO.contains(&spec.key) {
+            let zero = match !may_have_zero(spec.key) {
                 true => None,
                 false => table.number_in("zero", &unit.value, dimension)?,
             };

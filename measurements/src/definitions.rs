@@ -9,7 +9,9 @@
 use super::reading::Reading;
 use super::stops::{self, Stops};
 use super::zeros::{mean, position};
-use super::{FinalDefinition, Instrument, Kind, MeasurementSet, Run, StopDefinition};
+use super::{
+    FinalDefinition, Instrument, Kind, MeasurementSet, Run, StopDefinition, SurfaceDefinition,
+};
 
 /// A number of a run that its frames show too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,6 +93,17 @@ impl FinalDefinition {
         match self {
             Self::Deepest => "deepest",
             Self::Resting => "resting",
+        }
+    }
+}
+
+impl SurfaceDefinition {
+    /// As a set writes it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::FirstContact => "first-contact",
+            Self::Mean => "mean",
         }
     }
 }

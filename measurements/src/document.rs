@@ -18,7 +18,7 @@ use super::table::Format;
 use super::unstated::Unstated;
 use super::{
     Feasible, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, StatedError,
-    StopDefinition,
+    StopDefinition, SurfaceDefinition,
 };
 
 /// What `measurement.toml` says.
@@ -33,6 +33,8 @@ pub(super) struct Document {
     pub(super) places: Vec<ConditionPlaces>,
     /// Where the definitions of the stop and of the final place are stated, if they are.
     pub(super) definitions: [Option<Span>; 2],
+    /// Whether the set states from where depths count.
+    pub(super) states_surface: bool,
     /// The header of `[measurement]`.
     pub(super) header: Option<Span>,
     /// Whether the notes are those of an exported set, which already say what was assumed.
@@ -114,6 +116,7 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
         stated,
         stop: head.stop,
         last: head.last,
+        surface: head.surface.unwrap_or(SurfaceDefinition::FirstContact),
         feasible,
         priors,
         conditions,
@@ -128,6 +131,7 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
         files,
         places,
         definitions: head.definitions,
+        states_surface: head.surface.is_some(),
         header: head.header,
         is_exported,
     })
@@ -145,6 +149,7 @@ struct Head {
     phase: Option<String>,
     stop: StopDefinition,
     last: FinalDefinition,
+    surface: Option<SurfaceDefinition>,
     keep: Vec<String>,
     notes: Option<Vec<String>>,
     definitions: [Option<Span>; 2],
@@ -178,6 +183,16 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
         "deepest" => FinalDefinition::Deepest,
         _ => FinalDefinition::Resting,
     });
+    let surface = optional_choice(
+        &table,
+        "surface_definition",
+        &["first-contact", "mean"],
+        "from where depths count over coarse grains",
+    )
+    .map(|word| match word {
+        "mean" => SurfaceDefinition::Mean,
+        _ => SurfaceDefinition::FirstContact,
+    });
     table.asks("notes", "what was assumed, of a set that was written by plunge", || Answer::Texts);
     table.asks("keep", "runs that are used as they are, however stray they look", || Answer::Texts);
     let notes = table.texts("notes");
@@ -210,6 +225,7 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
         phase,
         stop: stop?,
         last,
+        surface,
         keep,
         notes,
         definitions,

@@ -86,7 +86,7 @@ fn probes() -> Vec<String> {
             texts.push(format!(
                 "schema = 1\n\
                  [measurement]\nid = 'a'\nkind = '{word}'\nsource = 'a'\nframe = 'a'\nphase = 'a'\n\
-                 stop_definition = 'component-zero'\nfinal = 'deepest'\n\
+                 stop_definition = 'component-zero'\nfinal = 'deepest'\nsurface_definition = 'mean'\n\
                  [bed]\ngeometry = '{geometry}'\n\
                  [model]\nbaseline = 'a'\n\
                  [files]\nruns = 'runs.csv'\n{readings}missing = 'drop'\ndelimiter = ','\ndecimal = '.'\n\

@@ -62,6 +62,7 @@ mod speeds;
 mod start;
 mod stops;
 mod strays;
+mod surface;
 mod table;
 mod template;
 mod trajectories;
@@ -115,6 +116,8 @@ pub struct MeasurementSet {
     pub stop: StopDefinition,
     /// Which depth and range a run gives.
     pub last: FinalDefinition,
+    /// From where depths count.
+    pub surface: SurfaceDefinition,
     /// What could be measured next.
     pub feasible: Feasible,
     /// What is known of coefficients of the model beforehand.
@@ -144,6 +147,7 @@ impl MeasurementSet {
             stated: StatedError::default(),
             stop: StopDefinition::ComponentZero,
             last: FinalDefinition::Resting,
+            surface: SurfaceDefinition::FirstContact,
             feasible: Feasible::default(),
             priors: Vec::new(),
             conditions,
@@ -364,6 +368,15 @@ pub enum FinalDefinition {
     Deepest,
     /// Where the body rests.
     Resting,
+}
+
+/// From where depths count over coarse grains, whose highest ones a body meets above the mean surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SurfaceDefinition {
+    /// From the lowest point of the body at its first contact, of each run.
+    FirstContact,
+    /// From the mean height of the surface.
+    Mean,
 }
 
 /// Whether a condition may be fitted to.

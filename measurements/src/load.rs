@@ -19,7 +19,8 @@ use super::row::file_name;
 use super::table::Format;
 use super::trajectories::Source;
 use super::{
-    Kind, MeasurementSet, Run, checks, curve_table, order, runs, several, speeds, trajectories,
+    Kind, MeasurementSet, Run, SurfaceDefinition, checks, curve_table, order, runs, several,
+    speeds, trajectories,
 };
 
 /// A set and what came with it.
@@ -151,6 +152,15 @@ impl MeasurementSet {
         let agreement = Agreement::of(&set, grains, &document);
         let contradictions =
             contradictions::find(&set, &agreement, (&document, contradictions, &mut findings));
+        if !document.states_surface {
+            set.surface = SurfaceDefinition::shown_by(&set);
+        }
+        if !document.states_surface && set.surface == SurfaceDefinition::Mean {
+            findings.note(
+                "Assumed, as depths at first contact differ between runs: measurement.surface_definition = \"mean\"."
+                    .to_owned(),
+            );
+        }
         set.notes = findings.notes;
         Ok(Loaded {
             set,

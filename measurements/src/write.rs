@@ -70,6 +70,7 @@ impl MeasurementSet {
         file.text("source", self.source.as_deref());
         file.word("stop_definition", self.stop.word());
         file.word("final", self.last.word());
+        file.word("surface_definition", self.surface.word());
         let notes: Vec<String> = self.notes.iter().map(|note| quoted(note)).collect();
         file.line("notes", &format!("[{}]", notes.join(", ")));
         if !self.keep.is_empty() {

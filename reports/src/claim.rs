@@ -39,6 +39,10 @@ pub fn sentence(diagnosis: &Value) -> String {
         "explained-by-apparatus" => {
             "Errors of the apparatus explain what the model misses; no effect is needed".to_owned()
         }
+        "explained-by-preparation" => {
+            "The preparation of the bed explains what the model misses; no effect is needed"
+                .to_owned()
+        }
         "below-noise" => {
             "What the model misses is below what these data can show; no effect is named".to_owned()
         }

@@ -465,18 +465,6 @@ mod tests {
     }
 
     #[test]
-    fn what_a_bed_may_lack_is_described_by_its_registry() {
-        for switch in SWITCHES.iter() {
-            let about = About::of(switch.id, true);
-            assert_eq!(about.amplitude, Some(switch.amplitude), "{}", switch.id);
-            assert_eq!(about.law.is_none(), switch.is_change(), "{}", switch.id);
-        }
-        assert!(About::of("packing", true).law.is_none(), "a bed is prepared again");
-        assert!(About::of("packing", false).law.is_some(), "a force law has a term");
-        assert_eq!(About::of("stickiness", true).summary, OWN);
-    }
-
-    #[test]
     fn a_diagnosis_shows_its_whole_set_and_what_it_could_not_test() {
         let html = page(&texts_of_a_diagnosis()).expect("a page");
         assert!(html.contains("one of {janssen, depth-exponent}: these data"), "{html}");

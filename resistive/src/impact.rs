@@ -403,9 +403,9 @@ impl Impact {
                 stop.range = (part.tip.x - progress.first_x[index]).abs();
             }
             for component in 0..2 {
+                // Where a held component lets go, [`Modes::at`] finds that friction cannot hold it.
                 if own[COMPONENTS + component] {
-                    let held = still[index][component];
-                    still[index][component] = !held || own[COMPONENTS + component];
+                    still[index][component] = true;
                     changed = true;
                 }
             }

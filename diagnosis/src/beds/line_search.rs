@@ -184,6 +184,7 @@ mod tests {
     fn record(depth_mm: f64) -> Record {
         Record {
             interval: 1e-3,
+            contact_height: 0.0,
             depth: vec![0.0],
             range: vec![0.0],
             force: Vec::new(),

@@ -1,23 +1,32 @@
 //! The observables that a set asks of an impact on a bed of grains.
 
-use measurements::{Condition, FinalDefinition, MeasurementSet, StopDefinition};
+use measurements::{Condition, FinalDefinition, MeasurementSet, StopDefinition, SurfaceDefinition};
 use nalgebra::DVector;
 use runner::beds::Record;
 
 use crate::observable::{Layout, Observable};
 
-/// Depth and range (m) at `time` (s): before contact those of the fall under `condition` with `acceleration` (m/s²), behind
-/// the end the last ones.
+/// Depth and range (m) at `time` (s), as `set` counts depths: before contact those of the fall under `condition`, behind the
+/// end the last ones.
 #[must_use]
-pub fn at(record: &Record, time: f64, condition: &Condition, acceleration: f64) -> (f64, f64) {
+pub fn at(record: &Record, time: f64, condition: &Condition, set: &MeasurementSet) -> (f64, f64) {
+    let at_contact = depth_at_contact(record, set);
     if time < 0.0 {
         let (sine, cosine) = libm::sincos(condition.angle_deg.to_radians());
-        let down = condition.speed * sine * time + 0.5 * acceleration * time * time;
-        // Contact is with the highest grains, above the mean surface.
-        let at_contact = record.depth.first().copied().unwrap_or(0.0);
+        let down = condition.speed * sine * time + 0.5 * set.fall_of(condition) * time * time;
         return (at_contact + down, condition.speed * cosine * time);
     }
-    record.since_contact(time)
+    let (depth, range) = record.since_contact(time);
+    (at_contact + depth, range)
+}
+
+/// Depth (m) at first contact, which is with grains above the mean surface.
+#[must_use]
+pub fn depth_at_contact(record: &Record, set: &MeasurementSet) -> f64 {
+    match set.surface {
+        SurfaceDefinition::FirstContact => 0.0,
+        SurfaceDefinition::Mean => -record.contact_height,
+    }
 }
 
 /// The observables that `layout` asks for, as `set` defines them.
@@ -28,23 +37,23 @@ pub fn observables(
     condition: &Condition,
     set: &MeasurementSet,
 ) -> DVector<f64> {
-    let fall = set.fall_of(condition);
+    let at_contact = depth_at_contact(record, set);
     let frames: Vec<(f64, f64)> =
-        layout.times.iter().map(|&time| at(record, time, condition, fall)).collect();
+        layout.times.iter().map(|&time| at(record, time, condition, set)).collect();
     let mut numbers: Vec<f64> = frames.iter().map(|(depth, _)| *depth).collect();
     if layout.along_x {
         numbers.extend(frames.iter().map(|(_, range)| *range));
     }
     if let Some(curve) = &layout.curve {
-        numbers.extend(curve.at.iter().map(|&depth| record.force_at(depth)));
+        numbers.extend(curve.at.iter().map(|&depth| record.force_at(depth - at_contact)));
     }
     let stop = match set.stop {
         StopDefinition::ComponentZero => record.stopping_time,
         StopDefinition::SpeedFivePercent => record.slow_time,
     };
     let (depth, range) = match set.last {
-        FinalDefinition::Deepest => (record.deepest, record.reached),
-        FinalDefinition::Resting => at(record, record.end, condition, fall),
+        FinalDefinition::Deepest => (at_contact + record.deepest, record.reached),
+        FinalDefinition::Resting => at(record, record.end, condition, set),
     };
     // A bed that is flat to its walls has a crater of no size.
     let [crater_depth, rim_diameter] = record.crater.unwrap_or_default();
@@ -68,6 +77,7 @@ mod tests {
     fn record() -> Record {
         Record {
             interval: 0.01,
+            contact_height: 0.002,
             depth: vec![0.0, 0.01, 0.018],
             range: vec![0.0, 0.005, 0.006],
             force: vec![0.0, 2.0, 3.0],
@@ -86,17 +96,33 @@ mod tests {
         }
     }
 
+    // Sums and products of a few rounded decimals.
+    fn is_close(found: (f64, f64), expected: (f64, f64)) -> bool {
+        (found.0 - expected.0).abs() < 1e-15 && (found.1 - expected.1).abs() < 1e-15
+    }
+
     #[test]
     fn a_path_is_linear_between_samples_free_before_contact_and_still_at_the_end() {
         let (record, condition) = (record(), condition(1.0, 90.0));
-        // Sums and products of a few rounded decimals.
-        let close = |found: (f64, f64), expected: (f64, f64)| {
-            (found.0 - expected.0).abs() < 1e-15 && (found.1 - expected.1).abs() < 1e-15
-        };
-        assert!(close(at(&record, 0.015, &condition, 9.81), (0.014, 0.0055)));
-        assert!(close(at(&record, 1.0, &condition, 9.81), (0.018, 0.006)));
-        let flight = at(&record, -0.1, &condition, 9.81);
-        assert!((flight.0 + 0.1 - 0.04905).abs() < 1e-15 && flight.1.abs() < 1e-16, "{flight:?}");
+        let set = set(Kind::Trajectory, vec![condition.clone()], Vec::new());
+        assert!(is_close(at(&record, 0.015, &condition, &set), (0.014, 0.0055)));
+        assert!(is_close(at(&record, 1.0, &condition, &set), (0.018, 0.006)));
+        let flight = at(&record, -0.1, &condition, &set);
+        let fallen = 0.1 - 0.5 * set.fall_of(&condition) * 0.01;
+        assert!((flight.0 + fallen).abs() < 1e-15 && flight.1.abs() < 1e-16, "{flight:?}");
+    }
+
+    #[test]
+    fn a_set_may_count_depths_from_the_mean_surface_above_which_grains_are_met() {
+        let (record, condition) = (record(), condition(1.0, 90.0));
+        let mut set = set(Kind::Trajectory, vec![condition.clone()], Vec::new());
+        set.surface = SurfaceDefinition::Mean;
+        assert!(is_close(at(&record, 0.0, &condition, &set), (-0.002, 0.0)));
+        assert!(is_close(at(&record, 0.015, &condition, &set), (0.012, 0.0055)));
+        set.last = FinalDefinition::Deepest;
+        let layout = Layout { final_z: true, ..Layout::default() };
+        let found = observables(&record, &layout, &condition, &set);
+        assert!((found[0] - 0.0161).abs() < 1e-15, "{found}");
     }
 
     #[test]

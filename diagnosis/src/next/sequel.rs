@@ -1,7 +1,7 @@
 //! What an earlier diagnosis expected of the runs that came after it, and what they say about its hypotheses.
 
 use nalgebra::DVector;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::hypothesis::{Expectation, Hypothesis};
 use super::prospect::{Prospect, entropy, posterior};
@@ -49,7 +49,8 @@ pub struct Came {
     /// How many new runs it has.
     pub runs: usize,
     /// The number that is shown of them, with its unit: `final_z_m`, `stop_time_s`, `z_m`, …
-    pub quantity: &'static str,
+    #[serde(serialize_with = "key")]
+    pub quantity: Observable,
     /// Where it was read: the time (s) or the depth (m) of a reading along the way.
     pub at: Option<f64>,
     /// Its mean over the new runs.
@@ -57,6 +58,10 @@ pub struct Came {
     pub measured: f64,
     /// What each hypothesis expected of that mean.
     pub expected: Vec<Expected>,
+}
+
+fn key<S: Serializer>(quantity: &Observable, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(quantity.key())
 }
 
 /// What a hypothesis expects of a number.
@@ -123,7 +128,7 @@ pub fn sequel(
         Came {
             condition: observed.id.clone(),
             runs: observed.runs.len(),
-            quantity: quantity.key(),
+            quantity,
             at: read_at,
             measured: observed.mean[place],
             expected: expected.collect(),

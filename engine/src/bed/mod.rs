@@ -16,7 +16,7 @@ use rand_pcg::Pcg64;
 pub use fill::{GrainKind, fill};
 pub use inflate::{inflate, inflation_range};
 pub use memory::container_bytes;
-pub use report::BedReport;
+pub use report::{BedReport, surface_height};
 pub use settling::{SavedSettling, Settling};
 pub use sizes::SizeDistribution;
 

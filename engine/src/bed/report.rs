@@ -29,6 +29,14 @@ pub struct BedReport {
     pub coordination: f64,
 }
 
+/// Mean height of the surface of `bed` (m), as [`BedReport::height`].
+#[must_use]
+pub fn surface_height(bed: &GrainBed) -> f64 {
+    let grains = &bed.grains;
+    let spacing = spacing(grains.space) * grains.mean_diameter();
+    Columns::over(grains.space, bed.container(), 0.0, spacing).mean_height(grains)
+}
+
 impl BedReport {
     /// Measures `bed`.
     #[must_use]
@@ -37,7 +45,7 @@ impl BedReport {
         let container = bed.container();
         let mean_diameter = grains.mean_diameter();
         let spacing = spacing(grains.space) * mean_diameter;
-        let height = Columns::over(grains.space, container, 0.0, spacing).mean_height(grains);
+        let height = surface_height(bed);
         let margin = INSIDE * mean_diameter;
         let has_room = |length: f64| length - 2.0 * margin > margin;
         let has_sides = container.sides != Sides::Periodic;

@@ -9,7 +9,7 @@ use super::grain::Grain;
 const TOUCHING: f32 = 1.02;
 
 /// The corner of a cell of a grid.
-type Cell = [i32; 3];
+type Cell = [i64; 3];
 
 /// Which `grains` a chain of contacts joins to the lowest of them. Grains that fly, alone or in contact with each
 /// other, are not.
@@ -24,7 +24,7 @@ pub(super) fn joined_to_the_lowest(grains: &[Grain]) -> Vec<bool> {
     if width.is_nan() || width <= 0.0 {
         return joined;
     }
-    let cell = |grain: &Grain| grain.position.map(|x| (x / width).floor() as i32);
+    let cell = |grain: &Grain| grain.position.map(|x| i64::from((x / width).floor() as i32));
     let mut cells: BTreeMap<Cell, Vec<usize>> = BTreeMap::new();
     for (at, grain) in grains.iter().enumerate() {
         cells.entry(cell(grain)).or_default().push(at);

@@ -1,5 +1,6 @@
 //! What is kept of one impact on a bed of grains.
 
+use engine::bed::surface_height;
 use engine::crater::{crater, crater_size};
 use engine::grains::Space;
 use engine::simulation::Simulation;
@@ -16,7 +17,9 @@ const SAMPLE: f64 = 5e-4;
 pub struct Record {
     /// Time between two samples (s).
     pub interval: f64,
-    /// Depth of the lowest point below the undisturbed surface (m), from first contact on.
+    /// Height of the first contact, which is with the highest grains below the intruder, above the mean surface (m).
+    pub contact_height: f64,
+    /// Depth of the lowest point below the first contact (m), from then on.
     pub depth: Vec<f64>,
     /// Horizontal distance along the motion (m), likewise.
     pub range: Vec<f64>,
@@ -27,7 +30,7 @@ pub struct Record {
     pub stopping_time: Option<f64>,
     /// When the speed first fell below 5 % of the impact speed (s), if it did.
     pub slow_time: Option<f64>,
-    /// Largest depth up to the stop (m).
+    /// Largest depth below the first contact up to the stop (m).
     pub deepest: f64,
     /// Distance when the horizontal velocity first came to zero (m).
     pub reached: f64,
@@ -54,6 +57,8 @@ pub(super) struct Recorder {
     every: u64,
     speed: f64,
     start: f64,
+    /// Height of the first contact above the mean surface (m).
+    contact_height: f64,
     depth: Vec<f64>,
     range: Vec<f64>,
     /// What a push has met, by sample (N).
@@ -75,6 +80,7 @@ impl Recorder {
             every,
             speed,
             start: body.position.x,
+            contact_height: simulation.surface() - surface_height(simulation.bed()),
             depth: Vec::new(),
             range: Vec::new(),
             force: Vec::new(),
@@ -114,6 +120,7 @@ impl Recorder {
         let terms = ledger.terms().iter().zip(&ledger.balance().values);
         Record {
             interval: self.every as f64 * clock.dt,
+            contact_height: self.contact_height,
             depth: self.depth,
             range: self.range,
             force: self.force,

@@ -144,6 +144,7 @@ impl Imitation {
             interval: EVERY as f64 * STEP,
             range: vec![0.0; depth.len()],
             force: Vec::new(),
+            contact_height: 0.0,
             depth,
             stopping_time: Some(end),
             slow_time: slow,

@@ -1,6 +1,6 @@
 //! The tables of a campaign file.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use configs::document::{Node, Table, Value};
@@ -149,13 +149,17 @@ fn seeds(head: &TableReader<'_>) -> Option<Vec<u64>> {
         }
         Value::Array(nodes) => {
             let seeds: Option<Vec<u64>> = nodes.iter().map(|node| number(&node.value)).collect();
-            seeds.filter(|seeds| !seeds.is_empty())
+            // A seed that is named twice would count one result twice.
+            let are_distinct = |seeds: &Vec<u64>| {
+                seeds.iter().collect::<BTreeSet<_>>().len() == seeds.len() && !seeds.is_empty()
+            };
+            seeds.filter(are_distinct)
         }
         _ => None,
     };
     if found.is_none() {
         head.reader.report(
-            Diagnostic::error("`seeds` is neither a number of seeds nor a list of them")
+            Diagnostic::error("`seeds` is neither a number of seeds nor a list of different ones")
                 .at(node.span, "")
                 .help("write seeds = 3 for 1, 2 and 3, or seeds = [7, 11]"),
         );

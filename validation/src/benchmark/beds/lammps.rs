@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use configs::{BedSource, GrainModel, Material};
 use engine::bed::random;
 use engine::params::ParamTable;
-use measurements::MeasurementSet;
+use measurements::{MeasurementSet, SurfaceDefinition};
 use rand::RngExt;
 use rayon::prelude::*;
 use runner::beds::{Lie, Record, STOPPED};
@@ -129,12 +129,14 @@ impl<'a> World<'a> {
         let hits = numbers.into_par_iter().map(hit).collect::<Result<Vec<_>, _>>()?;
         let mut random = random(seed, "laboratory");
         let level = LEVEL * normal(&mut random);
-        let mut set = set.clone();
+        // LAMMPS knows the mean height of the surface; the set does not say that depths count from it.
+        let mut set = MeasurementSet { surface: SurfaceDefinition::Mean, ..set.clone() };
         for (number, hit) in hits.iter().enumerate() {
             let errors = Errors { level, clock: CLOCK * random.random_range(-1.0..1.0) };
             let run = seen(&hit.record, (number / repeats, &set), (number, seed), errors);
             set.runs.push(run);
         }
+        set.surface = SurfaceDefinition::shown_by(&set);
         Ok((set, hits.into_iter().map(|hit| hit.lie).collect()))
     }
 
@@ -308,7 +310,7 @@ impl<'a> World<'a> {
         }
     }
 
-    /// The impact whose path `text` is, below the surface of a bed that lay so; none for something else.
+    /// The impact whose path `text` is, on a bed that lay so; none for something else.
     fn record(&self, text: &str, (speed, lie): (f64, &Lie)) -> Option<Record> {
         let mut path: Vec<[f64; 5]> = Vec::new();
         for line in text.lines().filter(|line| !line.starts_with('#')) {
@@ -321,13 +323,14 @@ impl<'a> World<'a> {
             }
         }
         let [first, second, ..] = path[..] else { return None };
-        let level = lie.height + self.radius();
+        let level = first[2];
         let turned = path.windows(2).position(|two| two[0][4] < 0.0 && two[1][4] >= 0.0);
         let slow = |line: &&[f64; 5]| libm::hypot(line[3], line[4]) < STOPPED * speed;
         let until = turned.map_or(path.len(), |at| at + 1);
         let depths = || path.iter().map(|line| level - line[2]);
         Some(Record {
             interval: second[0] - first[0],
+            contact_height: level - self.radius() - lie.height,
             depth: depths().collect(),
             range: path.iter().map(|line| line[1] - first[1]).collect(),
             force: Vec::new(),
@@ -472,7 +475,7 @@ mod tests {
     }
 
     #[test]
-    fn a_path_is_a_depth_below_the_surface_and_stops_where_the_intruder_turns() {
+    fn a_path_is_a_depth_below_first_contact_and_stops_where_the_intruder_turns() {
         let model = Case::small(Hidden::Nothing, 0).model().unwrap();
         let world = with(&model, Hidden::Nothing, Prepared::Alike).unwrap();
         let lie = Lie {
@@ -487,8 +490,8 @@ mod tests {
         let record = world.record(path, (1.0, &lie)).unwrap();
         let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
         assert!(near(record.interval, 1e-4) && record.depth.len() == 5);
-        assert!(near(record.depth[0], -0.002) && near(record.range[2], 0.001));
-        assert!(near(record.deepest, -0.0018), "what it does after it turned is no depth");
+        assert!(near(record.contact_height, 0.002) && near(record.range[2], 0.001));
+        assert!(near(record.deepest, 0.0002), "what it does after it turned is no depth");
         assert_eq!(record.stopping_time, Some(0.0003));
         assert_eq!(record.slow_time, Some(0.0002));
         assert!(world.record("0,0.05,0.09,0\n", (1.0, &lie)).is_none());

@@ -10,7 +10,7 @@ use measurements::{
 use rand::Rng;
 use runner::beds::{Impacts, Lie, Record};
 
-use diagnosis::beds::observables::at;
+use diagnosis::beds::observables::{at, depth_at_contact};
 use diagnosis::beds::{BedError, Stand, Variation};
 
 /// The analyst's model of the bed.
@@ -173,10 +173,11 @@ pub(super) fn seen(
     let times: Vec<f64> = (0..frames).map(|frame| (frame as f64 - FLIGHT as f64) / RATE).collect();
     let of_set = &set.conditions[condition];
     let path = times.iter().map(|&time| {
-        let (z, x) = at(record, time + errors.clock, of_set, set.bed.gravity);
+        let (z, x) = at(record, time + errors.clock, of_set, set);
         (z - errors.level, x)
     });
-    let deepest = record.deepest - errors.level + CAMERA * normal(&mut random);
+    let deepest = depth_at_contact(record, set) + record.deepest - errors.level
+        + CAMERA * normal(&mut random);
     let seen = times.iter().zip(path).map(|(&t, (z, x))| Frame {
         t,
         z: z + CAMERA * normal(&mut random),

@@ -10,6 +10,7 @@ pub(crate) fn record(interval: f64, range: Vec<f64>, depth: Vec<f64>) -> Record 
     let end = interval * (depth.len() as f64 - 1.0);
     Record {
         interval,
+        contact_height: 0.0,
         stopping_time: Some(end),
         slow_time: Some(end),
         deepest: depth.iter().copied().fold(0.0, f64::max),
