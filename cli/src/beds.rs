@@ -292,7 +292,7 @@ fn evidence(found: &BedDiagnosis, object: &Value) -> String {
     }
     text.push_str(&lines(&rows));
     if let Some(impacts) = object["cost"]["impacts"].as_u64() {
-        let _ = writeln!(text, "\n{impacts} impacts in all, those that were kept counted.");
+        let _ = writeln!(text, "\n{impacts} impacts in all, including those from the cache.");
     }
     text
 }

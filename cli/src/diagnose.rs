@@ -33,8 +33,7 @@ pub(crate) struct Args {
     /// Simulate a hundred sets of the same design and say how often verdicts are right: some minutes.
     #[arg(long)]
     calibrate: bool,
-    /// The diagnosis.json of an earlier diagnosis of the same set: what it expected of the runs that came after it, and
-    /// what they tell.
+    /// The diagnosis.json of an earlier diagnosis of this set: compares the runs added since with what it expected of them.
     #[arg(long, value_name = "OLD_DIAGNOSIS.json")]
     after: Option<PathBuf>,
     /// Seek the force that the model lacks, and a formula for it, whatever the verdict: some seconds. Of a bed of grains,

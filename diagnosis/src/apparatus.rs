@@ -4,7 +4,7 @@
 //! deviation, or one of [`defaults`]. An effect therefore gets no credit for what a wrong clock, scale or mass explains
 //! (Kennedy & O'Hagan 2001, J. R. Stat. Soc. B 63, 425, on calibration with discrepancies that have priors).
 
-use measurements::{Along, Condition, Kind, MeasurementSet, Role};
+use measurements::{Along, Condition, Kind, MeasurementSet, Role, SurfaceDefinition};
 
 use crate::forward::{Parameter, ParameterKind, Prior, Scatter};
 use crate::observable::Layout;
@@ -13,8 +13,12 @@ use crate::observable::Layout;
 pub mod defaults {
     /// Zero of the clock, in frames: contact is seen at the first frame that shows it, or at the nearest.
     pub const FRAMES: f64 = 0.5;
-    /// Zero of depth (m), unless half a grain or the stated scatter of the level is more.
+    /// Zero of depth (m), unless its part of a grain or the stated scatter of the level is more.
     pub const ZERO: f64 = 1e-3;
+    /// The part of a grain where depths count from the first grain that is met, which may be any of the highest.
+    pub const FIRST_GRAIN: f64 = 0.5;
+    /// The part of a grain where depths count from the mean height of the surface.
+    pub const MEAN_OF_GRAINS: f64 = 0.25;
     /// Impact speeds, relative.
     pub const SPEED: f64 = 0.02;
     /// Scale of lengths, relative.
@@ -130,7 +134,11 @@ impl Apparatus {
             }
         }
         let level = instrument.level_sigma.unwrap_or(0.0);
-        let grain = 0.5 * set.coarsest_grains();
+        let grain = set.coarsest_grains()
+            * match set.surface {
+                SurfaceDefinition::FirstContact => defaults::FIRST_GRAIN,
+                SurfaceDefinition::Mean => defaults::MEAN_OF_GRAINS,
+            };
         // Depths that count from the point where free fall reaches the surface have no other zero.
         let unstated = match instrument.surface_sigma {
             Some(_) => 0.0,

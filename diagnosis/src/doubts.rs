@@ -14,10 +14,9 @@ const NO_REPEATS: f64 = 0.5;
 
 /// Why a verdict that names `amplitudes`, in the fit `proposed`, is only suggested; nothing where it is confirmed.
 ///
-/// Confirmed is what rests on the scatter of repeats, from [`CONTRASTS`] independent deviations at least, and, where
-/// an effect is named, has amplitudes that are no more than two standard errors outside of the usual range of their
-/// effects, takes no error of the apparatus far beyond what is known of it, and predicts better what it has not seen
-/// without leaving out a condition that the model predicts without it.
+/// A verdict is confirmed if the repeats give at least [`CONTRASTS`] independent deviations. One that names an effect needs
+/// more: each amplitude is at most two standard errors outside of its usual range; no error of the apparatus is far beyond
+/// its stated size; held-out conditions are predicted better; none becomes unpredictable.
 pub(crate) fn doubts(
     bench: &Bench<'_>,
     proposed: &Fitted,

@@ -30,8 +30,8 @@ const UPPER: f64 = 1.645;
 /// Fall of the likelihood from which a scatter between conditions is seen: two standard errors.
 const SEEN: f64 = 4.0;
 
-/// By how much more likely two effects have to be than one that explains the data, and one that leaves something than a
-/// force of any form: odds of 100 to 1, times the number of effects that one is chosen from.
+/// Log-likelihood by which a pair has to exceed a single effect that explains the data, and a single effect that leaves a
+/// part has to exceed a force of any form: odds of 100 to 1, times the number of effects to choose from.
 const LIKELIER: f64 = 15.0;
 
 /// Least log odds of a force of any form at which differences between conditions are not taken for undeclared sessions.

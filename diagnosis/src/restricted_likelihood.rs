@@ -1,9 +1,8 @@
 //! Estimates how much conditions differ from each other by more than their repeats show.
 //!
-//! A bed that is poured anew for every condition, or conditions measured on different days, differ in their
-//! coefficients without any effect. Where a set does not say which run is of which session, the scatter of the
-//! coefficients between conditions is a variance component, learned from the residuals by restricted likelihood with the
-//! parameters of the fit projected out (Patterson & Thompson 1971, Biometrika 58, 545), and small beforehand.
+//! Beds that are poured anew, and days, differ in their coefficients without any effect. Where a set states no sessions, the
+//! scatter of the coefficients between conditions is a variance component. It is estimated from the residuals by restricted
+//! likelihood (Patterson & Thompson, Biometrika 58, 545 (1971)), with a prior that favours small values.
 
 use argmin::core::{CostFunction, Executor, State};
 use argmin::solver::brent::BrentOpt;

@@ -323,8 +323,8 @@ impl GrainBed {
         intruder.load(wrenches, self.gravity);
     }
 
-    /// Completes the force on each grain with the parts from other blocks and gravity, gives it half a kick
-    /// for the step that ends, books its energy, and sends it half a kick and a drift into the next.
+    /// Ends a step for each grain: adds the forces from other blocks and gravity, applies the second half of the kick, books
+    /// the energy. Then it begins the next step with half a kick and the drift.
     pub(crate) fn kick_drift(&mut self, stride: &Stride) {
         match self.grains.space {
             Space::Planar => self.kick_drift_in::<Planar, 1>(stride),

@@ -7,8 +7,8 @@
 
 use nalgebra::{Matrix5, Matrix6, Vector5, Vector6};
 
-use super::Frame;
 use super::fits::{BETWEEN_FRAMES, Fit};
+use super::{Condition, Frame};
 
 /// How often contacts are added beside the best, and the chi-squared that two neighbours may differ by.
 const REFINED: usize = 12;
@@ -44,7 +44,13 @@ pub struct Tip<'a> {
     pub apex_deg: Option<f64>,
 }
 
-impl Tip<'_> {
+impl<'a> Tip<'a> {
+    /// Of the body of `condition`.
+    pub(super) fn of(condition: &'a Condition) -> Self {
+        let Condition { shape, diameter, apex_deg, .. } = condition;
+        Self { shape, diameter: *diameter, apex_deg: *apex_deg }
+    }
+
     /// Section in the surface over the largest, `depth` (m) below first contact.
     fn section(self, depth: f64) -> f64 {
         let share = (depth / self.diameter).max(0.0);

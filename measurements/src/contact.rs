@@ -92,9 +92,9 @@ pub(super) const SLOWED: f64 = 5.0;
 /// Frames that the first velocity is taken over.
 const EARLY: usize = 4;
 
-/// The contact of `run` under `condition`, with an acceleration before it that is gravity to `doubt` (relative), readings
-/// that are good to `sigma` (m), and the depth of free fall at the time `zero` (s) of the table; `None` where the frames do not show it, or the lowest point
-/// of the intruder is no mass that falls freely.
+/// The contact of `run` under `condition`, with the depth of free fall at the time `zero` (s) of the table. Known are the
+/// gravity (m/s²) and its relative error before contact, and the error of a reading (m). `None` where the frames do not show
+/// the contact, or the lowest point of the body does not fall freely.
 #[must_use]
 pub(super) fn read(
     run: &Run,
@@ -108,7 +108,12 @@ pub(super) fn read(
     if all.len() < FEWEST {
         return coarse(&frames, sigma, (condition, gravity, zero));
     }
-    let (fits, contact) = fit(all, (gravity, doubt, sigma), power);
+    let known = (gravity, doubt, sigma);
+    let (fits, contact) = match condition.shape.as_str() {
+        // Its section soon is the whole, so that no power of time holds.
+        "cone" => fit_braked(all, known, (power, Tip::of(condition))),
+        _ => fit(all, known, power),
+    };
     let [first, last] = fits.ends;
     let reaches_zero = first <= zero + 1.5 * contact.step && zero <= last;
     let is_whole = all[0].t <= frames[0].t;

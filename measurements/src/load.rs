@@ -145,13 +145,6 @@ impl MeasurementSet {
         if findings.errors() > 0 {
             return Err(findings.into());
         }
-        let contradictions = checks::check(&set, &document, &mut findings);
-        if findings.errors() > 0 {
-            return Err(findings.into());
-        }
-        let agreement = Agreement::of(&set, grains, &document);
-        let contradictions =
-            contradictions::find(&set, &agreement, (&document, contradictions, &mut findings));
         if !document.states_surface {
             set.surface = SurfaceDefinition::shown_by(&set);
         }
@@ -161,6 +154,13 @@ impl MeasurementSet {
                     .to_owned(),
             );
         }
+        let contradictions = checks::check(&set, &document, &mut findings);
+        if findings.errors() > 0 {
+            return Err(findings.into());
+        }
+        let agreement = Agreement::of(&set, grains, &document);
+        let contradictions =
+            contradictions::find(&set, &agreement, (&document, contradictions, &mut findings));
         set.notes = findings.notes;
         Ok(Loaded {
             set,

@@ -79,7 +79,7 @@ fn of_run(set: &MeasurementSet, run: &Run, slowed: Option<&Contact>) -> Option<R
     let condition = &set.conditions[run.condition];
     let of = Condition { speed: 0.0, ..condition.clone() };
     let (gravity, sigma) = (set.fall_of(&of), zeros::position(set, run));
-    let tip = Tip { shape: &of.shape, diameter: of.diameter, apex_deg: of.apex_deg };
+    let tip = Tip::of(&of);
     let frames = but_strays(&run.frames, sigma);
     let departure = match (contact::power(&of), slowed) {
         (Some(_), None) => Departure::of_frames(&frames, tip, gravity, sigma),

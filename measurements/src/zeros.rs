@@ -9,7 +9,7 @@ use super::contact::{self, Contact};
 use super::departure::Departure;
 use super::reading::Reading;
 use super::strays::but_strays;
-use super::{Kind, MeasurementSet, Run};
+use super::{Kind, MeasurementSet, Run, SurfaceDefinition};
 
 /// How well the level of the surface is known (m), where the set does not say it.
 const LEVEL: f64 = 5e-4;
@@ -233,12 +233,19 @@ struct Level {
     sigma: f64,
     /// How far a grain may lie above or below that (m).
     uneven: f64,
+    /// An offset of all runs alike below this (m) is not worth a word: grains that are met first lie above a mean surface.
+    notable: f64,
 }
 
 impl Level {
     /// Over grains of the diameter `grain` (m).
     fn of(set: &MeasurementSet, grain: f64) -> Self {
-        Self { sigma: level(set), uneven: UNEVEN * grain }
+        let uneven = UNEVEN * grain;
+        let notable = match set.surface {
+            SurfaceDefinition::FirstContact => NOTABLE,
+            SurfaceDefinition::Mean => NOTABLE.max(uneven),
+        };
+        Self { sigma: level(set), uneven, notable }
     }
 
     /// The time (s) in which the body of `contact` passes the unevenness.
@@ -253,7 +260,9 @@ impl Level {
     fn clock_is_off(self, contact: &Contact) -> bool {
         let [earliest, latest] = contact.between;
         let granted = FRAME * contact.step + self.lag(contact);
-        earliest > granted || latest < -granted
+        // A blunt cone is braked slowly at first: fits that differ in their power of time disagree on its contact.
+        let is_known = contact.time.value.abs() > OF_MEAN * contact.time.se;
+        is_known && (earliest > granted || latest < -granted)
     }
 
     /// Whether free fall is not at the surface at time zero, a rounding of the contact to a frame granted.
@@ -317,7 +326,7 @@ fn of_depths(contacts: &[RunContact], level: Level, zero: f64) -> Option<Offset>
     let slow = mean(|one| one.sinking).abs() * time.value.abs();
     let severity = match () {
         () if alone || late || off(WRONG_ALIKE.max(granted)) => Severity::Wrong,
-        () if off(NOTABLE) || (beyond(time) && slow > NOTABLE) => Severity::Notable,
+        () if off(level.notable) || (beyond(time) && slow > NOTABLE) => Severity::Notable,
         () => return None,
     };
     let is_common = points.iter().all(|one| {
@@ -463,7 +472,7 @@ fn is_shown(set: &MeasurementSet, condition: usize) -> bool {
     let ratio = |run: &Run| {
         let sigma = position(set, run);
         let frames = but_strays(&run.frames, sigma);
-        let tip = Tip { shape: &of.shape, diameter: of.diameter, apex_deg: of.apex_deg };
+        let tip = Tip::of(of);
         let Contact { sinking, forward, .. } =
             Departure::of_frames(&frames, tip, set.fall_of(of), sigma)?.contact;
         let speed = libm::hypot(sinking.value, forward.value);

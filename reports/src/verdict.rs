@@ -169,7 +169,7 @@ fn reason_in_words(reason: &str) -> &str {
             "nothing that was held out could be predicted both without and with it"
         }
         "conditions-not-predicted" => {
-            "with it, conditions that were held out cannot be predicted that can be without it"
+            "with it, the model fails to predict held-out conditions that it predicts without it"
         }
         "amplitude-outside-usual-range" => "its amplitude is outside of its usual range",
         "apparatus-far-from-stated" => {

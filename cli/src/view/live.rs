@@ -82,7 +82,7 @@ impl LivePage {
         }
     }
 
-    /// The folder of the run, and of a list of runs that which goes on.
+    /// The folder of the run; of a list of runs, the one in progress.
     pub(super) fn run(&self) -> PathBuf {
         Stand::of(&self.run).run
     }

@@ -311,8 +311,8 @@ pub(super) fn dense(space: Space) -> &'static [f64] {
     }
 }
 
-/// How `model` is prepared at a level from -1, the densest bed that settles, over 0, as it is, to 1, with more friction and a
-/// little drag, and 2, the loosest, where grains sink as in a viscous fluid; `None` without a friction to change.
+/// Changes that prepare `model` at `level`: -1 is the densest bed that settles, 0 the model as it is, 1 a bed with more friction
+/// and a little drag, 2 the loosest, whose grains sink as in a viscous fluid. `None` for a model without preparation friction.
 pub(super) fn at_level(model: GrainModel<'_>, level: f64) -> Option<Vec<Change>> {
     let BedSource::Settle(settle) = &model.medium.bed.source else { return None };
     let own = settle.preparation_friction?;

@@ -99,8 +99,8 @@ fn draw_paths(area: &Area<'_>, condition: &Condition, falling: f64, runs: &[&Run
 /// Points of the free fall before contact that are joined by straight lines.
 const FALL_POINTS: usize = 24;
 
-/// Fall before contact at `speed` (m/s) and `falling` (m/s²) downwards, and straight on behind it, as times (ms) and depths (mm)
-/// between the times `from` and `to`, cut off where it leaves the frame of times and depths.
+/// Free fall up to contact, then constant velocity: points (ms, mm) between the times `from` and `to`, clipped to the axes.
+/// The velocity at contact is `speed` (m/s), the acceleration before it `falling` (m/s²).
 fn fall(
     speed: f64,
     falling: f64,

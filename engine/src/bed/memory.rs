@@ -7,9 +7,8 @@ use crate::space::Space;
 /// Layers of cells in which grains are placed, at least.
 const LAYERS: f64 = 2.0;
 
-/// Memory (byte) of the cells in which grains are placed, the largest of diameter `largest` (m), and of the columns by
-/// which the height of a bed of grains of diameter `mean` (m) is measured, whichever is more. It may be more than any machine
-/// has, or infinite.
+/// The larger of two memories (byte): that of the cells in which grains up to the diameter `largest` (m) are placed, and that
+/// of the columns in which the height of a bed of grains of diameter `mean` (m) is measured. It may be infinite.
 #[must_use]
 pub fn container_bytes((space, container): (Space, &Container), [largest, mean]: [f64; 2]) -> f64 {
     let [width, depth] = container.extents();

@@ -4,10 +4,11 @@ use measurements::{Contact, Departure, Levels, Reading, levels};
 
 use super::fault::Fault;
 
-/// Distance (m) and times its error beyond which a level that is stated is not where the contact is,
+/// A stated level is not where the contact is if it misses that by more than this distance (m) and this many standard errors.
 const OFF: (f64, f64) = (1e-3, 3.5);
 
-/// and in diameters beyond which it cannot be: a bed that brakes in an unusual form moves contacts by less.
+/// Diameters of the body by which a stated level may miss the contact at most: a bed that brakes in an unusual form moves
+/// contacts by less.
 const FAR: f64 = 0.25;
 
 /// Error of a level that is stated (m).

@@ -119,9 +119,9 @@ impl Impact {
     }
 }
 
-/// Where a margin that is `start` at `from` is first seen above zero before `to`, and what it is there; `from`, if it
-/// nowhere is. What has just been let go begins at zero and may come back to it much sooner than the step ends: that
-/// is what happens next, and not where it began.
+/// The first time between `from` and `to` at which a margin that begins as `start` is seen above zero, by halving, and the
+/// margin there; `from` and `start` if there is none. A component that has just been let go begins at zero and may come back
+/// to it long before the step ends: the root behind that time is the next event.
 fn above_zero(
     solver: &mut Solver<'_>,
     (from, start): (f64, f64),
