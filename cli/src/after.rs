@@ -4,18 +4,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-use comfy_table::Cell;
 use configs::printable;
 use diagnosis::bench::Bench;
 use diagnosis::diagnose::diagnose;
-use diagnosis::error_columns::named;
 use diagnosis::next::{Sequel, sequel};
 use diagnosis::observed::Observed;
-use measurements::{Axis, MeasurementSet, Run};
+use measurements::{MeasurementSet, Run};
+use reports::tables;
 use serde::Deserialize;
+use serde_json::Value;
 
 use crate::output::CommandError;
-use crate::text::{lines, table};
+use crate::text::shown;
 use crate::workbench::{Candidate, Flags, Measured, failed};
 
 /// What is read of an earlier diagnosis.
@@ -95,46 +95,16 @@ fn parted(
     Ok((with(true), later))
 }
 
-/// `sequel` as `plunge diagnose` prints it.
-pub(crate) fn as_text(sequel: &Sequel) -> String {
-    let mut head: Vec<String> = ["condition", "runs", "measured"].map(str::to_owned).into();
-    head.extend(sequel.hypotheses.iter().map(|one| format!("with {}", one.id)));
-    let head: Vec<&str> = head.iter().map(String::as_str).collect();
-    let mut came = table(&head);
-    for one in &sequel.came {
-        let Axis { unit, scale, .. } = named(one.quantity);
-        let [place, ..] = one.quantity.axes();
-        let at = one.at.map(|at| format!(" at {:.1} {}", place.scale * at, place.unit));
-        let at = at.unwrap_or_default();
-        let mut row = vec![
-            one.condition.clone(),
-            one.runs.to_string(),
-            format!("{:.2} {unit}{at}", scale * one.measured),
-        ];
-        let expected = one.expected.iter();
-        row.extend(expected.map(|one| format!("{:.2} ± {:.2}", scale * one.value, scale * one.se)));
-        came.add_row(row.into_iter().map(Cell::new));
-    }
-    let mut shares =
-        table(&["hypothesis", "probability before", "after", "chi2 per datum of the new runs"]);
-    for one in &sequel.hypotheses {
-        shares.add_row(
-            [
-                one.id.clone(),
-                format!("{:.3}", one.before),
-                format!("{:.3}", one.after),
-                format!("{:.2}", one.chi2_per_number),
-            ]
-            .map(Cell::new),
-        );
-    }
+/// `sequel`, which the JSON `object` of its diagnosis holds, as `plunge diagnose` prints it.
+pub(crate) fn as_text(sequel: &Sequel, object: &Value) -> String {
+    let after = &object["after"];
     let told = match sequel.hypotheses.len() {
         1 => String::new(),
         _ => format!("They tell {:.2} bit of which it is.\n", sequel.told_bits),
     };
     format!(
         "\nNEW RUNS  measured, and as expected from the earlier ones:\n{}\n{}{told}",
-        lines(&came),
-        lines(&shares)
+        shown(&tables::new_runs(after)),
+        shown(&tables::hypotheses(after))
     )
 }

@@ -2,21 +2,21 @@
 
 use std::path::PathBuf;
 
-use comfy_table::CellAlignment;
 use diagnosis::compare::{Comparison, ModelComparison, Revision, compare};
-use diagnosis::error_columns::{columns, named};
+use diagnosis::error_columns::named;
 use diagnosis::forward::Forward;
 use diagnosis::picture;
 use diagnosis::residual::Residual;
 use measurements::{Axis, MeasurementSet};
-use serde_json::json;
+use reports::tables;
+use serde_json::{Value, json};
 
 use crate::beds::{self, Beds, Workshop};
 use crate::compare_runs::{self, Found};
 use crate::output::{self, CommandError, CommandResult};
 use crate::report;
 use crate::table_file;
-use crate::text::{lines, noise_words, probability, table};
+use crate::text::{lines, noise_words, shown, table};
 use crate::workbench::{Flags, failed};
 
 /// Arguments of `plunge compare`.
@@ -119,7 +119,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         true => output::json_to_stdout(&object),
         false => {
             let n = [&measured.observed.fit, &measured.observed.holdout].map(Vec::len);
-            let mut text = as_text(&measured.set, &comparison, n);
+            let mut text = as_text(&measured.set, (&comparison, &object), n);
             text.push_str(&beds::floors(&comparison, &object));
             let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
             let shown = results.shown();
@@ -133,7 +133,7 @@ const MOST_NUMBERS: usize = 24;
 
 fn as_text(
     set: &MeasurementSet,
-    comparison: &Comparison,
+    (comparison, object): (&Comparison, &Value),
     [n_fit, n_holdout]: [usize; 2],
 ) -> String {
     let mut text = format!(
@@ -141,48 +141,18 @@ fn as_text(
         comparison.set,
         noise_words(&comparison.noise)
     );
+    let models = object["models"].as_array().map_or(&[][..], Vec::as_slice);
     text.push_str("root mean square errors\n");
-    text.push_str(&errors(comparison));
+    text.push_str(&shown(&tables::errors(models)));
     text.push_str(&numbers(set, &comparison.models));
-    text.push_str(&parameters(&comparison.models));
-    text.push_str("\nwhere the force is wrong (significant at a false-discovery rate of 5 %)\n");
-    text.push_str(&failures(&comparison.models));
-    text
-}
-
-fn errors(comparison: &Comparison) -> String {
-    let columns = columns();
-    let measured: Vec<_> = columns
-        .iter()
-        .filter(|one| comparison.models.iter().any(|model| !model.rms.fit[one.key].is_null()))
-        .collect();
-    let mut header = vec!["model", ""];
-    header.extend(measured.iter().map(|one| one.heading.as_str()));
-    header.extend(["chi2/n", "p (lack of fit)"]);
-    let mut table = table(&header);
-    for model in &comparison.models {
-        for (role, errors) in [("fit", &model.rms.fit), ("held out", &model.rms.holdout)] {
-            if errors.is_null() {
-                continue;
-            }
-            let fit = role == "fit";
-            let mut row =
-                vec![if fit { model.model.clone() } else { String::new() }, role.to_owned()];
-            row.extend(measured.iter().map(|one| {
-                errors[one.key]
-                    .as_f64()
-                    .map_or("-".to_owned(), |error| format!("{:.3}", one.scale * error))
-            }));
-            row.push(if fit { format!("{:.2}", model.chi2_per_n) } else { String::new() });
-            row.push(match model.p_lof {
-                Some(p) if fit => probability(p),
-                None if fit => "-".to_owned(),
-                _ => String::new(),
-            });
-            table.add_row(row);
-        }
+    let refitted = tables::parameters(models);
+    if !refitted.is_empty() {
+        text.push_str(&format!("\nparameters, refitted\n{}", shown(&refitted)));
     }
-    lines(&table)
+    text.push_str("\nwhere the force is wrong (significant at a false-discovery rate of 5 %)\n");
+    let failures = tables::failures(models);
+    text.push_str(&if failures.is_empty() { " nowhere\n".to_owned() } else { shown(&failures) });
+    text
 }
 
 /// Scalars beside their predictions; sets of many conditions have them in the picture alone.
@@ -218,46 +188,4 @@ fn numbers(set: &MeasurementSet, models: &[ModelComparison]) -> String {
         table.add_row(row);
     }
     format!("\nmeasured and predicted\n{}", lines(&table))
-}
-
-/// The parameters with their heading; nothing of beds, which have none to fit.
-fn parameters(models: &[ModelComparison]) -> String {
-    if models.iter().all(|model| model.parameters.is_empty()) {
-        return String::new();
-    }
-    let mut table = table(&["model", "parameter", "value", "se", "unit"]);
-    for model in models {
-        for (index, (name, entry)) in model.parameters.iter().enumerate() {
-            let number = |key: &str| {
-                entry[key].as_f64().map_or("-".to_owned(), |value| format!("{value:.5}"))
-            };
-            let name_of_model = if index == 0 { model.model.as_str() } else { "" };
-            let unit = entry["unit"].as_str().unwrap_or_default();
-            table.add_row([name_of_model, name, &number("value"), &number("se"), unit]);
-        }
-    }
-    if let Some(column) = table.column_mut(1) {
-        column.set_cell_alignment(CellAlignment::Left);
-    }
-    format!("\nparameters, refitted\n{}", lines(&table))
-}
-
-fn failures(models: &[ModelComparison]) -> String {
-    let mut table = table(&["model", "over", "from", "to", "force error (%)", "se (%)"]);
-    for model in models {
-        for (index, fail) in model.fails.iter().enumerate() {
-            table.add_row([
-                if index == 0 { model.model.clone() } else { String::new() },
-                fail.over.to_owned(),
-                format!("{:.4}", fail.from),
-                format!("{:.4}", fail.to),
-                format!("{:+.1}", 100.0 * fail.force_error),
-                format!("{:.1}", 100.0 * fail.se),
-            ]);
-        }
-    }
-    match table.row_iter().next() {
-        Some(_) => lines(&table),
-        None => " nowhere\n".to_owned(),
-    }
 }

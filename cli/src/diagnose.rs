@@ -109,8 +109,8 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let text = format!("{object:#}\n");
     let mut files = propose(model, &object, &diagnosis)?;
     files.insert(0, ("diagnosis.json".to_owned(), text.clone()));
-    if let Some(calibration) = &calibration {
-        let object = json!({ "rows": calibration.rows(), "sets": calibration.sets });
+    let counted = calibration.as_ref().map(|all| json!({ "rows": all.rows(), "sets": all.sets }));
+    if let Some(object) = &counted {
         files.push((CALIBRATION.to_owned(), format!("{object:#}\n")));
     }
     let where_it_fails = WhereItFails::of_diagnosis(&bench, &model.name, &diagnosis, flags.seed)
@@ -126,14 +126,14 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     }
     let n = [&measured.observed.fit, &measured.observed.holdout].map(Vec::len);
     let mut text = as_text(&model.name, (&diagnosis, &object), n);
-    if let Some(calibration) = &calibration {
-        text.push_str(&calibration_as_text(calibration));
+    if let (Some(calibration), Some(counted)) = (&calibration, &counted) {
+        text.push_str(&calibration_as_text(calibration, counted));
     }
     if let Some(sequel) = &sequel {
-        text.push_str(&after::as_text(sequel));
+        text.push_str(&after::as_text(sequel, &object));
     }
     if let Some(next) = &next {
-        text.push_str(&next::as_text(next));
+        text.push_str(&next::as_text(next, &object));
     }
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     text.push_str(&format!("\nwritten to {}: {}\n", results.shown(), names.join(", ")));

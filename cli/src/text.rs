@@ -54,6 +54,14 @@ pub(crate) fn table(header: &[&str]) -> Table {
     table
 }
 
+/// The lines of a table of a report.
+pub(crate) fn shown(of_report: &reports::tables::Table) -> String {
+    let head: Vec<&str> = of_report.head.iter().map(String::as_str).collect();
+    let mut table = table(&head);
+    table.add_rows(&of_report.rows);
+    lines(&table)
+}
+
 /// Columns of the terminal that reads the results; none where a file or a pipe does.
 fn terminal_width() -> Option<u16> {
     terminal_size_of(std::io::stdout()).map(|(Width(width), _)| width)

@@ -1,13 +1,13 @@
 //! A diagnosis as `plunge diagnose` prints it.
 
 use diagnosis::calibrate::Calibration;
-use diagnosis::forward::Bound;
 use diagnosis::held_out::{Fails, LeftOut};
 use diagnosis::missing_force::MissingForce;
 use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Verdict};
+use reports::tables;
 use serde_json::Value;
 
-use crate::text::{lines, noise_words, probability, table};
+use crate::text::{noise_words, probability, shown};
 
 /// All of it but what was found by running more impacts, and the next experiment.
 pub(crate) fn as_text(
@@ -39,7 +39,7 @@ pub(crate) fn as_text(
     }
     if !diagnosis.ranking.is_empty() {
         text.push('\n');
-        text.push_str(&ranking(diagnosis));
+        text.push_str(&ranking(diagnosis, object));
     }
     if let Some(p) = diagnosis.p_lof_with {
         text.push_str(&format!("\nLack of fit with the best: p {}.\n", probability(p)));
@@ -99,40 +99,14 @@ fn missing_force(force: &MissingForce) -> String {
     text + "`plunge add MODEL --from diagnosis.json --effect found -o NEW.toml` makes it a part of the model.\n"
 }
 
-/// The name of an effect, with the unit of its amplitude where that is no pure number.
-fn in_unit(effect: &RankedEffect) -> String {
-    match effect.unit.as_str() {
-        "1" => effect.id.clone(),
-        unit => format!("{} ({unit})", effect.id),
-    }
-}
-
-fn ranking(diagnosis: &Diagnosis) -> String {
-    let header = ["effect", "q", "se", "delta", "behind", "ranked first if there", "limit"];
-    let mut table = table(&header);
-    let best = diagnosis.ranking.first().and_then(|effect| effect.delta).unwrap_or(0.0);
-    let number = |value: Option<f64>, digits: usize| {
-        value.map_or("-".to_owned(), |value| format!("{value:.digits$}"))
-    };
+fn ranking(diagnosis: &Diagnosis, object: &Value) -> String {
     let ranked = || diagnosis.ranking.iter().filter(|effect| effect.status == Status::Ranked);
-    for effect in ranked() {
-        let q = number(effect.q, 4);
-        let (q, se) = match effect.at_bound {
-            Some(Bound::Lower) => (format!("at most {q}"), "end of the range".to_owned()),
-            Some(Bound::Upper) => (format!("at least {q}"), "end of the range".to_owned()),
-            None => (q, number(effect.se, 4)),
-        };
-        table.add_row([
-            in_unit(effect),
-            q,
-            se,
-            number(effect.delta, 1),
-            number(effect.delta.map(|delta| best - delta), 1),
-            number(effect.predicted_top1, 2),
-            number(effect.detection_limit, 4),
-        ]);
+    let mut text = shown(&tables::ranking(object));
+    if !diagnosis.effects.is_empty() {
+        text.push_str(
+            " q and se are of each effect alone, in its listed form; the claim adds what is not known of the form.\n",
+        );
     }
-    let mut text = lines(&table);
     let alike = |effect: &&RankedEffect| diagnosis.not_separable.contains(&effect.id);
     for effect in ranked().filter(alike).filter(|effect| !effect.note.is_empty()) {
         text.push_str(&format!(" separable: {} {}\n", effect.id, effect.note));
@@ -222,29 +196,14 @@ fn held_out(diagnosis: &Diagnosis) -> String {
     text
 }
 
-/// How often verdicts are right before sets of this design.
-pub(crate) fn calibration_as_text(calibration: &Calibration) -> String {
-    let head =
-        ["truth", "sets", "named alone", "in a set", "something else named", "nothing named"];
-    let mut table = table(&head);
-    for row in calibration.rows() {
-        let unnamed: Vec<String> =
-            row.unnamed.iter().map(|(verdict, sets)| format!("{verdict} {sets}")).collect();
-        table.add_row([
-            row.truth,
-            row.sets.to_string(),
-            row.alone.to_string(),
-            row.among.to_string(),
-            row.wrong.to_string(),
-            unnamed.join(", "),
-        ]);
-    }
+/// How often verdicts are right before sets of this design, as its JSON `object` has it.
+pub(crate) fn calibration_as_text(calibration: &Calibration, object: &Value) -> String {
     let covered: Vec<bool> = calibration.sets.iter().filter_map(|set| set.covered).collect();
     let holding = covered.iter().filter(|holds| **holds).count();
     format!(
         "\nOf {} simulated sets of this design:\n{}95 % intervals that hold the true amplitude: {holding} of {}.\n",
         calibration.sets.len(),
-        lines(&table),
+        shown(&tables::calibration(object)),
         covered.len()
     )
 }

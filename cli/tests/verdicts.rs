@@ -66,7 +66,7 @@ fn the_example_of_the_readme_names_what_helps_and_nothing_else() {
         assert!(said.lines().any(|one| one == line), "{line:?} is not in\n{said}");
     }
     assert!(
-        said.contains("immersion          at most 0.0000  end of the range"),
+        said.contains("immersion          at most 0  end of the range"),
         "an amplitude at its bound: {said}"
     );
     assert!(said.contains("unusual: added-mass of 7.7374, where 0 to 5 is usual"), "{said}");

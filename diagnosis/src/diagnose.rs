@@ -7,7 +7,7 @@
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::fitted_parameters::parameters;
 use crate::held_out::HeldOut;
-use crate::judge::{Judge, adequate, cannot_tell, nothing, unexplained};
+use crate::judge::{Grounds, Judge, adequate, cannot_tell, nothing, unexplained};
 use crate::lack_of_fit::lack_of_fit;
 use crate::marginal::{Marginals, marginals};
 use crate::missing_force::missing_force;
@@ -93,7 +93,7 @@ pub(crate) fn as_it_is(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchE
         true => nothing(bench, &judge.baseline),
         false => Verdict::NoneOfTheCandidates,
     };
-    judge.diagnosis(verdict, &judge.baseline, (p_lof, None), (String::new(), None))
+    judge.diagnosis(verdict, &judge.baseline, Grounds { p_lof, ..Grounds::default() })
 }
 
 /// The model with the best effect under its own noise; effects around whose fit the model cannot be

@@ -63,103 +63,118 @@ struct Two {
     held_out: HeldOut,
 }
 
+/// What a verdict rests on beside its fit.
+#[derive(Default)]
+pub(crate) struct Grounds {
+    /// Probability of the lack of fit of the model as it is.
+    pub(crate) p_lof: Option<f64>,
+    /// The same with what is proposed.
+    pub(crate) p_lof_with: Option<f64>,
+    /// What the verdict leaves to say.
+    pub(crate) hint: String,
+    /// Errors on held-out conditions, where they are known already.
+    pub(crate) held_out: Option<HeldOut>,
+}
+
 impl Judge<'_> {
     pub(crate) fn verdict(self) -> Result<Diagnosis, BenchError> {
         let p_lof = lack_of_fit(self.bench, &self.baseline, self.seed)?;
-        if self.ranking.p > ALPHA {
-            if adequate(p_lof) {
-                let baseline = &self.baseline;
-                if let Some(why) = no_repeats(baseline) {
-                    return Ok(cannot_tell(self.bench, why));
-                }
-                let hint = self.differ_by_a_force()?;
-                let verdict = match hint {
-                    Some(_) => Verdict::NoneOfTheCandidates,
-                    None => nothing(self.bench, baseline),
-                };
-                let found = (hint.unwrap_or_default(), None);
-                return self.diagnosis(verdict, baseline, (p_lof, None), found);
-            }
-            if let Some(wide) = self.bench.with_sessions_of_their_own(&self.baseline)?
-                && adequate(lack_of_fit(self.bench, &wide, self.seed)?)
-            {
-                let verdict = nothing(self.bench, &wide);
-                let hint = "conditions differ by more than their repeats show, as beds do that are poured anew; if they \
-                            were, say which runs are of one pouring in a column `session` of the runs";
-                return self.diagnosis(verdict, &wide, (p_lof, None), (hint.to_owned(), None));
-            }
-            let hint = "the model is rejected, and no listed effect helps".to_owned();
-            return self.refuse((p_lof, None), hint);
+        let grounds = Grounds { p_lof, ..Grounds::default() };
+        match self.ranking.p > ALPHA {
+            true if adequate(p_lof) => self.explained(grounds),
+            true => self.rejected(grounds),
+            false => self.helped(grounds),
         }
+    }
+
+    /// The verdict where no effect helps, and none is needed.
+    fn explained(&self, grounds: Grounds) -> Result<Diagnosis, BenchError> {
+        if let Some(why) = no_repeats(&self.baseline) {
+            return Ok(cannot_tell(self.bench, why));
+        }
+        let hint = self.differ_by_a_force()?;
+        let verdict = match hint {
+            Some(_) => Verdict::NoneOfTheCandidates,
+            None => nothing(self.bench, &self.baseline),
+        };
+        let hint = hint.unwrap_or_default();
+        self.diagnosis(verdict, &self.baseline, Grounds { hint, ..grounds })
+    }
+
+    /// The verdict where no effect helps a model that does not explain the data.
+    fn rejected(&self, grounds: Grounds) -> Result<Diagnosis, BenchError> {
+        if let Some(wide) = self.bench.with_sessions_of_their_own(&self.baseline)?
+            && adequate(lack_of_fit(self.bench, &wide, self.seed)?)
+        {
+            let hint = "conditions differ by more than their repeats show, as beds do that are poured anew; if they \
+                        were, say which runs are of one pouring in a column `session` of the runs";
+            let hint = hint.to_owned();
+            return self.diagnosis(nothing(self.bench, &wide), &wide, Grounds { hint, ..grounds });
+        }
+        let hint = "the model is rejected, and no listed effect helps".to_owned();
+        self.refuse(Grounds { hint, ..grounds })
+    }
+
+    /// The verdict where the best effect helps by more than chance.
+    fn helped(&self, grounds: Grounds) -> Result<Diagnosis, BenchError> {
         let leader = without_width(self.bench, &self.leader)?;
         let p_leader = lack_of_fit(self.bench, &leader, self.seed)?;
+        let leader = self.name(self.ranking.scores[0].candidate());
         if p_leader.is_none() {
-            let leader = self.name(self.ranking.scores[0].candidate());
             let why = format!("with {leader} as much is free as was measured: nothing judges it");
             return Ok(cannot_tell(self.bench, why));
         }
+        let grounds = Grounds { p_lof_with: p_leader, ..grounds };
         let held_out = HeldOut::of(self.bench, &self.weighed, &self.leader)?;
-        let leader = self.name(self.ranking.scores[0].candidate());
+        let is_judged = self.bench.forward.is_judged_by_held_out();
         // Real effects do not follow formulas exactly: a lack of fit counts only if held-out conditions show it.
-        let is_of_its_form =
-            self.bench.forward.is_judged_by_held_out() && held_out.is_within_noise();
-        let is_explained = adequate(p_leader) || is_of_its_form;
+        let is_explained = adequate(p_leader) || (is_judged && held_out.is_within_noise());
         // Grains are asked again, by impacts on fresh beds: there, two are tried only where one is not enough.
-        let is_enough =
-            !self.bench.forward.is_judged_by_held_out() && !self.leaves_conditions_apart();
-        if is_explained && is_enough {
-            return self.one((p_lof, p_leader), held_out);
+        if is_explained && !is_judged && !self.leaves_conditions_apart() {
+            return self.one(grounds, held_out);
         }
-        if let Some(Two { pair, p_lof: p_pair, held_out }) = self.two(is_explained)? {
+        if let Some(Two { pair, p_lof: p_lof_with, held_out }) = self.two(is_explained)? {
             let by_chance = pair.p;
             let hint = format!(
                 "both are needed (each by chance: {by_chance:.1e} at most), or one effect outside the list"
             );
-            let found = (hint, Some(held_out));
-            return self.diagnosis(Verdict::Pair, &pair.fitted, (p_lof, p_pair), found);
+            let grounds = Grounds { p_lof_with, hint, held_out: Some(held_out), ..grounds };
+            return self.diagnosis(Verdict::Pair, &pair.fitted, grounds);
         }
         // What takes nearly all of a clear error is there, in a form that no formula here has, or not alone.
-        let is_most = self.bench.forward.is_judged_by_held_out()
-            && self.alike.len() == 1
-            && held_out.takes_most();
+        let is_most = is_judged && self.alike.len() == 1 && held_out.takes_most();
         let is_named = is_explained || is_most;
         let is_one_of_many = is_named && self.is_one_of_many(p_leader, &held_out)?;
         if is_named && !is_one_of_many {
-            let mut found = self.one((p_lof, p_leader), held_out)?;
+            let mut found = self.one(grounds, held_out)?;
             if !adequate(p_leader) && !found.effects.is_empty() {
                 found.strength_reasons.push(StrengthReason::OfAnotherForm);
                 found.strength = Strength::of(&found.strength_reasons);
             }
             return Ok(found);
         }
-        let errors = held_out.in_words().map_or(String::new(), |words| format!(": {words}"));
-        let hint = match (is_one_of_many, held_out.is_no_nearer()) {
-            (true, _) => format!(
+        let hint = match is_one_of_many {
+            true => format!(
                 "{leader} leaves a part of what was held out, and a force of another form is about as likely"
             ),
-            (false, true) => format!(
-                "no one or two listed effects explain the data; {leader} fits best and predicts no better{errors}"
-            ),
-            (false, false) => {
-                format!(
-                    "no one or two listed effects explain the data; {leader} explains a part{errors}"
-                )
-            }
+            false => explains_a_part(&leader, &held_out),
         };
-        if !self.bench.forward.is_judged_by_held_out() {
+        match is_judged {
+            true => self.refuse(Grounds { hint, ..grounds }),
             // Impacts on fresh beds decide whether what is left matters.
-            let verdict = match self.alike.len() {
-                1 => Verdict::Supported,
-                _ => Verdict::NotSeparable,
-            };
-            return self.diagnosis(
-                verdict,
-                &self.leader,
-                (p_lof, p_leader),
-                (hint, Some(held_out)),
-            );
+            false => {
+                let grounds = Grounds { hint, held_out: Some(held_out), ..grounds };
+                self.diagnosis(self.of_the_best(), &self.leader, grounds)
+            }
         }
-        self.refuse((p_lof, p_leader), hint)
+    }
+
+    /// The verdict that names the best effect, or what is not told from it.
+    fn of_the_best(&self) -> Verdict {
+        match self.alike.len() {
+            1 => Verdict::Supported,
+            _ => Verdict::NotSeparable,
+        }
     }
 
     /// The hint for conditions that differ by more than their repeats show, if a force of some form explains the differences
@@ -195,26 +210,20 @@ impl Judge<'_> {
     }
 
     /// The verdict on the best effect alone, with which the model explains what was fitted.
-    fn one(
-        &self,
-        p: (Option<f64>, Option<f64>),
-        held_out: HeldOut,
-    ) -> Result<Diagnosis, BenchError> {
+    fn one(&self, grounds: Grounds, held_out: HeldOut) -> Result<Diagnosis, BenchError> {
         if held_out.refutes() {
             let leader = self.name(self.ranking.scores[0].candidate());
             let hint = format!(
                 "{leader} explains what was fitted, but predicts what was left out worse than without it"
             );
-            return self.refuse(p, hint);
+            return self.refuse(Grounds { hint, ..grounds });
         }
-        if let Some(hint) = self.too_small(&held_out) {
-            return self.below_noise(p, hint, held_out);
+        let held_out = Some(held_out);
+        if let Some(hint) = held_out.as_ref().and_then(|held_out| self.too_small(held_out)) {
+            let grounds = Grounds { hint, held_out, ..grounds };
+            return self.diagnosis(Verdict::BelowNoise, &self.baseline, grounds);
         }
-        let verdict = match self.alike.len() {
-            1 => Verdict::Supported,
-            _ => Verdict::NotSeparable,
-        };
-        self.diagnosis(verdict, &self.leader, p, (String::new(), Some(held_out)))
+        self.diagnosis(self.of_the_best(), &self.leader, Grounds { held_out, ..grounds })
     }
 
     /// The two effects that explain the data, if there are two; where one does (`is_explained`), two have to be far more
@@ -238,22 +247,15 @@ impl Judge<'_> {
 
     /// The verdict none-of-the-candidates, or below-noise if the model misses held-out conditions by little more than
     /// their noise.
-    fn refuse(&self, p: (Option<f64>, Option<f64>), hint: String) -> Result<Diagnosis, BenchError> {
+    fn refuse(&self, grounds: Grounds) -> Result<Diagnosis, BenchError> {
         let held_out = HeldOut::of(self.bench, &self.baseline, &self.baseline)?;
-        if self.bench.forward.is_judged_by_held_out() && held_out.is_above_noise() == Some(false) {
-            return self.below_noise(p, hint, held_out);
-        }
-        let found = (hint, Some(held_out));
-        self.diagnosis(Verdict::NoneOfTheCandidates, &self.baseline, p, found)
-    }
-
-    fn below_noise(
-        &self,
-        p: (Option<f64>, Option<f64>),
-        hint: String,
-        held_out: HeldOut,
-    ) -> Result<Diagnosis, BenchError> {
-        self.diagnosis(Verdict::BelowNoise, &self.baseline, p, (hint, Some(held_out)))
+        let is_small = held_out.is_above_noise() == Some(false);
+        let verdict = match is_small && self.bench.forward.is_judged_by_held_out() {
+            true => Verdict::BelowNoise,
+            false => Verdict::NoneOfTheCandidates,
+        };
+        let grounds = Grounds { held_out: Some(held_out), ..grounds };
+        self.diagnosis(verdict, &self.baseline, grounds)
     }
 
     /// The reason why an effect with this error on held-out conditions is too small to be named, with the largest
@@ -272,8 +274,7 @@ impl Judge<'_> {
         &self,
         verdict: Verdict,
         proposed: &Fitted,
-        (p_lof, p_lof_with): (Option<f64>, Option<f64>),
-        (hint, held_out): (String, Option<HeldOut>),
+        Grounds { p_lof, p_lof_with, hint, held_out }: Grounds,
     ) -> Result<Diagnosis, BenchError> {
         let Self { bench, ranking, .. } = self;
         let leaders: Vec<String> =
@@ -372,6 +373,16 @@ impl Judge<'_> {
     fn name(&self, candidate: usize) -> String {
         self.bench.forward.candidates()[candidate].id.clone()
     }
+}
+
+/// That the effect `leader` is not all, and by what held-out conditions are missed with it.
+fn explains_a_part(leader: &str, held_out: &HeldOut) -> String {
+    let does = match held_out.is_no_nearer() {
+        true => "fits best and predicts no better",
+        false => "explains a part",
+    };
+    let errors = held_out.in_words().map_or(String::new(), |words| format!(": {words}"));
+    format!("no one or two listed effects explain the data; {leader} {does}{errors}")
 }
 
 /// The verdict without an effect: it depends on what of the preparation and of the apparatus `fitted` names.

@@ -158,6 +158,12 @@ impl Observable {
         }
     }
 
+    /// The one with this key.
+    #[must_use]
+    pub fn of_key(key: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|one| one.key() == key)
+    }
+
     /// Whether it is a number of the whole impact rather than of a time.
     #[must_use]
     pub fn is_scalar(self) -> bool {

@@ -1,12 +1,12 @@
 //! The report of a comparison: how wrong each revision of a model is, and where.
 
 use diagnosis::error_columns::{Column, columns};
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 use crate::figure::figure;
-use crate::numbers::{fixed, four_digits, list, probability, text};
-use crate::page::{Number, Page, Part, Section, Table};
-use crate::{ReportError, Texts, object};
+use crate::numbers::{fixed, list, probability, text};
+use crate::page::{Number, Page, Part, Section};
+use crate::{ReportError, Texts, object, tables};
 
 /// The file whose presence means a comparison.
 pub(crate) const RESULT: &str = "comparison.json";
@@ -60,15 +60,23 @@ pub(crate) fn page(texts: &Texts) -> Result<String, ReportError> {
     if models.is_empty() {
         return crate::run::pair_page(texts, &comparison);
     }
-    let mut sections = vec![Section::new("Errors", vec![Part::Table(errors(models))])];
+    let mut sections = vec![Section::new("Errors", vec![Part::Table(tables::errors(models))])];
     if let Some(svg) = texts.get("comparison.svg") {
         let caption = "Measured numbers with their errors, under what each revision predicts.";
         sections.push(Section::new("Measured and predicted", vec![figure(svg, caption)]));
     }
-    sections.push(Section::new("Parameters, refitted", parameters(models)));
+    let refitted = tables::parameters(models);
+    let refitted = (!refitted.is_empty()).then_some(Part::Table(refitted));
+    sections.push(Section::new("Parameters, refitted", refitted.into_iter().collect()));
     sections.extend(views(texts, &[]).into_iter().map(Some));
     sections.push(Section::new("Errors by kind of number", by_kind(texts)));
-    sections.push(Section::new("Where the force is wrong, in numbers", failures(models)));
+    let failures = match tables::failures(models) {
+        none if none.is_empty() => {
+            Part::Text("Nowhere, at a false-discovery rate of 5 %.".to_owned())
+        }
+        table => Part::Table(table),
+    };
+    sections.push(Section::new("Where the force is wrong, in numbers", vec![failures]));
     let names: Vec<String> = models.iter().map(|model| text(&model["model"])).collect();
     let page = Page {
         title: text(&comparison["set"]),
@@ -130,75 +138,4 @@ fn main_error(errors: &Value) -> Option<(Column, f64)> {
     // Along the path where there is one, else relative.
     let first = columns().into_iter().take(1);
     first.chain(columns().into_iter().rev()).find_map(find)
-}
-
-fn errors(models: &[Value]) -> Table {
-    let columns = columns();
-    let measured: Vec<&Column> = columns
-        .iter()
-        .filter(|one| models.iter().any(|model| !model["rms"]["fit"][one.key].is_null()))
-        .collect();
-    let mut head = vec!["model", ""];
-    head.extend(measured.iter().map(|one| one.heading.as_str()));
-    head.extend(["\u{3c7}\u{b2}/n", "p (lack of fit)"]);
-    let mut table = Table::new(&head);
-    for model in models {
-        for (role, shown) in [("fit", "fitted"), ("holdout", "held out")] {
-            let errors = &model["rms"][role];
-            if errors.is_null() {
-                continue;
-            }
-            let fit = role == "fit";
-            let mut row = vec![if fit { text(&model["model"]) } else { String::new() }];
-            row.push(shown.to_owned());
-            row.extend(
-                measured
-                    .iter()
-                    .map(|one| fixed(errors[one.key].as_f64().map(|error| one.scale * error), 3)),
-            );
-            row.push(if fit { fixed(model["chi2_per_n"].as_f64(), 2) } else { String::new() });
-            row.push(if fit { probability(model["p_lof"].as_f64()) } else { String::new() });
-            table.rows.push(row);
-        }
-    }
-    table
-}
-
-fn parameters(models: &[Value]) -> Vec<Part> {
-    let mut table = Table::new(&["model", "parameter", "value", "standard error", "unit"]);
-    let none = Map::new();
-    for model in models {
-        let parameters = model["parameters"].as_object().unwrap_or(&none);
-        for (at, (name, entry)) in parameters.iter().enumerate() {
-            table.rows.push(vec![
-                if at == 0 { text(&model["model"]) } else { String::new() },
-                name.clone(),
-                four_digits(&entry["value"]),
-                four_digits(&entry["se"]),
-                text(&entry["unit"]),
-            ]);
-        }
-    }
-    if table.rows.is_empty() { Vec::new() } else { vec![Part::Table(table)] }
-}
-
-fn failures(models: &[Value]) -> Vec<Part> {
-    let mut table = Table::new(&["model", "over", "from", "to", "force error (%)", "se (%)"]);
-    for model in models {
-        for fail in list(&model["fails"]) {
-            let percent = |key: &str| fixed(fail[key].as_f64().map(|value| 100.0 * value), 1);
-            table.rows.push(vec![
-                text(&model["model"]),
-                text(&fail["over"]),
-                four_digits(&fail["from"]),
-                four_digits(&fail["to"]),
-                percent("force_error"),
-                percent("se"),
-            ]);
-        }
-    }
-    match table.rows.is_empty() {
-        true => vec![Part::Text("Nowhere, at a false-discovery rate of 5 %.".to_owned())],
-        false => vec![Part::Table(table)],
-    }
 }

@@ -7,9 +7,10 @@ use crate::claim;
 use crate::comparison::{by_kind, views};
 use crate::figure::figure;
 use crate::numbers::{fixed, four_digits, list, probability, text, texts};
-use crate::page::{Card, Page, Part, Section, Table};
+use crate::page::{Card, Page, Part, Section};
+use crate::tables::Table;
 use crate::verdict::{error_in_words, forces_in_words, strength_in_words, verdict_in_words};
-use crate::{ReportError, Texts, object};
+use crate::{ReportError, Texts, object, tables};
 
 /// The file whose presence means a diagnosis.
 pub(crate) const RESULT: &str = "diagnosis.json";
@@ -176,11 +177,10 @@ fn not_predicted(diagnosis: &Value) -> Option<String> {
 /// An amplitude with its standard error and `unit`, or as the end of its range.
 fn amplitude(of: &Value, unit: &str) -> String {
     let in_unit = |text: String| if unit.is_empty() { text } else { format!("{text} {unit}") };
-    let q = in_unit(four_digits(&of["q"]));
+    let (q, se) = tables::amplitude(of);
     match of["at_bound"].as_str() {
-        Some("lower") => format!("at most {q}, the end of the range"),
-        Some("upper") => format!("at least {q}, the end of the range"),
-        _ => in_unit(format!("{} \u{b1} {}", four_digits(&of["q"]), four_digits(&of["se"]))),
+        Some(_) => format!("{}, the {se}", in_unit(q)),
+        None => in_unit(format!("{q} \u{b1} {se}")),
     }
 }
 
@@ -191,28 +191,13 @@ fn usual(effect: &Value) -> Option<String> {
     Some(format!("{least} to {most}, and this is outside of it"))
 }
 
-/// The name of an effect, with the unit of its amplitude where that is no pure number.
-fn in_unit(effect: &Value) -> String {
-    match effect["unit"].as_str() {
-        None | Some("1" | "") => text(&effect["id"]),
-        Some(unit) => format!("{} ({unit})", text(&effect["id"])),
-    }
-}
-
 /// Simulated sets by truth and verdict, where they were asked for.
 fn calibrated(texts: &Texts) -> Result<Vec<Part>, ReportError> {
     if !texts.contains_key(CALIBRATION) {
         return Ok(Vec::new());
     }
     let calibration = object(texts, CALIBRATION)?;
-    let head =
-        ["truth", "sets", "named alone", "in a set", "something else named", "intervals hold"];
-    let mut table = Table::new(&head);
-    for row in list(&calibration["rows"]) {
-        let cell = |key: &str| row[key].as_u64().unwrap_or_default().to_string();
-        let counts = ["sets", "alone", "among", "wrong", "covered"].map(cell);
-        table.rows.push([text(&row["truth"])].into_iter().chain(counts).collect());
-    }
+    let table = tables::calibration(&calibration);
     let words =
         "Sets with these conditions, repeats and noise were simulated and diagnosed.".to_owned();
     Ok(vec![Part::Text(words), Part::Table(table)])
@@ -275,21 +260,7 @@ fn card(
 }
 
 fn ranking(diagnosis: &Value) -> Vec<Part> {
-    let head = ["effect", "q", "fall of \u{3c7}\u{b2}", "behind", "ranked first if there", "limit"];
-    let mut table = Table::new(&head);
-    let best = testable(diagnosis).next().and_then(|effect| effect["delta"].as_f64());
-    for effect in testable(diagnosis) {
-        let delta = effect["delta"].as_f64();
-        let behind = best.zip(delta).map(|(best, delta)| best - delta);
-        table.rows.push(vec![
-            in_unit(effect),
-            amplitude(effect, ""),
-            fixed(delta, 1),
-            fixed(behind, 1),
-            fixed(effect["predicted_top1"].as_f64(), 2),
-            four_digits(&effect["detection_limit"]),
-        ]);
-    }
+    let table = tables::ranking(diagnosis);
     let mut parts = Vec::new();
     if !table.rows.is_empty() {
         let intro = "Estimates of each effect alone, in its listed form, by which effects are ranked. The verdict fits what \
@@ -315,36 +286,6 @@ fn ranking(diagnosis: &Value) -> Vec<Part> {
 }
 
 fn next(diagnosis: &Value) -> Vec<Part> {
-    let head = [
-        "speed (m/s)",
-        "angle (deg)",
-        "intruder",
-        "diameter (m)",
-        "mass (kg)",
-        "bed",
-        "runs",
-        "told with those above (bit)",
-        "separates most",
-    ];
-    let has_cost = list(&diagnosis["next"]).iter().any(|one| one["cost"].is_number());
-    let head: Vec<_> = head.into_iter().chain(has_cost.then_some("cost")).collect();
-    let mut table = Table::new(&head);
-    for one in list(&diagnosis["next"]) {
-        table.rows.push(vec![
-            four_digits(&one["speed_m_per_s"]),
-            four_digits(&one["angle_deg"]),
-            text(&one["shape"]),
-            four_digits(&one["diameter_m"]),
-            four_digits(&one["mass_kg"]),
-            one["bed"].as_str().unwrap_or("\u{2013}").to_owned(),
-            four_digits(&one["repeats"]),
-            fixed(one["expected_bits"].as_f64(), 2),
-            texts(&one["separates"]).join(" from "),
-        ]);
-        if let Some(row) = table.rows.last_mut().filter(|_| has_cost) {
-            row.push(four_digits(&one["cost"]));
-        }
-    }
     let Some(last) = list(&diagnosis["next"]).last() else { return Vec::new() };
     let bits = |key: &str| fixed(last[key].as_f64(), 2);
     let intro = format!(
@@ -352,58 +293,29 @@ fn next(diagnosis: &Value) -> Vec<Part> {
         bits("expected_bits"),
         bits("open_bits")
     );
-    vec![Part::Text(intro), Part::Table(table)]
+    vec![Part::Text(intro), Part::Table(tables::next(diagnosis))]
 }
 
 /// What an earlier diagnosis expected of new runs, and what they told.
 fn after(diagnosis: &Value) -> Vec<Part> {
     let after = &diagnosis["after"];
-    let hypotheses = list(&after["hypotheses"]);
-    if hypotheses.is_empty() {
+    if list(&after["hypotheses"]).is_empty() {
         return Vec::new();
-    }
-    let mut shares = Table::new(&["hypothesis", "before", "after", "\u{3c7}\u{b2} per datum"]);
-    for one in hypotheses {
-        shares.rows.push(vec![
-            text(&one["id"]),
-            fixed(one["before"].as_f64(), 3),
-            fixed(one["after"].as_f64(), 3),
-            fixed(one["chi2_per_number"].as_f64(), 2),
-        ]);
-    }
-    let mut head = vec!["condition".to_owned(), "runs".to_owned(), "measured".to_owned()];
-    head.extend(hypotheses.iter().map(|one| format!("with {}", text(&one["id"]))));
-    let mut came = Table::new(&head.iter().map(String::as_str).collect::<Vec<_>>());
-    for one in list(&after["came"]) {
-        let quantity = text(&one["quantity"]);
-        let mut row = vec![
-            text(&one["condition"]),
-            four_digits(&one["runs"]),
-            format!("{quantity} {}", four_digits(&one["measured"])),
-        ];
-        row.extend(list(&one["expected"]).iter().map(|one| {
-            format!("{} \u{b1} {}", four_digits(&one["value"]), four_digits(&one["se"]))
-        }));
-        came.rows.push(row);
     }
     let intro = format!(
         "The runs that came after the earlier diagnosis tell {} bit of which effect it is. \u{3c7}\u{b2} per datum is \
          about 1 under a hypothesis that expected them.",
         fixed(after["told_bits"].as_f64(), 2)
     );
-    vec![Part::Text(intro), Part::Table(shares), Part::Table(came)]
+    let tables = [tables::hypotheses(after), tables::new_runs(after)].map(Part::Table);
+    [Part::Text(intro)].into_iter().chain(tables).collect()
 }
 
 fn corrected(diagnosis: &Value) -> Vec<Part> {
     let mut table = Table::new(&["", "value", "standard error", "unit"]);
     for amplitude in list(&diagnosis["amplitudes"]) {
         let name = format!("{}, amplitude", text(&amplitude["id"]));
-        let (q, se) = (four_digits(&amplitude["q"]), four_digits(&amplitude["se"]));
-        let (q, se) = match amplitude["at_bound"].as_str() {
-            Some("lower") => (format!("at most {q}"), "end of the range".to_owned()),
-            Some("upper") => (format!("at least {q}"), "end of the range".to_owned()),
-            _ => (q, se),
-        };
+        let (q, se) = tables::amplitude(amplitude);
         table.rows.push(vec![name, q, se, String::new()]);
     }
     for (name, entry) in diagnosis["parameters"].as_object().into_iter().flatten() {

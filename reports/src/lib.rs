@@ -20,6 +20,7 @@ mod published;
 pub mod run;
 pub mod scene;
 mod set;
+pub mod tables;
 mod verdict;
 
 use std::collections::BTreeMap;

@@ -8,8 +8,9 @@ use runner::run::{Group, ListSummary, Scatter};
 use crate::ReportError;
 use crate::figure::panel;
 use crate::numbers::share;
-use crate::page::{Number, Page, Part, Section, Table};
+use crate::page::{Number, Page, Part, Section};
 use crate::run::origin;
+use crate::tables::Table;
 
 /// Size of a panel (pixels).
 const PANEL: (u32, u32) = (400, 280);

@@ -3,6 +3,7 @@
 use askama::Template;
 
 use crate::ReportError;
+use crate::tables::Table;
 
 /// A page, from its title to its foot.
 #[derive(Template)]
@@ -58,13 +59,6 @@ pub(crate) enum Part {
     Listing(String),
 }
 
-/// A table: numbers to the right, sentences to the left and over several lines.
-#[derive(Default)]
-pub(crate) struct Table {
-    pub(crate) head: Vec<String>,
-    pub(crate) rows: Vec<Vec<String>>,
-}
-
 /// What is known of one effect.
 pub(crate) struct Card {
     pub(crate) title: String,
@@ -117,12 +111,6 @@ impl Section {
     /// A section; none if it has no parts.
     pub(crate) fn new(heading: &str, parts: Vec<Part>) -> Option<Self> {
         (!parts.is_empty()).then(|| Self { heading: heading.to_owned(), parts })
-    }
-}
-
-impl Table {
-    pub(crate) fn new(head: &[&str]) -> Self {
-        Self { head: head.iter().map(|&name| name.to_owned()).collect(), rows: Vec::new() }
     }
 }
 

@@ -4,7 +4,8 @@ use serde_json::Value;
 
 use crate::figure::figure;
 use crate::numbers::{list, text, texts as strings};
-use crate::page::{Number, Page, Part, Section, Table};
+use crate::page::{Number, Page, Part, Section};
+use crate::tables::Table;
 use crate::{ReportError, Texts, object};
 
 /// The file whose presence means published results.

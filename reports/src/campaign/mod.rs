@@ -12,7 +12,8 @@ use self::dependence::{Dependence, bars};
 use crate::ReportError;
 use crate::figure::panel;
 use crate::numbers::four_digits;
-use crate::page::{Number, Page, Part, Section, Table};
+use crate::page::{Number, Page, Part, Section};
+use crate::tables::Table;
 
 /// Size of a panel (pixels).
 const PANEL: (u32, u32) = (400, 270);

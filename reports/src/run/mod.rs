@@ -24,7 +24,8 @@ pub use sparkline::sparkline;
 use crate::ReportError;
 use crate::figure::panel;
 use crate::numbers::{fixed, share, with_prefix};
-use crate::page::{Number, Page, Part, Section, Table};
+use crate::page::{Number, Page, Part, Section};
+use crate::tables::Table;
 
 /// The page of the run that `summary`, `course` and `seen` are of.
 ///

@@ -11,7 +11,8 @@ use super::Course;
 use super::thin::places;
 use crate::figure::figure;
 use crate::numbers::{fixed, list, prefix_of, texts, with_prefix};
-use crate::page::{Number, Page, Part, Section, Table};
+use crate::page::{Number, Page, Part, Section};
+use crate::tables::Table;
 use crate::{ReportError, Texts};
 
 /// Size of a panel (pixels).
