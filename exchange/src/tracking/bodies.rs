@@ -4,6 +4,7 @@ use std::path::Path;
 
 use configs::engine::units::{Dimension, parse};
 
+use super::called;
 use super::fault::Fault;
 use super::heading::Heading;
 use super::inputs;
@@ -56,15 +57,33 @@ pub(super) struct Bodies(Vec<Named>);
 
 /// Names of columns of a table of bodies, and what they may be called.
 const COLUMNS: [(&str, &[&str]); 7] = [
-    ("diameter", &["diameter", "d", "dia", "durchmesser", "diamètre"]),
+    ("diameter", &["diameter", "d", "dia", "ø", "⌀", "durchmesser", "diamètre"]),
     ("radius", &["radius", "r", "rayon"]),
-    ("mass", &["mass", "m", "masse", "masa", "weight"]),
+    ("mass", &["mass", "m", "masse", "masa", "weight", "gewicht"]),
     ("shape", &["shape", "form", "forme"]),
     ("height", &["height", "h", "length"]),
     ("apex", &["apex", "apex_deg", "apex angle"]),
     ("shaft_diameter", &["shaft_diameter", "shaft diameter", "shaft"]),
 ];
-const NAMES: [&str; 6] = ["body", "name", "ball", "id", "intruder", "projectile"];
+const NAMES: [&str; 2] = ["name", "id"];
+/// Those that labels of runs may have too.
+const LABELS: [&str; 10] = [
+    "body",
+    "ball",
+    "intruder",
+    "projectile",
+    "körper",
+    "kugel",
+    "corps",
+    "bille",
+    "cuerpo",
+    "sphere",
+];
+
+/// Whether a column of this name says the body.
+pub(super) fn is_body(stem: &str) -> bool {
+    LABELS.contains(&stem)
+}
 
 impl Bodies {
     /// Reads a table of bodies.
@@ -78,7 +97,7 @@ impl Bodies {
             sheet.rows[0].cells.iter().map(|name| Heading::of(name)).collect();
         let column =
             |names: &[&str]| headings.iter().position(|one| names.contains(&one.stem.as_str()));
-        let Some(name) = column(&NAMES) else {
+        let Some(name) = column(&LABELS).or_else(|| column(&NAMES)) else {
             let right = "write a line of names body,diameter (mm),mass (g),shape above the bodies";
             return Err(sheet
                 .fault("a table of bodies has a column `body`", right)
@@ -97,6 +116,23 @@ impl Bodies {
             (row.cell(name).to_owned(), COLUMNS.iter().filter_map(value).collect())
         };
         Ok(Self(sheet.rows[1..].iter().map(row).collect()))
+    }
+
+    /// The label of the one body of the table whose name stands in `called`, where no label says the body.
+    pub(super) fn named_in(
+        &self,
+        called: &str,
+        labels: &[(String, String)],
+    ) -> Option<(String, String)> {
+        if labels.iter().any(|(name, _)| is_body(name)) {
+            return None;
+        }
+        let lower = called.to_lowercase();
+        let words: Vec<&str> = lower.split('/').chain(called::words(&lower)).collect();
+        let own = |(name, _): &&Named| words.contains(&name.to_lowercase().as_str());
+        let mut found = self.0.iter().filter(own);
+        let (name, _) = found.next()?;
+        found.next().is_none().then(|| ("body".to_owned(), name.clone()))
     }
 
     /// What the table says of `body` below `key`.
@@ -118,8 +154,7 @@ impl Bodies {
         let label = |key: &str| {
             labels.iter().find(|(name, _)| name == key).map(|(_, value)| value.as_str())
         };
-        let name =
-            NAMES.iter().filter(|key| **key != "id" && **key != "name").find_map(|key| label(key));
+        let name = LABELS.iter().find_map(|key| label(key));
         if let Some(name) = name.filter(|_| !self.0.is_empty())
             && !self.0.iter().any(|(other, _)| other == name)
         {

@@ -1,5 +1,7 @@
 //! Columns of numbers below a header, as tracks.
 
+use std::collections::BTreeSet;
+
 use super::fault::Fault;
 use super::heading::{Heading, Role, is_statistic};
 use super::settings::Columns;
@@ -130,7 +132,7 @@ impl<'a> Grid<'a> {
             (0..self.headings.len()).filter(|at| self.headings[*at].role() == Some(role)).collect();
         if all.len() > 1 && role == Role::Vertical {
             // A height of release stands beside all readings of its drop.
-            all.retain(|at| !self.is_label(*at));
+            all.retain(|at| !self.is_label(*at) && !self.has_few_values(*at));
         }
         match all[..] {
             [] => Ok(None),
@@ -171,6 +173,14 @@ impl<'a> Grid<'a> {
     pub(super) fn is_label(&self, at: usize) -> bool {
         let changes = self.rows.windows(2).filter(|pair| pair[0].cell(at) != pair[1].cell(at));
         MOST_CHANGES * changes.count() < self.rows.len()
+    }
+
+    /// Whether so few values stand in a column that they are no readings.
+    pub(super) fn has_few_values(&self, at: usize) -> bool {
+        /// Rows for each value, at least.
+        const ROWS: usize = 20;
+        let values: BTreeSet<&str> = self.rows.iter().map(|row| row.cell(at)).collect();
+        ROWS * values.len() <= self.rows.len()
     }
 
     fn ambiguous(&self, all: &[usize]) -> Fault {
@@ -232,6 +242,7 @@ impl<'a> Grid<'a> {
             file: self.sheet.file.clone(),
             stem: self.sheet.stem.clone(),
             name: None,
+            called: None,
             layout: layout.to_owned(),
             time,
             vertical: measure(places.z),

@@ -7,7 +7,7 @@ use measurements::{Frame, Reading, Tip};
 
 use super::begun::{Begun, begin, tracks};
 use super::bodies::Bodies;
-use super::conditions::{self, Member};
+use super::conditions::{self, Grouping, Member};
 use super::fault::{Fault, TrackingError};
 use super::motion::{self, Path};
 use super::options::Options;
@@ -40,10 +40,10 @@ pub fn import(paths: &[PathBuf], options: &Options, out: &File) -> Result<Set, T
     let mut told = told(&begun);
     told.extend(off_gravity(&begun, &settings));
     told.extend(of_one_body(&begun));
-    let Finished { runs, understood, level, tilt } = finish(begun, &settings)?;
+    let Finished { runs, understood, level, tilt, grouping } = finish(begun, &settings)?;
     told.extend(tilt.map(of_tilt));
-    let manner = manner(&runs, &settings);
-    let mut notes = notes(&runs, &level, &manner, &settings);
+    told.extend(conditions::of_other_depths(&runs, &grouping));
+    let mut notes = notes(&runs, &level, &grouping.manner, &settings);
     notes.append(&mut told);
     let known = written::Known { options, settings: &settings, level: &level, runs: &runs, out };
     let mut files = written::files(&known, &notes)?;
@@ -175,6 +175,7 @@ struct Finished {
     level: Level,
     /// That of the camera (rad), which is turned back.
     tilt: Option<Reading>,
+    grouping: Grouping,
 }
 
 /// Contacts, levels and conditions.
@@ -198,14 +199,14 @@ fn finish(begun: Vec<Begun>, settings: &Settings<'_>) -> Result<Finished, Vec<Fa
     }
     drop_heights(&mut runs, settings)?;
     let members: Vec<Member<'_>> = runs.iter().map(member).collect();
-    let ids =
+    let grouping =
         conditions::group(&members, settings.pattern.as_ref()).map_err(|fault| vec![fault])?;
-    for ((run, words), id) in runs.iter_mut().zip(&mut understood).zip(ids) {
+    for ((run, words), id) in runs.iter_mut().zip(&mut understood).zip(&grouping.ids) {
         words.speed = run.speed;
-        words.condition.clone_from(&id);
-        run.condition = id;
+        words.condition.clone_from(id);
+        run.condition.clone_from(id);
     }
-    Ok(Finished { runs, understood, level, tilt })
+    Ok(Finished { runs, understood, level, tilt, grouping })
 }
 
 /// What the runs show of themselves, their pictures turned back by `turns`, if there are any.
@@ -240,12 +241,8 @@ fn tilt_of(sights: &[Sight], begun: &[Begun], gravity: f64) -> Option<Reading> {
 
 fn member(run: &Run) -> Member<'_> {
     let labels = if run.fields.is_empty() { &run.labels } else { &run.fields };
-    Member { name: &run.name, labels, body: &run.body, speed: run.speed, angle: run.angle }
-}
-
-fn manner(runs: &[Run], settings: &Settings<'_>) -> String {
-    let members: Vec<Member<'_>> = runs.iter().map(member).collect();
-    conditions::manner(&members, settings.pattern.as_ref())
+    let (name, called) = (&run.name, &run.called);
+    Member { name, called, labels, body: &run.body, speed: run.speed, angle: run.angle }
 }
 
 /// What one run shows of itself, its picture turned back by `turn`.

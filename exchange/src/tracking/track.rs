@@ -27,6 +27,8 @@ pub(super) struct Track {
     pub(super) stem: String,
     /// What the table calls it; none where the table is of one run.
     pub(super) name: Option<String>,
+    /// The same where several columns do, with what each says of conditions, parted by `/`.
+    pub(super) called: Option<String>,
     /// The layout, in words.
     pub(super) layout: String,
     pub(super) time: Measure,

@@ -2,6 +2,7 @@
 
 mod contact;
 mod formats;
+mod groups;
 mod irregular;
 mod layouts;
 mod refusals;
