@@ -9,6 +9,7 @@ use super::begun::{Begun, begin, tracks};
 use super::bodies::Bodies;
 use super::conditions::{self, Grouping, Member};
 use super::fault::{Fault, TrackingError};
+use super::lost::lost_from;
 use super::motion::{self, Path};
 use super::options::Options;
 use super::run::Run;
@@ -40,7 +41,9 @@ pub fn import(paths: &[PathBuf], options: &Options, out: &File) -> Result<Set, T
     let mut told = told(&begun);
     told.extend(off_gravity(&begun, &settings));
     told.extend(of_one_body(&begun));
-    let Finished { runs, understood, level, tilt, grouping } = finish(begun, &settings)?;
+    let Finished { runs, understood, level, tilt, grouping, told: seen } =
+        finish(begun, &settings)?;
+    told.extend(seen);
     told.extend(tilt.map(of_tilt));
     told.extend(conditions::of_other_depths(&runs, &grouping));
     let mut notes = notes(&runs, &level, &grouping.manner, &settings);
@@ -150,6 +153,8 @@ struct Sight {
     frames: Vec<Frame>,
     /// Error of one reading (m).
     noise: f64,
+    /// A warning about a tracker that lost the body.
+    lost: Option<String>,
 }
 
 /// How far the picture of a run is turned back, and around which place (way and depth in m).
@@ -176,6 +181,8 @@ struct Finished {
     /// That of the camera (rad), which is turned back.
     tilt: Option<Reading>,
     grouping: Grouping,
+    /// Warnings.
+    told: Vec<String>,
 }
 
 /// Contacts, levels and conditions.
@@ -191,13 +198,15 @@ fn finish(begun: Vec<Begun>, settings: &Settings<'_>) -> Result<Finished, Vec<Fa
     let (level, touches) = surface::touches(&seen, settings.gravity)?;
     let mut runs = Vec::with_capacity(begun.len());
     let mut understood = Vec::with_capacity(begun.len());
+    let mut told = Vec::new();
     for (begun, (sight, touch)) in begun.into_iter().zip(sights.iter().zip(touches)) {
-        let Sight { seen, scales, frames, noise } = sight;
+        let Sight { seen, scales, frames, noise, lost } = sight;
+        told.extend(lost.clone());
         let (run, words) = Run::of(begun, (scales, frames, *noise), seen, touch);
         runs.push(run);
         understood.push(words);
     }
-    drop_heights(&mut runs, settings)?;
+    told.extend(drop_heights(&mut runs, settings)?);
     let members: Vec<Member<'_>> = runs.iter().map(member).collect();
     let grouping =
         conditions::group(&members, settings.pattern.as_ref()).map_err(|fault| vec![fault])?;
@@ -206,7 +215,7 @@ fn finish(begun: Vec<Begun>, settings: &Settings<'_>) -> Result<Finished, Vec<Fa
         words.condition.clone_from(id);
         run.condition.clone_from(id);
     }
-    Ok(Finished { runs, understood, level, tilt, grouping })
+    Ok(Finished { runs, understood, level, tilt, grouping, told })
 }
 
 /// What the runs show of themselves, their pictures turned back by `turns`, if there are any.
@@ -256,6 +265,14 @@ fn see(
     if let Some(Turn { tilt, around }) = turn {
         frames = turned_back(&frames, *tilt, *around);
     }
+    let lost = lost_from(&frames).map(|(at, speed)| {
+        frames.truncate(at);
+        format!(
+            "Warning: the tracker loses the body of {} at {speed:.1} m/s: from one frame on its position never changes. The readings \
+             from there are left out, and no final depth is read.",
+            one.name
+        )
+    });
     let noise = (one.path.noise() * scales.length.1).max(1e-6);
     let shape = one.body.shape.as_str();
     let of_the_body = one.path.of_the_body(&frames);
@@ -283,7 +300,12 @@ fn see(
         (settings.gravity, sees_surface),
     )
     .map_err(|why| {
-        let what = format!("the run {}: {why}", one.name);
+        let tracker = if lost.is_some() {
+            " (the tracker loses the body: from one frame on its position never changes)"
+        } else {
+            ""
+        };
+        let what = format!("the run {}: {why}{tracker}", one.name);
         let name = match one.name.contains(' ') {
             true => format!("\"{}\"", one.name),
             false => one.name.clone(),
@@ -295,7 +317,7 @@ fn see(
     let soft = one.body.soft_entry();
     let diameter = one.body.diameter;
     let seen = Seen { name: one.name.clone(), departure, stated, soft, diameter, below_centre };
-    Ok(Sight { seen, scales, frames, noise })
+    Ok(Sight { seen, scales, frames, noise, lost })
 }
 
 /// Refuses units in which the body moves implausibly far.
@@ -323,24 +345,36 @@ fn refuse_far(frames: &[Frame], one: &Begun, scales: &Scales) -> Result<(), Faul
 const READ: f64 = 1e-3;
 
 /// Replaces speeds by those of stated heights of release.
-fn drop_heights(runs: &mut [Run], settings: &Settings<'_>) -> Result<(), Vec<Fault>> {
+fn drop_heights(runs: &mut [Run], settings: &Settings<'_>) -> Result<Option<String>, Vec<Fault>> {
+    /// Standard errors, and share of the speed, beyond which the frames say another height.
+    const CLEAR: (f64, f64) = (5.0, 0.02);
+    let mut warning = None;
     for run in runs {
         let height = settings.quantity("drop_height", Dimension::LENGTH, &run.labels);
         if let Some(height) = height.map_err(|fault| vec![fault])? {
             let value = (2.0 * settings.gravity * height).sqrt();
-            let (seen, error) = (run.speed.value, 5.0 * run.speed.se);
-            if (seen - value).abs() > error.max(0.12 * value) {
-                let what = format!(
-                    "the run {} meets the bed at {seen:.3} m/s by its frames, and from {height} m it would at {value:.3}",
+            let Reading { value: seen, se } = run.speed;
+            let (off, error) = ((seen - value).abs(), CLEAR.0 * se);
+            let both = || {
+                format!(
+                    "the run {} meets the bed at {seen:.3} ± {se:.3} m/s by its frames, and from {height} m it would at {value:.3}",
                     run.name
-                );
+                )
+            };
+            if off > error.max(0.12 * value) {
                 let right = "give the height of the lowest point above the surface at release, or leave it out";
-                return Err(vec![Fault::new("--drop-height", what, right)]);
+                return Err(vec![Fault::new("--drop-height", both(), right)]);
+            }
+            if off > error.max(CLEAR.1 * value) && warning.is_none() {
+                warning = Some(format!(
+                    "Warning: {}, which is taken. Is it the height of the lowest point? Without --drop-height the frames tell.",
+                    both()
+                ));
             }
             run.speed = Reading { value, se: settings.gravity * READ / value };
         }
     }
-    Ok(())
+    Ok(warning)
 }
 
 fn notes(runs: &[Run], level: &Level, manner: &str, settings: &Settings<'_>) -> Vec<String> {

@@ -4,6 +4,7 @@ use measurements::{Contact, Departure, Fall, Frame, Reading, Tip, stray_frames};
 
 use super::even::undo_rounding;
 use super::fault::Fault;
+use super::mixed;
 use super::settings::Settings;
 use super::track::{Sample, Track};
 use super::units::Unit;
@@ -150,6 +151,18 @@ fn counts_frames(track: &Track, settings: &Settings<'_>) -> bool {
     settings.time_unit.as_ref().unwrap_or(&track.time.unit) == &Unit::Frame
 }
 
+/// Refuses readings of several bodies that take turns.
+fn refuse_mixed(track: &Track) -> Result<(), Fault> {
+    let Some(bodies) = mixed::bodies(&track.samples) else { return Ok(()) };
+    let name = track.name.as_ref().unwrap_or(&track.stem);
+    let what =
+        format!("{name} has {bodies} positions per time: the rows of {bodies} bodies take turns");
+    let right = format!(
+        "add a column that labels the bodies (--column run=NAME), or go on without: --leave-out \"{name}\""
+    );
+    Err(Fault::new(&track.file, what, right))
+}
+
 /// The readings in the order of time; copies of one are dropped.
 fn in_order(
     track: &mut Track,
@@ -162,6 +175,7 @@ fn in_order(
         track.samples.sort_by(|a, b| a.t.total_cmp(&b.t));
         track.notes.push("its rows are sorted by time".to_owned());
     }
+    refuse_mixed(track)?;
     if !counts_rows
         && !counts_frames(track, settings)
         && let Some(quantum) = undo_rounding(&mut track.samples)

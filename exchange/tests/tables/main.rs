@@ -6,4 +6,5 @@ mod groups;
 mod irregular;
 mod layouts;
 mod refusals;
+mod statements;
 mod world;
