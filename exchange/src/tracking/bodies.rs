@@ -5,6 +5,7 @@ use std::path::Path;
 use configs::engine::units::{Dimension, dimension_of, parse};
 
 use super::called;
+use super::density;
 use super::fault::Fault;
 use super::heading::Heading;
 use super::inputs;
@@ -247,14 +248,22 @@ impl Bodies {
             return Err(Fault::new(&flag("shaft_diameter"), what, right));
         }
         let apex = apex.map(f64::to_degrees).map(|apex| (apex * 1e9).round() / 1e9);
-        Ok(Body {
+        let body = Body {
             diameter,
             mass: needed("mass", Dimension::MASS, "\"67 g\"")?,
             shape: shape.to_owned(),
             height,
             apex,
             shaft_diameter,
-        })
+        };
+        let written = |key: &str| match (said(key), settings.text(key)) {
+            (Some((text, place)), _) => (text.to_owned(), place),
+            (None, text) => (text.unwrap_or(key).to_owned(), flag(key)),
+        };
+        if body.shape == "sphere" {
+            density::refuse((diameter, written("diameter")), (body.mass, written("mass")))?;
+        }
+        Ok(body)
     }
 }
 

@@ -125,16 +125,19 @@ fn off_gravity(begun: &[Begun], settings: &Settings<'_>) -> Option<String> {
     /// Least relative difference, and least difference in standard errors.
     const CLEAR: (f64, f64) = (0.04, 4.0);
     let paths: Vec<Path> = begun.iter().map(|one| one.path.clone()).collect();
-    let (mut weights, mut sum) = (0.0, 0.0);
+    let mut falls: Vec<Reading> = Vec::new();
     for path in &paths {
         let scales = path.scales(&paths, settings).ok()?;
-        let Reading { value, se } = scales.fall(path)?;
-        if se > 0.0 && se.is_finite() {
-            weights += se.powi(-2);
-            sum += value * se.powi(-2);
-        }
+        falls.push(scales.fall(path)?);
     }
-    let (mean, se) = (sum / weights, weights.sqrt().recip());
+    falls.retain(|fall| fall.se > 0.0 && fall.se.is_finite());
+    let weight = |fall: &Reading| fall.se.powi(-2);
+    let weights: f64 = falls.iter().map(weight).sum();
+    let mean = falls.iter().map(|fall| weight(fall) * fall.value).sum::<f64>() / weights;
+    // Clocks that are not even scatter the accelerations by more than their errors.
+    let misfit: f64 = falls.iter().map(|fall| weight(fall) * (fall.value - mean).powi(2)).sum();
+    let excess = (misfit / (falls.len() as f64 - 1.0).max(1.0)).max(1.0);
+    let se = (excess / weights).sqrt();
     let off = (mean - settings.gravity).abs();
     (off > (CLEAR.0 * settings.gravity).max(CLEAR.1 * se)).then(|| {
         format!(
