@@ -88,7 +88,7 @@ pub(crate) struct Tables {
     #[arg(long, value_name = "HEIGHT")]
     pub(crate) drop_height: Option<String>,
     /// How names of files or runs are made, such as "{body}_h{height}_r{repeat}", with {date} or {session} where days or
-    /// pourings differ, and folders before `/`; without it, speeds tell conditions.
+    /// pourings differ, and folders before `/`; without it, words and heights in names tell conditions, else speeds.
     #[arg(long, value_name = "PATTERN")]
     pub(crate) condition: Option<String>,
     /// Runs to go on without, separated by commas.

@@ -6,6 +6,7 @@ use super::bodies::{Bodies, Body};
 use super::fault::Fault;
 use super::grid::{NAMED_ROWS, NO_NUMBERS, NO_TIMES};
 use super::motion::{FEWEST, Path};
+use super::names::{SET, is_of_run};
 use super::settings::Settings;
 use super::track::Track;
 use super::{inputs, layouts};
@@ -13,6 +14,8 @@ use super::{inputs, layouts};
 /// A run whose path is known, and nothing of the others.
 pub(super) struct Begun {
     pub(super) name: String,
+    /// Its name with what else tells it apart: folders, files and columns.
+    pub(super) called: String,
     pub(super) fields: Vec<(String, String)>,
     pub(super) labels: Vec<(String, String)>,
     pub(super) body: Body,
@@ -149,15 +152,17 @@ pub(super) fn begin(
     let names = names(&tracks);
     refuse_unknown(&settings.leave_out, &names)?;
     let (mut begun, mut faults) = (Vec::new(), Vec::new());
-    for (track, name) in tracks.into_iter().zip(names) {
+    let called = called(&tracks);
+    for (track, (name, called)) in tracks.into_iter().zip(names.into_iter().zip(called)) {
         if settings.leave_out.iter().any(|pattern| pattern.matches(&name)) {
             continue;
         }
         let one = || -> Result<Begun, Fault> {
             let fields = fields(&track, &name, settings)?;
-            let labels: Vec<_> = fields.iter().chain(&track.labels).cloned().collect();
+            let mut labels: Vec<_> = fields.iter().chain(&track.labels).cloned().collect();
+            labels.extend(bodies.named_in(&called, &labels));
             let body = bodies.of(&name, &labels, settings)?;
-            Ok(Begun { path: Path::of(track, settings)?, name, fields, labels, body })
+            Ok(Begun { path: Path::of(track, settings)?, name, called, fields, labels, body })
         };
         match one() {
             Ok(one) => begun.push(one),
@@ -207,14 +212,60 @@ fn names(tracks: &[Track]) -> Vec<String> {
     names
 }
 
+/// Names of runs behind the folders, files and labels that not all of them have in common, parted by `/`.
+fn called(tracks: &[Track]) -> Vec<String> {
+    let mut parts: Vec<Vec<String>> = tracks.iter().map(folders_around).collect();
+    let shared = |parts: &[Vec<String>]| {
+        let first = parts.first().and_then(|own| own.first());
+        first.is_some() && parts.iter().all(|own| own.first() == first)
+    };
+    while shared(&parts) {
+        parts.iter_mut().for_each(|own| drop(own.remove(0)));
+    }
+    let has_files = tracks.iter().any(|track| track.file != tracks[0].file);
+    for (track, own) in tracks.iter().zip(&mut parts) {
+        if track.called.is_none() {
+            own.extend(track.labels.iter().filter_map(|label| telling(label, tracks)));
+        }
+        match track.called.as_ref().or(track.name.as_ref()) {
+            Some(name) if has_files && !name.starts_with(&track.stem) => {
+                own.extend([track.stem.clone(), name.clone()])
+            }
+            Some(name) => own.push(name.clone()),
+            None => own.push(track.stem.clone()),
+        }
+    }
+    parts.iter().map(|own| own.join("/")).collect()
+}
+
+/// What a label says of the condition of its run: a word, or the number of a quantity that is set, which several of `tracks` have
+/// and not all.
+fn telling((stem, value): &(String, String), tracks: &[Track]) -> Option<String> {
+    let has =
+        |track: &&Track| track.labels.iter().any(|(own, other)| own == stem && other == value);
+    let several = tracks.iter().filter(has).count();
+    let is_number = value.starts_with(|c: char| c.is_ascii_digit() || c == '-' || c == '.');
+    let tells = several > 1 && several < tracks.len() && !is_of_run(stem);
+    match is_number {
+        _ if !tells => None,
+        true => SET.contains(&stem.as_str()).then(|| format!("{stem}{value}").replace(' ', "_")),
+        false => Some(value.clone()),
+    }
+}
+
 /// The name of a run behind those of so many folders around its file, parted by `/`.
 fn within_folders(track: &Track, folders: usize) -> String {
-    let around = File::new(&track.file).parent().map_or(Vec::new(), |folder| {
-        folder.components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect()
-    });
+    let around = folders_around(track);
     let nearest = around[around.len().saturating_sub(folders)..].iter().map(String::as_str);
     let own = track.name.as_deref().unwrap_or(&track.stem);
     nearest.chain(std::iter::once(own)).collect::<Vec<_>>().join("/")
+}
+
+/// The names of the folders around the file of a track.
+fn folders_around(track: &Track) -> Vec<String> {
+    File::new(&track.file).parent().map_or(Vec::new(), |folder| {
+        folder.components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect()
+    })
 }
 
 /// What the pattern says of a run by its name, that of its file or those of the folders around it.

@@ -2,13 +2,16 @@
 
 use std::path::Path;
 
-use configs::engine::units::{Dimension, parse};
+use configs::engine::units::{Dimension, dimension_of, parse};
 
+use super::called;
+use super::density;
 use super::fault::Fault;
 use super::heading::Heading;
 use super::inputs;
 use super::options::flag;
 use super::settings::Settings;
+use super::shapes::{SHAPES_KNOWN, shape_of};
 use super::sheet::Sheet;
 use super::units::Unit;
 
@@ -56,15 +59,33 @@ pub(super) struct Bodies(Vec<Named>);
 
 /// Names of columns of a table of bodies, and what they may be called.
 const COLUMNS: [(&str, &[&str]); 7] = [
-    ("diameter", &["diameter", "d", "dia", "durchmesser", "diamètre"]),
+    ("diameter", &["diameter", "d", "dia", "ø", "⌀", "durchmesser", "diamètre"]),
     ("radius", &["radius", "r", "rayon"]),
-    ("mass", &["mass", "m", "masse", "masa", "weight"]),
+    ("mass", &["mass", "m", "masse", "masa", "weight", "gewicht"]),
     ("shape", &["shape", "form", "forme"]),
     ("height", &["height", "h", "length"]),
     ("apex", &["apex", "apex_deg", "apex angle"]),
     ("shaft_diameter", &["shaft_diameter", "shaft diameter", "shaft"]),
 ];
-const NAMES: [&str; 6] = ["body", "name", "ball", "id", "intruder", "projectile"];
+const NAMES: [&str; 2] = ["name", "id"];
+/// Those that labels of runs may have too.
+const LABELS: [&str; 10] = [
+    "body",
+    "ball",
+    "intruder",
+    "projectile",
+    "körper",
+    "kugel",
+    "corps",
+    "bille",
+    "cuerpo",
+    "sphere",
+];
+
+/// Whether a column of this name says the body.
+pub(super) fn is_body(stem: &str) -> bool {
+    LABELS.contains(&stem)
+}
 
 impl Bodies {
     /// Reads a table of bodies.
@@ -74,11 +95,10 @@ impl Bodies {
     pub(super) fn read(path: &Path) -> Result<Self, Fault> {
         let sheets = inputs::sheets(path, &inputs::bytes(path)?)?;
         let sheet = &sheets[0];
-        let headings: Vec<Heading> =
-            sheet.rows[0].cells.iter().map(|name| Heading::of(name)).collect();
+        let headings: Vec<Heading> = sheet.rows[0].cells.iter().map(|name| heading(name)).collect();
         let column =
             |names: &[&str]| headings.iter().position(|one| names.contains(&one.stem.as_str()));
-        let Some(name) = column(&NAMES) else {
+        let Some(name) = column(&LABELS).or_else(|| column(&NAMES)) else {
             let right = "write a line of names body,diameter (mm),mass (g),shape above the bodies";
             return Err(sheet
                 .fault("a table of bodies has a column `body`", right)
@@ -96,12 +116,48 @@ impl Bodies {
             };
             (row.cell(name).to_owned(), COLUMNS.iter().filter_map(value).collect())
         };
-        Ok(Self(sheet.rows[1..].iter().map(row).collect()))
+        let bodies = Self(sheet.rows[1..].iter().map(row).collect());
+        bodies.refuse_twice(sheet)?;
+        Ok(bodies)
+    }
+
+    /// Refuses a body that the rows of `sheet` below its header list with several values.
+    fn refuse_twice(&self, sheet: &Sheet) -> Result<(), Fault> {
+        for (at, (name, values)) in self.0.iter().enumerate() {
+            let before = self.0[..at].iter().position(|(other, _)| is_called(other, name));
+            if let Some(first) = before.filter(|first| self.0[*first].1 != *values) {
+                let [first, again] = [first, at].map(|at| sheet.rows[at + 1].line);
+                let what = format!(
+                    "the body `{name}` is listed on line {first} and again, with other values"
+                );
+                return Err(sheet
+                    .fault(what, "keep one of the lines, or give each body its own name")
+                    .at(again));
+            }
+        }
+        Ok(())
+    }
+
+    /// The label of the one body of the table whose name stands in `called`, where no label says the body.
+    pub(super) fn named_in(
+        &self,
+        called: &str,
+        labels: &[(String, String)],
+    ) -> Option<(String, String)> {
+        if labels.iter().any(|(name, _)| is_body(name)) {
+            return None;
+        }
+        let lower = called.to_lowercase();
+        let words: Vec<&str> = lower.split('/').chain(called::words(&lower)).collect();
+        let own = |(name, _): &&Named| words.contains(&name.to_lowercase().as_str());
+        let mut found = self.0.iter().filter(own);
+        let (name, _) = found.next()?;
+        found.next().is_none().then(|| ("body".to_owned(), name.clone()))
     }
 
     /// What the table says of `body` below `key`.
     fn get(&self, body: &str, key: &str) -> Option<&str> {
-        let (_, values) = self.0.iter().find(|(name, _)| name == body)?;
+        let (_, values) = self.0.iter().find(|(name, _)| is_called(name, body))?;
         values.iter().find(|(other, _)| *other == key).map(|(_, value)| value.as_str())
     }
 
@@ -118,10 +174,9 @@ impl Bodies {
         let label = |key: &str| {
             labels.iter().find(|(name, _)| name == key).map(|(_, value)| value.as_str())
         };
-        let name =
-            NAMES.iter().filter(|key| **key != "id" && **key != "name").find_map(|key| label(key));
+        let name = LABELS.iter().find_map(|key| label(key));
         if let Some(name) = name.filter(|_| !self.0.is_empty())
-            && !self.0.iter().any(|(other, _)| other == name)
+            && !self.0.iter().any(|(other, _)| is_called(other, name))
         {
             let names: Vec<&str> = self.0.iter().map(|(name, _)| name.as_str()).collect();
             let what =
@@ -162,12 +217,11 @@ impl Bodies {
             })
         };
         let shape = said("shape").map(|(text, _)| text).or_else(|| settings.text("shape"));
-        let shape = shape.unwrap_or("sphere").to_lowercase();
-        if !["sphere", "disc", "cylinder", "hemisphere", "cone"].contains(&shape.as_str()) {
-            let what = format!("the shape of {run} is \"{shape}\"");
-            let right = "known: sphere, disc, cylinder, hemisphere, cone";
-            return Err(Fault::new(&flag("shape"), what, right));
-        }
+        let word = shape.unwrap_or("sphere");
+        let Some(shape) = shape_of(word) else {
+            let what = format!("the shape of {run} is \"{word}\"");
+            return Err(Fault::new(&flag("shape"), what, SHAPES_KNOWN));
+        };
         let radius = match said("radius") {
             Some(_) => quantity("radius", Dimension::LENGTH)?,
             None => None,
@@ -180,28 +234,55 @@ impl Bodies {
         let stated = quantity("apex", Dimension::ANGLE)?;
         let by_height = height.map(|height| 2.0 * libm::atan2(0.5 * diameter, height));
         // Where a cone is braked first depends much on its angle.
-        let apex = match (stated.or(by_height), shape.as_str()) {
+        let apex = match (stated.or(by_height), shape) {
             (None, "cone") => Some(needed("apex", Dimension::ANGLE, "60deg")?),
             (Some(apex), "cone") => Some(apex),
             _ => stated,
         };
         let shaft_diameter = quantity("shaft_diameter", Dimension::LENGTH)?;
         if let Some(shaft) = shaft_diameter
-            && !["cylinder", "hemisphere", "cone"].contains(&shape.as_str())
+            && !["cylinder", "hemisphere", "cone"].contains(&shape)
         {
             let what = format!("{run} is a {shape} with a shaft of {:.1} mm", 1e3 * shaft);
             let right = "a cylinder, hemisphere or cone may have one";
             return Err(Fault::new(&flag("shaft_diameter"), what, right));
         }
         let apex = apex.map(f64::to_degrees).map(|apex| (apex * 1e9).round() / 1e9);
-        Ok(Body {
+        let body = Body {
             diameter,
             mass: needed("mass", Dimension::MASS, "\"67 g\"")?,
-            shape,
+            shape: shape.to_owned(),
             height,
             apex,
             shaft_diameter,
-        })
+        };
+        let written = |key: &str| match (said(key), settings.text(key)) {
+            (Some((text, place)), _) => (text.to_owned(), place),
+            (None, text) => (text.unwrap_or(key).to_owned(), flag(key)),
+        };
+        if body.shape == "sphere" {
+            density::refuse((diameter, written("diameter")), (body.mass, written("mass")))?;
+        }
+        Ok(body)
+    }
+}
+
+/// Whether two names of bodies are one, but for capitals.
+fn is_called(one: &str, other: &str) -> bool {
+    one.to_lowercase() == other.to_lowercase()
+}
+
+/// The name of a column, taken apart; units of masses stand behind `_` too.
+fn heading(name: &str) -> Heading {
+    let heading = Heading::of(name);
+    let is_known = COLUMNS.iter().any(|(_, names)| names.contains(&heading.stem.as_str()));
+    match heading.stem.rsplit_once('_') {
+        Some((stem, unit))
+            if !is_known && heading.unit == Unit::Unstated && dimension_of(unit).is_some() =>
+        {
+            Heading { stem: stem.to_owned(), unit: Unit::Unknown(unit.to_owned()), ..heading }
+        }
+        _ => heading,
     }
 }
 

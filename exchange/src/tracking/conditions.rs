@@ -1,10 +1,13 @@
-//! Which runs belong together: by a column, by a pattern of names, or by their speeds.
+//! Which runs belong together: by a column, by a pattern of names, by what names say, or by their speeds.
 
 use measurements::Reading;
 
 use super::bodies::Body;
+use super::called;
 use super::fault::Fault;
 use super::names::Pattern;
+use super::run::Run;
+use super::track::deviation;
 
 /// Share of a speed by which those of one condition may differ, at least.
 const ALIKE: f64 = 0.05;
@@ -12,12 +15,17 @@ const ALIKE: f64 = 0.05;
 /// Times their errors that speeds of one condition may differ by.
 const ERRORS: f64 = 4.0;
 
+/// Degrees by which the angles of those of one condition may differ.
+const ANGLE: f64 = 3.0;
+
 /// Share of the median speed of a condition that is said by name, and times its error, beyond which a run is of another.
 const OTHER: (f64, f64) = (0.25, 6.0);
 
 /// What tells the condition of a run.
 pub(super) struct Member<'a> {
     pub(super) name: &'a str,
+    /// Its name with what else tells it apart: folders, files and columns.
+    pub(super) called: &'a str,
     pub(super) labels: &'a [(String, String)],
     pub(super) body: &'a Body,
     /// At contact (m/s).
@@ -26,33 +34,42 @@ pub(super) struct Member<'a> {
     pub(super) angle: f64,
 }
 
-/// How runs were put together, in words.
-pub(super) fn manner(members: &[Member<'_>], pattern: Option<&Pattern>) -> String {
-    match (pattern, members.iter().all(|one| of_column(one).is_some())) {
-        (Some(pattern), _) => format!("by names, {}", pattern.text()),
-        (None, true) => "by the column `condition`".to_owned(),
-        (None, false) if by_repeat(members).is_some() => {
-            "by the names of runs without the number of the repeat".to_owned()
-        }
-        (None, false) => "by speed at contact".to_owned(),
-    }
+/// Which runs belong together.
+pub(super) struct Grouping {
+    /// The condition of each run.
+    pub(super) ids: Vec<String>,
+    /// How they were put together, in words.
+    pub(super) manner: String,
+    /// Whether nothing but its speed tells the condition of a run.
+    pub(super) is_by_speed: Vec<bool>,
 }
 
-/// The condition of each run.
+/// The conditions of runs.
 ///
 /// # Errors
 /// If runs of one condition have different bodies, or speeds that are far apart.
-pub(super) fn group(
-    members: &[Member<'_>],
-    pattern: Option<&Pattern>,
-) -> Result<Vec<String>, Fault> {
-    let ids = match pattern {
-        Some(pattern) => members.iter().map(|one| pattern.condition(one.labels)).collect(),
-        None if members.iter().all(|one| of_column(one).is_some()) => {
-            members.iter().filter_map(of_column).collect()
-        }
-        None => by_repeat(members).unwrap_or_else(|| by_speed(members)),
+pub(super) fn group(members: &[Member<'_>], pattern: Option<&Pattern>) -> Result<Grouping, Fault> {
+    let of = |ids: Vec<String>, manner: String, by_speed: bool| Grouping {
+        is_by_speed: vec![by_speed; ids.len()],
+        ids,
+        manner,
     };
+    let columns: Vec<String> = members.iter().filter_map(of_column).collect();
+    let grouping = match pattern {
+        Some(pattern) => of(
+            members.iter().map(|one| pattern.condition(one.labels)).collect(),
+            format!("by names, {}", pattern.text()),
+            false,
+        ),
+        None if columns.len() == members.len() => {
+            of(columns, "by the column `condition`".to_owned(), false)
+        }
+        None => by_names(members).unwrap_or_else(|| {
+            let ids = by_speed(&members.iter().collect::<Vec<_>>());
+            of(ids, "by speed at contact".to_owned(), true)
+        }),
+    };
+    let ids = &grouping.ids;
     for (at, id) in ids.iter().enumerate() {
         let first = ids.iter().position(|other| other == id).unwrap_or(at);
         if members[first].body != members[at].body {
@@ -67,8 +84,8 @@ pub(super) fn group(
             ));
         }
     }
-    refuse_other_speeds(members, &ids)?;
-    Ok(ids)
+    refuse_other_speeds(members, ids)?;
+    Ok(grouping)
 }
 
 /// Refuses a condition in which a run meets the bed much faster or slower than most do.
@@ -100,67 +117,51 @@ fn of_column(member: &Member<'_>) -> Option<String> {
     member.labels.iter().find(|(name, _)| name == "condition").map(|(_, value)| value.clone())
 }
 
-/// Conditions by the names of runs, such as `h10` of `h10_r2`; `None` unless the names of conditions differ in one number only
-/// and every condition has repeats.
-fn by_repeat(members: &[Member<'_>]) -> Option<Vec<String>> {
-    let stems: Vec<String> = members.iter().map(|one| stem(one.name)).collect::<Option<_>>()?;
-    let parts: Vec<Vec<String>> = stems.iter().map(|stem| numbers_and_words(stem)).collect();
-    let first = parts.first()?;
-    let differs = |place: usize| parts.iter().any(|own| own.get(place) != first.get(place));
-    let differing: Vec<usize> = (0..first.len()).filter(|place| differs(*place)).collect();
-    let [only] = differing[..] else { return None };
-    let is_number = |own: &Vec<String>| {
-        own.len() == first.len() && own[only].starts_with(|c: char| c.is_ascii_digit())
-    };
-    let is_repeated = |stem: &String| stems.iter().filter(|other| *other == stem).count() > 1;
-    // Where the speeds of a condition disagree, the number means something else.
-    let agree = |(one, stem): (&Member<'_>, &String)| {
-        let others = members.iter().zip(&stems).filter(|(_, other)| *other == stem);
-        others.map(|(other, _)| other).all(|other| {
+/// Conditions by what names say beside the number of the repeat; runs of one name that differ in speed or body are parted by
+/// these. `None` where all names say the same.
+fn by_names(members: &[Member<'_>]) -> Option<Grouping> {
+    let called: Vec<&str> = members.iter().map(|one| one.called).collect();
+    let keys = called::keys(&called, |own| agree(members, own));
+    let groups = called::groups(&keys);
+    if groups.len() < 2 {
+        return None;
+    }
+    let (mut ids, mut is_by_speed) = (keys.clone(), vec![false; members.len()]);
+    let mut is_parted = false;
+    for (key, own) in groups {
+        let is_named = !key.is_empty() && agree(members, &own);
+        let parts = by_speed(&own.iter().map(|at| &members[*at]).collect::<Vec<_>>());
+        is_parted |= !is_named;
+        for (at, part) in own.into_iter().zip(parts) {
+            is_by_speed[at] = !is_named;
+            ids[at] = match (is_named, key.as_str()) {
+                (true, _) => key.clone(),
+                (false, "") => part,
+                (false, _) => format!("{key}_{part}"),
+            };
+        }
+    }
+    let within = if is_parted { "; runs of one name by speed at contact" } else { "" };
+    let manner = format!("by the names of runs without the number of the repeat{within}");
+    Some(Grouping { ids, manner, is_by_speed })
+}
+
+/// Whether the runs `own` have one body and one speed.
+fn agree(members: &[Member<'_>], own: &[usize]) -> bool {
+    let own = || own.iter().map(|at| &members[*at]);
+    own().all(|one| {
+        own().all(|other| {
             let errors = ERRORS * libm::hypot(one.speed.se, other.speed.se);
             let allowed = (2.0 * ALIKE * one.speed.value).max(errors);
-            (one.speed.value - other.speed.value).abs() <= allowed && one.body == other.body
+            (one.speed.value - other.speed.value).abs() <= allowed
+                && (one.angle - other.angle).abs() < 2.0 * ANGLE
+                && one.body == other.body
         })
-    };
-    let is_told = parts.iter().all(is_number)
-        && stems.iter().all(is_repeated)
-        && members.iter().zip(&stems).all(agree);
-    is_told.then_some(stems)
-}
-
-/// The part of a run's name before its repeat number, such as `h10` of `h10_r2`; `None` for a name without a repeat number.
-fn stem(name: &str) -> Option<String> {
-    const MARKS: [&str; 9] = ["repeat", "trial", "run", "rep", "take", "drop", "r", "t", "n"];
-    const BETWEEN: [char; 5] = ['_', '-', ' ', '#', '.'];
-    let without = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    let bare = without.trim_end_matches(BETWEEN);
-    let lower = bare.to_lowercase();
-    let mark = MARKS.iter().find(|mark| {
-        lower.strip_suffix(**mark).is_some_and(|rest| rest.is_empty() || rest.ends_with(BETWEEN))
-    });
-    let rest = &bare[..bare.len() - mark.map_or(0, |mark| mark.len())];
-    let rest = rest.trim_end_matches(BETWEEN);
-    let is_marked = mark.is_some() || bare.len() < without.len();
-    (without.len() < name.len() && is_marked && !rest.is_empty()).then(|| rest.to_owned())
-}
-
-/// The runs of digits and of other characters in `text`.
-fn numbers_and_words(text: &str) -> Vec<String> {
-    let mut parts: Vec<String> = Vec::new();
-    let mut was_digit = None;
-    for one in text.chars() {
-        let is_digit = one.is_ascii_digit();
-        match parts.last_mut().filter(|_| was_digit == Some(is_digit)) {
-            Some(part) => part.push(one),
-            None => parts.push(one.to_string()),
-        }
-        was_digit = Some(is_digit);
-    }
-    parts
+    })
 }
 
 /// Runs of one body whose speeds are alike.
-fn by_speed(members: &[Member<'_>]) -> Vec<String> {
+fn by_speed(members: &[&Member<'_>]) -> Vec<String> {
     let mut order: Vec<usize> = (0..members.len()).collect();
     let speed = |at: usize| members[at].speed.value;
     order.sort_by(|a, b| speed(*a).total_cmp(&speed(*b)).then(a.cmp(b)));
@@ -168,11 +169,11 @@ fn by_speed(members: &[Member<'_>]) -> Vec<String> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for at in order {
         let fits = |group: &&mut Vec<usize>| {
-            let (first, own) = (&members[group[0]], &members[at]);
+            let (first, own) = (members[group[0]], members[at]);
             let allowed =
                 (ALIKE * first.speed.value).max(ERRORS * libm::hypot(first.speed.se, own.speed.se));
             first.body == own.body
-                && (first.angle - own.angle).abs() < 3.0
+                && (first.angle - own.angle).abs() < ANGLE
                 && own.speed.value - first.speed.value <= allowed
         };
         match groups.iter_mut().find(fits) {
@@ -202,23 +203,27 @@ fn by_speed(members: &[Member<'_>]) -> Vec<String> {
     (0..members.len()).map(|at| names[of(at)].clone()).collect()
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_number_at_the_end_of_a_name_is_that_of_the_repeat() {
-        for (name, found) in [
-            ("h10_r2", Some("h10")),
-            ("ball_h10 run 3", Some("ball_h10")),
-            ("h10_3", Some("h10")),
-            ("h10-trial-12", Some("h10")),
-            ("h10", None),
-            ("r2", None),
-            ("left", None),
-        ] {
-            assert_eq!(stem(name).as_deref(), found, "{name}");
-        }
-        assert_eq!(numbers_and_words("a12b3"), ["a", "12", "b", "3"]);
-    }
+/// A warning if bodies that only their speeds put together end at depths that are far apart.
+pub(super) fn of_other_depths(runs: &[Run], grouping: &Grouping) -> Option<String> {
+    /// Standard deviation over mean of final depths that repeats seldom have.
+    const FAR: f64 = 0.12;
+    /// Errors of a reading that are no scatter.
+    const CLEAR: f64 = 5.0;
+    called::groups(&grouping.ids).into_iter().find_map(|(id, own)| {
+        let own: Vec<&Run> =
+            own.into_iter().filter(|at| grouping.is_by_speed[*at]).map(|at| &runs[at]).collect();
+        let depths: Vec<f64> = own.iter().filter_map(|run| run.frames.last()).map(|last| last.z).collect();
+        let noise = own.iter().map(|run| run.noise).fold(0.0, f64::max);
+        let mean = depths.iter().sum::<f64>() / depths.len() as f64;
+        let scatter = deviation(&depths);
+        (own.len() > 1 && scatter > (FAR * mean).max(CLEAR * noise)).then(|| {
+            let names: Vec<&str> = own.iter().map(|run| run.name.as_str()).collect();
+            format!(
+                "Warning: the runs of `{id}` ({}) are put together by speed alone, and their final depths scatter by {:.0} %. If they \
+                 differ in more than speed, say it: --condition \"{{bed}}_{{repeat}}\", or a column `condition`.",
+                configs::shorten(&names.join(", ")),
+                1e2 * scatter / mean
+            )
+        })
+    })
 }

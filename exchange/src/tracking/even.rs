@@ -51,6 +51,62 @@ pub(super) fn undo_rounding(samples: &mut [Sample]) -> Option<f64> {
     Some(quantum)
 }
 
+/// How much smoother a path has to be over its rows than over its times for these to be noise, and most that times may be off
+/// an even clock, in steps.
+const SMOOTHER: f64 = 0.5;
+const NOISY: f64 = 1.0;
+
+/// Gives evenly spaced times to readings whose own scatter around those, if the path is then much smoother, and says by how much
+/// (rms) they do.
+pub(super) fn undo_jitter(samples: &mut [Sample]) -> Option<f64> {
+    let is_gapless = samples.windows(2).all(|pair| pair[1].line == pair[0].line + 1);
+    let n = samples.len() as f64;
+    if !is_gapless || samples.len() < 16 {
+        return None;
+    }
+    let rows: Vec<f64> = (0..samples.len()).map(|row| row as f64 - 0.5 * (n - 1.0)).collect();
+    let middle = samples.iter().map(|one| one.t).sum::<f64>() / n;
+    let spread = rows.iter().map(|row| row * row).sum::<f64>();
+    let step =
+        rows.iter().zip(&*samples).map(|(row, one)| row * (one.t - middle)).sum::<f64>() / spread;
+    let even: Vec<f64> = rows.iter().map(|row| middle + step * row).collect();
+    let off: Vec<f64> = even.iter().zip(&*samples).map(|(even, one)| one.t - even).collect();
+    let rms = (off.iter().map(|off| off * off).sum::<f64>() / n).sqrt();
+    let is_scattered = off.iter().all(|off| off.abs() < NOISY * step) && rms > FINE * step;
+    let own: Vec<f64> = samples.iter().map(|one| one.t).collect();
+    if !is_scattered || roughness(samples, &even) > SMOOTHER * roughness(samples, &own) {
+        return None;
+    }
+    samples.iter_mut().zip(even).for_each(|(one, t)| one.t = t);
+    Some(rms)
+}
+
+/// By how much readings of a moving body differ from a parabola through those around them on this clock: the median.
+fn roughness(samples: &[Sample], clock: &[f64]) -> f64 {
+    /// Share of the longest way over four rows below which a body counts as still.
+    const MOVES: f64 = 0.3;
+    let fours = || samples.windows(4).zip(clock.windows(4));
+    let way = |four: &[Sample]| (four[3].z - four[0].z).abs();
+    let longest = fours().map(|(four, _)| way(four)).fold(0.0, f64::max);
+    let off = |(four, t): (&[Sample], &[f64])| {
+        let weight = |at: usize| {
+            (0..4)
+                .filter(|other| *other != at)
+                .map(|other| t[at] - t[other])
+                .product::<f64>()
+                .recip()
+        };
+        let weights = [0, 1, 2, 3].map(weight);
+        let sum: f64 = four.iter().zip(weights).map(|(one, weight)| weight * one.z).sum();
+        sum.abs() / weights.iter().map(|weight| weight * weight).sum::<f64>().sqrt()
+    };
+    let moving = fours().filter(|(four, _)| way(four) > MOVES * longest);
+    // Times that repeat make no parabola.
+    let mut all: Vec<f64> = moving.map(off).filter(|off| off.is_finite()).collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(0.0)
+}
+
 /// Whether consecutive rows are one constant number of `quantum` apart, with few exceptions.
 fn is_exact(samples: &[Sample], quantum: f64) -> bool {
     let beside = samples.windows(2).filter(|pair| pair[1].line == pair[0].line + 1);
@@ -98,6 +154,27 @@ mod tests {
             assert_eq!(undo_rounding(&mut rounded).map(f64::to_bits), Some(quantum.to_bits()));
             assert!(worst(&rounded, rate) < 0.2 * before, "{rate}: {}", worst(&rounded, rate));
         }
+    }
+
+    /// A fall at 240 Hz, whose true and whose written times are these functions of the even one.
+    fn fall(truth: impl Fn(f64) -> f64, written: impl Fn(f64) -> f64) -> Vec<Sample> {
+        let of = |line: u64| {
+            let t = line as f64 / 240.0;
+            let z = 0.5 * 9.81 * truth(t).powi(2) + 1e-4 * libm::sin(line as f64 * 1.7);
+            Sample { line, t: written(t), z, x: 0.0 }
+        };
+        (0..60).map(of).collect()
+    }
+
+    #[test]
+    fn noisy_stamps_of_even_rows_become_even_and_true_ones_stay() {
+        let jitter = |t: f64| t + 5e-4 * libm::sin(t * 2399.0);
+        let mut noisy = fall(|t| t, jitter);
+        let off = undo_jitter(&mut noisy).expect("they are noise");
+        assert!((2e-4..5e-4).contains(&off), "{off}");
+        assert!(worst(&noisy, 240.0).abs() < 0.02, "{}", worst(&noisy, 240.0));
+        assert_eq!(undo_jitter(&mut fall(jitter, jitter)), None);
+        assert_eq!(undo_jitter(&mut fall(|t| t, |t| t)), None);
     }
 
     #[test]

@@ -1,10 +1,12 @@
 //! Columns of numbers below a header, as tracks.
 
+use std::collections::BTreeSet;
+
 use super::fault::Fault;
 use super::heading::{Heading, Role, is_statistic};
 use super::settings::Columns;
 use super::sheet::{Number, Row, Sheet};
-use super::track::{Measure, Sample, Track};
+use super::track::{Measure, STILL, Sample, Track};
 use super::units::Unit;
 
 /// What is wrong with a text that is no table.
@@ -130,12 +132,15 @@ impl<'a> Grid<'a> {
             (0..self.headings.len()).filter(|at| self.headings[*at].role() == Some(role)).collect();
         if all.len() > 1 && role == Role::Vertical {
             // A height of release stands beside all readings of its drop.
-            all.retain(|at| !self.is_label(*at));
+            all.retain(|at| !self.is_label(*at) && !self.has_few_values(*at));
         }
         match all[..] {
             [] => Ok(None),
             [only] => Ok(Some(only)),
-            _ if role == Role::Vertical => Err(self.ambiguous(&all)),
+            _ if role == Role::Vertical => match self.moving(&all)[..] {
+                [only] => Ok(Some(only)),
+                _ => Err(self.ambiguous(&all)),
+            },
             [first, ..] => Ok(Some(first)),
         }
     }
@@ -171,6 +176,30 @@ impl<'a> Grid<'a> {
     pub(super) fn is_label(&self, at: usize) -> bool {
         let changes = self.rows.windows(2).filter(|pair| pair[0].cell(at) != pair[1].cell(at));
         MOST_CHANGES * changes.count() < self.rows.len()
+    }
+
+    /// Those of the columns `all` that move beside the one that moves farthest.
+    fn moving(&self, all: &[usize]) -> Vec<usize> {
+        let way = |at: usize| {
+            let values = self.rows.iter().filter_map(|row| match self.sheet.number(row.cell(at)) {
+                Number::Value(value) => Some(value),
+                _ => None,
+            });
+            let ends = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+                [low.min(value), high.max(value)]
+            });
+            ends[1] - ends[0]
+        };
+        let farthest = all.iter().map(|at| way(*at)).fold(0.0, f64::max);
+        all.iter().copied().filter(|at| way(*at) > STILL * farthest).collect()
+    }
+
+    /// Whether so few values stand in a column that they are no readings.
+    pub(super) fn has_few_values(&self, at: usize) -> bool {
+        /// Rows for each value, at least.
+        const ROWS: usize = 20;
+        let values: BTreeSet<&str> = self.rows.iter().map(|row| row.cell(at)).collect();
+        ROWS * values.len() <= self.rows.len()
     }
 
     fn ambiguous(&self, all: &[usize]) -> Fault {
@@ -232,6 +261,7 @@ impl<'a> Grid<'a> {
             file: self.sheet.file.clone(),
             stem: self.sheet.stem.clone(),
             name: None,
+            called: None,
             layout: layout.to_owned(),
             time,
             vertical: measure(places.z),

@@ -59,7 +59,7 @@ const FRAME: [&str; 16] = [
     "image_number",
     "image number",
 ];
-const VERTICAL: [&str; 25] = [
+const VERTICAL: [&str; 28] = [
     "y",
     "z",
     "depth",
@@ -85,6 +85,9 @@ const VERTICAL: [&str; 25] = [
     "y_center",
     "y_centre",
     "bbox_top",
+    "weg",
+    "displacement",
+    "déplacement",
 ];
 const FORWARD: [&str; 14] = [
     "x",
@@ -102,7 +105,7 @@ const FORWARD: [&str; 14] = [
     "x_centre",
     "bbox_left",
 ];
-const RUN: [&str; 26] = [
+const RUN: [&str; 31] = [
     "run",
     "trial",
     "drop",
@@ -129,6 +132,11 @@ const RUN: [&str; 26] = [
     "drop number",
     "essai",
     "aufnahme",
+    "drop_id",
+    "drop id",
+    "trial_id",
+    "trial id",
+    "shot_id",
 ];
 
 /// Whether what is called so holds means or errors of the others.

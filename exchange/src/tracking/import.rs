@@ -7,8 +7,9 @@ use measurements::{Frame, Reading, Tip};
 
 use super::begun::{Begun, begin, tracks};
 use super::bodies::Bodies;
-use super::conditions::{self, Member};
+use super::conditions::{self, Grouping, Member};
 use super::fault::{Fault, TrackingError};
+use super::lost::lost_from;
 use super::motion::{self, Path};
 use super::options::Options;
 use super::run::Run;
@@ -40,10 +41,12 @@ pub fn import(paths: &[PathBuf], options: &Options, out: &File) -> Result<Set, T
     let mut told = told(&begun);
     told.extend(off_gravity(&begun, &settings));
     told.extend(of_one_body(&begun));
-    let Finished { runs, understood, level, tilt } = finish(begun, &settings)?;
+    let Finished { runs, understood, level, tilt, grouping, told: seen } =
+        finish(begun, &settings)?;
+    told.extend(seen);
     told.extend(tilt.map(of_tilt));
-    let manner = manner(&runs, &settings);
-    let mut notes = notes(&runs, &level, &manner, &settings);
+    told.extend(conditions::of_other_depths(&runs, &grouping));
+    let mut notes = notes(&runs, &level, &grouping.manner, &settings);
     notes.append(&mut told);
     let known = written::Known { options, settings: &settings, level: &level, runs: &runs, out };
     let mut files = written::files(&known, &notes)?;
@@ -122,16 +125,19 @@ fn off_gravity(begun: &[Begun], settings: &Settings<'_>) -> Option<String> {
     /// Least relative difference, and least difference in standard errors.
     const CLEAR: (f64, f64) = (0.04, 4.0);
     let paths: Vec<Path> = begun.iter().map(|one| one.path.clone()).collect();
-    let (mut weights, mut sum) = (0.0, 0.0);
+    let mut falls: Vec<Reading> = Vec::new();
     for path in &paths {
         let scales = path.scales(&paths, settings).ok()?;
-        let Reading { value, se } = scales.fall(path)?;
-        if se > 0.0 && se.is_finite() {
-            weights += se.powi(-2);
-            sum += value * se.powi(-2);
-        }
+        falls.push(scales.fall(path)?);
     }
-    let (mean, se) = (sum / weights, weights.sqrt().recip());
+    falls.retain(|fall| fall.se > 0.0 && fall.se.is_finite());
+    let weight = |fall: &Reading| fall.se.powi(-2);
+    let weights: f64 = falls.iter().map(weight).sum();
+    let mean = falls.iter().map(|fall| weight(fall) * fall.value).sum::<f64>() / weights;
+    // Clocks that are not even scatter the accelerations by more than their errors.
+    let misfit: f64 = falls.iter().map(|fall| weight(fall) * (fall.value - mean).powi(2)).sum();
+    let excess = (misfit / (falls.len() as f64 - 1.0).max(1.0)).max(1.0);
+    let se = (excess / weights).sqrt();
     let off = (mean - settings.gravity).abs();
     (off > (CLEAR.0 * settings.gravity).max(CLEAR.1 * se)).then(|| {
         format!(
@@ -150,6 +156,8 @@ struct Sight {
     frames: Vec<Frame>,
     /// Error of one reading (m).
     noise: f64,
+    /// A warning about a tracker that lost the body.
+    lost: Option<String>,
 }
 
 /// How far the picture of a run is turned back, and around which place (way and depth in m).
@@ -175,6 +183,9 @@ struct Finished {
     level: Level,
     /// That of the camera (rad), which is turned back.
     tilt: Option<Reading>,
+    grouping: Grouping,
+    /// Warnings.
+    told: Vec<String>,
 }
 
 /// Contacts, levels and conditions.
@@ -190,22 +201,24 @@ fn finish(begun: Vec<Begun>, settings: &Settings<'_>) -> Result<Finished, Vec<Fa
     let (level, touches) = surface::touches(&seen, settings.gravity)?;
     let mut runs = Vec::with_capacity(begun.len());
     let mut understood = Vec::with_capacity(begun.len());
+    let mut told = Vec::new();
     for (begun, (sight, touch)) in begun.into_iter().zip(sights.iter().zip(touches)) {
-        let Sight { seen, scales, frames, noise } = sight;
+        let Sight { seen, scales, frames, noise, lost } = sight;
+        told.extend(lost.clone());
         let (run, words) = Run::of(begun, (scales, frames, *noise), seen, touch);
         runs.push(run);
         understood.push(words);
     }
-    drop_heights(&mut runs, settings)?;
+    told.extend(drop_heights(&mut runs, settings)?);
     let members: Vec<Member<'_>> = runs.iter().map(member).collect();
-    let ids =
+    let grouping =
         conditions::group(&members, settings.pattern.as_ref()).map_err(|fault| vec![fault])?;
-    for ((run, words), id) in runs.iter_mut().zip(&mut understood).zip(ids) {
+    for ((run, words), id) in runs.iter_mut().zip(&mut understood).zip(&grouping.ids) {
         words.speed = run.speed;
-        words.condition.clone_from(&id);
-        run.condition = id;
+        words.condition.clone_from(id);
+        run.condition.clone_from(id);
     }
-    Ok(Finished { runs, understood, level, tilt })
+    Ok(Finished { runs, understood, level, tilt, grouping, told })
 }
 
 /// What the runs show of themselves, their pictures turned back by `turns`, if there are any.
@@ -240,12 +253,8 @@ fn tilt_of(sights: &[Sight], begun: &[Begun], gravity: f64) -> Option<Reading> {
 
 fn member(run: &Run) -> Member<'_> {
     let labels = if run.fields.is_empty() { &run.labels } else { &run.fields };
-    Member { name: &run.name, labels, body: &run.body, speed: run.speed, angle: run.angle }
-}
-
-fn manner(runs: &[Run], settings: &Settings<'_>) -> String {
-    let members: Vec<Member<'_>> = runs.iter().map(member).collect();
-    conditions::manner(&members, settings.pattern.as_ref())
+    let (name, called) = (&run.name, &run.called);
+    Member { name, called, labels, body: &run.body, speed: run.speed, angle: run.angle }
 }
 
 /// What one run shows of itself, its picture turned back by `turn`.
@@ -259,6 +268,14 @@ fn see(
     if let Some(Turn { tilt, around }) = turn {
         frames = turned_back(&frames, *tilt, *around);
     }
+    let lost = lost_from(&frames).map(|(at, speed)| {
+        frames.truncate(at);
+        format!(
+            "Warning: the tracker loses the body of {} at {speed:.1} m/s: from one frame on its position never changes. The readings \
+             from there are left out, and no final depth is read.",
+            one.name
+        )
+    });
     let noise = (one.path.noise() * scales.length.1).max(1e-6);
     let shape = one.body.shape.as_str();
     let of_the_body = one.path.of_the_body(&frames);
@@ -286,7 +303,12 @@ fn see(
         (settings.gravity, sees_surface),
     )
     .map_err(|why| {
-        let what = format!("the run {}: {why}", one.name);
+        let tracker = if lost.is_some() {
+            " (the tracker loses the body: from one frame on its position never changes)"
+        } else {
+            ""
+        };
+        let what = format!("the run {}: {why}{tracker}", one.name);
         let name = match one.name.contains(' ') {
             true => format!("\"{}\"", one.name),
             false => one.name.clone(),
@@ -298,7 +320,7 @@ fn see(
     let soft = one.body.soft_entry();
     let diameter = one.body.diameter;
     let seen = Seen { name: one.name.clone(), departure, stated, soft, diameter, below_centre };
-    Ok(Sight { seen, scales, frames, noise })
+    Ok(Sight { seen, scales, frames, noise, lost })
 }
 
 /// Refuses units in which the body moves implausibly far.
@@ -326,24 +348,36 @@ fn refuse_far(frames: &[Frame], one: &Begun, scales: &Scales) -> Result<(), Faul
 const READ: f64 = 1e-3;
 
 /// Replaces speeds by those of stated heights of release.
-fn drop_heights(runs: &mut [Run], settings: &Settings<'_>) -> Result<(), Vec<Fault>> {
+fn drop_heights(runs: &mut [Run], settings: &Settings<'_>) -> Result<Option<String>, Vec<Fault>> {
+    /// Standard errors, and share of the speed, beyond which the frames say another height.
+    const CLEAR: (f64, f64) = (5.0, 0.02);
+    let mut warning = None;
     for run in runs {
         let height = settings.quantity("drop_height", Dimension::LENGTH, &run.labels);
         if let Some(height) = height.map_err(|fault| vec![fault])? {
             let value = (2.0 * settings.gravity * height).sqrt();
-            let (seen, error) = (run.speed.value, 5.0 * run.speed.se);
-            if (seen - value).abs() > error.max(0.12 * value) {
-                let what = format!(
-                    "the run {} meets the bed at {seen:.3} m/s by its frames, and from {height} m it would at {value:.3}",
+            let Reading { value: seen, se } = run.speed;
+            let (off, error) = ((seen - value).abs(), CLEAR.0 * se);
+            let both = || {
+                format!(
+                    "the run {} meets the bed at {seen:.3} ± {se:.3} m/s by its frames, and from {height} m it would at {value:.3}",
                     run.name
-                );
+                )
+            };
+            if off > error.max(0.12 * value) {
                 let right = "give the height of the lowest point above the surface at release, or leave it out";
-                return Err(vec![Fault::new("--drop-height", what, right)]);
+                return Err(vec![Fault::new("--drop-height", both(), right)]);
+            }
+            if off > error.max(CLEAR.1 * value) && warning.is_none() {
+                warning = Some(format!(
+                    "Warning: {}, which is taken. Is it the height of the lowest point? Without --drop-height the frames tell.",
+                    both()
+                ));
             }
             run.speed = Reading { value, se: settings.gravity * READ / value };
         }
     }
-    Ok(())
+    Ok(warning)
 }
 
 fn notes(runs: &[Run], level: &Level, manner: &str, settings: &Settings<'_>) -> Vec<String> {

@@ -6,12 +6,15 @@
 //!
 //! `text` and `spreadsheet` give the cells of a file as a `sheet`; each file below `layouts` knows one program and
 //! turns a sheet into tracks, with `heading` and `grid`; `begun` makes runs of them, `motion` and `scales` bring their
-//! paths to SI and find contacts, `surface` the level of the surface, `bodies`, `names` and `conditions` what was
+//! paths to SI and find contacts, `axis`, `mixed` and `lost` find what is no path of one body along its axis, `surface` the level of the surface, `bodies`, `density`, `names`, `called` and `conditions` what was
 //! dropped and which runs belong together; `import` puts it together, and `written` holds the files of the set.
 
+mod axis;
 mod begun;
 mod bodies;
+mod called;
 mod conditions;
+mod density;
 mod even;
 mod fault;
 mod grid;
@@ -20,6 +23,8 @@ mod import;
 mod import_file;
 mod inputs;
 mod layouts;
+mod lost;
+mod mixed;
 mod motion;
 mod names;
 mod options;
@@ -27,6 +32,7 @@ mod run;
 mod scales;
 mod set;
 mod settings;
+mod shapes;
 mod sheet;
 mod spreadsheet;
 mod surface;

@@ -2,8 +2,11 @@
 
 use measurements::{Contact, Departure, Fall, Frame, Reading, Tip, stray_frames};
 
-use super::even::undo_rounding;
+use super::axis;
+use super::even::{undo_jitter, undo_rounding};
 use super::fault::Fault;
+use super::heading::Role;
+use super::mixed;
 use super::settings::Settings;
 use super::track::{Sample, Track};
 use super::units::Unit;
@@ -51,6 +54,12 @@ impl Path {
         let falls = [&down, &up].map(|frames| Fall::of_frames(&but(frames, &stray)));
         let speed = |at: usize| falls[at].map_or(0.0, |fall| fall.velocity);
         let sign = settings.sign.unwrap_or(if speed(0) >= speed(1) { 1.0 } else { -1.0 });
+        if settings.columns.of(Role::Vertical).is_none() {
+            axis::refuse_other(&track, &down, falls)?;
+        }
+        if let Some(sign) = settings.sign {
+            axis::refuse_other_way(&track, sign, falls)?;
+        }
         let [down_fall, up_fall] = falls;
         let (frames, fall) = if sign > 0.0 { (down, down_fall) } else { (up, up_fall) };
         Ok(Self { track, frames, stray, sign, fall })
@@ -150,6 +159,36 @@ fn counts_frames(track: &Track, settings: &Settings<'_>) -> bool {
     settings.time_unit.as_ref().unwrap_or(&track.time.unit) == &Unit::Frame
 }
 
+/// Whether times that scatter around the rows were noise, and have become even.
+fn is_made_even(track: &mut Track) -> bool {
+    let Some(off) = undo_jitter(&mut track.samples) else { return false };
+    let unit = in_words(&track.time.unit);
+    track.notes.push(format!(
+        "its times are off by {off:.2e}{unit}, by the path: its rows are evenly spaced"
+    ));
+    true
+}
+
+/// A unit behind a number, if it is stated.
+fn in_words(unit: &Unit) -> String {
+    match unit {
+        Unit::Unstated => String::new(),
+        unit => format!(" {}", unit.word()),
+    }
+}
+
+/// Refuses readings of several bodies that take turns.
+fn refuse_mixed(track: &Track) -> Result<(), Fault> {
+    let Some(bodies) = mixed::bodies(&track.samples) else { return Ok(()) };
+    let name = track.name.as_ref().unwrap_or(&track.stem);
+    let what =
+        format!("{name} has {bodies} positions per time: the rows of {bodies} bodies take turns");
+    let right = format!(
+        "add a column that labels the bodies (--column run=NAME), or go on without: --leave-out \"{name}\""
+    );
+    Err(Fault::new(&track.file, what, right))
+}
+
 /// The readings in the order of time; copies of one are dropped.
 fn in_order(
     track: &mut Track,
@@ -158,21 +197,22 @@ fn in_order(
 ) -> Result<Vec<Sample>, Fault> {
     let mut samples: Vec<Sample> = Vec::with_capacity(track.samples.len());
     let mut copies = 0;
-    if !counts_rows && is_out_of_order(&track.samples) {
+    let has_clock = !counts_rows && !counts_frames(track, settings);
+    if !counts_rows && is_out_of_order(&track.samples) && !(has_clock && is_made_even(track)) {
         track.samples.sort_by(|a, b| a.t.total_cmp(&b.t));
         track.notes.push("its rows are sorted by time".to_owned());
     }
-    if !counts_rows
-        && !counts_frames(track, settings)
-        && let Some(quantum) = undo_rounding(&mut track.samples)
-    {
-        let unit = match track.time.unit {
-            Unit::Unstated => String::new(),
-            ref unit => format!(" {}", unit.word()),
-        };
-        track
-            .notes
-            .push(format!("its times are rounded to {quantum}{unit}: its rows are evenly spaced"));
+    refuse_mixed(track)?;
+    if has_clock {
+        match undo_rounding(&mut track.samples) {
+            Some(quantum) => {
+                let unit = in_words(&track.time.unit);
+                track.notes.push(format!(
+                    "its times are rounded to {quantum}{unit}: its rows are evenly spaced"
+                ));
+            }
+            None => drop(is_made_even(track)),
+        }
     }
     for (at, sample) in track.samples.iter().enumerate() {
         let Some(last) = samples.last() else {

@@ -14,10 +14,34 @@ enum Part {
 }
 
 /// Fields that do not tell conditions apart.
-const OF_RUN: [&str; 8] = ["repeat", "rep", "trial", "take", "shot", "order", "run", "_"];
+const OF_RUN: [&str; 11] =
+    ["repeat", "rep", "trial", "take", "shot", "order", "run", "drop", "versuch", "essai", "_"];
+
+/// Columns of quantities that are set before a drop.
+pub(super) const SET: [&str; 14] = [
+    "height",
+    "h",
+    "drop height",
+    "drop_height",
+    "höhe",
+    "fallhöhe",
+    "hauteur",
+    "angle",
+    "angle_deg",
+    "packing",
+    "phi",
+    "density",
+    "bed",
+    "sand",
+];
 
 /// Fields that say which runs are of one day or one pouring, and no condition either.
 pub(super) const OF_SESSION: [&str; 3] = ["session", "day", "date"];
+
+/// Whether a field or column of this name is of a run alone, or of a session.
+pub(super) fn is_of_run(name: &str) -> bool {
+    OF_RUN.contains(&name) || OF_SESSION.contains(&name)
+}
 
 impl Pattern {
     /// Reads a pattern.
@@ -65,7 +89,7 @@ impl Pattern {
             match part {
                 Part::Literal(literal) => before = literal,
                 Part::Field(field) => {
-                    if !OF_RUN.contains(&field.as_str()) && !OF_SESSION.contains(&field.as_str()) {
+                    if !is_of_run(field) {
                         let value = fields.iter().find(|(own, _)| own == field);
                         name.push_str(before);
                         name.push_str(value.map_or("", |(_, value)| value));

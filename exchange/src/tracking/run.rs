@@ -15,6 +15,8 @@ const UPRIGHT: f64 = 5.0;
 /// One drop.
 pub(super) struct Run {
     pub(super) name: String,
+    /// Its name with what else tells it apart.
+    pub(super) called: String,
     pub(super) file: String,
     pub(super) fields: Vec<(String, String)>,
     pub(super) labels: Vec<(String, String)>,
@@ -42,7 +44,7 @@ impl Run {
         seen: &Seen,
         touch: Touch,
     ) -> (Self, Understood) {
-        let Begun { name, fields, labels, body, path } = begun;
+        let Begun { name, called, fields, labels, body, path } = begun;
         let kept = motion::kept(frames, &seen.departure.contact, noise);
         let forward = seen.departure.contact.forward;
         let has_x = path.track.forward.is_some();
@@ -85,6 +87,7 @@ impl Run {
         };
         let run = Self {
             name,
+            called,
             file,
             fields,
             labels,

@@ -12,6 +12,9 @@ use super::units::Unit;
 /// Share of gravity by which the acceleration of a fall may be off: guides and air take some of it.
 const ALLOWED: f64 = 0.3;
 
+/// Relative difference up to which a pixel may be a whole unit.
+const WHOLE: f64 = 0.08;
+
 /// Units of a path, with their size in SI.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Scales {
@@ -139,9 +142,14 @@ impl Path {
         let right = match (self.acceleration(), times) {
             (Some(acceleration), [(_, time)]) => {
                 let pixel = 1e3 * settings.gravity * time * time / acceleration;
-                format!(
+                let whole = [("mm", 1.0), ("cm", 10.0), ("m", 1000.0), ("inch", 25.4)];
+                let unit = whole.iter().find(|(_, size)| (pixel / size - 1.0).abs() < WHOLE);
+                unit.map_or_else(|| format!(
                     "write --scale {pixel:.3}mm/px, if you trust the fall before contact; better a scale on the picture"
-                )
+                ), |(unit, _)| format!(
+                    "the fall before contact is that of {unit}: if the picture was calibrated, write --length-unit {unit}; else the \
+                     length of a pixel, --scale 0.21mm/px"
+                ))
             }
             _ => "write --scale 0.21mm/px".to_owned(),
         };
@@ -203,6 +211,10 @@ impl Path {
             }
             () if near(1e1) => {
                 "is it ten times as large: mm for cm? --length-unit says so. ".to_owned()
+            }
+            () if near(1e-6) || near(1e6) => {
+                let unit = if ratio > 1.0 { "s" } else { "ms" };
+                format!("the fall is right with times in {unit}: --time-unit {unit} says so. ")
             }
             () if near(1e-1) || near(1e-2) || near(1e-3) => {
                 "is the unit of length smaller? --length-unit says so. ".to_owned()

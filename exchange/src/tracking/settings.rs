@@ -6,6 +6,7 @@ use super::fault::Fault;
 use super::heading::Role;
 use super::names::{Pattern, filled};
 use super::options::{Options, flag};
+use super::shapes::{SHAPES_KNOWN, shape_of};
 use super::units::Unit;
 
 /// Columns that the user names.
@@ -89,7 +90,9 @@ impl<'a> Settings<'a> {
             Some("centre") => Tracked::Centre,
             _ => Tracked::Lowest,
         };
-        word("shape", &["sphere", "disc", "cylinder", "hemisphere", "cone"]);
+        if let Some(asked) = options.get("shape").filter(|asked| shape_of(asked).is_none()) {
+            faults.push(Fault::new("--shape", format!("\"{asked}\" is not known"), SHAPES_KNOWN));
+        }
         let mut unit = |key: &str, dimension: Dimension, example: &str| {
             let asked = Unit::of(options.get(key)?);
             let is_unit = asked.si(dimension).is_some()

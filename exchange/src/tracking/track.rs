@@ -27,6 +27,8 @@ pub(super) struct Track {
     pub(super) stem: String,
     /// What the table calls it; none where the table is of one run.
     pub(super) name: Option<String>,
+    /// The same where several columns do, with what each says of conditions, parted by `/`.
+    pub(super) called: Option<String>,
     /// The layout, in words.
     pub(super) layout: String,
     pub(super) time: Measure,
@@ -59,10 +61,11 @@ pub(super) fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|one| (one - mean).powi(2)).sum::<f64>() / n).sqrt()
 }
 
+/// Share of the way of the farthest track up to which one stands still.
+pub(super) const STILL: f64 = 0.05;
+
 /// Removes tracks of one table that hardly move beside the others, such as fixed marks on the picture.
 pub(super) fn without_still(mut tracks: Vec<Track>) -> Vec<Track> {
-    /// Share of the way of the farthest track that is no drop.
-    const STILL: f64 = 0.05;
     let way = |track: &Track| {
         let ends =
             track.samples.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], one| {

@@ -19,6 +19,29 @@ pub(crate) fn of_text(name: &str, text: &[u8], options: &[(&str, &str)]) -> Resu
         .map_err(|error| error.replace(&format!("{}/", here.path().display()), ""))
 }
 
+/// The set of tables at these places in a folder.
+pub(crate) fn of_folder(
+    tables: &[(String, String)],
+    options: &[(&str, &str)],
+) -> Result<Set, String> {
+    let here = tempfile::tempdir().expect("a folder");
+    let write = |(name, text): &(String, String)| {
+        let path = here.path().join(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        fs::write(&path, text).expect("a table");
+        path
+    };
+    let paths: Vec<PathBuf> = tables.iter().map(write).collect();
+    let shown = format!("{}/", here.path().display());
+    let options: Vec<(&str, String)> =
+        options.iter().map(|(key, value)| (*key, value.replace("HERE/", &shown))).collect();
+    let options: Vec<(&str, &str)> =
+        options.iter().map(|(key, value)| (*key, value.as_str())).collect();
+    let drops: Vec<PathBuf> =
+        paths.into_iter().filter(|path| !path.ends_with("bodies.csv")).collect();
+    of_files(&drops, &options, &here.path().join("set")).map_err(|error| error.replace(&shown, ""))
+}
+
 fn of_files(paths: &[PathBuf], options: &[(&str, &str)], out: &Path) -> Result<Set, String> {
     let mut all: Options = ball();
     options.iter().for_each(|(key, value)| all.set(key, *value));

@@ -2,7 +2,9 @@
 
 mod contact;
 mod formats;
+mod groups;
 mod irregular;
 mod layouts;
 mod refusals;
+mod statements;
 mod world;

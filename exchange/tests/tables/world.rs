@@ -83,8 +83,13 @@ pub(crate) fn drop(height: f64, camera: Camera) -> Drop {
 
 /// The same where the bed meets `meets` of the ball.
 pub(crate) fn drop_into(meets: Meets, height: f64, camera: Camera) -> Drop {
+    drop_onto(1.0, meets, height, camera)
+}
+
+/// The same onto a bed that is so many times as hard.
+pub(crate) fn drop_onto(hard: f64, meets: Meets, height: f64, camera: Camera) -> Drop {
     let mut noise = Noise(camera.seed.wrapping_mul(7919).wrapping_add(17));
-    let [b, k, c] = LAW.map(|one| one * (1.0 + 0.03 * noise.normal()));
+    let [b, k, c] = LAW.map(|one| hard * one * (1.0 + 0.03 * noise.normal()));
     let fall = (2.0 * height / GRAVITY).sqrt();
     let contact = camera.hold + fall;
     let speed = (2.0 * GRAVITY * height).sqrt();

@@ -52,6 +52,7 @@ fn empty(sheet: &Sheet, name: String) -> Track {
         file: sheet.file.clone(),
         stem: sheet.stem.clone(),
         name: Some(name),
+        called: None,
         layout: "Kinovea".to_owned(),
         time: measure("T"),
         vertical: measure("Y"),

@@ -20,6 +20,17 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
     let rows: Vec<&Row> = grid.rows.iter().collect();
     let labels = grid.labels(&used, &rows);
     let mut track = Track { labels, ..track };
+    let is_other = |at: &usize| {
+        grid.headings[*at].role() == Some(Role::Vertical) && *at != places.z && !grid.is_label(*at)
+    };
+    if let Some(other) = (0..grid.headings.len()).find(is_other)
+        && columns.of(Role::Vertical).is_none()
+    {
+        let [other, own] = [other, places.z].map(|at| &grid.headings[at].name);
+        track
+            .notes
+            .push(format!("`{other}` does not move, `{own}` is taken for the vertical position"));
+    }
     if grid.is_without_names && columns.of(Role::Time).is_none() {
         track.notes.push("two columns without names are taken for times and positions".to_owned());
     }

@@ -6,6 +6,7 @@ use crate::tracking::grid::{Grid, Places};
 use crate::tracking::settings::Columns;
 use crate::tracking::sheet::{Row, Sheet};
 use crate::tracking::track::Track;
+use crate::tracking::units::Unit;
 
 pub(super) const LAYOUT: Layout = Layout { fits, read };
 
@@ -40,9 +41,17 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
         let right = "export POSITION_T or FRAME with the spots";
         return Err(sheet.fault("neither POSITION_T nor FRAME tells the times", right));
     };
+    // A video without a frame interval has numbers of frames for times, whatever their unit is called.
+    let number = |row: &Row, at: usize| sheet.number(row.cell(at));
+    let counts_frames = grid
+        .named("frame")
+        .is_ok_and(|frame| grid.rows.iter().all(|row| number(row, frame) == number(row, t)));
     let one = |name: &str| {
         let own = grid.all_rows().filter(|(_, row)| row.cell(id) == name);
         let mut track = grid.track("TrackMate", Places { t: Some(t), z, x }, own)?;
+        if counts_frames {
+            track.time.unit = Unit::Frame;
+        }
         // Spots stand in any order.
         track.samples.sort_by(|a, b| a.t.total_cmp(&b.t));
         let name = name.strip_suffix(".0").unwrap_or(name);

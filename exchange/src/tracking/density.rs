@@ -1,0 +1,63 @@
+//! Diameters and masses that no body has, in the words of the command line.
+
+use std::f64::consts::PI;
+
+use super::fault::Fault;
+
+/// Least and greatest mean density (kg/m³) of a body, as sets have it.
+const POSSIBLE: (f64, f64) = (10.0, 3e4);
+
+/// Densities (kg/m³) of which bodies are made.
+const USUAL: (f64, f64) = (100.0, 2.3e4);
+
+/// Units of diameter and mass as they were written, empty where they may be any, factors of both, and what was mistaken.
+const MISTAKES: [(&str, &str, f64, f64, &str); 8] = [
+    ("", "", 2.0, 1.0, "the diameter looks like a radius"),
+    ("cm", "", 0.1, 1.0, "the diameter looks like cm for mm"),
+    ("", "kg", 1.0, 1e-3, "the mass looks like kg for g"),
+    ("mm", "", 10.0, 1.0, "the diameter looks like mm for cm"),
+    ("m", "", 1e-3, 1.0, "the diameter looks like m for mm"),
+    ("", "", 0.1, 1.0, "the diameter looks ten times too large"),
+    ("", "", 10.0, 1.0, "the diameter looks ten times too small"),
+    ("", "g", 1.0, 1e3, "the mass looks like g for kg"),
+];
+
+/// Refuses a ball whose size (m) and mass (kg) give no density of a body; each comes with what the user wrote, and where.
+pub(super) fn refuse(
+    (size, diameter): (f64, (String, String)),
+    (weight, mass): (f64, (String, String)),
+) -> Result<(), Fault> {
+    let density =
+        |longer: f64, heavier: f64| heavier * weight / (PI / 6.0 * (longer * size).powi(3));
+    let found = density(1.0, 1.0);
+    if (POSSIBLE.0..=POSSIBLE.1).contains(&found) {
+        return Ok(());
+    }
+    let what = format!(
+        "a sphere of {} and {} has a density of {found:.3e} kg/m^3, as no body has",
+        diameter.0, mass.0
+    );
+    let has = |text: &str, unit: &str| {
+        unit.is_empty()
+            || text.trim_end_matches(char::is_alphabetic).len() + unit.len() == text.len()
+                && text.ends_with(unit)
+    };
+    let is_likely = |(of_diameter, of_mass, longer, heavier, _): &&(&str, &str, f64, f64, &str)| {
+        has(&diameter.0, of_diameter)
+            && has(&mass.0, of_mass)
+            && (USUAL.0..=USUAL.1).contains(&density(*longer, *heavier))
+    };
+    let right = match MISTAKES.iter().find(is_likely) {
+        Some((_, _, longer, heavier, why)) => format!(
+            "{why}: {:.2} mm and {:.4} g make {:.0} kg/m^3",
+            1e3 * longer * size,
+            1e3 * heavier * weight,
+            density(*longer, *heavier)
+        ),
+        None => {
+            "give the diameter and the mass with their units: --diameter 25.4mm --mass \"67 g\""
+                .to_owned()
+        }
+    };
+    Err(Fault::new(&diameter.1, what, right))
+}
