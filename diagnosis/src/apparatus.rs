@@ -4,7 +4,7 @@
 //! deviation, or one of [`defaults`]. An effect therefore gets no credit for what a wrong clock, scale or mass explains
 //! (Kennedy & O'Hagan 2001, J. R. Stat. Soc. B 63, 425, on calibration with discrepancies that have priors).
 
-use measurements::{Along, Condition, Kind, MeasurementSet, Role, SurfaceDefinition};
+use measurements::{Along, Condition, Kind, MeasurementSet, Role, SurfaceDefinition, median};
 
 use crate::forward::{Parameter, ParameterKind, Prior, Scatter};
 use crate::observable::Layout;
@@ -343,19 +343,15 @@ fn clock_sigma(set: &MeasurementSet) -> Option<f64> {
 /// Time between two readings (s).
 fn frame(set: &MeasurementSet) -> Option<f64> {
     let frame = set.instrument.rate.filter(|rate| *rate > 0.0).map(|rate| 1.0 / rate);
-    let middle = |mut steps: Vec<f64>| {
-        steps.sort_by(f64::total_cmp);
-        steps.get(steps.len() / 2).copied()
-    };
     match set.kind {
         Kind::Trajectory => frame.or_else(|| {
             let steps = set.runs.iter().flat_map(|run| run.frames.windows(2));
-            middle(steps.map(|pair| pair[1].t - pair[0].t).collect())
+            median(steps.map(|pair| pair[1].t - pair[0].t))
         }),
         Kind::Scalar | Kind::ForceDepth => frame,
         Kind::Acceleration | Kind::Velocity | Kind::Spin => frame.or_else(|| {
             let steps = set.runs.iter().flat_map(|run| run.samples.windows(2));
-            middle(steps.map(|pair| pair[1].at - pair[0].at).collect())
+            median(steps.map(|pair| pair[1].at - pair[0].at))
         }),
     }
 }

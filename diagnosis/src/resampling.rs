@@ -1,6 +1,6 @@
 //! Trajectories of several runs at common times.
 
-use measurements::Frame;
+use measurements::{Frame, median};
 use runner::beds::STOPPED;
 
 /// Times that agree to this (s) are the same frame.
@@ -30,12 +30,8 @@ pub(crate) fn common_grid(tracks: &[&[Frame]]) -> Vec<f64> {
     if let Some(grid) = mean_times(&tracks.iter().map(inside).collect::<Vec<_>>()) {
         return grid;
     }
-    let mut steps: Vec<f64> = tracks
-        .iter()
-        .flat_map(|track| track.windows(2).map(|pair| pair[1].t - pair[0].t))
-        .collect();
-    steps.sort_by(f64::total_cmp);
-    let Some(&step) = steps.get(steps.len() / 2) else { return Vec::new() };
+    let pairs = tracks.iter().flat_map(|track| track.windows(2));
+    let Some(step) = median(pairs.map(|pair| pair[1].t - pair[0].t)) else { return Vec::new() };
     if end <= start || step <= 0.0 {
         return Vec::new();
     }
@@ -49,9 +45,7 @@ pub(crate) fn common_grid(tracks: &[&[Frame]]) -> Vec<f64> {
 #[must_use]
 pub(crate) fn seen_grid(tracks: &[&[Frame]]) -> Vec<f64> {
     let all = common_grid(tracks);
-    let mut steps: Vec<f64> = all.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    let Some(step) = steps.get(steps.len() / 2) else { return all };
+    let Some(step) = median(all.windows(2).map(|pair| pair[1] - pair[0])) else { return all };
     let is_seen = |time: &&f64| tracks.iter().all(|track| !is_in_a_gap(track, **time, GAP * step));
     let seen: Vec<f64> = all.iter().filter(is_seen).copied().collect();
     if seen.len() as f64 >= LEAST_LEFT * all.len() as f64 { seen } else { all }

@@ -1,6 +1,7 @@
 //! The fall before first contact, seen without knowing units, zeros or which way is down.
 
 use super::Frame;
+use super::median::median;
 use super::reading::Reading;
 use super::smooth::{blocks, greatest_velocity, median_step, velocity_window};
 
@@ -64,9 +65,7 @@ pub fn reading_noise(frames: &[Frame]) -> f64 {
     // A body that is held or rests may be the same reading again and again.
     let moves = |four: &[Frame]| (four[3].z - four[0].z).abs() > 0.0;
     let fours = frames.windows(4).filter(|four| is_steady(four) && moves(four));
-    let mut all: Vec<f64> = fours.map(third).collect();
-    all.sort_by(f64::total_cmp);
-    let median = all.get(all.len() / 2).copied().unwrap_or(0.0);
+    let median = median(fours.map(third)).unwrap_or(0.0);
     // The median of the size of a normal number is 0.6745 deviations, a third difference has √20 of them.
     let seen = median / 0.6745 / 20f64.sqrt();
     seen.max(1e-6 * way)

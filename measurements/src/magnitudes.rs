@@ -5,6 +5,7 @@ use configs::Diagnostic;
 use super::conditions::ConditionPlaces;
 use super::contradiction::{Contradiction, ContradictionKind};
 use super::findings::Findings;
+use super::median;
 use super::smooth::greatest_velocity;
 use super::start::Start;
 use super::strays::but_strays;
@@ -58,10 +59,8 @@ pub(super) fn check(
 /// The velocity of the readings over the stated one, and the condition, of the middle one of all runs that
 /// `of` gives it of.
 fn middle(set: &MeasurementSet, of: impl Fn(&Run) -> Option<f64>) -> Option<(f64, usize)> {
-    let ratio = |run: &Run| Some((of(run)?, run.condition));
-    let mut ratios: Vec<(f64, usize)> = set.runs.iter().filter_map(ratio).collect();
-    ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
-    ratios.get(ratios.len() / 2).copied()
+    let (ratio, run) = median::of_runs(set, of)?;
+    Some((ratio, set.runs[run].condition))
 }
 
 /// Measured over stated velocity near first contact.
@@ -194,13 +193,8 @@ fn farthest(
 /// Warns when the steps between frames are not those of the camera.
 fn check_rate(set: &MeasurementSet, findings: &mut Findings) {
     let Some(rate) = set.instrument.rate else { return };
-    let steps = |run: &Run| {
-        let pairs = run.frames.windows(2).map(|pair| pair[1].t - pair[0].t);
-        pairs.collect::<Vec<f64>>()
-    };
-    let mut steps: Vec<f64> = set.runs.iter().flat_map(steps).collect();
-    steps.sort_by(f64::total_cmp);
-    let Some(step) = steps.get(steps.len() / 2) else { return };
+    let pairs = set.runs.iter().flat_map(|run| run.frames.windows(2));
+    let Some(step) = median::median(pairs.map(|pair| pair[1].t - pair[0].t)) else { return };
     let ratio = step * rate;
     if !(1.0 / RATE..=RATE).contains(&ratio) {
         let factor = nearest(ratio.max(1.0 / ratio), TIMES);

@@ -7,6 +7,7 @@ use super::columns::{ColumnSpec, Content, column};
 use super::conditions::ConditionPlaces;
 use super::contradiction::{Contradiction, ContradictionKind};
 use super::findings::Findings;
+use super::median;
 use super::{MeasurementSet, Run};
 
 /// The columns of a table of what the column `value` holds, with its error in `sigma`; `run` is required or not.
@@ -66,10 +67,8 @@ pub(super) fn check_unit(
     (most, ratio): (f64, impl Fn(&Run) -> f64),
     (told, help): (impl Fn(f64) -> String, &str),
 ) -> Option<Contradiction> {
-    let mut ratios: Vec<(f64, usize)> =
-        set.runs.iter().map(|run| (ratio(run), run.condition)).collect();
-    ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let &(middle, condition) = ratios.get(ratios.len() / 2)?;
+    let (middle, run) = median::of_runs(set, |run| Some(ratio(run)))?;
+    let condition = set.runs[run].condition;
     (middle > most).then(|| Contradiction {
         kind: ContradictionKind::Speeds,
         diagnostic: Diagnostic::error(told(middle))

@@ -7,6 +7,7 @@ use configs::{Diagnostic, shorten};
 use super::conditions::ConditionPlaces;
 use super::contradiction::{Contradiction, ContradictionKind};
 use super::findings::Findings;
+use super::median;
 use super::{Condition, Geometry, MeasurementSet, Run, Sample};
 
 /// Fewest readings below the surface that make a curve.
@@ -145,7 +146,7 @@ fn check_units(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contr
         Contradiction { kind: ContradictionKind::Speeds, diagnostic }
     };
     let deepest = |run: &Run| run.samples.iter().copied().max_by(|a, b| a.at.total_cmp(&b.at));
-    let diameters = middle(set, |run| Some(deepest(run)?.at / diameter(set, run)));
+    let diameters = median::of_runs(set, |run| Some(deepest(run)?.at / diameter(set, run)));
     if let Some((ratio, run)) = diameters.filter(|(ratio, _)| *ratio > DEEPEST) {
         let message = format!("the depths go to {ratio:.0} diameters");
         return Some(named(message, "are they in mm or cm?", set.runs[run].condition));
@@ -153,7 +154,7 @@ fn check_units(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contr
     if set.bed.geometry == Geometry::Planar || set.all_beds().any(|bed| bed.gravity <= 0.0) {
         return None;
     }
-    let (ratio, run) = middle(set, |run| {
+    let (ratio, run) = median::of_runs(set, |run| {
         let Sample { at, value, .. } = deepest(run)?;
         let bed = set.bed_of(&set.conditions[run.condition]);
         let weight = bed.bulk_density.unwrap_or(DENSITY) * bed.gravity;
@@ -176,12 +177,4 @@ fn check_units(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contr
 
 fn diameter(set: &MeasurementSet, run: &Run) -> f64 {
     set.conditions[run.condition].diameter
-}
-
-/// The middle of what `of` gives, and the run that has it.
-fn middle(set: &MeasurementSet, of: impl Fn(&Run) -> Option<f64>) -> Option<(f64, usize)> {
-    let each = set.runs.iter().enumerate();
-    let mut all: Vec<(f64, usize)> = each.filter_map(|(at, run)| Some((of(run)?, at))).collect();
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    all.get(all.len() / 2).copied()
 }

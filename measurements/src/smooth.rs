@@ -1,6 +1,7 @@
 //! Velocities of a path, as far as the noise of its readings lets them be seen.
 
 use super::Frame;
+use super::median::median;
 use super::reading::Reading;
 
 /// Error of a velocity, relative to the greatest, that smoothing has to reach.
@@ -49,9 +50,7 @@ pub(super) fn half_window(speed: f64, sigma: f64, step: f64) -> usize {
 
 /// Median time (s) between frames.
 pub(super) fn median_step(frames: &[Frame]) -> Option<f64> {
-    let mut steps: Vec<f64> = frames.windows(2).map(|pair| pair[1].t - pair[0].t).collect();
-    steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied()
+    median(frames.windows(2).map(|pair| pair[1].t - pair[0].t))
 }
 
 /// The greatest downward velocity (m/s) of readings that are good to `sigma` (m).

@@ -3,6 +3,7 @@
 //! No model is used. A frame is compared with what the frames before it, after it and on both sides predict; a run, with
 //! the median of the runs of its condition.
 
+use crate::median::median;
 use crate::{Frame, MeasurementSet, Run};
 
 /// Fewest frames of a run that is searched for strays.
@@ -162,7 +163,7 @@ fn seen_at_once(track: &[[f64; 2]], error: f64, with_ends: bool) -> Vec<bool> {
     for at in (0..n).filter(|&at| misses[at] > 0.5 * FAR * noise) {
         suspects[around(at, n)].fill(true);
     }
-    let gap = GAP * median(track.windows(2).map(|pair| pair[1][0] - pair[0][0]).collect());
+    let gap = GAP * median(track.windows(2).map(|pair| pair[1][0] - pair[0][0])).unwrap_or(0.0);
     let is_stray = |(at, is_suspect): (usize, bool)| {
         let is_end = with_ends && n > REACH + ENDS && (at < ENDS || at + ENDS >= n);
         let is_end = is_end && {
@@ -273,13 +274,7 @@ fn is_on_the_way(track: &[[f64; 2]], at: usize) -> bool {
 
 /// The standard deviation of which `sizes` are, by their median.
 fn usual(sizes: &[f64]) -> f64 {
-    median(sizes.iter().copied().filter(|size| size.is_finite()).collect()) / MEDIAN
-}
-
-/// The middle one of `numbers`; zero of none.
-fn median(mut numbers: Vec<f64>) -> f64 {
-    numbers.sort_by(f64::total_cmp);
-    numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)
+    median(sizes.iter().copied().filter(|size| size.is_finite())).unwrap_or(0.0) / MEDIAN
 }
 
 /// By how much the reading `at` misses the best of what its neighbours promise: parabolas through three on either

@@ -8,6 +8,7 @@ use super::conditions::ConditionPlaces;
 use super::contradiction::{Contradiction, ContradictionKind};
 use super::curve::{Along, Axis, Curve};
 use super::findings::Findings;
+use super::median;
 use super::reading::Reading;
 use super::smooth::slope;
 use super::{Condition, Kind, MeasurementSet, Run, over_time, zeros};
@@ -119,12 +120,10 @@ fn check_fall(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contra
         let slope = slope(before().map(|one| (one.at, one.value)), sigma);
         let ratio = slope.value / gravity;
         let is_known = slope.se < KNOWN * slope.value.abs().max(gravity);
-        (is_dry && gravity > 0.0 && is_known && before().count() >= FALLING)
-            .then_some((ratio, run.condition))
+        (is_dry && gravity > 0.0 && is_known && before().count() >= FALLING).then_some(ratio)
     };
-    let mut all: Vec<(f64, usize)> = set.runs.iter().filter_map(growth).collect();
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let &(ratio, condition) = all.get(all.len() / 2)?;
+    let (ratio, run) = median::of_runs(set, growth)?;
+    let condition = set.runs[run].condition;
     let [least, most] = GROWTH;
     let (times, how) = match ratio.abs() < 1.0 {
         true => (ratio.abs().recip(), "slowly"),

@@ -1,5 +1,6 @@
 //! The force as a process, where answers are taken around the force that is there.
 
+use measurements::median;
 use std::sync::Arc;
 
 use nalgebra::DVector;
@@ -137,9 +138,7 @@ impl Found {
         let passages: Vec<Vec<Moment>> =
             bench.observed.fit.iter().map(passage).collect::<Result<_, _>>()?;
         let relative = passages.iter().flatten().map(|one| one.force / one.unit);
-        let mut relative: Vec<f64> = relative.filter(|force| *force > 0.0).collect();
-        relative.sort_by(f64::total_cmp);
-        let Some(&unit) = relative.get(relative.len() / 2) else { return Ok(None) };
+        let Some(unit) = median(relative.filter(|force| *force > 0.0)) else { return Ok(None) };
         let response = Response::of(bench, (&fit, &baseline.weights), &field, &passages)?;
         if response.nodes.is_empty() {
             return Ok(None);

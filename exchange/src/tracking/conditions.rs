@@ -1,6 +1,6 @@
 //! Which runs belong together: by a column, by a pattern of names, by what names say, or by their speeds.
 
-use measurements::Reading;
+use measurements::{Reading, median};
 
 use super::bodies::Body;
 use super::called;
@@ -92,9 +92,8 @@ pub(super) fn group(members: &[Member<'_>], pattern: Option<&Pattern>) -> Result
 fn refuse_other_speeds(members: &[Member<'_>], ids: &[String]) -> Result<(), Fault> {
     for (at, id) in ids.iter().enumerate() {
         let own = || members.iter().zip(ids).filter(|(_, other)| *other == id).map(|(one, _)| one);
-        let mut speeds: Vec<f64> = own().map(|one| one.speed.value).collect();
-        speeds.sort_by(f64::total_cmp);
-        let (middle, speed) = (speeds[speeds.len() / 2], members[at].speed);
+        let speed = members[at].speed;
+        let middle = median(own().map(|one| one.speed.value)).unwrap_or(speed.value);
         if (speed.value - middle).abs() <= (OTHER.0 * middle).max(OTHER.1 * speed.se) {
             continue;
         }

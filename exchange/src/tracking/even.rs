@@ -1,5 +1,7 @@
 //! Clocks that were written with few digits.
 
+use measurements::median;
+
 use super::track::Sample;
 
 /// Share of a step that rounding has to exceed to matter.
@@ -102,9 +104,7 @@ fn roughness(samples: &[Sample], clock: &[f64]) -> f64 {
     };
     let moving = fours().filter(|(four, _)| way(four) > MOVES * longest);
     // Times that repeat make no parabola.
-    let mut all: Vec<f64> = moving.map(off).filter(|off| off.is_finite()).collect();
-    all.sort_by(f64::total_cmp);
-    all.get(all.len() / 2).copied().unwrap_or(0.0)
+    median(moving.map(off).filter(|off| off.is_finite())).unwrap_or(0.0)
 }
 
 /// Whether consecutive rows are one constant number of `quantum` apart, with few exceptions.

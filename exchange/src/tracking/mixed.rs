@@ -1,5 +1,7 @@
 //! Tables in which readings of several bodies alternate and nothing says which is of which.
 
+use measurements::median;
+
 use super::track::Sample;
 
 /// Most bodies that are looked for.
@@ -27,9 +29,7 @@ fn roughness(samples: &[Sample], apart: usize) -> f64 {
         let [before, behind] = [samples[at - apart].z, samples[at + apart].z];
         (samples[at].z - 0.5 * (before + behind)).abs()
     };
-    let mut all: Vec<f64> = (apart..samples.len().saturating_sub(apart)).map(off).collect();
-    all.sort_by(f64::total_cmp);
-    all.get(all.len() / 2).copied().unwrap_or(0.0)
+    median((apart..samples.len().saturating_sub(apart)).map(off)).unwrap_or(0.0)
 }
 
 #[cfg(test)]

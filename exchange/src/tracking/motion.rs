@@ -1,6 +1,6 @@
 //! A track as a path in SI: order and clock of its readings, which way is down, units, and first contact.
 
-use measurements::{Contact, Departure, Fall, Frame, Reading, Tip, stray_frames};
+use measurements::{Contact, Departure, Fall, Frame, Reading, Tip, median, stray_frames};
 
 use super::axis;
 use super::even::{undo_jitter, undo_rounding};
@@ -342,10 +342,8 @@ fn clock(
         }
         _ => {
             // The clip counts time in another way: its steps are frames.
-            let mut steps: Vec<f64> =
-                samples.windows(2).map(|pair| pair[1].t - pair[0].t).collect();
-            steps.sort_by(f64::total_cmp);
-            let step = steps[steps.len() / 2];
+            let steps = samples.windows(2).map(|pair| pair[1].t - pair[0].t);
+            let step = median(steps).unwrap_or(rate.recip());
             samples.iter().map(|one| ((one.t - samples[0].t) / step).round() / rate).collect()
         }
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use configs::engine::units::Dimension;
 use configs::toml_string as quoted;
-use measurements::Reading;
+use measurements::{Reading, median};
 
 use super::bodies::Body;
 use super::fault::Fault;
@@ -69,7 +69,7 @@ fn measurement(known: &Known<'_>, notes: &[String]) -> Result<String, Fault> {
     line("kind = \"trajectory\"".to_owned());
     line("source = \"tables of a tracking program, read by plunge import\"".to_owned());
     line("\n[instrument]".to_owned());
-    let of = |number: fn(&Run) -> f64| median(runs.iter().map(number).collect());
+    let of = |number: fn(&Run) -> f64| median(runs.iter().map(number)).unwrap_or(0.0);
     let step = of(|run| run.step);
     if runs.iter().all(|run| (run.step / step - 1.0).abs() < 0.01) {
         line(format!("rate_hz = {:<18} # by the steps between frames", significant(1.0 / step, 5)));
@@ -266,7 +266,7 @@ fn speed_scatter(conditions: &[(&str, Vec<&Run>)]) -> Option<f64> {
         };
         errors.extend(own.iter().map(error));
     }
-    let fit = median(errors);
+    let fit = median(errors).unwrap_or(0.0);
     let scatter = if freedom >= 3.0 { f64::sqrt(sum / freedom) } else { 0.0 };
     let error = scatter.max(fit);
     // Speeds from one stated height differ only by rounding.
@@ -282,11 +282,6 @@ fn mean(readings: impl Iterator<Item = Reading>) -> Reading {
     let stated = all.iter().map(|one| one.se * one.se).sum::<f64>() / (n * n);
     let seen = if n > 1.0 { scatter / (n * (n - 1.0)) } else { 0.0 };
     Reading { value, se: seen.max(stated).sqrt() }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// A number with so many significant digits, as TOML has it.

@@ -1,0 +1,24 @@
+//! The middle of several numbers, and the run that has it.
+
+use super::{MeasurementSet, Run};
+
+/// The middle one of `numbers`, of an even number the upper one of the two; none of none. Numbers that are not finite count by
+/// their order.
+#[must_use]
+pub fn median(numbers: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let mut all: Vec<f64> = numbers.into_iter().collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied()
+}
+
+/// The middle of what `of` gives of the runs of `set`, and the index of the run that has it: one run that is wrong decides
+/// nothing.
+pub(super) fn of_runs(
+    set: &MeasurementSet,
+    of: impl Fn(&Run) -> Option<f64>,
+) -> Option<(f64, usize)> {
+    let each = set.runs.iter().enumerate();
+    let mut all: Vec<(f64, usize)> = each.filter_map(|(at, run)| Some((of(run)?, at))).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    all.get(all.len() / 2).copied()
+}
