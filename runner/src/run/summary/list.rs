@@ -7,36 +7,50 @@ use super::Summary;
 
 /// `summary.json` of a list of conditions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
 pub struct ListSummary {
+    /// Of the model.
     pub name: String,
+    /// Of the program that ran it.
     pub version: String,
+    /// Of the resolved model, in hexadecimal.
     pub model_hash: String,
+    /// `grains` or `resistive-force`.
     pub medium: String,
+    /// One summary per impact, in their order.
     pub runs: Vec<Summary>,
+    /// One per speed and angle.
     pub groups: Vec<Group>,
 }
 
 /// All positions of one speed and angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
 pub struct Group {
+    /// Impact speed (m/s).
     pub speed_m_per_s: f64,
+    /// Angle of impact below the horizontal (deg).
     pub angle_deg: f64,
+    /// Impacts.
     pub n: usize,
+    /// Of [`StopSummary::depth_m`](super::StopSummary::depth_m).
     pub depth_m: Scatter,
+    /// Of [`StopSummary::range_m`](super::StopSummary::range_m).
     pub range_m: Scatter,
+    /// Of [`StopSummary::stopping_time_s`](super::StopSummary::stopping_time_s).
     pub stopping_time_s: Scatter,
+    /// Of [`StopSummary::rest_time_s`](super::StopSummary::rest_time_s).
     pub rest_time_s: Scatter,
+    /// Of [`EnergySummary::closure`](super::EnergySummary::closure).
     pub closure: Scatter,
 }
 
 /// Mean and standard deviation over the `n` runs that reached the quantity; null where too few did.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the keys say what they are")]
 pub struct Scatter {
+    /// Runs that reached it.
     pub n: usize,
+    /// In its unit; none without a run.
     pub mean: Option<f64>,
+    /// Standard deviation, in its unit; none of fewer than two runs.
     pub sd: Option<f64>,
 }
 

@@ -15,35 +15,40 @@ use super::{
 
 /// The static and the dynamic part of the force, over all bodies; what was not reached is null.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
 pub struct ForceSummary {
     /// When the static part became the larger one for good.
     pub static_overtakes_s: Option<f64>,
     /// Of the whole medium, at the last sample in motion.
     #[serde(rename = "force_at_stop_N")]
     pub force_at_stop: Option<f64>,
+    /// The static part of that (N).
     #[serde(rename = "static_at_stop_N")]
     pub static_at_stop: Option<f64>,
 }
 
 /// One link of a chain. Its shares of energy are those of the mechanical energy that it lost.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the keys carry their units and are documented in the README")]
 pub struct LinkSummary {
+    /// First contact, from the start (s).
     pub contact_s: Option<f64>,
     /// From its own first contact.
     pub stopping_time_s: Option<f64>,
+    /// Largest depth of its tip (m).
     pub depth_m: f64,
     /// Given to the medium by the force on this link.
     #[serde(rename = "given_J")]
     pub given: f64,
     /// Of what all links give.
     pub given_share: Option<f64>,
+    /// Kinetic energy that it lost (J).
     #[serde(rename = "kinetic_lost_J")]
     pub kinetic_lost: f64,
+    /// Potential energy that it lost (J).
     #[serde(rename = "potential_lost_J")]
     pub potential_lost: f64,
+    /// Kinetic part of what it lost (–).
     pub kinetic_share: Option<f64>,
+    /// Potential part of what it lost (–).
     pub potential_share: Option<f64>,
 }
 
