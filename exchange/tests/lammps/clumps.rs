@@ -6,10 +6,10 @@ use std::path::Path;
 
 use configs::engine::math::{Quat, Vec3};
 use configs::{LoadOptions, Loaded, Model, ModelSource};
-use exchange::lammps::{Deck, import};
+use exchange::lammps::import;
 use exchange::read::{BodyState, Keep, read_run};
 
-use crate::program::lammps;
+use crate::program::{in_lammps, in_plunge};
 
 const LINEAR: &str = "\
 name = \"linear-spring-dashpot\"
@@ -57,7 +57,8 @@ fn a_clump_over_nothing_falls_by_gravity_and_tumbles_by_the_inertia_of_its_shape
         for shape in SHAPES {
             let folder = tempfile::tempdir().expect("a folder");
             let loaded = model(folder.path(), dimension, law, shape, ASIDE, spin);
-            let (theirs, ours) = (in_lammps(folder.path(), &loaded, 1), in_free_flight(&loaded));
+            let (theirs, ours) =
+                (end_in_lammps(folder.path(), &loaded, 1), in_free_flight(&loaded));
             let time = STEPS as f64 * STEP;
             // 1 m/s at 80 degrees, and a parabola: the sums of both programs differ by round-off.
             let down = libm::sin(80.0_f64.to_radians()) + 9.81 * time;
@@ -105,7 +106,7 @@ fn a_clump_on_two_ranks_moves_as_on_one() {
     let ends = [1, 2].map(|ranks| {
         let folder = tempfile::tempdir().expect("a folder");
         let loaded = model(folder.path(), 3, HERTZ, SHAPES[1], grains, spin);
-        in_lammps(folder.path(), &loaded, ranks)
+        end_in_lammps(folder.path(), &loaded, ranks)
     });
     let [one, two] = &ends;
     // Forces on balls are added in another order.
@@ -127,29 +128,19 @@ struct End {
 
 /// The intruder after [`STEPS`], in LAMMPS and in plunge.
 fn in_both(folder: &Path, loaded: &Loaded) -> [End; 2] {
-    [in_lammps(folder, loaded, 1), in_plunge(loaded)]
+    [end_in_lammps(folder, loaded, 1), end_in_plunge(loaded)]
 }
 
-fn in_lammps(folder: &Path, loaded: &Loaded, ranks: usize) -> End {
-    let grains = loaded.model.grains().expect("a bed");
-    let resting = grains.read_bed().expect("a table");
-    let deck = Deck::of(grains, &resting).expect("a model that LAMMPS can express");
-    deck.write(folder).expect("it can be written");
-    lammps(folder, ranks, STEPS);
+fn end_in_lammps(folder: &Path, loaded: &Loaded, ranks: usize) -> End {
+    in_lammps(folder, loaded, ranks, STEPS);
     let imported = import(folder, &folder.join("lmp.mcap"), &|| false).expect("a run");
     let log = read_run(&imported.files.log, Keep::States).expect("a log");
     let BodyState { depth, position, velocity, .. } = *log.bodies[0].states.last().expect("states");
     End { position, velocity, spin: last_spin(folder), depth }
 }
 
-fn in_plunge(loaded: &Loaded) -> End {
-    let grains = loaded.model.grains().expect("a bed");
-    let resting = grains.read_bed().expect("a table");
-    let mut simulation =
-        grains.simulation(&resting, &loaded.model.conditions()[0]).expect("a simulation");
-    for _ in 0..STEPS {
-        simulation.advance().expect("a step");
-    }
+fn end_in_plunge(loaded: &Loaded) -> End {
+    let simulation = in_plunge(loaded, STEPS);
     let (body, surface) = (&simulation.intruder().bodies()[0], simulation.surface());
     let position = body.position - surface * Vec3::z();
     let depth = surface - body.lowest();

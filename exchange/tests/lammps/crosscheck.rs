@@ -2,13 +2,12 @@
 
 use std::path::PathBuf;
 
-use configs::engine::simulation::Simulation;
 use configs::{LoadOptions, Loaded, Model, ModelSource};
-use exchange::lammps::{Deck, Imported, import};
+use exchange::lammps::{Imported, import};
 use exchange::read::{Keep, read_run};
 use tempfile::TempDir;
 
-use crate::program::lammps;
+use crate::program::{in_lammps, in_plunge};
 
 /// Of 10 us each: 10 ms.
 const STEPS: u64 = 1000;
@@ -33,10 +32,10 @@ const OF_GRAINS: [&str; 3] =
 
 #[test]
 fn an_imported_run_is_that_of_plunge_for_the_first_milliseconds() {
-    let (_folder, loaded, imported) = in_lammps(1);
+    let (_folder, loaded, imported) = imported(1);
     let log = read_run(&imported.files.log, Keep::StatesAndEnergy).expect("a log");
     let budget = log.energy.as_ref().expect("energies");
-    let mut simulation = in_plunge(&loaded);
+    let mut simulation = in_plunge(&loaded, 0);
     let mut apart = [0.0_f64; 2];
     let mut grains = Vec::new();
     for (index, state) in log.bodies[0].states.iter().enumerate() {
@@ -76,7 +75,7 @@ fn an_imported_run_is_that_of_plunge_for_the_first_milliseconds() {
 #[test]
 fn two_ranks_write_what_one_writes() {
     let paths = [1, 2].map(|ranks| {
-        let (_folder, _, imported) = in_lammps(ranks);
+        let (_folder, _, imported) = imported(ranks);
         assert_eq!(imported.summary.cost.threads, Some(ranks));
         read_run(&imported.files.log, Keep::States).expect("a log").bodies.remove(0).states
     });
@@ -89,7 +88,7 @@ fn two_ranks_write_what_one_writes() {
 
 #[test]
 fn what_lammps_does_not_tell_is_absent_and_not_zero() {
-    let (_folder, loaded, imported) = in_lammps(1);
+    let (_folder, loaded, imported) = imported(1);
     let log = read_run(&imported.files.log, Keep::StatesAndEnergy).expect("a log");
     let budget = log.energy.expect("energies");
     assert_eq!(budget.closing, None);
@@ -111,22 +110,13 @@ fn what_lammps_does_not_tell_is_absent_and_not_zero() {
 }
 
 /// The impact in LAMMPS on so many ranks, brought in.
-fn in_lammps(ranks: usize) -> (TempDir, Loaded, Imported) {
+fn imported(ranks: usize) -> (TempDir, Loaded, Imported) {
     let folder = tempfile::tempdir().expect("a folder");
     let loaded = model();
-    let grains = loaded.model.grains().expect("a bed");
-    let deck = Deck::of(grains, &grains.read_bed().expect("a table")).expect("a deck");
-    deck.write(folder.path()).expect("it can be written");
-    lammps(folder.path(), ranks, STEPS);
+    in_lammps(folder.path(), &loaded, ranks, STEPS);
     let imported =
         import(folder.path(), &folder.path().join("lmp.mcap"), &|| false).expect("a run");
     (folder, loaded, imported)
-}
-
-fn in_plunge(loaded: &Loaded) -> Simulation {
-    let grains = loaded.model.grains().expect("a bed");
-    let resting = grains.read_bed().expect("a table");
-    grains.simulation(&resting, &loaded.model.conditions()[0]).expect("a simulation")
 }
 
 fn model() -> Loaded {

@@ -4,7 +4,31 @@ use std::ffi::{OsStr, OsString};
 use std::path::Path;
 use std::process::Command;
 
-use exchange::lammps::INPUT;
+use configs::Loaded;
+use configs::engine::simulation::Simulation;
+use exchange::lammps::{Deck, INPUT};
+
+/// Writes the deck of the impact of `loaded` to `folder` and runs it for so many `steps` on so many `ranks`, and says what LAMMPS
+/// says.
+pub(crate) fn in_lammps(folder: &Path, loaded: &Loaded, ranks: usize, steps: u64) -> String {
+    let grains = loaded.model.grains().expect("a bed");
+    let resting = grains.read_bed().expect("a table");
+    let deck = Deck::of(grains, &resting).expect("a model that LAMMPS can express");
+    deck.write(folder).expect("it can be written");
+    lammps(folder, ranks, steps)
+}
+
+/// The same impact in plunge, after so many `steps`.
+pub(crate) fn in_plunge(loaded: &Loaded, steps: u64) -> Simulation {
+    let grains = loaded.model.grains().expect("a bed");
+    let resting = grains.read_bed().expect("a table");
+    let condition = loaded.model.conditions()[0];
+    let mut simulation = grains.simulation(&resting, &condition).expect("a simulation");
+    for _ in 0..steps {
+        simulation.advance().expect("a step");
+    }
+    simulation
+}
 
 /// Runs the deck in `folder` for so many `steps` on so many `ranks`, and says what LAMMPS says.
 pub(crate) fn lammps(folder: &Path, ranks: usize, steps: u64) -> String {
