@@ -146,7 +146,7 @@ impl MeasurementSet {
             return Err(findings.into());
         }
         if !document.states_surface {
-            set.surface = SurfaceDefinition::shown_by(&set);
+            set.surface = SurfaceDefinition::shown_by(&set, set.coarsest_grains().max(grains));
         }
         if !document.states_surface && set.surface == SurfaceDefinition::Mean {
             findings.note(

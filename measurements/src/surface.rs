@@ -10,12 +10,12 @@ const CLEARLY: f64 = 2.5;
 const ENOUGH: usize = 6;
 
 impl SurfaceDefinition {
-    /// What the frames of `set` show: bodies meet the highest grains at heights that scatter, so that runs differ in their
-    /// depth at first contact where depths count from the mean surface.
+    /// What the frames of `set` show, over grains of the diameter `grain` (m): bodies meet the highest grains at heights that
+    /// scatter by less than that, so that runs differ in their depth at first contact where depths count from the mean surface.
     ///
-    /// Depths of coarse grains alone show it: in fine ones the two are the same within the readings, and `FirstContact` is said.
+    /// In fine grains the two are the same within the readings, and `FirstContact` is said.
     #[must_use]
-    pub fn shown_by(set: &MeasurementSet) -> Self {
+    pub fn shown_by(set: &MeasurementSet, grain: f64) -> Self {
         if set.kind != Kind::Trajectory {
             return Self::FirstContact;
         }
@@ -33,7 +33,8 @@ impl SurfaceDefinition {
             expected += own as f64 * (reading * reading + (sinking * frame).powi(2) / 12.0);
             freedom += own;
         }
-        match freedom >= ENOUGH && found > CLEARLY * expected {
+        let is_of_grains = found < freedom as f64 * grain * grain;
+        match freedom >= ENOUGH && found > CLEARLY * expected && is_of_grains {
             true => Self::Mean,
             false => Self::FirstContact,
         }
@@ -87,19 +88,23 @@ mod tests {
     }
 
     #[test]
-    fn heights_of_first_contact_that_scatter_are_those_above_a_mean_surface() {
+    fn heights_of_first_contact_that_scatter_by_less_than_a_grain_are_those_above_a_mean_surface() {
+        let shown = |set: &MeasurementSet| SurfaceDefinition::shown_by(set, 5e-3);
         // By turns 0 to 4 mm above it.
         let uneven = set(|number| -1e-3 * (number % 5) as f64);
-        assert_eq!(SurfaceDefinition::shown_by(&uneven), SurfaceDefinition::Mean);
+        assert_eq!(shown(&uneven), SurfaceDefinition::Mean);
         // A level of its own is one of all runs; a clock is off by less than a frame.
         let level = set(|number| -2e-3 + 2e-4 * (number % 2) as f64);
-        assert_eq!(SurfaceDefinition::shown_by(&level), SurfaceDefinition::FirstContact);
+        assert_eq!(shown(&level), SurfaceDefinition::FirstContact);
+        // Sand does not scatter by millimetres: levels do.
+        let of_sand = SurfaceDefinition::shown_by(&uneven, 3e-4);
+        assert_eq!(of_sand, SurfaceDefinition::FirstContact);
     }
 
     #[test]
     fn runs_from_first_contact_on_show_nothing() {
         let mut late = set(|number| -1e-3 * (number % 5) as f64);
         late.runs.iter_mut().for_each(|run| run.frames.retain(|frame| frame.t >= 0.0));
-        assert_eq!(SurfaceDefinition::shown_by(&late), SurfaceDefinition::FirstContact);
+        assert_eq!(SurfaceDefinition::shown_by(&late, 5e-3), SurfaceDefinition::FirstContact);
     }
 }

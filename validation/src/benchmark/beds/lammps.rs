@@ -136,7 +136,7 @@ impl<'a> World<'a> {
             let run = seen(&hit.record, (number / repeats, &set), (number, seed), errors);
             set.runs.push(run);
         }
-        set.surface = SurfaceDefinition::shown_by(&set);
+        set.surface = SurfaceDefinition::shown_by(&set, set.coarsest_grains());
         Ok((set, hits.into_iter().map(|hit| hit.lie).collect()))
     }
 
