@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 use std::ops::Range;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 use engine::math::Vec3;
 use engine::record::{
     BodyLoad, BodySample, LogAttachment, LogSetup, LoggedBody, LoggedShape, RunLog, Stamp,
 };
+use tempfile::TempDir;
 
 use super::*;
 
@@ -21,38 +21,33 @@ struct Sample {
     chunks: Vec<(Range<usize>, BTreeSet<Message>)>,
 }
 
-struct Scratch(PathBuf);
+/// An empty folder, removed when dropped.
+struct Scratch(TempDir);
 
 impl Scratch {
     fn new() -> Self {
-        static NEXT: AtomicU32 = AtomicU32::new(0);
-        let n = NEXT.fetch_add(1, Ordering::Relaxed);
-        let path = std::env::temp_dir().join(format!("plunge-recover-{}-{n}", std::process::id()));
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
     }
 
     /// Recovers `damaged` and returns what happened and the new log.
     fn recover(&self, damaged: &[u8]) -> Result<(Recovered, Vec<u8>), RecoverError> {
-        let [input, output] = ["in.mcap", "out.mcap"].map(|name| self.0.join(name));
+        let [input, output] = ["in.mcap", "out.mcap"].map(|name| self.path().join(name));
         fs::write(&input, damaged).unwrap();
         drop(fs::remove_file(&output));
         let recovered = recover(&input, &output, &|| false)?;
-        assert_eq!(fs::read_dir(&self.0).unwrap().count(), 2, "no temporary file is left");
+        assert_eq!(fs::read_dir(self.path()).unwrap().count(), 2, "no temporary file is left");
         Ok((recovered, fs::read(output).unwrap()))
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        drop(fs::remove_dir_all(&self.0));
     }
 }
 
 /// A log with a chunk every ten steps.
 fn sample(last: u64) -> Sample {
     let scratch = Scratch::new();
-    let mut log = RunLog::create(&scratch.0, &setup()).unwrap();
+    let mut log = RunLog::create(scratch.path(), &setup()).unwrap();
     for step in 0..=last {
         let at = Stamp { step, time_s: step as f64 * 1e-5 };
         let x = libm::sin(step as f64);
@@ -70,7 +65,7 @@ fn sample(last: u64) -> Sample {
         .unwrap();
     }
     log.finish().unwrap();
-    let bytes = fs::read(scratch.0.join("run.mcap")).unwrap();
+    let bytes = fs::read(scratch.path().join("run.mcap")).unwrap();
     let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
     let chunks = summary.chunk_indexes.iter().map(|index| {
         let start = index.chunk_start_offset as usize;
@@ -137,7 +132,7 @@ impl Sample {
     /// The log cut at each of `places` keeps its first messages, at least those in whole chunks.
     fn assert_cuts_are_recovered(&self, places: impl Iterator<Item = usize>) {
         let scratch = Scratch::new();
-        let [input, output] = ["in.mcap", "out.mcap"].map(|name| scratch.0.join(name));
+        let [input, output] = ["in.mcap", "out.mcap"].map(|name| scratch.path().join(name));
         let all = in_order(&self.bytes);
         for cut in places {
             fs::write(&input, &self.bytes[..cut]).unwrap();
@@ -186,14 +181,14 @@ fn a_cut_chunk_counts_as_far_as_it_unpacks() {
     let mut setup = setup();
     setup.flush_every = 100_000;
     let scratch = Scratch::new();
-    let mut log = RunLog::create(&scratch.0, &setup).unwrap();
+    let mut log = RunLog::create(scratch.path(), &setup).unwrap();
     for step in 0..=9000 {
         // incompressible enough for several blocks per chunk
         let x = libm::exp(libm::sin(step as f64 * 0.37));
         log.energy(Stamp { step, time_s: x }, &[x, 1.0 / x], 0.0, 0.0).unwrap();
     }
     // killed with the chunk open: its lengths are all ones
-    let killed = fs::read(scratch.0.join("run.mcap.partial")).unwrap();
+    let killed = fs::read(scratch.path().join("run.mcap.partial")).unwrap();
     drop(log);
     let (recovered, log) = Scratch::new().recover(&killed).unwrap();
     assert!(recovered.messages > 1000, "{recovered:?}");
@@ -271,10 +266,10 @@ fn other_files_and_existing_outputs_are_refused() {
         let result = scratch.recover(other);
         assert!(matches!(result, Err(RecoverError::NotMcap { .. })), "{result:?}");
     }
-    let input = scratch.0.join("in.mcap");
+    let input = scratch.path().join("in.mcap");
     let result = recover(&input, &input, &|| false);
     assert!(matches!(result, Err(RecoverError::OutputExists { .. })), "{result:?}");
-    assert_eq!(fs::read_dir(&scratch.0).unwrap().count(), 1);
+    assert_eq!(fs::read_dir(scratch.path()).unwrap().count(), 1);
 }
 
 /// Numbers below the argument, the same in every run of the test.

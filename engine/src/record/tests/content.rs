@@ -14,9 +14,9 @@ use super::*;
 
 #[test]
 fn topics_schemas_and_fields_are_the_published_ones() {
-    let scratch = Scratch::new();
-    write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
-    let [run, grains] = scratch.files().map(|file| describe(&file));
+    let scratch = empty_folder();
+    write_rest(RunLog::create(scratch.path(), &setup()).unwrap(), 0, 10, 3);
+    let [run, grains] = files(&scratch).map(|file| describe(&file));
     assert_eq!(
         run,
         "\
@@ -63,9 +63,9 @@ speed_m_per_s:double position:xyz velocity:xyz spin:xyz
 
 #[test]
 fn own_messages_decode_by_the_descriptors_in_the_file() {
-    let scratch = Scratch::new();
-    write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
-    let [run, _] = scratch.files();
+    let scratch = empty_folder();
+    write_rest(RunLog::create(scratch.path(), &setup()).unwrap(), 0, 10, 3);
+    let [run, _] = files(&scratch);
     let messages: Vec<_> =
         mcap::MessageStream::new(&run).unwrap().map(|message| message.unwrap()).collect();
     let last = |topic: &str| {
@@ -96,9 +96,9 @@ fn own_messages_decode_by_the_descriptors_in_the_file() {
 
 #[test]
 fn the_grain_log_opens_alone_and_its_points_lie_below_their_fields() {
-    let scratch = Scratch::new();
-    write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
-    let [_, grains] = scratch.files();
+    let scratch = empty_folder();
+    write_rest(RunLog::create(scratch.path(), &setup()).unwrap(), 0, 10, 3);
+    let [_, grains] = files(&scratch);
     let cloud: PointCloud = first(&grains, "/grains");
     assert_eq!(cloud.point_stride, 40);
     let offsets: Vec<_> = cloud.fields.iter().map(|f| (f.name.as_str(), f.offset)).collect();
@@ -115,9 +115,9 @@ fn the_grain_log_opens_alone_and_its_points_lie_below_their_fields() {
 
 #[test]
 fn the_arrow_of_a_force_starts_where_the_body_ends() {
-    let scratch = Scratch::new();
-    write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
-    let [run, _] = scratch.files();
+    let scratch = empty_folder();
+    write_rest(RunLog::create(scratch.path(), &setup()).unwrap(), 0, 10, 3);
+    let [run, _] = files(&scratch);
     let scene: SceneUpdate = first(&run, "/scene");
     let arrow = &scene.entities.last().unwrap().arrows[0];
     let pose = arrow.pose.as_ref().unwrap();
@@ -129,9 +129,9 @@ fn the_arrow_of_a_force_starts_where_the_body_ends() {
 
 #[test]
 fn the_grain_log_says_of_every_frame_how_bodies_move_as_the_other_log_does() {
-    let scratch = Scratch::new();
-    write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
-    let [every_step, frames] = scratch.files().map(|log| {
+    let scratch = empty_folder();
+    write_rest(RunLog::create(scratch.path(), &setup()).unwrap(), 0, 10, 3);
+    let [every_step, frames] = files(&scratch).map(|log| {
         let messages = mcap::MessageStream::new(&log).unwrap().map(|message| message.unwrap());
         let states = messages.filter(|message| message.channel.topic == "/intruder/rear/state");
         states.map(|message| (message.sequence, message.data.into_owned())).collect::<Vec<_>>()
@@ -142,9 +142,9 @@ fn the_grain_log_says_of_every_frame_how_bodies_move_as_the_other_log_does() {
 
 #[test]
 fn fields_and_crater_are_clouds_in_the_frame_of_the_log() {
-    let scratch = Scratch::new();
-    write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 10, 3);
-    let [run, _] = scratch.files();
+    let scratch = empty_folder();
+    write_rest(RunLog::create(scratch.path(), &setup()).unwrap(), 0, 10, 3);
+    let [run, _] = files(&scratch);
     let cloud = |topic: &str| -> PointCloud { first(&run, topic) };
     let value = |cloud: &PointCloud, point: usize, name: &str| {
         let field = cloud.fields.iter().find(|field| field.name == name).unwrap();
@@ -165,9 +165,9 @@ fn fields_and_crater_are_clouds_in_the_frame_of_the_log() {
 
 #[test]
 fn metadata_and_attachments_are_kept_with_the_closure_identity() {
-    let scratch = Scratch::new();
-    write_rest(RunLog::create(&scratch.0, &setup()).unwrap(), 0, 0, 0);
-    let [run, _] = scratch.files();
+    let scratch = empty_folder();
+    write_rest(RunLog::create(scratch.path(), &setup()).unwrap(), 0, 0, 0);
+    let [run, _] = files(&scratch);
     let summary = mcap::Summary::read(&run).unwrap().unwrap();
     let record = mcap::read::metadata(&run, &summary.metadata_indexes[0]).unwrap();
     assert_eq!(record.name, "run");
@@ -183,8 +183,8 @@ fn metadata_and_attachments_are_kept_with_the_closure_identity() {
 
 #[test]
 fn a_value_that_is_not_finite_is_refused_before_anything_of_it_is_written() {
-    let scratch = Scratch::new();
-    let mut log = RunLog::create(&scratch.0, &setup()).unwrap();
+    let scratch = empty_folder();
+    let mut log = RunLog::create(scratch.path(), &setup()).unwrap();
     let before = log.position();
     let error = log.energy(stamp(3), &[0.0, 0.0, f64::NAN, 0.0, 0.0], 0.0, 0.0).unwrap_err();
     assert_eq!(error.to_string(), "step 3: elastic_normal_elastic_J is not finite");
@@ -209,11 +209,11 @@ fn a_value_that_is_not_finite_is_refused_before_anything_of_it_is_written() {
 
 #[test]
 fn names_that_viewers_could_not_show_are_refused() {
-    let scratch = Scratch::new();
+    let scratch = empty_folder();
     let refused = |change: &dyn Fn(&mut LogSetup)| {
         let mut setup = setup();
         change(&mut setup);
-        matches!(RunLog::create(&scratch.0, &setup), Err(RecordError::Setup(_)))
+        matches!(RunLog::create(scratch.path(), &setup), Err(RecordError::Setup(_)))
     };
     assert!(refused(&|s| s.bodies[0].name = "a/b".to_owned()));
     assert!(refused(&|s| s.bodies[0].name = "rear".to_owned()));
@@ -225,8 +225,8 @@ fn names_that_viewers_could_not_show_are_refused() {
 
 #[test]
 fn steps_and_times_out_of_range_or_out_of_order_are_refused() {
-    let scratch = Scratch::new();
-    let mut log = RunLog::create(&scratch.0, &setup()).unwrap();
+    let scratch = empty_folder();
+    let mut log = RunLog::create(scratch.path(), &setup()).unwrap();
     for at in [
         Stamp { step: 1 << 32, time_s: 0.0 },
         Stamp { step: 0, time_s: -1.0 },

@@ -4,8 +4,9 @@ mod content;
 mod restart;
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::path::Path;
+
+use tempfile::TempDir;
 
 use super::*;
 use crate::math::{Quat, Vec3};
@@ -14,30 +15,13 @@ use crate::math::{Quat, Vec3};
 const FRAME_EVERY: u64 = 7;
 
 /// An empty folder, removed when dropped.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new() -> Self {
-        static NEXT: AtomicU32 = AtomicU32::new(0);
-        let name = format!(
-            "plunge-record-{}-{}",
-            std::process::id(),
-            NEXT.fetch_add(1, Ordering::Relaxed)
-        );
-        let path = std::env::temp_dir().join(name);
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn files(&self) -> [Vec<u8>; 2] {
-        [RUN_LOG, GRAIN_LOG].map(|name| fs::read(self.0.join(name)).unwrap())
-    }
+fn empty_folder() -> TempDir {
+    tempfile::tempdir().unwrap()
 }
 
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        drop(fs::remove_dir_all(&self.0));
-    }
+/// The logs in `folder`.
+fn files(folder: &TempDir) -> [Vec<u8>; 2] {
+    [RUN_LOG, GRAIN_LOG].map(|name| fs::read(folder.path().join(name)).unwrap())
 }
 
 fn setup() -> LogSetup {
