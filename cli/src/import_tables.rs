@@ -101,18 +101,13 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         return Err(stopped(BEGINS_AGAIN));
     }
     let earlier = set.earlier(&out);
-    set.write(&out).map_err(failed)?;
-    let loaded = match MeasurementSet::load(&out) {
-        Ok(loaded) => loaded,
-        Err(error) => {
-            earlier.restore(&out);
-            return Err(error.into());
-        }
-    };
-    let is_refused = !loaded.contradictions.is_empty();
+    let written = set.write(&out).map_err(failed);
+    let loaded = written.and_then(|()| Ok(MeasurementSet::load(&out)?));
+    let is_refused = loaded.as_ref().map_or(true, |loaded| !loaded.contradictions.is_empty());
     if is_refused {
         earlier.restore(&out);
     }
+    let loaded = loaded?;
     if !args.quiet {
         output::to_stderr(&loaded.render_warnings(stderr_color()));
     }
