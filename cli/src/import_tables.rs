@@ -100,12 +100,14 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     if signals::is_asked_to_stop() {
         return Err(stopped(BEGINS_AGAIN));
     }
-    set.write(&out).map_err(failed)?;
-    let loaded = MeasurementSet::load(&out).inspect_err(|_| {
-        if !is_there {
-            set.remove(&out);
-        }
-    })?;
+    let earlier = set.earlier(&out);
+    let written = set.write(&out).map_err(failed);
+    let loaded = written.and_then(|()| Ok(MeasurementSet::load(&out)?));
+    let is_refused = loaded.as_ref().map_or(true, |loaded| !loaded.contradictions.is_empty());
+    if is_refused {
+        earlier.restore(&out);
+    }
+    let loaded = loaded?;
     if !args.quiet {
         output::to_stderr(&loaded.render_warnings(stderr_color()));
     }
@@ -115,11 +117,12 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         (false, false) => output::to_stdout(&as_text(&set, &loaded, &out))?,
     }
     // As `check` does: what is there cannot be fitted to.
-    match loaded.contradictions.is_empty() {
-        true => Ok(()),
-        false => Err(CommandError::BadInput(
-            loaded.render_contradictions(&ContradictionKind::ALL, stderr_color()),
-        )),
+    match is_refused {
+        false => Ok(()),
+        true => Err(CommandError::BadInput(format!(
+            "{}No set is written. --surface states the level of the surface, --leave-out goes on without runs.\n",
+            loaded.render_contradictions(&ContradictionKind::ALL, stderr_color())
+        ))),
     }
 }
 
@@ -178,6 +181,9 @@ fn as_text(set: &Set, loaded: &Loaded, out: &Path) -> String {
     text.push('\n');
     for note in &set.notes {
         text.push_str(&format!("{note}\n"));
+    }
+    if !loaded.contradictions.is_empty() {
+        return text;
     }
     let (conditions, runs, id) =
         (loaded.set.conditions.len(), loaded.set.runs.len(), &loaded.set.id);

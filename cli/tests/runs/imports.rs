@@ -159,3 +159,24 @@ fn what_is_missing_is_asked_for_before_anything_is_written() {
     let set = fs::read_to_string(here.path().join("my/measurement.toml")).expect("a set");
     assert!(set.contains("diameter = 0.0254") && set.contains("mass = 0.067"), "{set}");
 }
+
+#[test]
+fn a_set_that_is_refused_leaves_nothing_and_the_one_before_it_as_it_was() {
+    let here = folder();
+    write_tables(here.path());
+    let import = |more: &[&str]| {
+        Call::new(["import", "ball_h05_r1.csv", "-o", "my", "--diameter", "25.4mm"])
+            .args(more)
+            .inside(here.path())
+    };
+    // As no body has.
+    let heavy = ["--mass", "67 kg", "--shape", "cylinder", "--height", "2mm"];
+    assert!(import(&heavy).fails(2).contains("as no body has"));
+    assert!(!names(here.path()).contains(&"my".to_owned()));
+    import(&["--mass", "67 g"]).done();
+    let read = || fs::read_to_string(here.path().join("my/measurement.toml")).expect("a set");
+    let before = read();
+    import(&[&heavy[..], &["--force"]].concat()).fails(2);
+    assert_eq!(read(), before);
+    import(&["--mass", "67 g"]).done();
+}

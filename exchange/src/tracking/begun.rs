@@ -22,6 +22,9 @@ pub(super) struct Begun {
     pub(super) path: Path,
 }
 
+/// Folders around a file that may be called like its body.
+const AROUND: usize = 2;
+
 /// The tracks of all files, with the hashes of the files.
 pub(super) fn tracks(
     paths: &[PathBuf],
@@ -160,7 +163,10 @@ pub(super) fn begin(
         let one = || -> Result<Begun, Fault> {
             let fields = fields(&track, &name, settings)?;
             let mut labels: Vec<_> = fields.iter().chain(&track.labels).cloned().collect();
-            labels.extend(bodies.named_in(&called, &labels));
+            let around = within_folders(&track, AROUND);
+            let named =
+                [&called, &around].into_iter().find_map(|name| bodies.named_in(name, &labels));
+            labels.extend(named);
             let body = bodies.of(&name, &labels, settings)?;
             Ok(Begun { path: Path::of(track, settings)?, name, called, fields, labels, body })
         };

@@ -147,12 +147,27 @@ impl Bodies {
         if labels.iter().any(|(name, _)| is_body(name)) {
             return None;
         }
-        let lower = called.to_lowercase();
-        let words: Vec<&str> = lower.split('/').chain(called::words(&lower)).collect();
-        let own = |(name, _): &&Named| words.contains(&name.to_lowercase().as_str());
-        let mut found = self.0.iter().filter(own);
-        let (name, _) = found.next()?;
-        found.next().is_none().then(|| ("body".to_owned(), name.clone()))
+        let all = called::parts(called);
+        let holds =
+            |all: &[String], own: &[String]| all.windows(own.len().max(1)).any(|some| some == own);
+        let names = self.0.iter().map(|(name, _)| (name, called::parts(name)));
+        // A body that is called by a number is none of the numbers in a name.
+        let is_word = |part: &String| part.contains(char::is_alphabetic);
+        let found: Vec<(&String, Vec<String>)> =
+            names.filter(|(_, own)| own.iter().any(is_word) && holds(&all, own)).collect();
+        // `big_steel` is not `steel`.
+        let is_part = |own: &[String]| {
+            found.iter().any(|(_, other)| other.len() > own.len() && holds(other, own))
+        };
+        let mut whole = found.iter().filter(|(_, own)| !is_part(own));
+        let (name, _) = whole.next()?;
+        whole.next().is_none().then(|| ("body".to_owned(), (*name).clone()))
+    }
+
+    /// The names of all, for messages.
+    fn names(&self) -> String {
+        let names: Vec<&str> = self.0.iter().map(|(name, _)| name.as_str()).collect();
+        configs::shorten(&names.join(", "))
     }
 
     /// What the table says of `body` below `key`.
@@ -178,14 +193,9 @@ impl Bodies {
         if let Some(name) = name.filter(|_| !self.0.is_empty())
             && !self.0.iter().any(|(other, _)| is_called(other, name))
         {
-            let names: Vec<&str> = self.0.iter().map(|(name, _)| name.as_str()).collect();
             let what =
                 format!("the run {run} is of the body `{name}`, which the table of bodies lacks");
-            return Err(Fault::new(
-                &flag("bodies"),
-                what,
-                format!("its bodies: {}", names.join(", ")),
-            ));
+            return Err(Fault::new(&flag("bodies"), what, format!("its bodies: {}", self.names())));
         }
         let said = |key: &str| {
             let of_table = || name.and_then(|name| self.get(name, key));
@@ -208,11 +218,17 @@ impl Bodies {
         };
         let needed = |key: &str, dimension: Dimension, example: &str| {
             quantity(key, dimension)?.ok_or_else(|| {
-                let right = format!(
-                    "write {} {example}; several bodies: --bodies bodies.csv with the columns body, \
-                     diameter (mm), mass (g), and --condition \"{{body}}_{{repeat}}\"",
-                    flag(key)
-                );
+                let right = match name.is_none() && !self.0.is_empty() {
+                    true => format!(
+                        "no name, folder or column `body` says which of {} it is; --condition \"{{body}}_{{repeat}}\" says where",
+                        self.names()
+                    ),
+                    false => format!(
+                        "write {} {example}; several bodies: --bodies bodies.csv with the columns body, diameter (mm), mass (g), and the \
+                         body in names, folders or a column `body`",
+                        flag(key)
+                    ),
+                };
                 Fault::new(run, format!("no table says the {key} of the body"), right)
             })
         };

@@ -122,9 +122,9 @@ pub(super) fn groups(keys: &[String]) -> Vec<(String, Vec<usize>)> {
     all
 }
 
-/// The words of `name`.
-pub(super) fn words(name: &str) -> Vec<&str> {
-    tokens(name).into_iter().filter(|one| one.kind == Kind::Word).map(|one| one.text).collect()
+/// The words and numbers of `name`, in small letters.
+pub(super) fn parts(name: &str) -> Vec<String> {
+    tokens(name).into_iter().map(|one| one.text.to_lowercase()).collect()
 }
 
 fn is_in(words: &[&str], text: &str) -> bool {
@@ -339,6 +339,6 @@ mod tests {
         let is_low = |at: &usize| *at < 2;
         let agree = |own: &[usize]| own.iter().all(is_low) || !own.iter().any(is_low);
         assert_eq!(keys(&names, agree), ["drop_10", "drop_10", "drop_20", "drop_20"]);
-        assert_eq!(words("steel_h10-1"), ["steel", "h"]);
+        assert_eq!(parts("Steel_h10-1"), ["steel", "h", "10", "1"]);
     }
 }

@@ -218,8 +218,8 @@ pub(super) fn of_other_depths(runs: &[Run], grouping: &Grouping) -> Option<Strin
         (own.len() > 1 && scatter > (FAR * mean).max(CLEAR * noise)).then(|| {
             let names: Vec<&str> = own.iter().map(|run| run.name.as_str()).collect();
             format!(
-                "Warning: the runs of `{id}` ({}) are put together by speed alone, and their final depths scatter by {:.0} %. If they \
-                 differ in more than speed, say it: --condition \"{{bed}}_{{repeat}}\", or a column `condition`.",
+                "Warning: the runs of `{id}` ({}) are put together by speed alone, whatever their names say, and their final depths \
+                 scatter by {:.0} %. If they differ in more than speed, say it: --condition \"{{bed}}_{{repeat}}\", or a column `condition`.",
                 configs::shorten(&names.join(", ")),
                 1e2 * scatter / mean
             )

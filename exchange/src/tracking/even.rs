@@ -161,7 +161,7 @@ mod tests {
         let of = |line: u64| {
             let t = line as f64 / 240.0;
             let z = 0.5 * 9.81 * truth(t).powi(2) + 1e-4 * libm::sin(line as f64 * 1.7);
-            Sample { line, t: written(t), z, x: 0.0 }
+            Sample { line: line + 2, t: written(t), z, x: 0.0 }
         };
         (0..60).map(of).collect()
     }
@@ -172,7 +172,7 @@ mod tests {
         let mut noisy = fall(|t| t, jitter);
         let off = undo_jitter(&mut noisy).expect("they are noise");
         assert!((2e-4..5e-4).contains(&off), "{off}");
-        assert!(worst(&noisy, 240.0).abs() < 0.02, "{}", worst(&noisy, 240.0));
+        assert!(worst(&noisy, 240.0) < 2e-4, "{}", worst(&noisy, 240.0));
         assert_eq!(undo_jitter(&mut fall(jitter, jitter)), None);
         assert_eq!(undo_jitter(&mut fall(|t| t, |t| t)), None);
     }

@@ -179,7 +179,7 @@ impl<'a> Grid<'a> {
     }
 
     /// Those of the columns `all` that move beside the one that moves farthest.
-    fn moving(&self, all: &[usize]) -> Vec<usize> {
+    pub(super) fn moving(&self, all: &[usize]) -> Vec<usize> {
         let way = |at: usize| {
             let values = self.rows.iter().filter_map(|row| match self.sheet.number(row.cell(at)) {
                 Number::Value(value) => Some(value),

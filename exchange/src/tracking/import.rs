@@ -313,7 +313,14 @@ fn see(
             true => format!("\"{}\"", one.name),
             false => one.name.clone(),
         };
-        Fault::new(&one.path.track.file, what, format!("--leave-out {name} goes on without it"))
+        let by_hand = match why.starts_with("no free fall") {
+            true => {
+                "; a set of data from contact on is written by hand: `plunge new --list` shows some"
+            }
+            false => "",
+        };
+        let right = format!("--leave-out {name} goes on without it{by_hand}");
+        Fault::new(&one.path.track.file, what, right)
     })?;
     let fall = (settings.gravity, one.body.diameter);
     motion::refuse_several(&of_the_body, (&departure.contact, noise), fall, &one.path.track)?;

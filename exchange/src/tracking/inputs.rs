@@ -41,7 +41,7 @@ pub(super) fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Fault> {
 }
 
 /// Endings of tables that a folder is searched for.
-const TABLES: [&str; 6] = ["csv", "tsv", "txt", "dat", "lvm", "tab"];
+const TABLES: [&str; 7] = ["csv", "tsv", "txt", "dat", "lvm", "tab", "itx"];
 
 /// How deep folders are searched.
 const DEPTH: usize = 3;

@@ -48,7 +48,7 @@ pub use fault::{Fault, TrackingError};
 pub use import::import;
 pub use import_file::{IMPORT_FILE, ImportFile};
 pub use options::Options;
-pub use set::{Set, Understood};
+pub use set::{Earlier, Set, Understood};
 
 /// Whether a file in `folder` is called like a table.
 #[must_use]

@@ -66,13 +66,12 @@ impl Set {
         Ok(())
     }
 
-    /// Removes its files from `folder`, and the folder where nothing else is in it.
-    pub fn remove(&self, folder: &Path) {
-        // A file that cannot be removed causes an error when the set is written again.
-        for (name, _) in &self.files {
-            let _ = std::fs::remove_file(folder.join(name));
-        }
-        let _ = std::fs::remove_dir(folder);
+    /// What `folder` holds in the place of its files.
+    #[must_use]
+    pub fn earlier(&self, folder: &Path) -> Earlier {
+        let there =
+            |(name, _): &(&'static str, String)| (*name, std::fs::read(folder.join(name)).ok());
+        Earlier(self.files.iter().map(there).collect())
     }
 
     /// Whether `folder` holds these files already, byte for byte.
@@ -81,5 +80,24 @@ impl Set {
         self.files.iter().all(|(name, content)| {
             std::fs::read(folder.join(name)).is_ok_and(|there| there == content.as_bytes())
         })
+    }
+}
+
+/// What stood in the place of a set before it was written.
+#[derive(Clone, Debug)]
+pub struct Earlier(Vec<(&'static str, Option<Vec<u8>>)>);
+
+impl Earlier {
+    /// Puts it back into `folder`, which goes where nothing is in it.
+    pub fn restore(self, folder: &Path) {
+        // A file that cannot be changed causes an error when the set is written again.
+        for (name, there) in self.0 {
+            let path = folder.join(name);
+            let _ = match there {
+                Some(content) => std::fs::write(&path, content),
+                None => std::fs::remove_file(&path),
+            };
+        }
+        let _ = std::fs::remove_dir(folder);
     }
 }

@@ -68,6 +68,7 @@ pub(super) fn read(file: &str, stem: &str, bytes: &[u8]) -> Result<Sheet, Fault>
         rows.push(Row { line, cells });
     }
     rows.retain(|row| !row.is_blank());
+    drop_comments(&mut rows);
     drop_row_names(&mut rows);
     let decimal_comma = has_decimal_commas(&rows);
     Ok(Sheet {
@@ -78,6 +79,29 @@ pub(super) fn read(file: &str, stem: &str, bytes: &[u8]) -> Result<Sheet, Fault>
         rows,
         notes,
     })
+}
+
+/// Removes comments between rows whose first number grows: before another drop it starts again.
+fn drop_comments(rows: &mut Vec<Row>) {
+    let is_comment = |row: &Row| row.cells[0].starts_with(['#', '%']);
+    let first = |row: &Row| {
+        [false, true].into_iter().find_map(|comma| match number(row.cell(0), comma) {
+            Number::Value(value) => Some(value),
+            _ => None,
+        })
+    };
+    let mut before = None;
+    let mut kept: Vec<bool> = Vec::with_capacity(rows.len());
+    for (at, row) in rows.iter().enumerate() {
+        let behind = || rows[at..].iter().find(|row| !is_comment(row)).and_then(first);
+        let goes_on = || before.zip(behind()).is_some_and(|(before, behind)| before < behind);
+        kept.push(!is_comment(row) || !goes_on());
+        if !is_comment(row) {
+            before = first(row);
+        }
+    }
+    let mut kept = kept.into_iter();
+    rows.retain(|_| kept.next().unwrap_or(true));
 }
 
 /// Removes the numbers of rows that R writes before them without a name in the header.

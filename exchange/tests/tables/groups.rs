@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use exchange::tracking::Set;
+use exchange::tracking::{Options, Set, import};
 
 use crate::layouts::of_folder;
+use crate::refusals::has;
 use crate::world::{Camera, Drop, Meets, drop_onto};
 
 /// A drop from `height` (m) onto a bed that is so many times as hard, as a table.
@@ -130,11 +131,13 @@ fn numbers_of_trials_begin_again_for_each_body_and_height() {
 
 #[test]
 fn a_folder_or_a_word_that_is_called_like_a_body_says_the_body() {
-    let bodies = "body,diameter (mm),mass (g)\nsteel,25.4,67\nwax,25.4,60\n";
+    let bodies =
+        "body,diameter (mm),mass (g)\nsteel,25.4,67\nwax,25.4,60\nbig wax,30,70\n1,25.4,50\n";
     let told: &[(&str, &str)] = &[("bodies", "HERE/bodies.csv")];
     let by_pattern = &[told[0], ("condition", "{body}/h{height}_{repeat}")];
     for (names, options) in [
         (["steel/h10_1", "wax/h10_1"], told),
+        (["wax_h10_1", "big_wax_h10_1"], told),
         (["Steel_h10_1", "h10_wax_1"], told),
         (["steel/h10_1", "wax/h10_1"], by_pattern),
     ] {
@@ -145,4 +148,15 @@ fn a_folder_or_a_word_that_is_called_like_a_body_says_the_body() {
         assert_eq!(set.understood.len(), 2);
         assert_ne!(set.understood[0].condition, set.understood[1].condition);
     }
+    let here = tempfile::tempdir().expect("a folder");
+    let [drop, all] = ["h10_1.csv", "bodies.csv"].map(|name| here.path().join(name));
+    std::fs::write(&drop, table(0.1, 1.0, 1)).expect("a table");
+    std::fs::write(&all, bodies).expect("a table");
+    let mut options = Options::default();
+    options.set("bodies", all.display().to_string());
+    let error = import(&[drop], &options, &here.path().join("set")).expect_err("no body");
+    has(
+        &error.to_string(),
+        &["no name, folder or column `body` says which of steel, wax, big wax, 1 it is"],
+    );
 }

@@ -2,11 +2,13 @@
 
 mod deeplabcut;
 mod dltdv;
+mod igor;
 mod imagej;
 mod kinovea;
 mod labview;
 mod loggerpro;
 mod long;
+mod optitrack;
 mod pairs;
 mod single;
 mod stacked;
@@ -14,12 +16,15 @@ mod tracker;
 mod trackmate;
 mod wide;
 
+use configs::engine::units::Dimension;
+use measurements::{Fall, Frame};
+
 use super::fault::Fault;
 use super::grid::Grid;
 use super::heading::{Heading, Role};
 use super::settings::Columns;
 use super::sheet::Sheet;
-use super::track::Track;
+use super::track::{Sample, Track};
 
 /// A way to write tracks into a table.
 pub(super) struct Layout {
@@ -30,7 +35,9 @@ pub(super) struct Layout {
 }
 
 /// The layouts; the first that fits reads a sheet, and the last fits all.
-const LAYOUTS: [&Layout; 13] = [
+const LAYOUTS: [&Layout; 15] = [
+    &igor::LAYOUT,
+    &optitrack::LAYOUT,
     &trackmate::LAYOUT,
     &deeplabcut::LAYOUT,
     &dltdv::LAYOUT,
@@ -85,7 +92,7 @@ fn refuse_forces(sheet: &Sheet, columns: &Columns) -> Result<(), Fault> {
     // Of several runs beside each other, that without a position is named.
     let is_force = |heading: &&Heading| heading.is_force() && !heading.name.contains(": ");
     match grid.headings.iter().find(is_force) {
-        Some(of) if columns.of(Role::Vertical).is_none() => {
+        Some(of) if columns.of(Role::Vertical).is_none() && !falls(&grid, columns) => {
             let what =
                 format!("`{}` is a force or a pressure: the body is pushed, not dropped", of.name);
             let right = "a set of forces over depth is written by hand, as `plunge new real-plates-simulant` shows; \
@@ -94,6 +101,30 @@ fn refuse_forces(sheet: &Sheet, columns: &Columns) -> Result<(), Fault> {
         }
         _ => Ok(()),
     }
+}
+
+/// Whether the positions of a table are those of a body that falls at about gravity, by its units.
+fn falls(grid: &Grid<'_>, columns: &Columns) -> bool {
+    /// Accelerations of a fall (m/s²), braked by a guide or not.
+    const FALL: std::ops::Range<f64> = 5.0..15.0;
+    let Ok(track) =
+        single::places(grid, columns).and_then(|at| grid.track("", at, grid.all_rows()))
+    else {
+        return false;
+    };
+    let units = (track.time.unit.si(Dimension::TIME), track.vertical.unit.si(Dimension::LENGTH));
+    let (Some(second), Some(metre)) = units else { return false };
+    let along = |sign: f64| -> Vec<Frame> {
+        let of = |one: &Sample| Frame {
+            t: second * one.t,
+            z: sign * metre * one.z,
+            x: 0.0,
+            sigma: None,
+        };
+        track.samples.iter().map(of).collect()
+    };
+    let fall = |sign: f64| Fall::of_frames(&along(sign));
+    [1.0, -1.0].into_iter().filter_map(fall).any(|fall| FALL.contains(&fall.acceleration.value))
 }
 
 /// The text of the first row, in small letters.

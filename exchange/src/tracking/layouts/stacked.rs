@@ -3,15 +3,16 @@
 use super::Layout;
 use crate::tracking::fault::Fault;
 use crate::tracking::grid::Grid;
+use crate::tracking::heading::{Heading, is_statistic};
 use crate::tracking::settings::Columns;
-use crate::tracking::sheet::{Row, Sheet};
+use crate::tracking::sheet::{Number, Row, Sheet};
 use crate::tracking::track::Track;
 
 pub(super) const LAYOUT: Layout = Layout { fits: |sheet, _| blocks(sheet).len() > 1, read };
 
 /// One of the tables.
 struct Block<'a> {
-    /// The row of words above its line of names.
+    /// The rows of words above its line of names.
     title: Option<String>,
     /// Its line of names and the rows below it.
     rows: &'a [Row],
@@ -43,7 +44,7 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
             }
         }
     }
-    if tracks.iter().all(|track| track.name.is_none()) {
+    if tracks.len() > 1 && tracks.iter().all(|track| track.name.is_none()) {
         let nth = (1..).map(|nth: usize| Some(nth.to_string()));
         tracks.iter_mut().zip(nth).for_each(|(track, nth)| track.name = nth);
     }
@@ -66,19 +67,39 @@ fn blocks(sheet: &Sheet) -> Vec<Block<'_>> {
     }
     let headers = (header..rows.len()).filter(|at| rows[*at].cells == rows[header].cells);
     let headers: Vec<usize> = headers.collect();
-    // A line of words above the names is a title.
-    let titled = |at: usize| at > 0 && !sheet.is_numeric(&rows[at - 1], 1);
-    let ends = headers.iter().skip(1).map(|&next| next - usize::from(titled(next)));
+    // Lines with words above the names are the title.
+    let is_title =
+        |row: &Row| sheet.has_words(row) && !sheet.is_numeric(row, 2) && !is_statistic(row.cell(0));
+    let titles = |at: usize| {
+        let is_names = |row: &Row| row.cells == rows[header].cells;
+        let above =
+            rows[..at].iter().rev().take_while(|row| is_title(row) && !is_names(row)).count();
+        &rows[at - above..at]
+    };
+    let ends = headers.iter().skip(1).map(|&next| next - titles(next).len());
     let block = |(&at, end): (&usize, usize)| Block {
-        title: titled(at).then(|| title(&rows[at - 1])),
+        title: title(sheet, titles(at)),
         rows: &rows[at..end],
     };
     headers.iter().zip(ends.chain([rows.len()])).map(block).collect()
 }
 
-fn title(row: &Row) -> String {
-    let cells = row.cells.iter().filter(|cell| !cell.is_empty()).map(String::as_str);
-    cells.collect::<Vec<_>>().join(" ").trim_matches(['#', ' ', ':']).to_owned()
+/// The name that lines above a table give it; a quantity in two cells is written as `h10cm`.
+fn title(sheet: &Sheet, rows: &[Row]) -> Option<String> {
+    let words = |row: &Row| {
+        let cells = row.cells.iter().filter(|cell| !cell.is_empty()).map(String::as_str);
+        match cells.collect::<Vec<_>>()[..] {
+            [name, value]
+                if matches!(sheet.number(value), Number::Value(_)) && name.contains(['(', '[']) =>
+            {
+                let Heading { stem, unit, .. } = Heading::of(name);
+                format!("{stem}{value}{}", unit.word())
+            }
+            ref cells => cells.join(" ").trim_matches(['#', ' ', ':']).to_owned(),
+        }
+    };
+    let words: Vec<String> = rows.iter().map(words).filter(|words| !words.is_empty()).collect();
+    (!words.is_empty()).then(|| words.join(" "))
 }
 
 #[cfg(test)]
@@ -114,7 +135,7 @@ mod tests {
         };
         let named = |name: &str, n: usize| (Some(name.to_owned()), n);
         assert_eq!(told("t,y\n0,1\n1,2\nt,y\n0,3\n1,4\n"), [named("1", 2), named("2", 2)]);
-        assert_eq!(told("t,y\n0,1\n1,2\nt,y\n2,3\n3,4\n"), [named("1", 4)]);
+        assert_eq!(told("t,y\n0,1\n1,2\nt,y\n2,3\n3,4\n"), [(None, 4)]);
         let long = "run,t,y\na,0,1\na,1,2\nrun,t,y\na,2,3\nb,0,3\nrun,t,y\nb,1,4\n";
         assert_eq!(told(long), [named("a", 3), named("b", 2)]);
     }
