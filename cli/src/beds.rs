@@ -52,12 +52,12 @@ pub(crate) struct Beds {
 }
 
 impl Beds {
-    /// A flag that was given, and says how impacts on beds are run or which candidates they are run for.
+    /// The first given flag that says how impacts on beds are run or which candidates they are run for.
     pub(crate) fn flag_of_impacts(&self) -> Option<&'static str> {
         self.flag_of_ranking().or(self.on.scheduler().is_some().then_some("--on"))
     }
 
-    /// A flag that was given, and says which candidates are ranked with how many impacts.
+    /// The first given flag that says which candidates are ranked with how many impacts.
     pub(crate) fn flag_of_ranking(&self) -> Option<&'static str> {
         [
             ("--candidate", !self.candidates.is_empty()),

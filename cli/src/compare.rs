@@ -67,7 +67,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     }
     if let Some(flag) = args.beds.flag_of_ranking() {
         return Err(CommandError::bad_input(format!(
-            "{flag} is of `plunge diagnose`: a comparison ranks no candidates and runs every condition"
+            "{flag} belongs to `plunge diagnose`: a comparison ranks no candidates and runs every condition"
         )));
     }
     let measured = flags.measured(&args.first, &args.models)?;

@@ -120,7 +120,8 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     match is_refused {
         false => Ok(()),
         true => Err(CommandError::BadInput(format!(
-            "{}No set is written. --surface states the level of the surface, --leave-out goes on without runs.\n",
+            "{}The set is refused, and nothing in its folder is changed. --surface states the level of the surface, --leave-out goes \
+             on without runs.\n",
             loaded.render_contradictions(&ContradictionKind::ALL, stderr_color())
         ))),
     }
@@ -212,6 +213,8 @@ fn as_json(set: &Set, loaded: &Loaded, out: &Path) -> serde_json::Value {
     json!({
         "set": loaded.set.id,
         "folder": out.to_string_lossy(),
+        // A set that contradicts itself is not left there.
+        "written": loaded.contradictions.is_empty(),
         "conditions": loaded.set.conditions.len(),
         "runs": set.understood.iter().map(run).collect::<Vec<_>>(),
         "notes": set.notes,

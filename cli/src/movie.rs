@@ -287,10 +287,11 @@ fn stills(args: &Args, kind: Kind, film: &Film<'_>) -> CommandResult {
     let scenes = film.scenes().map_err(failed)?;
     let mut written = Vec::new();
     for (at, text) in args.at.iter().enumerate() {
-        if args.at[..at].contains(text) {
+        let name = still_name(args, text);
+        if args.at[..at].iter().any(|other| still_name(args, other) == name) {
             return Err(CommandError::bad_input(format!("--at names {text} twice")));
         }
-        refuse_to_replace(args, &still_name(args, text))?;
+        refuse_to_replace(args, &name)?;
     }
     for (text, frame) in args.at.iter().zip(&wanted) {
         let Some(scene) = scenes.iter().find(|scene| scene.frame == *frame) else { continue };

@@ -18,9 +18,11 @@ pub(crate) fn as_text(next: &Next, object: &Value) -> String {
             ),
         };
     };
+    let table = tables::next(object);
+    let what = if table.rows.len() == 1 { "this" } else { "these" };
     format!(
-        "\nNEXT  measure this; expected to tell {:.2} of {open_bits:.2} bit:\n{}",
+        "\nNEXT  measure {what}; expected to tell {:.2} of {open_bits:.2} bit:\n{}",
         last.expected_bits,
-        shown(&tables::next(object))
+        shown(&table)
     )
 }

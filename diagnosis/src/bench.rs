@@ -10,11 +10,10 @@ use crate::between::Between;
 use crate::fit::{Data, Fit};
 use crate::forward::{Forward, PredictError};
 use crate::noise::{Noise, NoiseSource};
-use crate::observable::Observable;
 use crate::observed::Observed;
 use crate::restricted_likelihood::between;
 use crate::sensitivity::{Point, Sensitivity};
-use crate::weights::Weight;
+use crate::weights::{Weight, with_stop_error};
 
 /// How often noise and fit are taken in turn: the scatter of trajectories is propagated along the
 /// model, and the first guess of a model is wrong by construction.
@@ -263,12 +262,8 @@ impl Bench<'_> {
         noise: &Noise,
     ) -> Result<Weight, BenchError> {
         let observed = &self.observed.conditions[condition];
-        let mut own = self.own_covariance(condition, &point.effects, noise);
-        let stop = observed.layout.kinds().iter().position(|kind| *kind == Observable::StopTime);
-        if let (Some(stop), Some(error)) = (stop, self.forward.stop_error(condition)) {
-            let n = observed.mean.len();
-            own.get_or_insert_with(|| DMatrix::zeros(n, n))[(stop, stop)] += error * error;
-        }
+        let own = self.own_covariance(condition, &point.effects, noise);
+        let own = with_stop_error(own, observed, self.forward.stop_error(condition));
         Weight::new(observed, sensitivity, noise, own)
             .ok_or_else(|| BenchError::Singular { id: observed.id.clone() })
     }

@@ -30,8 +30,8 @@ const UPPER: f64 = 1.645;
 /// Fall of the likelihood from which a scatter between conditions is seen: two standard errors.
 const SEEN: f64 = 4.0;
 
-/// Log-likelihood by which a pair has to exceed a single effect that explains the data, and a single effect that leaves a
-/// part has to exceed a force of any form: odds of 100 to 1, times the number of effects to choose from.
+/// Fall of the deviance by which a pair has to exceed a single effect that explains the data: odds of 100 to 1, times the number
+/// of effects to choose from. Log odds by which a single effect that leaves a part has to exceed a force of any form.
 const LIKELIER: f64 = 15.0;
 
 /// Least log odds of a force of any form at which differences between conditions are not taken for undeclared sessions.
@@ -375,7 +375,7 @@ impl Judge<'_> {
     }
 }
 
-/// That the effect `leader` is not all, and by what held-out conditions are missed with it.
+/// Says that `leader` alone does not explain the data, with the errors on held-out conditions.
 fn explains_a_part(leader: &str, held_out: &HeldOut) -> String {
     let does = match held_out.is_no_nearer() {
         true => "fits best and predicts no better",

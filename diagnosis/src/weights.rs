@@ -4,6 +4,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::forward::{Forward, PredictError};
 use crate::noise::{Noise, log_determinant};
+use crate::observable::Observable;
 use crate::observed::ObservedCondition;
 use crate::sensitivity::{Point, Sensitivity};
 
@@ -16,6 +17,21 @@ pub struct Weight {
     pub shift: DVector<f64>,
     /// What conditions scatter by beyond their runs, a column for each coefficient; the factor holds it.
     between: Option<DMatrix<f64>>,
+}
+
+/// `own`, the covariance of what a model predicts of `observed`, with the `error` (s) that its stopping time counts with.
+#[must_use]
+pub(crate) fn with_stop_error(
+    own: Option<DMatrix<f64>>,
+    observed: &ObservedCondition,
+    error: Option<f64>,
+) -> Option<DMatrix<f64>> {
+    let stop = observed.layout.kinds().iter().position(|kind| *kind == Observable::StopTime);
+    let Some((stop, error)) = stop.zip(error) else { return own };
+    let n = observed.mean.len();
+    let mut all = own.unwrap_or_else(|| DMatrix::zeros(n, n));
+    all[(stop, stop)] += error * error;
+    Some(all)
 }
 
 impl Weight {

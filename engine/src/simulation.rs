@@ -185,8 +185,7 @@ impl Simulation {
         &self.activity
     }
 
-    /// Height of the undisturbed surface (m): where the lowest point of the intruder was at the
-    /// start.
+    /// Height (m) of the lowest point of the intruder at the start, from which depths count.
     #[must_use]
     pub fn surface(&self) -> f64 {
         self.surface

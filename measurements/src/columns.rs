@@ -143,9 +143,9 @@ fn renamed(table: TableReader<'_>, spec: &ColumnSpec, span: Option<Span>) -> Opt
                         .help("the unit is the place for a factor"),
                 );
             }
-            let zero = match !may_have_zero(spec.key) {
-                true => None,
-                false => table.number_in("zero", &unit.value, dimension)?,
+            let zero = match may_have_zero(spec.key) {
+                true => table.number_in("zero", &unit.value, dimension)?,
+                false => None,
             };
             (Some(unit.value), sign.value, zero.map_or(0.0, |zero| zero.value))
         }

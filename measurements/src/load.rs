@@ -150,7 +150,7 @@ impl MeasurementSet {
         }
         if !document.states_surface && set.surface == SurfaceDefinition::Mean {
             findings.note(
-                "Assumed, as depths at first contact differ between runs: measurement.surface_definition = \"mean\"."
+                "Assumed, because depths at first contact differ between runs: measurement.surface_definition = \"mean\"."
                     .to_owned(),
             );
         }

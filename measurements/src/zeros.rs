@@ -260,9 +260,7 @@ impl Level {
     fn clock_is_off(self, contact: &Contact) -> bool {
         let [earliest, latest] = contact.between;
         let granted = FRAME * contact.step + self.lag(contact);
-        // A blunt cone is braked slowly at first: fits that differ in their power of time disagree on its contact.
-        let is_known = contact.time.value.abs() > OF_MEAN * contact.time.se;
-        is_known && (earliest > granted || latest < -granted)
+        earliest > granted || latest < -granted
     }
 
     /// Whether free fall is not at the surface at time zero, a rounding of the contact to a frame granted.

@@ -168,23 +168,26 @@ pub fn next(diagnosis: &Value) -> Table {
     let mut head: Vec<&str> = shown.iter().map(|(_, name)| *name).collect();
     head.extend(["runs", "told with those above (bit)", "separates most"]);
     head.extend(has_cost.then_some("cost"));
-    let mut rows: Vec<(Vec<String>, u64, &Value)> = Vec::new();
+    let mut rows: Vec<(Vec<String>, u64, f64, &Value)> = Vec::new();
     for one in all {
         let cell =
             |key: &str| one[key].as_str().map_or_else(|| four_digits(&one[key]), str::to_owned);
         let condition: Vec<String> = shown.iter().map(|(key, _)| cell(key)).collect();
-        let repeats = one["repeats"].as_u64().unwrap_or(0);
-        match rows.iter_mut().find(|(row, ..)| *row == condition) {
-            Some((_, runs, last)) => (*runs, *last) = (*runs + repeats, one),
-            None => rows.push((condition, repeats, one)),
+        let (mut runs, mut cost) =
+            (one["repeats"].as_u64().unwrap_or(0), one["cost"].as_f64().unwrap_or(0.0));
+        // Its row stands where it is chosen last: it tells so much with those above.
+        if let Some(before) = rows.iter().position(|(row, ..)| *row == condition) {
+            let (_, earlier, paid, _) = rows.remove(before);
+            (runs, cost) = (runs + earlier, cost + paid);
         }
+        rows.push((condition, runs, cost, one));
     }
     let mut table = Table::new(&head);
-    for (mut row, runs, one) in rows {
+    for (mut row, runs, cost, one) in rows {
         row.push(runs.to_string());
         row.push(fixed(one["expected_bits"].as_f64(), 2));
         row.push(texts(&one["separates"]).join(" from "));
-        row.extend(has_cost.then(|| four_digits(&one["cost"])));
+        row.extend(has_cost.then(|| plots::short(cost)));
         table.rows.push(row);
     }
     table
@@ -288,8 +291,8 @@ mod tests {
                 "separates most"
             ]
         );
-        assert_eq!(table.rows[0], ["1", "90", "sphere", "8", "0.60", "lift from janssen"]);
-        assert_eq!(table.rows[1][3], "4");
+        assert_eq!(table.rows[0][3..5], ["4", "0.50"]);
+        assert_eq!(table.rows[1], ["1", "90", "sphere", "8", "0.60", "lift from janssen"]);
     }
 
     #[test]

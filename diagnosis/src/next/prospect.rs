@@ -13,7 +13,7 @@ use crate::noise::{Noise, log_determinant};
 use crate::observed::ObservedCondition;
 use crate::random::{Purpose, normal, stream};
 use crate::sensitivity::Sensitivity;
-use crate::weights::Weight;
+use crate::weights::{Weight, with_stop_error};
 
 /// Draws of each hypothesis.
 const DRAWS: usize = 100;
@@ -37,6 +37,7 @@ impl Prospect {
         let point = hypotheses.first()?.before(forward)?.point;
         let sensitivity = Sensitivity::at(&point, forward, condition, observed.reach).ok()?;
         let own = forward.own_covariance(condition, &point.effects);
+        let own = with_stop_error(own, observed, forward.stop_error(condition));
         let weight = Weight::new(observed, &sensitivity, noise, own)?;
         let expects = |hypothesis: &Hypothesis| {
             hypothesis.before(forward)?.expects(forward, condition, &weight).ok()

@@ -30,8 +30,8 @@ use prepared::{Prepared, extent};
 /// By this share a parameter is moved to see whether anything depends on it.
 const PROBE: f64 = 1e-2;
 
-/// Error of the stopping time of an oblique impact, of the time of its last frame, where each component of the motion stops
-/// by itself: which of them is the last changes at once with a coefficient.
+/// Error of the stopping time of an oblique impact, as a share of the time of its last frame, under a law that stops each
+/// component by itself: which one stops last changes abruptly with a coefficient.
 const STOP_OF_COMPONENTS: f64 = 0.1;
 
 /// Standard deviation of what is known of each change of form beforehand.

@@ -272,12 +272,16 @@ impl Bodies {
             apex,
             shaft_diameter,
         };
-        let written = |key: &str| match (said(key), settings.text(key)) {
+        let written = |key: &str, value: f64, unit: &str| match (said(key), settings.text(key)) {
             (Some((text, place)), _) => (text.to_owned(), place),
-            (None, text) => (text.unwrap_or(key).to_owned(), flag(key)),
+            (None, Some(text)) => (text.to_owned(), flag(key)),
+            (None, None) => (format!("{:.4} {unit}", 1e3 * value), flag(key)),
         };
         if body.shape == "sphere" {
-            density::refuse((diameter, written("diameter")), (body.mass, written("mass")))?;
+            let mass = body.mass;
+            let [of_diameter, of_mass] =
+                [written("diameter", diameter, "mm"), written("mass", mass, "g")];
+            density::refuse((diameter, of_diameter), (mass, of_mass))?;
         }
         Ok(body)
     }

@@ -69,7 +69,8 @@ const CLIPS: [&str; 13] = [
 ];
 const DAYS: [&str; 4] = ["day", "date", "session", "tag"];
 
-/// What is left of each of `names` without the number of its repeat: runs of one condition leave the same.
+/// What is left of each of `names` without the number of its repeat: runs of one condition leave the same. Names that leave
+/// numbers alone, each another, as times of day do, leave nothing.
 ///
 /// Where the number may stand in several places, it is where those that leave the same `agree`.
 pub(super) fn keys(names: &[&str], agree: impl Fn(&[usize]) -> bool) -> Vec<String> {
@@ -82,6 +83,12 @@ pub(super) fn keys(names: &[&str], agree: impl Fn(&[usize]) -> bool) -> Vec<Stri
         PLACES.iter().filter(is_there).map(|place| with(*place)).collect();
     let is_agreed = |keys: &&Vec<String>| groups(keys).iter().all(|(_, own)| agree(own));
     let repeats = |keys: &&Vec<String>| groups(keys).len() < keys.len();
+    let is_of_numbers = |tokens: &Vec<Token<'_>>| {
+        tokens.iter().all(|token| matches!(token.kind, Kind::Free | Kind::Clip))
+    };
+    if all.iter().all(is_of_numbers) && !found.iter().any(|keys| repeats(&keys)) {
+        return vec![String::new(); names.len()];
+    }
     found
         .iter()
         .filter(repeats)

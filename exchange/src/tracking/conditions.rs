@@ -202,7 +202,7 @@ fn by_speed(members: &[&Member<'_>]) -> Vec<String> {
     (0..members.len()).map(|at| names[of(at)].clone()).collect()
 }
 
-/// A warning if bodies that only their speeds put together end at depths that are far apart.
+/// A warning if runs that are grouped by speed alone end at depths that are far apart.
 pub(super) fn of_other_depths(runs: &[Run], grouping: &Grouping) -> Option<String> {
     /// Standard deviation over mean of final depths that repeats seldom have.
     const FAR: f64 = 0.12;

@@ -132,7 +132,10 @@ impl<'a> Grid<'a> {
             (0..self.headings.len()).filter(|at| self.headings[*at].role() == Some(role)).collect();
         if all.len() > 1 && role == Role::Vertical {
             // A height of release stands beside all readings of its drop.
-            all.retain(|at| !self.is_label(*at) && !self.has_few_values(*at));
+            let moves = |at: &usize| !self.is_label(*at) && !self.has_few_values(*at);
+            if all.iter().any(moves) {
+                all.retain(moves);
+            }
         }
         match all[..] {
             [] => Ok(None),

@@ -1,5 +1,6 @@
 //! A set that was imported, and what was understood of its tables.
 
+use std::io::ErrorKind;
 use std::path::Path;
 
 use configs::engine::checkpoint::write_whole;
@@ -69,9 +70,16 @@ impl Set {
     /// What `folder` holds in the place of its files.
     #[must_use]
     pub fn earlier(&self, folder: &Path) -> Earlier {
-        let there =
-            |(name, _): &(&'static str, String)| (*name, std::fs::read(folder.join(name)).ok());
-        Earlier(self.files.iter().map(there).collect())
+        let there = |(name, _): &(&'static str, String)| {
+            match std::fs::read(folder.join(name)) {
+                Ok(content) => Some((*name, Some(content))),
+                Err(error) if error.kind() == ErrorKind::NotFound => Some((*name, None)),
+                // What cannot be read is not touched.
+                Err(_) => None,
+            }
+        };
+        let is_new = !folder.exists();
+        Earlier { files: self.files.iter().filter_map(there).collect(), is_new }
     }
 
     /// Whether `folder` holds these files already, byte for byte.
@@ -85,19 +93,26 @@ impl Set {
 
 /// What stood in the place of a set before it was written.
 #[derive(Clone, Debug)]
-pub struct Earlier(Vec<(&'static str, Option<Vec<u8>>)>);
+pub struct Earlier {
+    /// Names and contents; none of a file that is not there.
+    files: Vec<(&'static str, Option<Vec<u8>>)>,
+    /// Whether there is no folder.
+    is_new: bool,
+}
 
 impl Earlier {
-    /// Puts it back into `folder`, which goes where nothing is in it.
+    /// Puts it back into `folder`, which goes where there was none.
     pub fn restore(self, folder: &Path) {
         // A file that cannot be changed causes an error when the set is written again.
-        for (name, there) in self.0 {
+        for (name, there) in self.files {
             let path = folder.join(name);
             let _ = match there {
                 Some(content) => std::fs::write(&path, content),
                 None => std::fs::remove_file(&path),
             };
         }
-        let _ = std::fs::remove_dir(folder);
+        if self.is_new {
+            let _ = std::fs::remove_dir(folder);
+        }
     }
 }

@@ -19,7 +19,7 @@ use crate::run::{Control, bed_key, prepare, result_key};
 const WAIT: Duration = Duration::from_millis(50);
 
 /// Counts the changes of what is kept of an impact.
-const KEPT: u32 = 3;
+const KEPT: u32 = 4;
 
 /// Share of the grains in motion below which a bed lies still.
 const STILL: f64 = 0.01;

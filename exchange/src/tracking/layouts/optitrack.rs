@@ -34,6 +34,13 @@ fn read(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
     let is_place =
         |at: &usize| matches!(grid.headings[*at].stem.as_str(), "x" | "y" | "z") && !is_turn(*at);
     let places: Vec<usize> = (0..grid.headings.len()).filter(is_place).collect();
+    if places.len() < 3 {
+        return Err(Fault::new(
+            &sheet.file,
+            "the take has no columns X, Y and Z of positions".to_owned(),
+            "export positions of markers or rigid bodies, not rotations alone".to_owned(),
+        ));
+    }
     places.iter().for_each(|at| grid.headings[*at].unit = unit.clone());
     let several = places.len() > 3;
     let mut tracks = Vec::new();
