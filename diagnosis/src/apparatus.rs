@@ -13,11 +13,11 @@ use crate::observable::Layout;
 pub mod defaults {
     /// Zero of the clock, in frames: contact is seen at the first frame that shows it, or at the nearest.
     pub const FRAMES: f64 = 0.5;
-    /// Zero of depth (m), unless its part of a grain or the stated scatter of the level is more.
+    /// Zero of depth (m), unless its share of a grain diameter or the stated scatter of the level is larger.
     pub const ZERO: f64 = 1e-3;
-    /// The part of a grain where depths count from the first grain that is met, which may be any of the highest.
+    /// Zero of depth in grain diameters, if depths count from the first contact: any of the highest grains can be met first.
     pub const FIRST_GRAIN: f64 = 0.5;
-    /// The part of a grain where depths count from the mean height of the surface.
+    /// Zero of depth in grain diameters, if depths count from the mean height of the surface.
     pub const MEAN_OF_GRAINS: f64 = 0.25;
     /// Impact speeds, relative.
     pub const SPEED: f64 = 0.02;

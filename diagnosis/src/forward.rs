@@ -50,8 +50,8 @@ pub trait Forward: Sync {
         None
     }
 
-    /// Error (s) that the stopping time of `condition` counts with, where it has a kink in the parameters at which a fit
-    /// would end; `None` where it is smooth.
+    /// Error (s) with which the stopping time of `condition` is weighted if it has a kink in the parameters, at which a fit
+    /// would stop too early; `None` if it is smooth.
     fn stop_error(&self, condition: usize) -> Option<f64> {
         let _ = condition;
         None

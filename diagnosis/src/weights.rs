@@ -19,7 +19,7 @@ pub struct Weight {
     between: Option<DMatrix<f64>>,
 }
 
-/// `own`, the covariance of what a model predicts of `observed`, with the `error` (s) that its stopping time counts with.
+/// The covariance `own` of the predictions of `observed`, plus the variance of a stopping time with the `error` (s).
 #[must_use]
 pub(crate) fn with_stop_error(
     own: Option<DMatrix<f64>>,

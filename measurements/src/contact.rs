@@ -110,7 +110,7 @@ pub(super) fn read(
     }
     let known = (gravity, doubt, sigma);
     let (fits, contact) = match condition.shape.as_str() {
-        // Its section soon is the whole, so that no power of time holds.
+        // The section of a cone reaches its full size early, so that no power of time describes the path.
         "cone" => fit_braked(all, known, (power, Tip::of(condition))),
         _ => fit(all, known, power),
     };

@@ -76,6 +76,9 @@ impl Outcome {
 }
 
 impl StopDefinition {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::ComponentZero, Self::SpeedFivePercent];
+
     /// As a set writes it.
     #[must_use]
     pub fn word(self) -> &'static str {
@@ -87,6 +90,9 @@ impl StopDefinition {
 }
 
 impl FinalDefinition {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Deepest, Self::Resting];
+
     /// As a set writes it.
     #[must_use]
     pub fn word(self) -> &'static str {
@@ -98,6 +104,9 @@ impl FinalDefinition {
 }
 
 impl SurfaceDefinition {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::FirstContact, Self::Mean];
+
     /// As a set writes it.
     #[must_use]
     pub fn word(self) -> &'static str {

@@ -156,6 +156,18 @@ struct Head {
     header: Option<Span>,
 }
 
+/// The definition below `key` that may be left out, of `all`, which `word` spells as a set does.
+fn definition<T: Copy, W: Fn(T) -> &'static str>(
+    table: &TableReader<'_>,
+    key: &'static str,
+    (all, word): ([T; 2], W),
+    meaning: &str,
+) -> Option<T> {
+    let words: Vec<&'static str> = all.iter().map(|one| word(*one)).collect();
+    let said = optional_choice(table, key, &words, meaning)?;
+    all.into_iter().find(|one| word(*one) == said)
+}
+
 fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
     let id = table.slug("id", None, "the name of the set");
     let kind = table.choice("kind", &Kind::words(), &[], "what was measured");
@@ -166,33 +178,13 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
     let source = optional_text(&table, "source", "…", "where the numbers are from");
     let frame = optional_text(&table, "frame", "…", "the frame of reference in words");
     let phase = optional_text(&table, "phase", "…", "the part of the motion in words");
-    let words = ["component-zero", "speed-5-percent"];
-    let stop =
-        optional_choice(&table, "stop_definition", &words, "when an intruder counts as stopped")
-            .map(|word| match word {
-                "component-zero" => StopDefinition::ComponentZero,
-                _ => StopDefinition::SpeedFivePercent,
-            });
-    let last = optional_choice(
-        &table,
-        "final",
-        &["deepest", "resting"],
-        "which depth and range a run gives",
-    )
-    .map(|word| match word {
-        "deepest" => FinalDefinition::Deepest,
-        _ => FinalDefinition::Resting,
-    });
-    let surface = optional_choice(
-        &table,
-        "surface_definition",
-        &["first-contact", "mean"],
-        "from where depths count over coarse grains",
-    )
-    .map(|word| match word {
-        "mean" => SurfaceDefinition::Mean,
-        _ => SurfaceDefinition::FirstContact,
-    });
+    let all = (StopDefinition::ALL, StopDefinition::word);
+    let stop = definition(&table, "stop_definition", all, "when an intruder counts as stopped");
+    let all = (FinalDefinition::ALL, FinalDefinition::word);
+    let last = definition(&table, "final", all, "which depth and range a run gives");
+    let all = (SurfaceDefinition::ALL, SurfaceDefinition::word);
+    let surface =
+        definition(&table, "surface_definition", all, "from where depths count over coarse grains");
     table.asks("notes", "what was assumed, of a set that was written by plunge", || Answer::Texts);
     table.asks("keep", "runs that are used as they are, however stray they look", || Answer::Texts);
     let notes = table.texts("notes");
@@ -202,13 +194,13 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
     table.finish();
     unstated.absent_if(source.is_none(), "measurement.source");
     let stop = stop.or_else(|| {
-        let (stop, word) = match kind? {
-            Kind::Scalar => (StopDefinition::ComponentZero, words[0]),
+        let stop = match kind? {
+            Kind::Scalar => StopDefinition::ComponentZero,
             // What is pushed does not stop.
             Kind::ForceDepth => return Some(StopDefinition::ComponentZero),
-            _ => (StopDefinition::SpeedFivePercent, words[1]),
+            _ => StopDefinition::SpeedFivePercent,
         };
-        unstated.assume(format!("measurement.stop_definition = \"{word}\""));
+        unstated.assume(format!("measurement.stop_definition = \"{}\"", stop.word()));
         Some(stop)
     });
     let last = last.unwrap_or_else(|| {

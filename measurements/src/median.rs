@@ -1,9 +1,9 @@
-//! The middle of several numbers, and the run that has it.
+//! The median of several numbers, and the run that has it.
 
 use super::{MeasurementSet, Run};
 
-/// The middle one of `numbers`, of an even number the upper one of the two; none of none. Numbers that are not finite count by
-/// their order.
+/// The median of `numbers`, the upper of the two middle ones if their count is even; `None` if there are none. Numbers that are
+/// not finite are ordered by [`f64::total_cmp`].
 #[must_use]
 pub fn median(numbers: impl IntoIterator<Item = f64>) -> Option<f64> {
     let mut all: Vec<f64> = numbers.into_iter().collect();
@@ -11,8 +11,8 @@ pub fn median(numbers: impl IntoIterator<Item = f64>) -> Option<f64> {
     all.get(all.len() / 2).copied()
 }
 
-/// The middle of what `of` gives of the runs of `set`, and the index of the run that has it: one run that is wrong decides
-/// nothing.
+/// The median of the numbers that `of` gives for the runs of `set`, and the index of the run that has it. One wrong run does not
+/// change it much.
 pub(super) fn of_runs(
     set: &MeasurementSet,
     of: impl Fn(&Run) -> Option<f64>,

@@ -3,17 +3,18 @@
 use super::zeros::POSITION;
 use super::{Kind, MeasurementSet, Run, SurfaceDefinition};
 
-/// How many times the variance of readings and clock has to be exceeded.
+/// Least ratio of the variance of the depths at contact to that of readings and clock.
 const CLEARLY: f64 = 2.5;
 
 /// Least number of independent deviations that show a scatter.
 const ENOUGH: usize = 6;
 
 impl SurfaceDefinition {
-    /// What the frames of `set` show, over grains of the diameter `grain` (m): bodies meet the highest grains at heights that
-    /// scatter by less than that, so that runs differ in their depth at first contact where depths count from the mean surface.
+    /// The definition that the frames of `set` show, over grains of the diameter `grain` (m).
     ///
-    /// In fine grains the two are the same within the readings, and `FirstContact` is said.
+    /// A body meets the highest grains first, and their heights scatter by less than a grain diameter. If depths count from the
+    /// mean surface, the depths at first contact scatter likewise; if they count from first contact, they do not. In fine
+    /// grains this scatter is below the error of a reading, and the result is `FirstContact`.
     #[must_use]
     pub fn shown_by(set: &MeasurementSet, grain: f64) -> Self {
         if set.kind != Kind::Trajectory {

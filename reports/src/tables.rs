@@ -155,8 +155,8 @@ const NEXT: [(&str, &str); 9] = [
     ("bed_depth_m", "depth of bed (m)"),
 ];
 
-/// The conditions to measure next. One that is chosen twice has a row, with twice the runs; what no condition has is left
-/// out.
+/// The conditions to measure next. A condition that is chosen twice has one row with the sum of its runs. Columns without any
+/// value are left out.
 #[must_use]
 pub fn next(diagnosis: &Value) -> Table {
     let all = list(&diagnosis["next"]);
@@ -175,7 +175,7 @@ pub fn next(diagnosis: &Value) -> Table {
         let condition: Vec<String> = shown.iter().map(|(key, _)| cell(key)).collect();
         let (mut runs, mut cost) =
             (one["repeats"].as_u64().unwrap_or(0), one["cost"].as_f64().unwrap_or(0.0));
-        // Its row stands where it is chosen last: it tells so much with those above.
+        // The row stands at the place of the last choice, so that its information is that of all rows down to it.
         if let Some(before) = rows.iter().position(|(row, ..)| *row == condition) {
             let (_, earlier, paid, _) = rows.remove(before);
             (runs, cost) = (runs + earlier, cost + paid);

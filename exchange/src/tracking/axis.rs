@@ -5,7 +5,7 @@ use measurements::{Fall, Frame};
 use super::fault::Fault;
 use super::track::Track;
 
-/// Standard errors of an acceleration that is seen.
+/// Least ratio of an acceleration to its standard error at which a fall is seen.
 const CLEAR: f64 = 10.0;
 
 /// Whether a fall is seen.
@@ -13,7 +13,7 @@ fn is_clear(fall: Option<Fall>) -> bool {
     fall.is_some_and(|Fall { acceleration, .. }| acceleration.value > CLEAR * acceleration.se)
 }
 
-/// Refuses a way of counting, 1 down and -1 up, that the falls along either way contradict.
+/// Refuses the stated direction of the axis, 1 for down and -1 for up, if the falls in both directions contradict it.
 pub(super) fn refuse_other_way(
     track: &Track,
     sign: f64,
@@ -34,7 +34,8 @@ pub(super) fn refuse_other_way(
     Err(Fault::new(&track.file, what, format!("leave --{stated} out, or write --{right}")))
 }
 
-/// Refuses a path, whose `falls` along either way of its axis are these, of a body that falls along its other axis.
+/// Refuses the path of a body that falls along the other axis of its table; `falls` are those along the vertical axis, counted
+/// down and up.
 pub(super) fn refuse_other(
     track: &Track,
     frames: &[Frame],

@@ -151,7 +151,7 @@ impl Bodies {
         let holds =
             |all: &[String], own: &[String]| all.windows(own.len().max(1)).any(|some| some == own);
         let names = self.0.iter().map(|(name, _)| (name, called::parts(name)));
-        // A body that is called by a number is none of the numbers in a name.
+        // The name of a run has numbers of its own: a body whose name is a number cannot be recognised in it.
         let is_word = |part: &String| part.contains(char::is_alphabetic);
         let found: Vec<(&String, Vec<String>)> =
             names.filter(|(_, own)| own.iter().any(is_word) && holds(&all, own)).collect();

@@ -3,7 +3,7 @@
 /// A run of letters or of digits in a name.
 #[derive(Clone, Copy, Debug)]
 struct Token<'a> {
-    /// What stands before it, behind the token before.
+    /// The text between the token before and this one.
     gap: &'a str,
     text: &'a str,
     kind: Kind,
@@ -12,9 +12,9 @@ struct Token<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Word,
-    /// A number with a unit or behind a word for a height, which is never a repeat.
+    /// A number with a unit, or after a word for a height: it is never the number of a repeat.
     Quantity,
-    /// A day, a time of day or the number of a clip, with the word before it, which tell no condition.
+    /// A date, a time of day or the number of a clip: none of them identifies a condition.
     Clip,
     /// Any other number.
     Free,
@@ -69,10 +69,10 @@ const CLIPS: [&str; 13] = [
 ];
 const DAYS: [&str; 4] = ["day", "date", "session", "tag"];
 
-/// What is left of each of `names` without the number of its repeat: runs of one condition leave the same. Names that leave
-/// numbers alone, each another, as times of day do, leave nothing.
+/// Each of `names` without the number of its repeat: the runs of one condition have the same key. All keys are empty if names
+/// differ only in numbers that never recur, such as times of day.
 ///
-/// Where the number may stand in several places, it is where those that leave the same `agree`.
+/// If the number can stand in several places, the first place is taken at which runs of the same key `agree`.
 pub(super) fn keys(names: &[&str], agree: impl Fn(&[usize]) -> bool) -> Vec<String> {
     let all = without_shared_end(names.iter().map(|name| tokens(name)).collect());
     let with = |first: Place| -> Vec<String> {

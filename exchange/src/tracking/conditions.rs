@@ -40,7 +40,7 @@ pub(super) struct Grouping {
     pub(super) ids: Vec<String>,
     /// How they were put together, in words.
     pub(super) manner: String,
-    /// Whether nothing but its speed tells the condition of a run.
+    /// Whether the condition of a run follows from its speed alone.
     pub(super) is_by_speed: Vec<bool>,
 }
 
@@ -116,8 +116,8 @@ fn of_column(member: &Member<'_>) -> Option<String> {
     member.labels.iter().find(|(name, _)| name == "condition").map(|(_, value)| value.clone())
 }
 
-/// Conditions by what names say beside the number of the repeat; runs of one name that differ in speed or body are parted by
-/// these. `None` where all names say the same.
+/// Conditions by the names of runs without the number of the repeat. Runs of one name that differ in speed or body are separated
+/// by these. `None` if all names give the same condition.
 fn by_names(members: &[Member<'_>]) -> Option<Grouping> {
     let called: Vec<&str> = members.iter().map(|one| one.called).collect();
     let keys = called::keys(&called, |own| agree(members, own));
@@ -204,9 +204,9 @@ fn by_speed(members: &[&Member<'_>]) -> Vec<String> {
 
 /// A warning if runs that are grouped by speed alone end at depths that are far apart.
 pub(super) fn of_other_depths(runs: &[Run], grouping: &Grouping) -> Option<String> {
-    /// Standard deviation over mean of final depths that repeats seldom have.
+    /// Relative standard deviation of the final depths, which repeats rarely exceed.
     const FAR: f64 = 0.12;
-    /// Errors of a reading that are no scatter.
+    /// Scatter below this many errors of a reading is not significant.
     const CLEAR: f64 = 5.0;
     called::groups(&grouping.ids).into_iter().find_map(|(id, own)| {
         let own: Vec<&Run> =

@@ -1,4 +1,4 @@
-//! Diameters and masses that no body has, in the words of the command line.
+//! Refuses diameters and masses of impossible densities, in the words of the command line.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,7 @@ const POSSIBLE: (f64, f64) = (10.0, 3e4);
 /// Densities (kg/m³) of which bodies are made.
 const USUAL: (f64, f64) = (100.0, 2.3e4);
 
-/// Units of diameter and mass as they were written, empty where they may be any, factors of both, and what was mistaken.
+/// Mistakes: the written units of diameter and mass (empty for any unit), the factors that correct both, and the mistake in words.
 const MISTAKES: [(&str, &str, f64, f64, &str); 8] = [
     ("", "", 2.0, 1.0, "the diameter looks like a radius"),
     ("cm", "", 0.1, 1.0, "the diameter looks like cm for mm"),
@@ -22,7 +22,8 @@ const MISTAKES: [(&str, &str, f64, f64, &str); 8] = [
     ("", "g", 1.0, 1e3, "the mass looks like g for kg"),
 ];
 
-/// Refuses a ball whose size (m) and mass (kg) give no density of a body; each comes with what the user wrote, and where.
+/// Refuses a ball whose diameter (m) and mass (kg) give an impossible density. Each number comes with the text that the user
+/// wrote and the place of that text.
 pub(super) fn refuse(
     (size, diameter): (f64, (String, String)),
     (weight, mass): (f64, (String, String)),

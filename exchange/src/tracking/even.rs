@@ -53,13 +53,13 @@ pub(super) fn undo_rounding(samples: &mut [Sample]) -> Option<f64> {
     Some(quantum)
 }
 
-/// How much smoother a path has to be over its rows than over its times for these to be noise, and most that times may be off
-/// an even clock, in steps.
+/// Least ratio of the roughness over the stated times to that over even times, at which the stated times are noise; and the
+/// largest distance of a time from an even clock, in steps.
 const SMOOTHER: f64 = 0.5;
 const NOISY: f64 = 1.0;
 
-/// Gives evenly spaced times to readings whose own scatter around those, if the path is then much smoother, and says by how much
-/// (rms) they do.
+/// Replaces times that scatter around an even clock by even ones, if the path is much smoother over these. Returns the root mean
+/// square scatter of the stated times.
 pub(super) fn undo_jitter(samples: &mut [Sample]) -> Option<f64> {
     let is_gapless = samples.windows(2).all(|pair| pair[1].line == pair[0].line + 1);
     let n = samples.len() as f64;
@@ -83,7 +83,7 @@ pub(super) fn undo_jitter(samples: &mut [Sample]) -> Option<f64> {
     Some(rms)
 }
 
-/// By how much readings of a moving body differ from a parabola through those around them on this clock: the median.
+/// Median distance of the readings of a moving body from a parabola through their neighbours, with the times of this clock.
 fn roughness(samples: &[Sample], clock: &[f64]) -> f64 {
     /// Share of the longest way over four rows below which a body counts as still.
     const MOVES: f64 = 0.3;
@@ -156,7 +156,7 @@ mod tests {
         }
     }
 
-    /// A fall at 240 Hz, whose true and whose written times are these functions of the even one.
+    /// A fall at 240 Hz; true and written times are given as functions of the even time.
     fn fall(truth: impl Fn(f64) -> f64, written: impl Fn(f64) -> f64) -> Vec<Sample> {
         let of = |line: u64| {
             let t = line as f64 / 240.0;

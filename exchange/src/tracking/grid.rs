@@ -197,7 +197,7 @@ impl<'a> Grid<'a> {
         all.iter().copied().filter(|at| way(*at) > STILL * farthest).collect()
     }
 
-    /// Whether so few values stand in a column that they are no readings.
+    /// Whether a column has too few different values to be readings.
     pub(super) fn has_few_values(&self, at: usize) -> bool {
         /// Rows for each value, at least.
         const ROWS: usize = 20;

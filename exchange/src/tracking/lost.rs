@@ -8,14 +8,15 @@ const REPEATED: usize = 20;
 /// Speed (m/s) above which no bed stops a body within a frame.
 const FAST: f64 = 0.3;
 
-/// Times the braking before that a stop takes which is none.
+/// Ratio of the deceleration of a stop to the deceleration before it, above which the tracker has lost the body.
 const SUDDEN: f64 = 5.0;
 
-/// Frames that a speed is taken over, and least steps of the table that it has.
+/// Frames over which a speed is averaged, and the least distance in them, in units of the resolution of the table.
 const OVER: usize = 4;
 const STEPS: f64 = 3.0;
 
-/// From which reading on the position of `frames` (SI) is that of a body that the tracker lost, with its speed (m/s) before.
+/// The index of the first reading of `frames` (SI) at which the tracker has lost the body, and the speed (m/s) before it; `None`
+/// where the body is not lost.
 pub(super) fn lost_from(frames: &[Frame]) -> Option<(usize, f64)> {
     let last = frames.last()?;
     let same = |one: &&Frame| one.z.total_cmp(&last.z).is_eq() && one.x.total_cmp(&last.x).is_eq();

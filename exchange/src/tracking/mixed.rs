@@ -7,7 +7,8 @@ use super::track::Sample;
 /// Most bodies that are looked for.
 const MOST: usize = 4;
 
-/// How many times rougher than each of its paths a mixture of them is, at least, and its least roughness as a share of the way.
+/// Least ratio of the roughness of a mixture to that of each of its paths, and least roughness of a mixture as a share of the
+/// distance that is travelled.
 const ROUGH: f64 = 5.0;
 const CLEAR: f64 = 0.01;
 
@@ -23,7 +24,7 @@ pub(super) fn bodies(samples: &[Sample]) -> Option<usize> {
     (2..=MOST).find(is_mixed)
 }
 
-/// Median distance of readings from the middle between those so many rows before and behind.
+/// Median distance of a reading from the mean of the readings `apart` rows before and after it.
 fn roughness(samples: &[Sample], apart: usize) -> f64 {
     let off = |at: usize| {
         let [before, behind] = [samples[at - apart].z, samples[at + apart].z];

@@ -6,7 +6,7 @@
 //!
 //! `text` and `spreadsheet` give the cells of a file as a `sheet`; each file below `layouts` knows one program and
 //! turns a sheet into tracks, with `heading` and `grid`; `begun` makes runs of them, `motion` and `scales` bring their
-//! paths to SI and find contacts, `axis`, `mixed` and `lost` refuse or cut what is no path of one body along its axis; `surface` finds the level of the
+//! paths to SI and find contacts; `axis`, `mixed` and `lost` refuse or cut a path that is not that of one body along its axis; `surface` finds the level of the
 //! surface, `bodies`, `density`, `names`, `called` and `conditions` what was dropped and which runs belong together; `import` puts it together, and `written` holds the files of the set.
 
 mod axis;

@@ -67,7 +67,7 @@ impl Set {
         Ok(())
     }
 
-    /// What `folder` holds in the place of its files.
+    /// The present content of the files in `folder` that the set would replace.
     #[must_use]
     pub fn earlier(&self, folder: &Path) -> Earlier {
         let there = |(name, _): &(&'static str, String)| {
@@ -101,7 +101,7 @@ pub struct Earlier {
 }
 
 impl Earlier {
-    /// Puts it back into `folder`, which goes where there was none.
+    /// Restores `folder`: the earlier files, or no folder if there was none.
     pub fn restore(self, folder: &Path) {
         // A file that cannot be changed causes an error when the set is written again.
         for (name, there) in self.files {

@@ -119,9 +119,9 @@ impl Impact {
     }
 }
 
-/// The first time between `from` and `to` at which a margin that begins as `start` is seen above zero, by halving, and the
-/// margin there; `from` and `start` if there is none. A component that has just been let go begins at zero and may come back
-/// to it long before the step ends: the root behind that time is the next event.
+/// The first time between `from` and `to` at which a margin is above zero, found by halving, and the margin at that time;
+/// `from` and `start` if the margin is nowhere above zero. The margin of a released component is zero at `from`, and can
+/// return to zero long before the step ends. That return is the next event.
 fn above_zero(
     solver: &mut Solver<'_>,
     (from, start): (f64, f64),

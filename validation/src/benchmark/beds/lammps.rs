@@ -310,7 +310,7 @@ impl<'a> World<'a> {
         }
     }
 
-    /// The impact whose path `text` is, on a bed that lay so; none for something else.
+    /// The impact whose path `text` is, on a bed that lies as `lie` says; `None` if it is not a path.
     fn record(&self, text: &str, (speed, lie): (f64, &Lie)) -> Option<Record> {
         let mut path: Vec<[f64; 5]> = Vec::new();
         for line in text.lines().filter(|line| !line.starts_with('#')) {
