@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::bench::{Bench, BenchError, Fitted};
-use crate::diagnose::diagnose;
+use crate::diagnose::verdict;
 use crate::forward::{ParameterKind, Scatter};
 use crate::observed::{Observed, ObservedCondition};
 use crate::random::{Purpose, normal, stream};
@@ -124,7 +124,7 @@ pub fn calibrate(
                     continue;
                 };
                 let simulated = Bench { observed: &observed, ..*bench };
-                match diagnose(&simulated, seed) {
+                match verdict(&simulated, seed) {
                     Ok(said) => return Ok(Some(judged(bench, truth, &said))),
                     Err(BenchError::Predict(_)) => (),
                     Err(other) => return Err(other),

@@ -12,7 +12,7 @@ use crate::force_error::ForceErrors;
 use crate::frequency::of_benchmark;
 use crate::held_out::HeldOut;
 use crate::lack_of_fit::lack_of_fit;
-use crate::missing_force::{log_odds, missing_force};
+use crate::missing_force::log_odds;
 use crate::noise::Noise;
 use crate::pair::{Pair, best_pair};
 use crate::ranked::ranked;
@@ -310,15 +310,6 @@ impl Judge<'_> {
             Some(known) => known,
             None => HeldOut::of(bench, before, proposed)?,
         };
-        let missing_force = match verdict {
-            // Of a bed it is sought once, when impacts have confirmed the verdict.
-            Verdict::NoneOfTheCandidates if bench.forward.by_formulas().is_some() => missing_force(
-                bench,
-                &self.baseline,
-                ranking.scores.first().map(|score| score.delta),
-            )?,
-            _ => None,
-        };
         // A fit that misses the data says nothing of the apparatus.
         let explains =
             adequate(if proposed.fit.point.effects.is_empty() { p_lof } else { p_lof_with });
@@ -356,7 +347,7 @@ impl Judge<'_> {
             noise: proposed.noise.to_json(bench.set, bench.forward),
             holdout: Some(held_out),
             unexplained,
-            missing_force,
+            missing_force: None,
             apparatus: found(ApparatusError::all(bench.forward, proposed)),
             preparation: ApparatusError::of_preparation(bench.forward, &proposed.fit),
             next: Vec::new(),
