@@ -87,7 +87,7 @@ impl Impact {
         };
         modes.gripping = system.loaded(0, &state, &modes).load.gripping;
         let loaded = system.loaded(0, &state, &modes);
-        let force = -loaded.on_part().force.dot(&loaded.motion.direction);
+        let force = -loaded.load.on_part(&loaded.motion).force.dot(&loaded.motion.direction);
         match force.is_finite() {
             true => Ok(force),
             false => Err(system.broken(Some(state), &modes, state.time)),

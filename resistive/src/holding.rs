@@ -183,7 +183,8 @@ pub(super) fn accelerate(
     state: &State,
     modes: &Modes,
 ) -> ([f64; COORDINATES], Holds) {
-    let loads = system.on_parts(state, modes);
+    let mut loads = [PartLoad::default(); PARTS];
+    system.on_parts(state, modes, &mut loads);
     let free = system.assembly.accelerate(state, &loads, system.bed.gravity);
     if modes.gripping {
         hold(system, state, modes, (loads, free))

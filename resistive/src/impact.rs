@@ -310,7 +310,8 @@ impl Impact {
     /// rests.
     #[must_use]
     pub fn force_in(&self, index: usize, state: &State) -> Vec3 {
-        self.system().loaded(index, state, &self.last_modes(state)).on_part().force
+        let loaded = self.system().loaded(index, state, &self.last_modes(state));
+        loaded.load.on_part(&loaded.motion).force
     }
 
     /// The modes at the start.

@@ -21,19 +21,18 @@ pub(super) struct Loaded {
     pub(super) load: Load,
 }
 
-impl Loaded {
-    /// Force of the terms that vary smoothly with the velocity (N).
+impl Load {
+    /// Force of the terms that vary smoothly with the velocity of `motion` (N).
     #[inline]
-    pub(super) fn dynamic(&self) -> Vec3 {
-        self.load.dynamic - self.part.velocity * self.load.recruitment
+    pub(super) fn dynamic_force(&self, motion: &Motion) -> Vec3 {
+        self.dynamic - motion.velocity * self.recruitment
     }
 
     /// Force of the frictions (N), without those that hold a component.
     #[inline]
-    pub(super) fn sliding(&self) -> Vec3 {
-        let Self { motion, load, .. } = self;
-        let mut force = -load.friction.component_mul(&motion.direction);
-        for (axis, (grip, sense)) in [0, 2].into_iter().zip(load.grip.iter().zip(motion.sense)) {
+    pub(super) fn sliding_force(&self, motion: &Motion) -> Vec3 {
+        let mut force = -self.friction.component_mul(&motion.direction);
+        for (axis, (grip, sense)) in [0, 2].into_iter().zip(self.grip.iter().zip(motion.sense)) {
             if sense > 0.0 {
                 force[axis] -= grip.positive;
             } else if sense < 0.0 {
@@ -45,11 +44,11 @@ impl Loaded {
 
     /// Everything but the frictions that hold.
     #[inline]
-    pub(super) fn on_part(&self) -> PartLoad {
+    pub(super) fn on_part(&self, motion: &Motion) -> PartLoad {
         PartLoad {
-            force: self.dynamic() + self.sliding(),
-            couple: self.load.couple,
-            added_mass: self.load.added_mass,
+            force: self.dynamic_force(motion) + self.sliding_force(motion),
+            couple: self.couple,
+            added_mass: self.added_mass,
         }
     }
 }
@@ -70,12 +69,23 @@ impl System<'_> {
         modes: &Modes,
         mut each: impl FnMut(usize, &Load, &Load),
     ) -> Loaded {
-        let part = self.assembly.part(index, state);
-        let motion = Motion { time: state.time, ..motion(&part, index, modes) };
-        // Made where it is returned: it is too large to be moved in the innermost loop of all.
-        let mut loaded = Loaded { part, motion, load: Load::default() };
-        let Loaded { part, motion, load } = &mut loaded;
-        let immersion: &mut Immersion = &mut part.immersion;
+        let mut part = self.assembly.part(index, state);
+        let motion = motion(&part, index, modes, state.time);
+        let mut load = Load::default();
+        self.act((&mut part.immersion, &motion), index, modes, &mut load, &mut each);
+        Loaded { part, motion, load }
+    }
+
+    /// Adds to `load` what all laws do to part `index`.
+    #[inline]
+    fn act(
+        &self,
+        (immersion, motion): (&mut Immersion, &Motion),
+        index: usize,
+        modes: &Modes,
+        load: &mut Load,
+        each: &mut impl FnMut(usize, &Load, &Load),
+    ) {
         let inside = modes.in_bed[index];
         if inside {
             for law in self.laws {
@@ -100,17 +110,19 @@ impl System<'_> {
         if modes.gripping {
             hold_along(load, modes.sense[index]);
         }
-        loaded
     }
 
-    /// All parts under all laws; those that an assembly does not have carry nothing.
+    /// What all laws do to all parts, written to `loads`; nothing acts on parts that an assembly does not have.
     #[inline]
-    pub(super) fn on_parts(&self, state: &State, modes: &Modes) -> [PartLoad; PARTS] {
-        let mut loads = [PartLoad::default(); PARTS];
-        for (index, load) in loads.iter_mut().enumerate().take(self.assembly.n_parts()) {
-            *load = self.loaded(index, state, modes).on_part();
+    pub(super) fn on_parts(&self, state: &State, modes: &Modes, loads: &mut [PartLoad; PARTS]) {
+        for (index, on_part) in loads.iter_mut().enumerate().take(self.assembly.n_parts()) {
+            // In the innermost loop of all, nothing of this size may be moved once it is made.
+            let mut part = self.assembly.part(index, state);
+            let motion = motion(&part, index, modes, state.time);
+            let mut load = Load::default();
+            self.act((&mut part.immersion, &motion), index, modes, &mut load, &mut |_, _, _| {});
+            *on_part = load.on_part(&motion);
         }
-        loads
     }
 
     /// Why there is no step after `time` (s): the law that has no value in the state `fault`, if it is
@@ -154,8 +166,9 @@ fn hold_along(load: &mut Load, senses: [Sense; 2]) {
     }
 }
 
-/// How a part moves, with the signs that `modes` hold.
-fn motion(part: &Part, index: usize, modes: &Modes) -> Motion {
+/// How a part moves at `time` (s), with the signs that `modes` hold.
+#[inline]
+fn motion(part: &Part, index: usize, modes: &Modes, time: f64) -> Motion {
     let velocity = part.velocity;
     let (speed, direction) = match modes.straight {
         Some(direction) => (velocity.dot(&direction), direction),
@@ -165,5 +178,5 @@ fn motion(part: &Part, index: usize, modes: &Modes) -> Motion {
         }
     };
     let sense = modes.sense[index].map(Sense::sign);
-    Motion { velocity, speed, direction, sense, spin: part.spin, time: 0.0 }
+    Motion { velocity, speed, direction, sense, spin: part.spin, time }
 }

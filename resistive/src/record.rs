@@ -187,7 +187,10 @@ impl<'a, F: FnMut(&Sample<'_>)> Recorder<'a, F> {
         let parts: Vec<PartSample> = (0..system.assembly.n_parts())
             .map(|index| {
                 let loaded = system.loaded(index, state, modes);
-                let (dynamic, mut friction) = (loaded.dynamic(), loaded.sliding());
+                let (dynamic, mut friction) = (
+                    loaded.load.dynamic_force(&loaded.motion),
+                    loaded.load.sliding_force(&loaded.motion),
+                );
                 for hold in holds.iter().filter(|hold| hold.part == index) {
                     friction[AXES[hold.component]] += hold.force;
                 }
@@ -253,7 +256,7 @@ impl<F: FnMut(&Sample<'_>)> Observer for Recorder<'_, F> {
 /// Power (W) of the drive that keeps the velocity of a part, against the medium and its weight.
 fn power_of_drive(system: &System<'_>, index: usize, state: &State, loaded: &Loaded) -> f64 {
     let (_, mass) = system.assembly.weight_at(index, state);
-    let force = loaded.on_part().force - Vec3::z() * (mass * system.bed.gravity);
+    let force = loaded.load.on_part(&loaded.motion).force - Vec3::z() * (mass * system.bed.gravity);
     -force.dot(&loaded.part.velocity) - loaded.load.couple * loaded.part.spin
 }
 

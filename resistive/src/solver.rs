@@ -36,20 +36,12 @@ const RATIOS: (f64, f64) = (1.0 / 3.0, 6.0);
 /// Greatest ratio of the second step to the first, whose length comes from two slopes alone.
 const SECOND_RATIO: f64 = 100.0;
 
-fn state(time: f64, flat: &Flat) -> State {
-    let mut state = State { time, ..State::default() };
-    state.position.copy_from_slice(&flat[..COORDINATES]);
-    state.rate.copy_from_slice(&flat[COORDINATES..]);
-    state
+fn state(time: f64, [a, b, c, d, e, f, g, h]: &Flat) -> State {
+    State { position: [*a, *b, *c, *d], rate: [*e, *f, *g, *h], time }
 }
 
-impl From<State> for Flat {
-    fn from(state: State) -> Self {
-        let mut flat = [0.0; NUMBERS];
-        flat[..COORDINATES].copy_from_slice(&state.position);
-        flat[COORDINATES..].copy_from_slice(&state.rate);
-        flat
-    }
+fn flat([a, b, c, d]: [f64; COORDINATES], [e, f, g, h]: [f64; COORDINATES]) -> Flat {
+    [a, b, c, d, e, f, g, h]
 }
 
 /// Errors that a step may make, as the solver weighs them.
@@ -116,7 +108,7 @@ impl<'a> Solver<'a> {
         state: &State,
         tolerance: &Tolerance,
     ) -> Result<Self, Option<State>> {
-        let numbers = Flat::from(*state);
+        let numbers = flat(state.position, state.rate);
         let mut solver = Self {
             system,
             modes,
@@ -234,7 +226,7 @@ impl<'a> Solver<'a> {
         if is_cause && acceleration.iter().any(|value| !value.is_finite()) {
             self.fault.set(Some(state));
         }
-        State { position: state.rate, rate: acceleration, time }.into()
+        flat(state.rate, acceleration)
     }
 
     /// The slope at a stage of a step of length `step` (s), whose weights also sum to its time.
