@@ -31,9 +31,9 @@ pub struct Size {
 }
 
 impl Default for Size {
-    /// About a hundred sets.
+    /// Eighty sets: three minutes on two cores for 16 conditions.
     fn default() -> Self {
-        Self { others: 24, listed: 48 }
+        Self { others: 20, listed: 40 }
     }
 }
 
