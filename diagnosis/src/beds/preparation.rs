@@ -51,6 +51,10 @@ const DRAG: (f64, f64) = (0.5, 1.5);
 const ROUGHER: f64 = 3.0;
 const ROUGH: f64 = 0.3;
 
+/// What there is to do where a bed explains the measurements that the set does not describe.
+pub(super) const UNTOLD: &str = "an effect may look like a bed of another packing fraction: state that of the bed as \
+                                 `packing_fraction` under `[bed]` to tell them apart";
+
 /// How a model is prepared to a set.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Preparation {
@@ -62,6 +66,8 @@ pub(super) struct Preparation {
     pub(super) sentences: Vec<String>,
     /// What is known of the packing fraction of the measured bed less that of the prepared model.
     pub(super) packing: Option<Prior>,
+    /// Whether that is assumed, since the set does not state it.
+    pub(super) is_assumed: bool,
     /// Packing fraction of the prepared model less that of the model as it was.
     pub(super) moved: f64,
 }
@@ -124,6 +130,7 @@ impl Preparation {
                 );
             } else {
                 all.packing = Some(Prior { mean: 0.0, sigma: defaults::PACKING });
+                all.is_assumed = true;
                 all.sentences.push(format!(
                     "the packing fraction of the bed is not stated: it is taken to be that of the model to {}",
                     defaults::PACKING

@@ -14,7 +14,7 @@ use super::leaders::{is_beaten, is_named, is_settled, leaders};
 use super::line_search::{Against, LineSearch};
 use super::observables::observables;
 use super::plan::{Plan, RIVALS, SEARCHES, SIDE_DRAWS};
-use super::preparation::{Known, Preparation, at_level, dense, is_far, listed};
+use super::preparation::{Known, Preparation, UNTOLD, at_level, dense, is_far, listed};
 use super::response::Response;
 use super::screening::screened;
 use super::shared::{Column, Shared};
@@ -220,6 +220,9 @@ impl Work<'_> {
         } else if diagnosis.verdict == Verdict::ExplainedByPreparation {
             // Only a bed that the set rules out would explain what no effect is large enough for.
             diagnosis.verdict = Verdict::BelowNoise;
+        }
+        if diagnosis.verdict == Verdict::ExplainedByPreparation && preparation.is_assumed {
+            diagnosis.unexplained.hint = UNTOLD.to_owned();
         }
         let names = !diagnosis.effects.is_empty();
         diagnosis.probability = of_bed_benchmark(diagnosis.verdict, names);
