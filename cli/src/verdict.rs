@@ -3,7 +3,7 @@
 use diagnosis::calibrate::Calibration;
 use diagnosis::held_out::{Fails, LeftOut};
 use diagnosis::missing_force::MissingForce;
-use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Verdict};
+use diagnosis::verdict::{Diagnosis, RankedEffect, Status};
 use reports::tables;
 use serde_json::Value;
 
@@ -24,12 +24,7 @@ pub(crate) fn as_text(
     }
     text.push('\n');
     if let (Some(p1), Some(p_lof)) = (diagnosis.p1, diagnosis.p_lof) {
-        let explained = matches!(
-            diagnosis.verdict,
-            Verdict::NothingDetected
-                | Verdict::ExplainedByApparatus
-                | Verdict::ExplainedByPreparation
-        );
+        let explained = diagnosis.verdict.is_explained();
         text.push_str(&format!(
             "Does the model explain the data?  {}   p1 {}   lack of fit p {}\n",
             if explained { "YES" } else { "NO" },

@@ -4,6 +4,8 @@
 //! to the best of so many (`p1`). What the data cannot tell apart is named together. Whatever is named
 //! must leave no lack of fit and must predict conditions that were not fitted to.
 
+use std::cell::OnceCell;
+
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::fitted_parameters::parameters;
 use crate::held_out::HeldOut;
@@ -81,7 +83,17 @@ fn ranked_by<'a>(
     let leader = lead(bench, &mut ranking, &weighed, marginals.as_ref())?;
     let alike = ranking.not_separable(bench);
     let baseline = baseline.clone();
-    Ok(leader.map(|leader| Judge { bench, seed, baseline, weighed, ranking, alike, leader }))
+    let of_any_force = OnceCell::new();
+    Ok(leader.map(|leader| Judge {
+        bench,
+        seed,
+        baseline,
+        weighed,
+        ranking,
+        alike,
+        leader,
+        of_any_force,
+    }))
 }
 
 /// What there is to say of the model as it is, before any effect is looked for.
@@ -98,7 +110,8 @@ pub(crate) fn as_it_is(bench: &Bench<'_>, seed: u64) -> Result<Diagnosis, BenchE
     };
     let ranking = Ranking::of(bench, &baseline, &[], seed);
     let (weighed, leader) = (baseline.clone(), baseline.clone());
-    let judge = Judge { bench, seed, baseline, weighed, ranking, alike: Vec::new(), leader };
+    let (alike, of_any_force) = (Vec::new(), OnceCell::new());
+    let judge = Judge { bench, seed, baseline, weighed, ranking, alike, leader, of_any_force };
     let p_lof = lack_of_fit(bench, &judge.baseline, seed)?;
     let verdict = match adequate(p_lof) {
         true => nothing(bench, &judge.baseline),

@@ -10,7 +10,8 @@ use crate::error_unit::Unit;
 use crate::errors::{Errors, Sums};
 use crate::fit::Data;
 use crate::noise::log_determinant;
-use crate::observed::{Observed, ObservedCondition};
+use crate::noise_floor::{floor_of_both, noise_floor};
+use crate::observed::Observed;
 use crate::random::{Purpose, stream};
 use crate::rounding::{six_digits, six_digits_or_null};
 use crate::strength::StrengthReason;
@@ -153,10 +154,15 @@ impl HeldOut {
             pick(&sums.errors())
         };
         let compared: Vec<usize> = both.iter().map(|(condition, ..)| *condition).collect();
+        let noise = match bench.forward.is_judged_by_held_out() {
+            true => noise_floor(bench.observed, &compared),
+            // Means of impacts scatter as those of measurements do.
+            false => floor_of_both(bench.observed, before, &compared),
+        };
         let errors = Self::share(
             error(|(condition, before, _)| (*condition, before)),
             error(|(condition, _, after)| (*condition, after)),
-            pick(&noise_floor(bench.observed, &compared)),
+            pick(&noise),
         );
         let [before, after, noise_floor, explained] = errors;
         Ok(Self {
@@ -489,36 +495,6 @@ fn density(residual: &DVector<f64>, predicted: &DMatrix<f64>) -> f64 {
     Cholesky::new(covariance).map_or(f64::NEG_INFINITY, |factor| {
         -0.5 * (residual.dot(&factor.solve(residual)) + log_determinant(&factor))
     })
-}
-
-/// Standard error of the means of runs, from their scatter; of readings, where there is one run.
-pub(crate) fn noise_floor(observed: &Observed, conditions: &[usize]) -> Errors {
-    let mut sums = Sums::default();
-    for &condition in conditions {
-        let observed = &observed.conditions[condition];
-        sums.add(&observed.layout.kinds(), &observed.mean, &standard_errors(observed));
-    }
-    sums.errors()
-}
-
-/// Standard error of each number of the mean of the runs of a condition, likewise.
-pub(crate) fn standard_errors(observed: &ObservedCondition) -> DVector<f64> {
-    let runs = observed.runs.len();
-    if runs > 1 {
-        let squares = (0..runs).map(|run| observed.deviation(run).map(|d| d * d));
-        let total = squares.fold(observed.mean.clone() * 0.0, |sum, square| sum + square);
-        return (total / (runs * (runs - 1)) as f64).map(f64::sqrt);
-    }
-    let stated = observed.stated.iter().zip(observed.mean.iter());
-    let stated = stated.map(|(error, value)| error.unwrap_or(0.0) * value);
-    let mut error = observed.reading.clone();
-    let kinds = observed.layout.kinds();
-    for ((error, stated), kind) in error.iter_mut().zip(stated).zip(kinds) {
-        // A stated error of a scalar is the whole of it.
-        let whole = kind.is_scalar() && stated != 0.0;
-        *error = if whole { stated.abs() } else { libm::hypot(*error, stated) };
-    }
-    error
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! From fits and a ranking to a verdict: what is named, what is refused, and why.
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use measurements::MeasurementSet;
@@ -31,8 +32,12 @@ const UPPER: f64 = 1.645;
 const SEEN: f64 = 4.0;
 
 /// Fall of the deviance by which a pair has to exceed a single effect that explains the data: odds of 100 to 1, times the number
-/// of effects to choose from. Log odds by which a single effect that leaves a part has to exceed a force of any form.
+/// of effects to choose from. Log odds by which effects that leave a part have to exceed a force of any form.
 const LIKELIER: f64 = 15.0;
+
+/// Log odds by which any one or two effects have to exceed a force of any form. In simulated sets, effects that are there do
+/// by 12 at least, and most effects that only resemble the force that is there by less.
+const NOT_ANY: f64 = 10.0;
 
 /// Least log odds of a force of any form at which differences between conditions are not taken for undeclared sessions.
 const MORE_THAN_SESSIONS: f64 = 7.0;
@@ -53,6 +58,8 @@ pub(crate) struct Judge<'a> {
     pub(crate) alike: Vec<usize>,
     /// The model with the best effect, under its own noise.
     pub(crate) leader: Fitted,
+    /// Log odds of a force of any form against none; none where that is not known.
+    pub(crate) of_any_force: OnceCell<Option<f64>>,
 }
 
 /// Two effects that explain the data.
@@ -155,7 +162,7 @@ impl Judge<'_> {
         }
         let hint = match is_one_of_many {
             true => format!(
-                "{leader} leaves a part of what was held out, and a force of another form is about as likely"
+                "{leader} is nearest among the listed effects, and a force of another form is about as likely"
             ),
             false => explains_a_part(&leader, &held_out),
         };
@@ -183,7 +190,7 @@ impl Judge<'_> {
         if self.baseline.noise.sessions.gain < SEEN || !self.bench.forward.is_judged_by_held_out() {
             return Ok(None);
         }
-        let odds = log_odds(self.bench, &self.baseline)?.filter(|odds| *odds >= MORE_THAN_SESSIONS);
+        let odds = self.of_any_force()?.filter(|odds| *odds >= MORE_THAN_SESSIONS);
         Ok(odds.map(|odds| {
             format!(
                 "conditions differ by more than their repeats show, and a force that depends on speed, angle or body \
@@ -197,16 +204,36 @@ impl Judge<'_> {
         self.leader.noise.sessions.gain >= SEEN
     }
 
-    /// Whether the best effect leaves a part of the error, or few conditions show it, and it is not far more likely than a
-    /// force of any form: then it is only the nearest of the listed effects.
+    /// Whether the best effect is not likelier than a force of any form, by far where it leaves a part of the error or few
+    /// conditions show it: then it is only the nearest of the listed effects. Effects that are not told apart are several
+    /// forms themselves; and what takes most of a clear error is there, whatever is left.
     fn is_one_of_many(&self, p: Option<f64>, held_out: &HeldOut) -> Result<bool, BenchError> {
-        let leaves = held_out.leaves_a_part() && p.is_some_and(|p| p <= DOUBTFUL);
-        if !(leaves || held_out.is_shown_by_few()) || !self.bench.forward.is_judged_by_held_out() {
+        let is_doubtful =
+            p.is_some_and(|p| p <= DOUBTFUL) || held_out.leaves_more_than_noise() == Some(true);
+        let leaves = held_out.leaves_a_part() && is_doubtful;
+        match leaves || held_out.is_shown_by_few() {
+            true => self.is_no_likelier(&self.leader, LIKELIER),
+            false if self.alike.len() > 1 || held_out.takes_most() => Ok(false),
+            false => self.is_no_likelier(&self.leader, NOT_ANY),
+        }
+    }
+
+    /// Whether the effects of `fitted` exceed a force of any form by less than `least` in log odds.
+    fn is_no_likelier(&self, fitted: &Fitted, least: f64) -> Result<bool, BenchError> {
+        if !self.bench.forward.is_judged_by_held_out() {
             return Ok(false);
         }
-        let of_leader = 0.5 * (self.baseline.deviance() - self.leader.deviance());
-        let of_any = log_odds(self.bench, &self.baseline)?;
-        Ok(of_any.is_some_and(|of_any| of_any + LIKELIER > of_leader))
+        let of_effects = 0.5 * (self.baseline.deviance() - fitted.deviance());
+        Ok(self.of_any_force()?.is_some_and(|of_any| of_any + least > of_effects))
+    }
+
+    /// Log odds of a force of any form against none; `None` where that is not known.
+    fn of_any_force(&self) -> Result<Option<f64>, BenchError> {
+        if let Some(known) = self.of_any_force.get() {
+            return Ok(*known);
+        }
+        let odds = log_odds(self.bench, &self.baseline)?;
+        Ok(*self.of_any_force.get_or_init(|| odds))
     }
 
     /// The verdict on the best effect alone, with which the model explains what was fitted.
@@ -241,7 +268,8 @@ impl Judge<'_> {
         let stands = adequate(p_lof)
             && !held_out.refutes()
             && !held_out.is_shown_by_few()
-            && self.too_small(&held_out).is_none();
+            && self.too_small(&held_out).is_none()
+            && !self.is_no_likelier(&pair.fitted, NOT_ANY)?;
         Ok(stands.then_some(Two { pair, p_lof, held_out }))
     }
 
@@ -318,13 +346,7 @@ impl Judge<'_> {
             errors
         };
         let mut strength_reasons = doubts(bench, proposed, &amplitudes, &held_out);
-        let is_nothing = matches!(
-            verdict,
-            Verdict::NothingDetected
-                | Verdict::ExplainedByApparatus
-                | Verdict::ExplainedByPreparation
-        );
-        if is_nothing && held_out.is_above_noise() == Some(true) {
+        if verdict.is_explained() && held_out.is_above_noise() == Some(true) {
             strength_reasons.push(StrengthReason::HeldOutAboveNoise);
         }
         Ok(Diagnosis {

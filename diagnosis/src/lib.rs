@@ -48,6 +48,7 @@ mod marginal;
 pub mod missing_force;
 pub mod next;
 pub mod noise;
+mod noise_floor;
 pub mod observable;
 pub mod observed;
 pub mod pair;

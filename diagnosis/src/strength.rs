@@ -41,6 +41,8 @@ pub enum StrengthReason {
     OfAnotherForm,
     /// The plan of impacts was too small to confirm anything.
     SmallPlan,
+    /// Half of the effects or more could not be tested, and so are not excluded.
+    FewTested,
     /// Impacts with it, on fresh beds, are no nearer to what was held out.
     FreshBedsNoNearer,
 }

@@ -40,6 +40,17 @@ pub enum Verdict {
     CannotTell,
 }
 
+impl Verdict {
+    /// Whether the model as it is explains the data.
+    #[must_use]
+    pub fn is_explained(self) -> bool {
+        matches!(
+            self,
+            Self::NothingDetected | Self::ExplainedByApparatus | Self::ExplainedByPreparation
+        )
+    }
+}
+
 /// What verdicts were counted in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -332,6 +343,17 @@ pub struct Unexplained {
 }
 
 impl Diagnosis {
+    /// Has it rest on the errors `held_out` in place of those that it was judged by.
+    pub(crate) fn rest_on(&mut self, held_out: HeldOut) {
+        let above = StrengthReason::HeldOutAboveNoise;
+        self.strength_reasons.retain(|reason| *reason != above);
+        if self.verdict.is_explained() && held_out.is_above_noise() == Some(true) {
+            self.strength_reasons.push(above);
+        }
+        self.strength = Strength::of(&self.strength_reasons);
+        self.holdout = Some(held_out);
+    }
+
     /// Where nothing can be told, and why.
     pub(crate) fn cannot_tell(ranking: Vec<RankedEffect>, why: String) -> Self {
         Self {

@@ -16,7 +16,7 @@ pub use self::signature::Signature;
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::errors::Errors;
 use crate::force_error::ForceErrors;
-use crate::held_out::noise_floor;
+use crate::noise_floor::noise_floor;
 use crate::observed::Observed;
 use crate::residual::{Residual, predictable, residuals};
 use crate::verdict::Diagnosis;

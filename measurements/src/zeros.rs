@@ -34,7 +34,7 @@ const WRONG: f64 = 1e-3;
 /// either.
 const UNEVEN: f64 = 1.5;
 
-/// An offset of all runs alike above this (m) is an error; below, a diagnosis takes it into account as that of the zero of
+/// An offset of all runs alike above this (m) and above what may be from a mean surface is an error; below, a diagnosis takes it into account as that of the zero of
 /// depth.
 const WRONG_ALIKE: f64 = 4e-3;
 
@@ -323,7 +323,7 @@ fn of_depths(contacts: &[RunContact], level: Level, zero: f64) -> Option<Offset>
     let alone = contacts.iter().any(|one| one.is_off);
     let slow = mean(|one| one.sinking).abs() * time.value.abs();
     let severity = match () {
-        () if alone || late || off(WRONG_ALIKE.max(granted)) => Severity::Wrong,
+        () if alone || late || off(WRONG_ALIKE.max(granted).max(level.notable)) => Severity::Wrong,
         () if off(level.notable) || (beyond(time) && slow > NOTABLE) => Severity::Notable,
         () => return None,
     };

@@ -179,6 +179,7 @@ fn reason_in_words(reason: &str) -> &str {
             "something is left over beside it: its form is another, or there is more"
         }
         "small-plan" => "the plan of impacts is too small to confirm anything",
+        "few-tested" => "half of the effects or more could not be tested",
         "fresh-beds-no-nearer" => {
             "impacts with it, on fresh beds, are no nearer to what was held out"
         }

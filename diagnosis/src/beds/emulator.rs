@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::baseline::Baseline;
 use super::clarity::lost;
+use super::preparation::is_far;
 use super::response::Response;
 use super::shared::Shared;
 use super::switch::Switch;
@@ -15,7 +16,7 @@ use crate::fit::Fit;
 use crate::forward::{
     Candidate, Forward, Moment, Parameter, ParameterKind, Passages, PredictError, Request, Scatter,
 };
-use crate::held_out::noise_floor;
+use crate::noise_floor::noise_floor;
 use crate::rounding::rounded;
 use crate::sensitivity::Point;
 
@@ -179,6 +180,13 @@ impl BedForward {
         self.screened[at].responses = responses;
         self.screened[at].range = (min.max(SEARCHED * tried.0), max.min(SEARCHED * tried.1));
         self.describe();
+    }
+
+    /// Whether a parameter that all runs share is in `fit` farther from what is known of it than one may expect.
+    pub(super) fn is_strained(&self, fit: &Fit) -> bool {
+        let each = self.parameters.iter().zip(&fit.point.parameters);
+        let mut known = each.filter_map(|(one, value)| one.prior.map(|prior| (prior, value)));
+        known.any(|(prior, value)| is_far(prior, *value))
     }
 
     /// Scatter of the runs of the model from bed to bed: relative standard deviations of coefficients and

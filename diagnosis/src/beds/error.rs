@@ -22,6 +22,19 @@ pub enum BedError {
     /// The statistics fail.
     #[error(transparent)]
     Bench(#[from] BenchError),
+    /// The bed of the set is many times heavier or lighter than that of the model.
+    #[error(
+        "the set states a bulk density of {stated} {unit}, and the bed of the model has {own:.4} {unit}: the stated number \
+         may be in another unit"
+    )]
+    Density {
+        /// Of the set (in `unit`).
+        stated: f64,
+        /// Of the model (in `unit`).
+        own: f64,
+        /// That of a planar bed is per area.
+        unit: &'static str,
+    },
     /// The name is not a candidate of the model.
     #[error("there is no candidate `{id}` for this model; there are: {}", known.join(", "))]
     UnknownCandidate {

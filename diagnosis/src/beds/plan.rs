@@ -13,6 +13,7 @@ use super::switch::Switch;
 use super::switches::{OF_THE_APPARATUS, SWITCHES};
 use super::variation::Variation;
 use crate::observed::Observed;
+use crate::verdict::Diagnosis;
 
 /// How many effects a line search and a confirmation take up.
 pub(super) const LEADERS: usize = 2;
@@ -399,6 +400,21 @@ fn spread_over(all: &[usize], count: usize) -> Vec<usize> {
         1 => vec![all[n / 2]],
         _ => (0..count).map(|k| all[(k * (n - 1) + (count - 1) / 2) / (count - 1)]).collect(),
     }
+}
+
+/// What there is to say where the budget of `plan` does not pay for it.
+#[must_use]
+pub fn unaffordable(plan: &Plan) -> Diagnosis {
+    let minutes = |seconds: f64| (seconds / 60.0).ceil();
+    let why = format!(
+        "the smallest plan takes about {} min with {} impacts at a time, and the budget is {} min: \
+         --budget \"{} min\" would do, or fewer candidates",
+        minutes(plan.seconds()),
+        plan.workers,
+        minutes(plan.wish.budget.unwrap_or(0.0)),
+        minutes(1.1 * plan.seconds()),
+    );
+    Diagnosis::cannot_tell(Vec::new(), why)
 }
 
 #[cfg(test)]

@@ -36,6 +36,9 @@ const WORTH_IT: f64 = 2.0;
 /// Standard deviations of what is known of a shared parameter beyond which it explains nothing by itself.
 const STRAINED: f64 = 3.0;
 
+/// Ratio of the densities of two beds beyond which one is in another unit.
+const ABSURD: f64 = 5.0;
+
 /// Beds of one preparation that are looked at.
 const BEDS: usize = 3;
 
@@ -119,7 +122,7 @@ impl Preparation {
         let mut all = Self::default();
         let plain = lies(stand, place, &Variation::default())?;
         let Some(plain) = plain.filter(|beds| !beds.is_empty()) else { return Ok(all) };
-        let packing = all.compare(stand, &plain);
+        let packing = all.compare(stand, &plain)?;
         let is_given = matches!(stand.grains().medium.bed.source, BedSource::Csv(_));
         let Some(stated) = packing else {
             if is_given {
@@ -164,7 +167,7 @@ impl Preparation {
 
     /// Holds what the set states against the beds of the model, and makes grains as heavy as they are; the packing
     /// fraction of the measured bed, if it follows from what is stated.
-    fn compare(&mut self, stand: &Stand<'_>, beds: &[Lie]) -> Option<Known> {
+    fn compare(&mut self, stand: &Stand<'_>, beds: &[Lie]) -> Result<Option<Known>, BedError> {
         let set = stand.set;
         let stated = &set.bed.stated;
         let own = Known::of(beds, |one| one.packing_fraction);
@@ -216,19 +219,31 @@ impl Preparation {
                 format!("of grains of another mean diameter than those of the model: {by:+.3} ± {se:.3} mm")
             });
         }
-        self.weigh(stand, (packing, own), Known::of(beds, |one| one.bulk_density));
-        packing
+        self.weigh(stand, (packing, own), Known::of(beds, |one| one.bulk_density))?;
+        Ok(packing)
     }
 
     /// Holds the bulk density of the set against that of the model, `own`.
-    fn weigh(&mut self, stand: &Stand<'_>, (packing, lie): (Option<Known>, Known), own: Known) {
+    fn weigh(
+        &mut self,
+        stand: &Stand<'_>,
+        (packing, lie): (Option<Known>, Known),
+        own: Known,
+    ) -> Result<(), BedError> {
         let set = stand.set;
-        let Some(value) = set.bed.bulk_density else { return };
+        let Some(value) = set.bed.bulk_density else {
+            let assumed = "the bulk density of the bed is not stated: its grains are taken to be as heavy as those of the model";
+            self.sentences.push(assumed.to_owned());
+            return Ok(());
+        };
         let sigma = set.bed.stated.bulk_density_sigma.unwrap_or(defaults::DENSITY * value);
         let unit = match set.bed.geometry {
             Geometry::Planar => "kg/m^2",
             Geometry::Spatial => "kg/m^3",
         };
+        if !(1.0 / ABSURD..=ABSURD).contains(&(value / own.value)) {
+            return Err(BedError::Density { stated: value, own: own.value, unit });
+        }
         let difference = Known { value, se: sigma }.less(own);
         self.say(difference, ("bulk-density", unit), |d| {
             let word = if d.value < 0.0 { "lighter" } else { "heavier" };
@@ -248,6 +263,7 @@ impl Preparation {
                 .push(format!("the grains of the model are made {ratio:.3} times as heavy"));
             self.changes.extend(heavier(stand.grains(), ratio));
         }
+        Ok(())
     }
 
     fn say(

@@ -14,7 +14,7 @@ use super::leaders::{is_beaten, is_named, is_settled, leaders};
 use super::line_search::{Against, LineSearch};
 use super::observables::observables;
 use super::plan::{Plan, RIVALS, SEARCHES, SIDE_DRAWS};
-use super::preparation::{Known, Preparation, UNTOLD, at_level, dense, is_far, listed};
+use super::preparation::{Known, Preparation, UNTOLD, at_level, dense, listed};
 use super::response::Response;
 use super::screening::screened;
 use super::shared::{Column, Shared};
@@ -25,11 +25,12 @@ use crate::apparatus::is_looked_for;
 use crate::bench::{Bench, BenchError};
 use crate::diagnose::{ALPHA, as_it_is, diagnose, withdraw};
 use crate::fit::Fit;
-use crate::forward::{Forward, Parameter, ParameterKind};
+use crate::forward::{Parameter, ParameterKind};
 use crate::frequency::of_bed_benchmark;
+use crate::held_out::HeldOut;
 use crate::observable::Layout;
 use crate::observed::Observed;
-use crate::verdict::{Diagnosis, Status, Strength, StrengthReason, Verdict};
+use crate::verdict::{Diagnosis, RankedEffect, Status, Strength, StrengthReason, Verdict};
 
 /// Where they correlate more than this, effects are screened one at a time: what each does alone is worth
 /// more than what half of the runs of a design would save.
@@ -103,7 +104,7 @@ struct Work<'a> {
 }
 
 /// Diagnoses the model of `stand` by the runs of `plan`; of a plan that does not fit its budget
-/// [`unaffordable`] says what there is to say. First the model is prepared to what the set states of its bed.
+/// [`unaffordable`](super::unaffordable) says what there is to say. First the model is prepared to what the set states of its bed.
 ///
 /// # Errors
 /// If the impacts cannot be run, or say nothing.
@@ -194,6 +195,12 @@ impl Work<'_> {
             let fresh = (leader, &draws.confirm[..], &plain[..]);
             self.narrow(&mut diagnosis, &forward, fresh, measured)?;
         }
+        if let (None, Some(baseline)) = (&confirmation, &diagnosis.baseline) {
+            let fresh = self.unchanged(&forward, &baseline.fit, measured, &plain)?;
+            if fresh.before.is_some() {
+                diagnosis.rest_on(fresh);
+            }
+        }
         self.weigh(&mut diagnosis, confirmation.as_ref());
         let confirmation = confirmation.filter(|_| !diagnosis.amplitudes.is_empty());
         self.done(diagnosis, forward, confirmation, correlation)
@@ -209,13 +216,7 @@ impl Work<'_> {
     ) -> Result<BedDiagnosis, BedError> {
         let Self { stand, observed, plan, impacts, preparation, .. } = self;
         diagnosis.preparation = listed(&preparation, diagnosis.preparation);
-        let is_nothing = matches!(
-            diagnosis.verdict,
-            Verdict::NothingDetected
-                | Verdict::ExplainedByApparatus
-                | Verdict::ExplainedByPreparation
-        );
-        if is_nothing && diagnosis.preparation.iter().any(|one| one.named) {
+        if diagnosis.verdict.is_explained() && diagnosis.preparation.iter().any(|one| one.named) {
             diagnosis.verdict = Verdict::ExplainedByPreparation;
         } else if diagnosis.verdict == Verdict::ExplainedByPreparation {
             // Only a bed that the set rules out would explain what no effect is large enough for.
@@ -430,7 +431,7 @@ impl Work<'_> {
     ) -> Result<Option<Confirmation>, BedError> {
         let alone = proposed.without_effects();
         // What no preparation and no apparatus can be expected to do is no explanation of the model as it is.
-        let before = if is_strained(forward, baseline) { &alone } else { baseline };
+        let before = if forward.is_strained(baseline) { &alone } else { baseline };
         let conditions = self.plan.confirm.clone();
         let change = change_at(self.stand, forward, &proposed.point);
         let Ok(jobs) = self.stand.jobs(&conditions, draws, &change) else { return Ok(None) };
@@ -491,9 +492,8 @@ impl Work<'_> {
         let mut diagnosis = as_it_is(&bench, self.seed)?;
         let Some(baseline) = &diagnosis.baseline else { return Ok(Some(diagnosis)) };
         let fit = &baseline.fit;
-        let runs = (self.plan.confirm.as_slice(), [plain; 2]);
-        let fresh = Confirmation::of(self.stand, measured, (forward, [fit; 2]), runs)?.held_out;
-        let is_above = match is_strained(forward, fit) {
+        let fresh = self.unchanged(forward, fit, measured, plain)?;
+        let is_above = match forward.is_strained(fit) {
             true => Some(true),
             false => fresh.is_above_noise(),
         };
@@ -502,7 +502,7 @@ impl Work<'_> {
             return Ok(None);
         }
         if is_above.is_some() {
-            diagnosis.holdout = Some(fresh.clone());
+            diagnosis.rest_on(fresh.clone());
         }
         if is_rejected {
             diagnosis.verdict = Verdict::BelowNoise;
@@ -510,6 +510,18 @@ impl Work<'_> {
         }
         self.weigh(&mut diagnosis, None);
         Ok(Some(diagnosis))
+    }
+
+    /// What fresh beds say of the model as it is, in the fit `fit`.
+    fn unchanged(
+        &self,
+        forward: &BedForward,
+        fit: &Fit,
+        measured: &Observed,
+        plain: &[Option<Record>],
+    ) -> Result<HeldOut, BedError> {
+        let runs = (self.plan.confirm.as_slice(), [plain; 2]);
+        Ok(Confirmation::of(self.stand, measured, (forward, [fit; 2]), runs)?.held_out)
     }
 
     /// Has the verdict rest on what was confirmed: a name needs held-out conditions that the model as it is misses by
@@ -566,35 +578,23 @@ impl Work<'_> {
         if confirmation.is_some_and(|one| one.held_out.is_nearer() != Some(true)) {
             reasons.push(StrengthReason::FreshBedsNoNearer);
         }
+        let status = |effect: &&RankedEffect| effect.status == Status::NotTestable;
+        let untested: Vec<&str> =
+            diagnosis.ranking.iter().filter(status).map(|effect| effect.id.as_str()).collect();
+        if is_named(diagnosis.verdict) && !untested.is_empty() {
+            if 2 * untested.len() >= diagnosis.ranking.len() {
+                reasons.push(StrengthReason::FewTested);
+            }
+            let names = untested.join(", ");
+            diagnosis.warnings.push(format!("not tested, and so not excluded: {names}"));
+        }
         if !reasons.is_empty() {
             diagnosis.strength = Strength::Suggested;
         }
-        let lost = |effect: &crate::verdict::RankedEffect| effect.status != Status::Ranked;
+        let lost = |effect: &RankedEffect| effect.status != Status::Ranked;
         if diagnosis.verdict == Verdict::CannotTell && diagnosis.ranking.iter().all(lost) {
             let why = diagnosis.ranking.iter().map(|effect| effect.note.as_str());
             diagnosis.unexplained.hint = why.max_by_key(|why| why.len()).unwrap_or("").to_owned();
         }
     }
-}
-
-/// What there is to say where the budget of `plan` does not pay for it.
-#[must_use]
-pub fn unaffordable(plan: &Plan) -> Diagnosis {
-    let minutes = |seconds: f64| (seconds / 60.0).ceil();
-    let why = format!(
-        "the smallest plan takes about {} min with {} impacts at a time, and the budget is {} min: \
-         --budget \"{} min\" would do, or fewer candidates",
-        minutes(plan.seconds()),
-        plan.workers,
-        minutes(plan.wish.budget.unwrap_or(0.0)),
-        minutes(1.1 * plan.seconds()),
-    );
-    Diagnosis::cannot_tell(Vec::new(), why)
-}
-
-/// Whether a parameter that all runs share is farther from what is known of it than one may expect.
-fn is_strained(forward: &BedForward, fit: &Fit) -> bool {
-    let each = Forward::parameters(forward).iter().zip(&fit.point.parameters);
-    let mut known = each.filter_map(|(one, value)| one.prior.map(|prior| (prior, value)));
-    known.any(|(prior, value)| is_far(prior, *value))
 }

@@ -12,7 +12,7 @@ struct Token<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Word,
-    /// A number with a unit, or after a word for a height: it is never the number of a repeat.
+    /// A number with a unit, or after a word for a height or a speed: it is never the number of a repeat.
     Quantity,
     /// A date, a time of day or the number of a clip: none of them identifies a condition.
     Clip,
@@ -58,8 +58,20 @@ const MARKS: [&str; 16] = [
     "essai",
     "essay",
 ];
-const PERHAPS: [&str; 4] = ["drop", "fall", "t", "n"];
-const HEIGHTS: [&str; 5] = ["h", "height", "höhe", "fallhöhe", "hauteur"];
+const PERHAPS: [&str; 7] = ["drop", "fall", "t", "n", "b", "bed", "seed"];
+const MAGNITUDES: [&str; 11] = [
+    "h",
+    "height",
+    "höhe",
+    "fallhöhe",
+    "hauteur",
+    "v",
+    "vel",
+    "speed",
+    "velocity",
+    "vitesse",
+    "geschwindigkeit",
+];
 const UNITS: [&str; 17] = [
     "mm", "cm", "m", "in", "inch", "ft", "um", "g", "kg", "mg", "deg", "grad", "ms", "s", "hz",
     "fps", "pct",
@@ -199,7 +211,7 @@ fn kind(all: &[Token<'_>], at: usize) -> Kind {
     let text = all[at].text;
     let is_counted = text.len() > 2 && text.starts_with('0') && is_digits(text);
     match () {
-        () if has_unit || is_behind(&HEIGHTS) => Kind::Quantity,
+        () if has_unit || is_behind(&MAGNITUDES) => Kind::Quantity,
         () if is_counted || is_behind(&CLIPS) || is_behind(&DAYS) => Kind::Clip,
         () if is_of_date(all, at) => Kind::Clip,
         () => Kind::Free,
