@@ -31,7 +31,7 @@ const TOLERANCE: Tolerance = Tolerance { relative: 1e-8, absolute: 1e-10 };
 
 /// An impact takes some twenty steps and a few changes of mode; a fit that wanders to where it takes a hundred times
 /// as many has left what the model can describe, and must not wait there.
-const EFFORT: Effort = Effort { steps: 1_000, changes: 100 };
+const EFFORT: Effort = Effort { steps: 4_000, changes: 400 };
 
 /// How many predictions of a condition are kept: a derivative by one parameter leaves most conditions
 /// as they were, and several threads take derivatives.
