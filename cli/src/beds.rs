@@ -17,7 +17,7 @@ use runner::beds::{Impacts, Place};
 use runner::{CampaignError, Elsewhere};
 use serde_json::{Value, json};
 
-use crate::common::{On, cache_folder, of_scheduler};
+use crate::common::{On, of_scheduler};
 use crate::control::Terminal;
 use crate::output::{self, CommandError, CommandResult};
 use crate::report;
@@ -87,7 +87,7 @@ pub(crate) struct Workshop<'a> {
 
 impl<'a> Workshop<'a> {
     pub(crate) fn new(beds: &Beds, flags: &'a Flags) -> Result<Self, CommandError> {
-        let cache = cache_folder(beds.cache.as_deref());
+        let cache = runner::cache_folder(beds.cache.as_deref());
         let elsewhere = beds.on.scheduler().map(Elsewhere::by).transpose();
         let elsewhere = elsewhere.context("cannot find this program")?;
         Ok(Self { flags, cache, terminal: Terminal::new(flags.quiet), elsewhere })

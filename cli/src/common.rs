@@ -108,7 +108,7 @@ impl Common {
 
     /// The folder of prepared beds: `--cache`, else `$PLUNGE_CACHE`, else `runs/.cache`.
     pub(crate) fn cache_folder(&self) -> PathBuf {
-        cache_folder(self.cache.as_deref())
+        runner::cache_folder(self.cache.as_deref())
     }
 
     /// Runs `work` on the threads that `--threads` asks for, else on one per core.
@@ -154,13 +154,4 @@ pub(crate) fn of_scheduler(error: SchedulerError) -> CommandError {
         }
         error => CommandError::bad_input(error),
     }
-}
-
-/// The folder `asked` for, else `$PLUNGE_CACHE`, else `runs/.cache`.
-pub(crate) fn cache_folder(asked: Option<&Path>) -> PathBuf {
-    let from_environment = || std::env::var_os("PLUNGE_CACHE").filter(|dir| !dir.is_empty());
-    asked
-        .map(Path::to_owned)
-        .or_else(|| from_environment().map(PathBuf::from))
-        .unwrap_or_else(|| PathBuf::from("runs/.cache"))
 }
