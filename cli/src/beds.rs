@@ -12,7 +12,6 @@ use diagnosis::beds::{
 };
 use diagnosis::bench::Bench;
 use diagnosis::compare::Comparison;
-use diagnosis::where_it_fails::{WhereItFails, files_of};
 use runner::beds::{Impacts, Place};
 use runner::{CampaignError, Elsewhere};
 use serde_json::{Value, json};
@@ -22,7 +21,7 @@ use crate::control::Terminal;
 use crate::output::{self, CommandError, CommandResult};
 use crate::report;
 use crate::text::{lines, table};
-use crate::verdict::as_text;
+use crate::verdict::{as_text, write};
 use crate::workbench::{Candidate, Flags, Measured, failed};
 
 /// The flags of commands that run many impacts on beds of grains.
@@ -37,9 +36,6 @@ pub(crate) struct Beds {
     /// Print which impacts would be run, and how long they would take; run nothing.
     #[arg(long)]
     pub(crate) plan: bool,
-    /// Continue impacts that were stopped; finished ones are taken from the cache in any case.
-    #[arg(long)]
-    resume: bool,
     /// Make this candidate a parameter of the model: its change is fitted, not ranked. Repeatable.
     #[arg(long = "free", value_name = "CANDIDATE")]
     free: Vec<String>,
@@ -215,14 +211,7 @@ pub(crate) fn diagnose(
     files.extend(found.proposals(&stand)?);
     let BedDiagnosis { diagnosis, forward, observed, .. } = &found;
     let bench = Bench { set: &measured.set, observed, forward };
-    let where_it_fails = WhereItFails::of_diagnosis(&bench, &model.name, diagnosis, flags.seed)
-        .map_err(|error| failed(error, &model.name))?;
-    if let Some(force) = &diagnosis.missing_force {
-        files.extend(files_of(force, &measured.set).map_err(anyhow::Error::new)?);
-    }
-    files.extend(where_it_fails.files().map_err(anyhow::Error::new)?);
-    files.extend(report::of_results(&files, flags.quiet));
-    results.write(&files)?;
+    write(&mut files, (&bench, &model.name, diagnosis), flags, &results)?;
     if flags.json {
         return output::whole_to_stdout(&json);
     }
@@ -232,8 +221,7 @@ pub(crate) fn diagnose(
         [found.plan.fit.len(), found.plan.confirm.len()],
     );
     text.push_str(&evidence(&found, &object));
-    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-    text.push_str(&format!("\nwritten to {}: {}\n", results.shown(), names.join(", ")));
+    text.push_str(&results.told(&files));
     output::to_stdout(&text)
 }
 

@@ -502,6 +502,12 @@ impl Results {
     pub(crate) fn shown(&self) -> String {
         self.folder.display().to_string()
     }
+
+    /// That `files` are there.
+    pub(crate) fn told(&self, files: &[(String, String)]) -> String {
+        let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+        format!("\nwritten to {}: {}\n", self.shown(), names.join(", "))
+    }
 }
 
 /// Writes the file `path` whole or not at all.
