@@ -133,11 +133,13 @@ fn written(
     here: &Path,
     stop: Stop<'_>,
 ) -> Result<Exported, ExportError> {
+    let text =
+        |name, write| grains::export(path, grains::Text::create(here.join(name), write)?, stop);
     match format {
         Format::Csv => tables::export(path, (here, csv::Csv::create), stop),
         Format::Parquet => tables::export(path, (here, parquet::Parquet::create), stop),
         Format::Vtp => grains::export(path, vtp::Vtp::new(here), stop),
-        Format::LammpsDump => grains::export(path, lammps_dump::LammpsDump::create(here)?, stop),
-        Format::ExtendedXyz => grains::export(path, extended_xyz::ExtendedXyz::create(here)?, stop),
+        Format::LammpsDump => text("grains.dump", lammps_dump::write),
+        Format::ExtendedXyz => text("grains.xyz", extended_xyz::write),
     }
 }
