@@ -22,7 +22,7 @@ use crate::output::{self, CommandError, CommandResult};
 use crate::report;
 use crate::text::{lines, table};
 use crate::verdict::{as_text, write};
-use crate::workbench::{Candidate, Flags, Measured, failed};
+use crate::workbench::{Candidate, Flags, Measured, Results, failed};
 
 /// The flags of commands that run many impacts on beds of grains.
 #[derive(clap::Args, Clone, Debug)]
@@ -181,20 +181,7 @@ pub(crate) fn diagnose(
     }
     let results = flags.results_of(measured, "diagnose", models, &format!("{wish:?}"))?;
     if !plan.fits() {
-        let diagnosis = unaffordable(&plan);
-        let mut object = diagnosis.to_json().map_err(anyhow::Error::new)?;
-        object["cost"] = json!({ "impacts": 0, "plan": plan.to_json(&stand) });
-        let text = format!("{object:#}\n");
-        let mut files = vec![("diagnosis.json".to_owned(), text.clone())];
-        files.extend(report::of_results(&files, flags.quiet));
-        results.write(&files)?;
-        return match flags.json {
-            true => output::to_stdout(&text),
-            false => {
-                let n = [plan.fit.len(), plan.confirm.len()];
-                output::to_stdout(&as_text(&model.name, (&diagnosis, &object), n))
-            }
-        };
+        return tell_unaffordable((&plan, &stand), (flags, &model.name), &results);
     }
     let found = diagnose_bed(&stand, &measured.observed, &place, plan, flags.seed);
     workshop.terminal.clear();
@@ -223,6 +210,28 @@ pub(crate) fn diagnose(
     text.push_str(&evidence(&found, &object));
     text.push_str(&results.told(&files));
     output::to_stdout(&text)
+}
+
+/// What is said and written of a `plan` that takes more than the budget.
+fn tell_unaffordable(
+    (plan, stand): (&Plan, &Stand<'_>),
+    (flags, name): (&Flags, &str),
+    results: &Results,
+) -> CommandResult {
+    let diagnosis = unaffordable(plan);
+    let mut object = diagnosis.to_json().map_err(anyhow::Error::new)?;
+    object["cost"] = json!({ "impacts": 0, "plan": plan.to_json(stand) });
+    let text = format!("{object:#}\n");
+    let mut files = vec![("diagnosis.json".to_owned(), text.clone())];
+    files.extend(report::of_results(&files, flags.quiet));
+    results.write(&files)?;
+    match flags.json {
+        true => output::to_stdout(&text),
+        false => {
+            let n = [plan.fit.len(), plan.confirm.len()];
+            output::to_stdout(&as_text(name, (&diagnosis, &object), n))
+        }
+    }
 }
 
 /// A time as one would say it.
