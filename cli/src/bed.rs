@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use configs::engine::bed::BedReport;
 use configs::engine::grain_bed::RestingBed;
-use runner::run::{BedSummary, Control as _, prepare};
+use runner::run::{BedSummary, Control as _};
 use serde_json::json;
 
 use crate::common::Common;
@@ -32,14 +32,8 @@ pub(crate) fn prepared(args: &Args) -> Result<RestingBed, CommandError> {
         let kind = model.medium.kind();
         CommandError::bad_input(format!("a medium of the kind \"{kind}\" has no bed to prepare"))
     })?;
-    common.refuse_too_large(&model)?;
     let mut terminal = Terminal::new(common.quiet);
-    let cache = common.cache_folder();
-    let prepared = common.on_threads(|| prepare(grains, &cache, &mut terminal))?;
-    terminal.clear();
-    let Some(bed) = prepared.map_err(CommandError::from)? else {
-        return Err(terminal.interrupted("the same command goes on from here"));
-    };
+    let bed = common.prepared(grains, &mut terminal)?;
     let report = BedReport::of(&grains.bed(&bed.resting));
     let summary = BedSummary::new(&report, bed.cache, grains);
     for warning in &summary.warnings {

@@ -12,18 +12,17 @@ use diagnosis::beds::{
 };
 use diagnosis::bench::Bench;
 use diagnosis::compare::Comparison;
-use diagnosis::where_it_fails::{WhereItFails, files_of};
 use runner::beds::{Impacts, Place};
 use runner::{CampaignError, Elsewhere};
 use serde_json::{Value, json};
 
-use crate::common::{On, cache_folder, of_scheduler};
+use crate::common::{On, of_scheduler};
 use crate::control::Terminal;
 use crate::output::{self, CommandError, CommandResult};
 use crate::report;
 use crate::text::{lines, table};
-use crate::verdict::as_text;
-use crate::workbench::{Candidate, Flags, Measured, failed};
+use crate::verdict::{as_text, write};
+use crate::workbench::{Candidate, Flags, Measured, Results, failed};
 
 /// The flags of commands that run many impacts on beds of grains.
 #[derive(clap::Args, Clone, Debug)]
@@ -37,8 +36,8 @@ pub(crate) struct Beds {
     /// Print which impacts would be run, and how long they would take; run nothing.
     #[arg(long)]
     pub(crate) plan: bool,
-    /// Continue impacts that were stopped; finished ones are taken from the cache in any case.
-    #[arg(long)]
+    /// Of other commands; what has ended is in the cache here.
+    #[arg(long, hide = true)]
     resume: bool,
     /// Make this candidate a parameter of the model: its change is fitted, not ranked. Repeatable.
     #[arg(long = "free", value_name = "CANDIDATE")]
@@ -52,6 +51,16 @@ pub(crate) struct Beds {
 }
 
 impl Beds {
+    /// Refuses `--resume`: an impact is kept once it has ended, and not before.
+    pub(crate) fn refuse_resume(&self) -> CommandResult {
+        match self.resume {
+            true => Err(CommandError::bad_input(
+                "--resume is of `plunge run`; impacts that have ended are kept, and the same command goes on with the others",
+            )),
+            false => Ok(()),
+        }
+    }
+
     /// The first given flag that says how impacts on beds are run or which candidates they are run for.
     pub(crate) fn flag_of_impacts(&self) -> Option<&'static str> {
         self.flag_of_ranking().or(self.on.scheduler().is_some().then_some("--on"))
@@ -87,7 +96,7 @@ pub(crate) struct Workshop<'a> {
 
 impl<'a> Workshop<'a> {
     pub(crate) fn new(beds: &Beds, flags: &'a Flags) -> Result<Self, CommandError> {
-        let cache = cache_folder(beds.cache.as_deref());
+        let cache = runner::cache_folder(beds.cache.as_deref());
         let elsewhere = beds.on.scheduler().map(Elsewhere::by).transpose();
         let elsewhere = elsewhere.context("cannot find this program")?;
         Ok(Self { flags, cache, terminal: Terminal::new(flags.quiet), elsewhere })
@@ -185,20 +194,7 @@ pub(crate) fn diagnose(
     }
     let results = flags.results_of(measured, "diagnose", models, &format!("{wish:?}"))?;
     if !plan.fits() {
-        let diagnosis = unaffordable(&plan);
-        let mut object = diagnosis.to_json().map_err(anyhow::Error::new)?;
-        object["cost"] = json!({ "impacts": 0, "plan": plan.to_json(&stand) });
-        let text = format!("{object:#}\n");
-        let mut files = vec![("diagnosis.json".to_owned(), text.clone())];
-        files.extend(report::of_results(&files, flags.quiet));
-        results.write(&files)?;
-        return match flags.json {
-            true => output::to_stdout(&text),
-            false => {
-                let n = [plan.fit.len(), plan.confirm.len()];
-                output::to_stdout(&as_text(&model.name, (&diagnosis, &object), n))
-            }
-        };
+        return tell_unaffordable((&plan, &stand), (flags, &model.name), &results);
     }
     let found = diagnose_bed(&stand, &measured.observed, &place, plan, flags.seed);
     workshop.terminal.clear();
@@ -215,14 +211,7 @@ pub(crate) fn diagnose(
     files.extend(found.proposals(&stand)?);
     let BedDiagnosis { diagnosis, forward, observed, .. } = &found;
     let bench = Bench { set: &measured.set, observed, forward };
-    let where_it_fails = WhereItFails::of_diagnosis(&bench, &model.name, diagnosis, flags.seed)
-        .map_err(|error| failed(error, &model.name))?;
-    if let Some(force) = &diagnosis.missing_force {
-        files.extend(files_of(force, &measured.set).map_err(anyhow::Error::new)?);
-    }
-    files.extend(where_it_fails.files().map_err(anyhow::Error::new)?);
-    files.extend(report::of_results(&files, flags.quiet));
-    results.write(&files)?;
+    write(&mut files, (&bench, &model.name, diagnosis), flags, &results)?;
     if flags.json {
         return output::whole_to_stdout(&json);
     }
@@ -232,9 +221,30 @@ pub(crate) fn diagnose(
         [found.plan.fit.len(), found.plan.confirm.len()],
     );
     text.push_str(&evidence(&found, &object));
-    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-    text.push_str(&format!("\nwritten to {}: {}\n", results.shown(), names.join(", ")));
+    text.push_str(&results.told(&files));
     output::to_stdout(&text)
+}
+
+/// What is said and written of a `plan` that takes more than the budget.
+fn tell_unaffordable(
+    (plan, stand): (&Plan, &Stand<'_>),
+    (flags, name): (&Flags, &str),
+    results: &Results,
+) -> CommandResult {
+    let diagnosis = unaffordable(plan);
+    let mut object = diagnosis.to_json().map_err(anyhow::Error::new)?;
+    object["cost"] = json!({ "impacts": 0, "plan": plan.to_json(stand) });
+    let text = format!("{object:#}\n");
+    let mut files = vec![("diagnosis.json".to_owned(), text.clone())];
+    files.extend(report::of_results(&files, flags.quiet));
+    results.write(&files)?;
+    match flags.json {
+        true => output::to_stdout(&text),
+        false => {
+            let n = [plan.fit.len(), plan.confirm.len()];
+            output::to_stdout(&as_text(name, (&diagnosis, &object), n))
+        }
+    }
 }
 
 /// A time as one would say it.

@@ -5,9 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use configs::engine::parallel::with_threads;
 use configs::estimate::{Estimate, MEMORY_SHARE, available_memory_bytes};
-use configs::{LoadOptions, Loaded, Model};
+use configs::{GrainModel, LoadOptions, Loaded, Model};
+use runner::run::{PreparedBed, prepare};
 use runner::schedulers::{Scheduler, SchedulerError};
 
+use crate::control::Terminal;
 use crate::host;
 use crate::output::{self, CommandError};
 
@@ -108,7 +110,23 @@ impl Common {
 
     /// The folder of prepared beds: `--cache`, else `$PLUNGE_CACHE`, else `runs/.cache`.
     pub(crate) fn cache_folder(&self) -> PathBuf {
-        cache_folder(self.cache.as_deref())
+        runner::cache_folder(self.cache.as_deref())
+    }
+
+    /// The bed of a model, from the cache or settled now.
+    ///
+    /// # Errors
+    /// If it does not fit into memory, cannot be prepared, or was stopped.
+    pub(crate) fn prepared(
+        &self,
+        grains: GrainModel<'_>,
+        terminal: &mut Terminal,
+    ) -> Result<PreparedBed, CommandError> {
+        self.refuse_too_large(grains.model)?;
+        let cache = self.cache_folder();
+        let prepared = self.on_threads(|| prepare(grains, &cache, terminal))?;
+        terminal.clear();
+        prepared?.ok_or_else(|| terminal.interrupted("the same command goes on from here"))
     }
 
     /// Runs `work` on the threads that `--threads` asks for, else on one per core.
@@ -154,13 +172,4 @@ pub(crate) fn of_scheduler(error: SchedulerError) -> CommandError {
         }
         error => CommandError::bad_input(error),
     }
-}
-
-/// The folder `asked` for, else `$PLUNGE_CACHE`, else `runs/.cache`.
-pub(crate) fn cache_folder(asked: Option<&Path>) -> PathBuf {
-    let from_environment = || std::env::var_os("PLUNGE_CACHE").filter(|dir| !dir.is_empty());
-    asked
-        .map(Path::to_owned)
-        .or_else(|| from_environment().map(PathBuf::from))
-        .unwrap_or_else(|| PathBuf::from("runs/.cache"))
 }

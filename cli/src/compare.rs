@@ -40,6 +40,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> CommandResult {
     let flags = &args.flags;
+    args.beds.refuse_resume()?;
     table_file::refuse(&args.first)?;
     args.second.iter().try_for_each(|second| table_file::refuse(second))?;
     match (compare_runs::what_is(&args.first), &args.second) {
@@ -121,9 +122,8 @@ pub(crate) fn run(args: &Args) -> CommandResult {
             let n = [&measured.observed.fit, &measured.observed.holdout].map(Vec::len);
             let mut text = as_text(&measured.set, (&comparison, &object), n);
             text.push_str(&beds::floors(&comparison, &object));
-            let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-            let shown = results.shown();
-            output::to_stdout(&format!("{text}\nwritten to {shown}: {}\n", names.join(", ")))
+            text.push_str(&results.told(&files));
+            output::to_stdout(&text)
         }
     }
 }

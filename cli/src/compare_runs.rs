@@ -98,21 +98,17 @@ pub(crate) fn run(folders: [&Path; 2], flags: &Flags) -> CommandResult {
     flags.notes(&notes);
     let object = as_json(&runs, &notes, &paths, &stops);
     let results = flags.chosen_results(&inputs(folders)?)?;
+    let mut told = "\nnothing was written; --out says where to\n".to_owned();
     if let Some(results) = &results {
-        results.write(&files(&runs, folders, &object, flags.quiet)?)?;
+        let files = files(&runs, folders, &object, flags.quiet)?;
+        results.write(&files)?;
+        told = results.told(&files);
     }
     if flags.json {
         return output::json_to_stdout(&object);
     }
     let mut text = as_text(&runs, &paths, &stops);
-    match results {
-        Some(results) => {
-            let shown = results.shown();
-            let names = format!("comparison.json, paths.svg, {}", reports::FILE);
-            text.push_str(&format!("\nwritten to {shown}: {names}\n"));
-        }
-        None => text.push_str("\nnothing was written; --out says where to\n"),
-    }
+    text.push_str(&told);
     output::to_stdout(&text)
 }
 

@@ -9,7 +9,6 @@ use diagnosis::diagnose::{diagnose, seek_missing_force};
 use diagnosis::missing_force::FOUND;
 use diagnosis::next::recommend;
 use diagnosis::verdict::{Diagnosis, Verdict};
-use diagnosis::where_it_fails::{WhereItFails, files_of};
 use serde_json::{Value, json};
 
 use crate::add::from_diagnosis;
@@ -17,10 +16,9 @@ use crate::after;
 use crate::beds::{self, Beds};
 use crate::next;
 use crate::output::{self, CommandError, CommandResult};
-use crate::report;
 use crate::table_file;
-use crate::verdict::{as_text, calibration_as_text};
-use crate::workbench::{CALIBRATION, Candidate, Flags, failed};
+use crate::verdict::{as_text, calibration_as_text, write};
+use crate::workbench::{CALIBRATION, Candidate, Flags, Measured, failed};
 
 /// Arguments of `plunge diagnose`.
 #[derive(clap::Args, Debug)]
@@ -48,43 +46,48 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> CommandResult {
     let flags = &args.flags;
+    args.beds.refuse_resume()?;
     table_file::refuse(&args.set)?;
     let measured = flags.measured(&args.set, args.model.as_slice())?;
     let models = flags.models(args.model.as_slice(), &measured)?;
     let measured = flags.answerable(measured, &models)?;
-    let model = &models[0];
-    if model.loaded.model.grains().is_some() && args.calibrate {
-        return Err(CommandError::BadInput(
-            "--calibrate is of resistive-force models: sets of a bed of grains take hours to simulate\n".to_owned(),
-        ));
-    }
-    if model.loaded.model.grains().is_some() && args.after.is_some() {
-        return Err(CommandError::BadInput(
-            "--after is of resistive-force models: an earlier diagnosis of a bed of grains is not taken up\n".to_owned(),
-        ));
-    }
-    if model.loaded.model.grains().is_some() {
-        return beds::diagnose(&args.beds, (flags, args.missing_force), &measured, &models);
+    let refused = |why: &str| Err(CommandError::BadInput(format!("{why}\n")));
+    if models[0].loaded.model.grains().is_some() {
+        return match (args.calibrate, &args.after) {
+            (true, _) => refused(
+                "--calibrate is of resistive-force models: sets of a bed of grains take hours to simulate",
+            ),
+            (_, Some(_)) => refused(
+                "--after is of resistive-force models: an earlier diagnosis of a bed of grains is not taken up",
+            ),
+            _ => beds::diagnose(&args.beds, (flags, args.missing_force), &measured, &models),
+        };
     }
     if let Some(flag) = args.beds.flag_of_impacts() {
-        return Err(CommandError::BadInput(format!(
-            "{flag} is of beds of grains: with a resistive-force model every effect is ranked, in seconds\n"
-        )));
+        return refused(&format!(
+            "{flag} is of beds of grains: with a resistive-force model every effect is ranked, in seconds"
+        ));
     }
-    if args.beds.plan && flags.json {
-        return output::json_to_stdout(
-            &json!({ "set": measured.set.id, "cost": { "impacts": 0 } }),
-        );
+    match (args.beds.plan, flags.json) {
+        (true, true) => {
+            output::json_to_stdout(&json!({ "set": measured.set.id, "cost": { "impacts": 0 } }))
+        }
+        (true, false) => {
+            output::to_stdout("a resistive-force model takes no impacts on beds: seconds\n")
+        }
+        _ => diagnose_law(args, &measured, &models),
     }
-    if args.beds.plan {
-        return output::to_stdout("a resistive-force model takes no impacts on beds: seconds\n");
-    }
-    let forward = model.forward(&measured, flags)?;
+}
+
+/// Of a resistive-force model.
+fn diagnose_law(args: &Args, measured: &Measured, models: &[Candidate]) -> CommandResult {
+    let (flags, model) = (&args.flags, &models[0]);
+    let forward = model.forward(measured, flags)?;
     let sequel = match &args.after {
-        Some(path) => after::held_against(path, &measured, model, flags)?,
+        Some(path) => after::held_against(path, measured, model, flags)?,
         None => None,
     };
-    let results = flags.results(&measured, "diagnose", &models)?;
+    let results = flags.results(measured, "diagnose", models)?;
     let bench = Bench { set: &measured.set, observed: &measured.observed, forward: &forward };
     let mut diagnosis = diagnose(&bench, flags.seed).map_err(|error| failed(error, &model.name))?;
     if args.missing_force {
@@ -113,14 +116,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     if let Some(object) = &counted {
         files.push((CALIBRATION.to_owned(), format!("{object:#}\n")));
     }
-    let where_it_fails = WhereItFails::of_diagnosis(&bench, &model.name, &diagnosis, flags.seed)
-        .map_err(|error| failed(error, &model.name))?;
-    if let Some(force) = &diagnosis.missing_force {
-        files.extend(files_of(force, &measured.set).map_err(anyhow::Error::new)?);
-    }
-    files.extend(where_it_fails.files().map_err(anyhow::Error::new)?);
-    files.extend(report::of_results(&files, flags.quiet));
-    results.write(&files)?;
+    write(&mut files, (&bench, &model.name, &diagnosis), flags, &results)?;
     if flags.json {
         return output::to_stdout(&text);
     }
@@ -135,8 +131,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     if let Some(next) = &next {
         text.push_str(&next::as_text(next, &object));
     }
-    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-    text.push_str(&format!("\nwritten to {}: {}\n", results.shown(), names.join(", ")));
+    text.push_str(&results.told(&files));
     output::to_stdout(&text)
 }
 

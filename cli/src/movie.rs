@@ -1,9 +1,10 @@
 //! `plunge movie`: pictures of an impact, one after another or at times.
 
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use anyhow::Context as _;
 use clap::ValueEnum;
 use configs::engine::units::{Dimension, parse};
 use exchange::read::{Keep, ReadError, read_run};
@@ -233,12 +234,20 @@ fn impact(run: &Path) -> Result<Impact, CommandError> {
         error => CommandError::bad_input(error),
     };
     let log = read_run(&files.log, Keep::All).map_err(|error| bad(error.into()))?;
-    let summary = std::fs::read(&files.summary).ok();
-    let summary = summary.and_then(|text| serde_json::from_slice::<Summary>(&text).ok());
-    if summary.is_some_and(|summary| summary.bed.is_none()) {
+    if summary(&files.summary)?.is_some_and(|summary| summary.bed.is_none()) {
         return Err(bad(SceneError::NoGrains { path: run.to_owned() }));
     }
     Impact::read(run, Forces::of(&log.loads)).map_err(bad)
+}
+
+/// The summary at `path`; none of a run that has not ended.
+fn summary(path: &Path) -> Result<Option<Summary>, CommandError> {
+    let cannot = || format!("cannot read {}", path.display());
+    let text = match std::fs::read(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        read => read.with_context(cannot)?,
+    };
+    Ok(Some(serde_json::from_slice(&text).with_context(cannot)?))
 }
 
 /// The frames to show.

@@ -20,7 +20,7 @@ use runner::{CampaignError, Progress, Watch};
 use serde_json::json;
 
 use crate::beds::time;
-use crate::common::{On, cache_folder, of_scheduler};
+use crate::common::{On, of_scheduler};
 use crate::control::Terminal;
 use crate::output::{self, CommandError, CommandResult};
 use crate::signals;
@@ -76,7 +76,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
         return show(args, &folder, &Results::read(&folder).map_err(of_folder)?);
     }
     let terminal = Terminal::new(args.quiet);
-    let cache = cache_folder(args.cache.as_deref());
+    let cache = runner::cache_folder(args.cache.as_deref());
     // A budget that overflows the clock sets no deadline.
     let deadline = args
         .budget

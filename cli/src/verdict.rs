@@ -1,13 +1,35 @@
-//! A diagnosis as `plunge diagnose` prints it.
+//! A diagnosis as `plunge diagnose` prints it, and what is written with it.
 
+use diagnosis::bench::Bench;
 use diagnosis::calibrate::Calibration;
 use diagnosis::held_out::{Fails, LeftOut};
 use diagnosis::missing_force::MissingForce;
 use diagnosis::verdict::{Diagnosis, RankedEffect, Status};
+use diagnosis::where_it_fails::{WhereItFails, files_of};
 use reports::tables;
 use serde_json::Value;
 
+use crate::output::CommandResult;
+use crate::report;
 use crate::text::{noise_words, probability, shown};
+use crate::workbench::{Flags, Results, failed};
+
+/// Adds to `files` where the model called `name` fails, and the page of all of them, and writes them to `results`.
+pub(crate) fn write(
+    files: &mut Vec<(String, String)>,
+    (bench, name, diagnosis): (&Bench<'_>, &str, &Diagnosis),
+    flags: &Flags,
+    results: &Results,
+) -> CommandResult {
+    let where_it_fails = WhereItFails::of_diagnosis(bench, name, diagnosis, flags.seed)
+        .map_err(|error| failed(error, name))?;
+    if let Some(force) = &diagnosis.missing_force {
+        files.extend(files_of(force, bench.set).map_err(anyhow::Error::new)?);
+    }
+    files.extend(where_it_fails.files().map_err(anyhow::Error::new)?);
+    files.extend(report::of_results(files, flags.quiet));
+    results.write(files)
+}
 
 /// All of it but what was found by running more impacts, and the next experiment.
 pub(crate) fn as_text(

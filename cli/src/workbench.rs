@@ -12,6 +12,7 @@ use diagnosis::missing_force;
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::where_it_fails;
+use exchange::staging::{STAGING, Staging};
 use measurements::{ContradictionKind, MeasurementSet, SetError};
 
 use crate::BEGINS_AGAIN;
@@ -28,9 +29,6 @@ const INPUTS: &str = "inputs.blake3";
 
 /// Behind the hash there, while not all results are written.
 const UNFINISHED: &str = "unfinished";
-
-/// Where new results lie until all of them are written.
-const STAGING: &str = ".partial";
 
 /// What these commands write, besides proposed models and [`where_it_fails::FILES`].
 const RESULTS: [&str; 8] = [
@@ -454,18 +452,19 @@ impl Results {
         // Two calls with the same results write them one after the other.
         let handle = File::open(folder).map_err(|error| cannot("open", folder, error))?;
         handle.lock().map_err(|error| cannot("lock", folder, error))?;
-        let staging = Staging::inside(folder).map_err(|error| cannot("make", folder, error))?;
+        let staging =
+            Staging::at(folder.join(STAGING)).map_err(|error| cannot("make", folder, error))?;
         let begun = (UNFINISHED, format!("{} {UNFINISHED}\n", self.inputs));
         let ended = (INPUTS, format!("{}\n", self.inputs));
         for (name, text) in [&begun, &ended].map(|(name, text)| (*name, text.as_str())) {
-            write_whole(&staging.0.join(name), text)?;
+            write_whole(&staging.path().join(name), text)?;
         }
         for (name, text) in files {
-            write_whole(&staging.0.join(name), text)?;
+            write_whole(&staging.path().join(name), text)?;
         }
         let hand_over = |name: &str, to: &str| {
             let path = folder.join(to);
-            fs::rename(staging.0.join(name), &path).map_err(|error| cannot("write", &path, error))
+            staging.hand_over(name, &path).map_err(|error| cannot("write", &path, error))
         };
         // Whoever is stopped on the way may write here again: from now on the folder is of these inputs.
         hand_over(UNFINISHED, INPUTS)?;
@@ -503,27 +502,11 @@ impl Results {
     pub(crate) fn shown(&self) -> String {
         self.folder.display().to_string()
     }
-}
 
-/// A folder inside that of the results, which takes new ones until all of them are written.
-struct Staging(PathBuf);
-
-impl Staging {
-    /// An empty one: what a kill has left in it is worth nothing.
-    fn inside(folder: &Path) -> io::Result<Self> {
-        let path = folder.join(STAGING);
-        if path.is_dir() {
-            fs::remove_dir_all(&path)?;
-        }
-        fs::create_dir(&path)?;
-        Ok(Self(path))
-    }
-}
-
-impl Drop for Staging {
-    fn drop(&mut self) {
-        // What cannot be removed is called partial, and the next call takes its place.
-        drop(fs::remove_dir_all(&self.0));
+    /// That `files` are there.
+    pub(crate) fn told(&self, files: &[(String, String)]) -> String {
+        let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+        format!("\nwritten to {}: {}\n", self.shown(), names.join(", "))
     }
 }
 

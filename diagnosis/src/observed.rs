@@ -1,5 +1,7 @@
 //! What a measurement set says about the observables: the vectors of its runs, condition by condition.
 
+use std::cmp::Ordering;
+
 use measurements::{Cleaned, Condition, Frame, Kind, MeasurementSet, Role, Run, without_strays};
 use nalgebra::DVector;
 
@@ -146,29 +148,42 @@ impl Observed {
     }
 }
 
+/// The numbers of a run, and its place in the order of measurement.
+type Numbered = (DVector<f64>, Option<i64>);
+
+fn by_numbers((a, first): &Numbered, (b, second): &Numbered) -> Ordering {
+    let mut pairs = a.iter().zip(b.iter()).map(|(a, b)| a.total_cmp(b));
+    let of_numbers = pairs.find(|order| order.is_ne());
+    of_numbers.unwrap_or(a.len().cmp(&b.len())).then(first.cmp(second))
+}
+
+/// Whether the `runs` of a condition are trajectories; then those without one are left out, which is noted.
+fn keep_tracked(runs: &mut Vec<&Run>, (kind, id): (Kind, &str), notes: &mut Vec<String>) -> bool {
+    let has_frames = |run: &&Run| run.frames.len() > 2;
+    let tracked = kind == Kind::Trajectory && runs.iter().any(has_frames);
+    if tracked {
+        let all = runs.len();
+        runs.retain(has_frames);
+        if runs.len() < all {
+            let missing = all - runs.len();
+            notes.push(format!(
+                "condition {id}: {missing} of {all} runs have no trajectory and are left out"
+            ));
+        }
+    } else if runs.iter().any(|run| !run.frames.is_empty()) {
+        notes.push(format!(
+            "condition {id}: no run has more than two readings, and none of them is used"
+        ));
+    }
+    tracked
+}
+
 impl ObservedCondition {
     fn of(set: &MeasurementSet, index: usize, notes: &mut Vec<String>) -> Self {
         let condition = &set.conditions[index];
         let mut runs: Vec<&Run> = set.runs.iter().filter(|run| run.condition == index).collect();
-        let has_frames = |run: &&Run| run.frames.len() > 2;
         let observable = Observable::of_curve(set.kind);
-        let tracked = set.kind == Kind::Trajectory && runs.iter().any(has_frames);
-        if tracked {
-            let all = runs.len();
-            runs.retain(has_frames);
-            if runs.len() < all {
-                let missing = all - runs.len();
-                notes.push(format!(
-                    "condition {}: {missing} of {all} runs have no trajectory and are left out",
-                    condition.id
-                ));
-            }
-        } else if runs.iter().any(|run| !run.frames.is_empty()) {
-            notes.push(format!(
-                "condition {}: no run has more than two readings, and none of them is used",
-                condition.id
-            ));
-        }
+        let tracked = keep_tracked(&mut runs, (set.kind, &condition.id), notes);
         let common = |of: fn(&Run) -> Option<f64>| {
             !runs.is_empty()
                 && runs.iter().all(|run| of(run).is_some())
@@ -202,21 +217,14 @@ impl ObservedCondition {
             crater_depth: weighed(common(|run| run.crater.depth), Observable::CraterDepth),
             rim_diameter: weighed(common(|run| run.crater.rim_diameter), Observable::RimDiameter),
         };
-        let mut numbered: Vec<(DVector<f64>, Option<i64>)> = (0..runs.len())
+        let mut numbered: Vec<Numbered> = (0..runs.len())
             .map(|at| {
                 let readings = [&frames.depth, &frames.range, &common_curve.values];
                 let numbers = vector(&layout, runs[at], readings.map(|all| all.get(at)));
                 (numbers, runs[at].order)
             })
             .collect();
-        numbered.sort_by(|(a, first), (b, second)| {
-            let pairs = a.iter().zip(b.iter());
-            pairs
-                .map(|(a, b)| a.total_cmp(b))
-                .find(|order| order.is_ne())
-                .unwrap_or(a.len().cmp(&b.len()))
-                .then(first.cmp(second))
-        });
+        numbered.sort_by(by_numbers);
         let (mut vectors, mut order): (Vec<_>, Vec<_>) = numbered.into_iter().unzip();
         if layout.is_empty() {
             vectors.clear();

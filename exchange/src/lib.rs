@@ -7,6 +7,7 @@ pub mod lammps;
 pub mod read;
 pub mod recover;
 pub mod run_files;
+pub mod staging;
 pub mod table;
 pub mod tracking;
 

@@ -2,19 +2,17 @@
 
 use std::io::Write;
 use std::path::Path;
-use std::sync::Arc;
 
-use parquet::basic::{Compression, ConvertedType, Repetition, Type as Physical, ZstdLevel};
+use parquet::basic::{ConvertedType, Repetition, Type as Physical};
 use parquet::column::writer::ColumnWriter;
 use parquet::data_type::ByteArray;
 use parquet::errors::{ParquetError, Result as Written};
-use parquet::file::properties::WriterProperties;
-use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
 use runner::campaign::{Cells, TableColumn};
 
 use crate::export::ExportError;
+use crate::export::parquet::{failed, writer};
 use crate::export::whole_file::WholeFile;
 
 /// Writes `columns` into the file `path`, whole or not at all. The same columns give the same bytes.
@@ -22,22 +20,12 @@ use crate::export::whole_file::WholeFile;
 /// # Errors
 /// If the file cannot be written.
 pub fn write_parquet(path: &Path, columns: &[TableColumn]) -> Result<(), ExportError> {
-    let failed = |error: ParquetError| ExportError::Write {
-        path: path.to_owned(),
-        source: std::io::Error::other(error),
-    };
     let file = WholeFile::create(path.to_owned())?;
-    written(file, columns).map_err(failed)?.finish().map(drop)
+    written(file, columns).map_err(|error| failed(path, error))?.finish().map(drop)
 }
 
 fn written<W: Write + Send>(file: W, columns: &[TableColumn]) -> Written<W> {
-    let properties = WriterProperties::builder()
-        .set_created_by(format!("plunge {}", env!("CARGO_PKG_VERSION")))
-        .set_compression(Compression::ZSTD(ZstdLevel::default()))
-        .build();
-    let fields = columns.iter().map(field).collect::<Written<Vec<_>>>()?;
-    let schema = Arc::new(Type::group_type_builder("schema").with_fields(fields).build()?);
-    let mut writer = SerializedFileWriter::new(file, schema, Arc::new(properties))?;
+    let mut writer = writer(file, columns.iter().map(field))?;
     let mut group = writer.next_row_group()?;
     for column in columns {
         let Some(mut into) = group.next_column()? else { break };
@@ -66,7 +54,7 @@ fn written<W: Write + Send>(file: W, columns: &[TableColumn]) -> Written<W> {
     writer.into_inner()
 }
 
-fn field(column: &TableColumn) -> Written<Arc<Type>> {
+fn field(column: &TableColumn) -> Written<Type> {
     let physical = match &column.cells {
         Cells::Numbers(_) => Physical::DOUBLE,
         Cells::Counts(_) => Physical::INT64,
@@ -78,7 +66,7 @@ fn field(column: &TableColumn) -> Written<Arc<Type>> {
     if physical == Physical::BYTE_ARRAY {
         builder = builder.with_converted_type(ConvertedType::UTF8);
     }
-    Ok(Arc::new(builder.build()?))
+    builder.build()
 }
 
 /// The values that are there, and for every cell whether one is.

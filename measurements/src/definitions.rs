@@ -8,7 +8,7 @@
 
 use super::reading::Reading;
 use super::stops::{self, Stops};
-use super::zeros::{mean, position};
+use super::zeros::position;
 use super::{
     FinalDefinition, Instrument, Kind, MeasurementSet, Run, StopDefinition, SurfaceDefinition,
 };
@@ -220,7 +220,7 @@ fn held(
             let stated = libm::hypot(own, stated_error * row.stated);
             Reading { value: row.stated - value, se: libm::hypot(se, stated) }
         });
-        let mean = mean(misses);
+        let mean = Reading::mean(misses);
         let floor = match scalar {
             Scalar::StopTime => FRAME * step,
             _ => {

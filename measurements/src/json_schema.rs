@@ -1,26 +1,24 @@
 //! The schema of `measurement.toml`, for editors: made of what its reader asks.
 
-use configs::json_schema::{Format, Gathered, without_each_key};
-use configs::reader::{Asked, FileKind, Reader};
-use configs::{Sources, document as toml};
+use configs::json_schema::{Format, Gathered, asked};
+use configs::reader::{Asked, FileKind, TableReader};
 use serde_json::{Value, json};
 
 use super::columns::{Content, RUNS, TRAJECTORIES};
 use super::priors::PRIORS;
 use super::{Kind, TEMPLATE, document};
 
+/// What is read, and by what.
+const READER: (FileKind, &dyn Fn(TableReader<'_>)) =
+    (FileKind::MeasurementSet, &|root| drop(document::read(root)));
+
 /// The schema.
 #[must_use]
 pub fn set() -> Value {
     let mut gathered = Gathered::new(format());
     for text in probes() {
-        let mut sources = Sources::default();
-        let id = sources.add("measurement.toml", text);
-        let Ok(root) = toml::parse(&sources, id) else { continue };
-        gathered.add(&asked(&sources, &root));
-        for less in without_each_key(&root, &|key| key == "parameters") {
-            gathered.add(&asked(&sources, &less));
-        }
+        let asked = asked(READER, &text, Some(&|key| key == "parameters"));
+        asked.iter().for_each(|asked| gathered.add(asked));
     }
     gathered.schema()
 }
@@ -28,15 +26,7 @@ pub fn set() -> Value {
 /// What a reader asks of the text of a set; nothing where it is no TOML.
 #[must_use]
 pub fn read_set(text: &str) -> Asked {
-    let mut sources = Sources::default();
-    let id = sources.add("measurement.toml", text);
-    toml::parse(&sources, id).map(|root| asked(&sources, &root)).unwrap_or_default()
-}
-
-fn asked(sources: &Sources, root: &toml::Table) -> Asked {
-    let reader = Reader::noting(sources, FileKind::MeasurementSet);
-    let _ = document::read(reader.root(root));
-    reader.into_asked()
+    asked(READER, text, None).pop().unwrap_or_default()
 }
 
 fn format() -> Format {

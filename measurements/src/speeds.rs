@@ -27,7 +27,7 @@ pub(super) fn fill(set: &mut MeasurementSet, places: &[ConditionPlaces], finding
             Some(curve) => shown(set, index, curve),
             None => read(set, index, &slowed),
         };
-        let speed = zeros::mean(read.iter().copied());
+        let speed = Reading::mean(read.iter().copied());
         if read.is_empty() {
             let why = match set.kind.curve() {
                 Some(curve) => curve.lacks_speed,

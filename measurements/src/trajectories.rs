@@ -15,7 +15,7 @@ use super::{Frame, Run};
 
 /// Most readings of a set: at 40 bytes each, and twice that while a list grows, they stay below
 /// 200 MB.
-pub(super) const MOST: usize = 2_000_000;
+const MOST: usize = 2_000_000;
 
 // The places of the columns in [`TRAJECTORIES`].
 const RUN: usize = 0;
@@ -61,49 +61,23 @@ pub(super) fn read(
     (format, missing): (&Format, Missing),
     (before, findings): (&mut usize, &mut Findings),
 ) -> Option<String> {
-    let mut row = Row::default();
-    let index: BTreeMap<String, usize> =
-        runs.iter().enumerate().map(|(index, run)| (run.name.clone(), index)).collect();
-    let only = source.run(&index).filter(|_| source.is_one_of > 1 || runs.len() == 1);
-    let (columns, name) = (source.columns(only.is_some()), source.name);
-    let mut table = Table::open((name, source.reader), columns, format, &mut row, findings)?;
-    let only = only.filter(|_| !table.has(RUN));
-    let has_x = table.has(X);
+    let (mut row, name) = (Row::default(), source.name);
+    let known = (&*runs, *before);
+    let mut readings =
+        Readings::open(source, Source::columns, known, format, (&mut row, findings))?;
+    let has_x = readings.table.has(X);
     // The time and the line of the last reading of every run; line 0 is that of an earlier table.
     let mut last: Vec<Option<(f64, u64)>> =
         runs.iter().map(|run| run.frames.last().map(|frame| (frame.t, 0))).collect();
-    let (mut rows, mut zeros, mut holes) = (0, 0, Vec::new());
-    while table.next(&mut row, findings) {
-        rows += 1;
-        if *before + rows > MOST {
-            findings.report(
-                Diagnostic::error(format!("{} has more than {MOST} rows", file_name(name)))
-                    .help("keep every second or tenth row: neighbouring readings say the same"),
-            );
-            break;
-        }
-        let run = only.or_else(|| run(&table, &row, &index, findings));
-        let mut hole = false;
-        let mut number = |key, required: bool| match table.quantity(&row, key, findings) {
-            Cell::Value(value) => Some(value),
-            Cell::Empty if !required => None,
-            Cell::Empty | Cell::Missing => {
-                hole = true;
-                None
-            }
-            Cell::Wrong => None,
-        };
-        let [t, z, x] = [(T, true), (Z, true), (X, has_x)].map(|(key, has)| number(key, has));
+    let mut zeros = 0;
+    while let Some(run) = readings.next(&mut row, findings) {
+        let columns = [(T, true), (Z, true), (X, has_x), (SIGMA, false)];
+        let Some([t, z, x, sigma]) = readings.numbers(columns, &row, findings) else { continue };
         // Where all impacts are vertical nothing moves along the surface.
         let x = if has_x { x } else { Some(0.0) };
-        let sigma = number(SIGMA, false);
-        if hole {
-            holes.push(row.line);
-            continue;
-        }
         let (Some(run), Some(t), Some(z), Some(x)) = (run, t, z, x) else { continue };
         if sigma.is_some_and(|sigma| sigma < 0.0) {
-            let span = table.place(&row, SIGMA, findings);
+            let span = readings.table.place(&row, SIGMA, findings);
             let wanted = "expected a number above 0; leave it empty if it is not known";
             findings.report(Diagnostic::error("a negative error").at(span, wanted));
         }
@@ -115,7 +89,7 @@ pub(super) fn read(
                     format!("a time is listed twice in the run `{}`", shorten(&runs[run].name))
                 }
             };
-            let span = table.place(&row, T, findings);
+            let span = readings.table.place(&row, T, findings);
             let place = match line {
                 0 => "an earlier table".to_owned(),
                 line => format!("line {line}"),
@@ -129,17 +103,101 @@ pub(super) fn read(
         let table = file_name(name);
         findings.note(format!("An error of zero is taken as not stated: {zeros} rows of {table}."));
     }
-    if rows == 0 && findings.errors() == 0 {
-        findings
-            .report(Diagnostic::error(format!("{} has no row below its header", file_name(name))));
+    Some(readings.conclude(missing, (before, findings)))
+}
+
+/// The rows of a table in long form, each with the run that it is of.
+pub(super) struct Readings<'a, R> {
+    pub(super) table: Table<R>,
+    name: &'a str,
+    index: BTreeMap<String, usize>,
+    /// The run of every row, where the table has no column of runs.
+    only: Option<usize>,
+    /// Rows of this table so far, and of earlier ones.
+    rows: usize,
+    before: usize,
+    /// Lines of rows that lack a number.
+    holes: Vec<u64>,
+}
+
+impl<'a, R: BufRead> Readings<'a, R> {
+    /// The rows of `source`, whose columns are those that `columns` gives for a table of one run or of several; `before`
+    /// rows of other tables have been read. `None` if nothing of it can be read; that is reported.
+    pub(super) fn open(
+        source: Source<'a, R>,
+        columns: impl Fn(&Source<'a, R>, bool) -> &'static [ColumnSpec],
+        (runs, before): (&[Run], usize),
+        format: &Format,
+        (row, findings): (&mut Row, &mut Findings),
+    ) -> Option<Self> {
+        let index: BTreeMap<String, usize> =
+            runs.iter().enumerate().map(|(index, run)| (run.name.clone(), index)).collect();
+        let only = source.run(&index).filter(|_| source.is_one_of > 1 || runs.len() == 1);
+        let (columns, name) = (columns(&source, only.is_some()), source.name);
+        let table = Table::open((name, source.reader), columns, format, row, findings)?;
+        let only = only.filter(|_| !table.has(RUN));
+        Some(Self { table, name, index, only, rows: 0, before, holes: Vec::new() })
     }
-    *before += rows;
-    tell_holes(&holes, name, missing, findings);
-    Some(table.describe())
+
+    /// Puts the next row into `row` and gives its run, if it has one; `None` at the end, and where there are too many rows.
+    pub(super) fn next(&mut self, row: &mut Row, findings: &mut Findings) -> Option<Option<usize>> {
+        if !self.table.next(row, findings) {
+            return None;
+        }
+        self.rows += 1;
+        if self.before + self.rows > MOST {
+            let what = format!("{} has more than {MOST} rows", file_name(self.name));
+            findings.report(
+                Diagnostic::error(what)
+                    .help("keep every second or tenth row: neighbouring readings say the same"),
+            );
+            return None;
+        }
+        Some(self.only.or_else(|| run(&self.table, row, &self.index, findings)))
+    }
+
+    /// The numbers of `row` in these columns, each required or not; `None` where one that is required is missing.
+    pub(super) fn numbers<const N: usize>(
+        &mut self,
+        columns: [(usize, bool); N],
+        row: &Row,
+        findings: &mut Findings,
+    ) -> Option<[Option<f64>; N]> {
+        let mut hole = false;
+        let numbers =
+            columns.map(|(key, required)| match self.table.quantity(row, key, findings) {
+                Cell::Value(value) => Some(value),
+                Cell::Empty if !required => None,
+                Cell::Empty | Cell::Missing => {
+                    hole = true;
+                    None
+                }
+                Cell::Wrong => None,
+            });
+        if hole {
+            self.holes.push(row.line);
+        }
+        (!hole).then_some(numbers)
+    }
+
+    /// Tells of rows that lack numbers, or that there is no row, and what is understood of the table; counts its rows.
+    pub(super) fn conclude(
+        self,
+        missing: Missing,
+        (before, findings): (&mut usize, &mut Findings),
+    ) -> String {
+        if self.rows == 0 && findings.errors() == 0 {
+            let what = format!("{} has no row below its header", file_name(self.name));
+            findings.report(Diagnostic::error(what));
+        }
+        *before += self.rows;
+        tell_holes(&self.holes, self.name, missing, findings);
+        self.table.describe()
+    }
 }
 
 /// The index of the run of a row; an unknown one is reported.
-pub(super) fn run(
+fn run(
     table: &Table<impl BufRead>,
     row: &Row,
     index: &BTreeMap<String, usize>,
@@ -161,7 +219,7 @@ pub(super) fn run(
 }
 
 /// Refuses or notes rows without a place or a reading.
-pub(super) fn tell_holes(holes: &[u64], name: &str, missing: Missing, findings: &mut Findings) {
+fn tell_holes(holes: &[u64], name: &str, missing: Missing, findings: &mut Findings) {
     if holes.is_empty() {
         return;
     }

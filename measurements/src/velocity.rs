@@ -11,7 +11,7 @@ use super::findings::Findings;
 use super::median;
 use super::reading::Reading;
 use super::smooth::slope;
-use super::{Condition, Kind, MeasurementSet, Run, over_time, zeros};
+use super::{Condition, Kind, MeasurementSet, Run, over_time};
 
 static OF_MANY: [ColumnSpec; 4] =
     over_time::columns("velocity", "sigma_velocity", Dimension::SPEED, true);
@@ -58,7 +58,7 @@ fn shown_speed(set: &MeasurementSet, condition: &Condition, run: &Run) -> Option
             se: one.sigma.or(set.instrument.velocity_sigma).unwrap_or(0.0),
         })
         .collect();
-    let speed = zeros::mean(each.iter().copied());
+    let speed = Reading::mean(each.iter().copied());
     (is_dry && !each.is_empty() && speed.value > 0.0).then_some(speed)
 }
 

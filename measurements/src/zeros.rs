@@ -286,7 +286,8 @@ fn offset(contacts: &[RunContact], level: Level, zero: f64) -> Option<Offset> {
         return found;
     }
     // The zeros go together along free fall, or they differ from run to run: the departures say when.
-    let (time, depth) = (mean(all().map(|one| one.time)), mean(all().map(|one| one.depth)));
+    let (time, depth) =
+        (Reading::mean(all().map(|one| one.time)), Reading::mean(all().map(|one| one.depth)));
     let is_common = all().all(|one| {
         let [near, far] = [one.time.value - time.value, one.depth.value - depth.value];
         near.abs() <= FRAME * one.step + level.lag(&one) + OF_MEAN * one.time.se
@@ -384,7 +385,7 @@ impl Line {
         }
         let is_told_apart = (flat.misfit - steep.misfit).abs() > apart;
         // Where all velocities are alike, the departure from free fall has to tell.
-        let departure = mean(points.iter().map(|one| one.time)).value;
+        let departure = Reading::mean(points.iter().map(|one| one.time)).value;
         let is_clock = match is_told_apart {
             true => steep.misfit < flat.misfit,
             false => is_late || (departure + steep.value).abs() < departure.abs(),
@@ -453,16 +454,6 @@ impl Sums {
     }
 }
 
-/// Mean of readings, with an error that their scatter shows too.
-pub(super) fn mean(readings: impl Iterator<Item = Reading> + Clone) -> Reading {
-    let n = readings.clone().count().max(1) as f64;
-    let value = readings.clone().map(|one| one.value).sum::<f64>() / n;
-    let scatter = readings.clone().map(|one| (one.value - value).powi(2)).sum::<f64>();
-    let stated = readings.map(|one| one.se.powi(2)).sum::<f64>();
-    let of_scatter = if n > 1.0 { scatter / (n * (n - 1.0)) } else { 0.0 };
-    Reading { value, se: of_scatter.max(stated / (n * n)).sqrt() }
-}
-
 /// Whether runs of the condition show its speed where their contacts are sought by the forces of a bed: a power of time may
 /// miss the way that exact readings are braked on.
 fn is_shown(set: &MeasurementSet, condition: usize) -> bool {
@@ -479,7 +470,7 @@ fn is_shown(set: &MeasurementSet, condition: usize) -> bool {
     };
     let own = set.runs.iter().filter(|run| run.condition == condition);
     let ratios: Vec<Reading> = own.filter_map(ratio).collect();
-    let mean = mean(ratios.iter().copied());
+    let mean = Reading::mean(ratios.iter().copied());
     let is_free = of.spin == 0.0 && !ratios.is_empty();
     is_free && (mean.value - 1.0).abs() <= (OF_SPEED * mean.se).max(NOTABLE_SPEED)
 }
@@ -501,7 +492,7 @@ fn speeds(set: &MeasurementSet, contacts: &[RunContact]) -> Vec<SpeedRatio> {
         if ratios.is_empty() {
             return None;
         }
-        let mean = mean(ratios.iter().copied());
+        let mean = Reading::mean(ratios.iter().copied());
         let n = ratios.len() as f64;
         let ratio = Reading { se: libm::hypot(mean.se, set_error / n.sqrt()), ..mean };
         let (off, error) = ((ratio.value - 1.0).abs(), OF_SPEED * ratio.se);

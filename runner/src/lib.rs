@@ -13,9 +13,21 @@ pub mod run;
 pub mod schedulers;
 mod workers;
 
+use std::path::{Path, PathBuf};
+
 pub use elsewhere::{Elsewhere, ModelText, Task, WORD, work};
 pub use error::CampaignError;
 pub use workers::{Heed, Progress, Stage, Unattended, Watch, Workers};
+
+/// The folder of prepared beds and finished impacts: the one `asked` for, else `$PLUNGE_CACHE`, else `runs/.cache`.
+#[must_use]
+pub fn cache_folder(asked: Option<&Path>) -> PathBuf {
+    let from_environment = || std::env::var_os("PLUNGE_CACHE").filter(|dir| !dir.is_empty());
+    asked
+        .map(Path::to_owned)
+        .or_else(|| from_environment().map(PathBuf::from))
+        .unwrap_or_else(|| PathBuf::from("runs/.cache"))
+}
 
 /// `key` in hexadecimal, as names of files have it.
 #[must_use]

@@ -2,47 +2,57 @@
 
 use std::error::Error;
 use std::io::{self, Write};
+use std::num::NonZero;
 use std::path::Path;
 use std::process::ExitCode;
 
-use lexopt::Parser;
-use lexopt::prelude::ValueExt;
-use runner::schedulers::Scheduler;
-
+use clap::{Args, Parser};
 use runner::beds::BedTask;
+use runner::schedulers::Scheduler;
 use runner::{CampaignError, Elsewhere, Task, WORD, work};
 use serde::{Deserialize, Serialize};
 
 use crate::three_shapes::ShapeTask;
 
-/// Status of a command line that is not understood.
-const MISUNDERSTOOD: u8 = 2;
+/// What the status of a program of this crate means.
+pub const STATUS: &str = "Exit status: 0 done, 1 failed, 2 the command line was not understood.";
+
+/// How impacts of a study are run.
+#[derive(Args, Debug)]
+pub struct Impacts {
+    /// Impacts at a time (one per core)
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZero<usize>>,
+    /// Where impacts are run: local (default), slurm or hyperqueue, which are waited for
+    #[arg(long, value_name = "WHERE", default_value = "local", hide_default_value = true, value_parser = on)]
+    on: On,
+}
+
+/// Who runs impacts, if not this process.
+#[derive(Clone, Debug)]
+struct On(Option<Elsewhere>);
+
+impl Impacts {
+    /// Who runs them, if not this process.
+    #[must_use]
+    pub fn elsewhere(&self) -> Option<&Elsewhere> {
+        self.on.0.as_ref()
+    }
+}
+
+fn on(word: &str) -> Result<On, String> {
+    let elsewhere = Scheduler::after_on(word)?.map(Elsewhere::by).transpose();
+    elsewhere.map(On).map_err(|error| format!("this program cannot be found: {error}"))
+}
 
 /// Does what the command line asks for, and gives the status to end with.
 ///
-/// `parse` reads the command line; where it gives nothing, `help` is said. `work` does the rest: it writes what
-/// it has found to stdout, and decides on the status. If it fails, the status is 1, and if the command line is
-/// not understood, 2; why stands on stderr.
-pub fn conclude<W>(
-    help: &str,
-    parse: impl FnOnce(Parser) -> Result<Option<W>, lexopt::Error>,
+/// `work` writes what it has found to stdout, and decides on the status. If it fails, the status is 1 and why stands
+/// on stderr. Where the command line asks for help, or is not understood, the process ends here.
+pub fn conclude<W: Parser>(
     work: impl FnOnce(&W, &mut dyn Write) -> Result<ExitCode, Box<dyn Error>>,
 ) -> ExitCode {
-    if let Some(status) = task() {
-        return status;
-    }
-    let streams: [&mut dyn Write; 2] = [&mut io::stdout(), &mut io::stderr()];
-    answer(help, parse(Parser::from_env()), work, streams)
-}
-
-/// Who runs impacts after `--on`, if not this process.
-///
-/// # Errors
-/// If the word is not known, or this program cannot be found.
-pub fn on(parser: &mut Parser) -> Result<Option<Elsewhere>, lexopt::Error> {
-    let scheduler = parser.value()?.parse_with(Scheduler::after_on)?;
-    let elsewhere = scheduler.map(Elsewhere::by).transpose();
-    elsewhere.map_err(|error| format!("this program cannot be found: {error}").into())
+    task().unwrap_or_else(|| answer(&W::parse(), work, [&mut io::stdout(), &mut io::stderr()]))
 }
 
 /// What a scheduler calls a program of this crate for.
@@ -87,21 +97,12 @@ pub fn task() -> Option<ExitCode> {
 }
 
 fn answer<W>(
-    help: &str,
-    parsed: Result<Option<W>, lexopt::Error>,
+    wish: &W,
     work: impl FnOnce(&W, &mut dyn Write) -> Result<ExitCode, Box<dyn Error>>,
     [out, faults]: [&mut dyn Write; 2],
 ) -> ExitCode {
-    let done = match parsed {
-        Ok(Some(wish)) => work(&wish, out),
-        Ok(None) => write!(out, "{help}").map(|()| ExitCode::SUCCESS).map_err(Into::into),
-        Err(error) => {
-            // There is nobody left to tell that stderr is gone.
-            drop(write!(faults, "error: {error}\n\n{help}"));
-            return ExitCode::from(MISUNDERSTOOD);
-        }
-    };
-    done.unwrap_or_else(|error| {
+    work(wish, out).unwrap_or_else(|error| {
+        // There is nobody left to tell that stderr is gone.
         drop(writeln!(faults, "error: {error}"));
         ExitCode::FAILURE
     })
@@ -114,12 +115,9 @@ mod tests {
     type Done = Result<ExitCode, Box<dyn Error>>;
 
     /// What is said on stdout and stderr, and the status.
-    fn told(
-        parsed: Result<Option<u8>, lexopt::Error>,
-        work: fn(&u8, &mut dyn Write) -> Done,
-    ) -> [String; 3] {
+    fn told(work: fn(&u8, &mut dyn Write) -> Done) -> [String; 3] {
         let (mut out, mut faults) = (Vec::new(), Vec::new());
-        let status = answer("HELP\n", parsed, work, [&mut out, &mut faults]);
+        let status = answer(&7, work, [&mut out, &mut faults]);
         let text = |bytes| String::from_utf8(bytes).expect("text");
         [text(out), text(faults), format!("{status:?}")]
     }
@@ -132,10 +130,14 @@ mod tests {
         };
         let fails = |_: &u8, _: &mut dyn Write| -> Done { Err("no bed".into()) };
         let status = |code: u8| format!("{:?}", ExitCode::from(code));
-        assert_eq!(told(Ok(Some(7)), works), ["7".into(), String::new(), status(0)]);
-        assert_eq!(told(Ok(None), works), ["HELP\n".into(), String::new(), status(0)]);
-        assert_eq!(told(Ok(Some(7)), fails), [String::new(), "error: no bed\n".into(), status(1)]);
-        let misunderstood = told(Err("what?".into()), works);
-        assert_eq!(misunderstood, [String::new(), "error: what?\n\nHELP\n".into(), status(2)]);
+        assert_eq!(told(works), ["7".into(), String::new(), status(0)]);
+        assert_eq!(told(fails), [String::new(), "error: no bed\n".into(), status(1)]);
+    }
+
+    #[test]
+    fn a_place_that_is_none_is_not_understood() {
+        assert!(on("local").is_ok_and(|on| on.0.is_none()));
+        assert!(on("slurm").is_ok_and(|on| on.0.is_some()));
+        assert!(on("moon").is_err_and(|error| error.contains("moon")));
     }
 }

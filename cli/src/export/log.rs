@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use exchange::export::{ExportError, Exported, Format, STAGING, export};
+use exchange::export::{ExportError, Exported, Format, export};
 use exchange::read::ReadError;
+use exchange::staging::STAGING;
 use serde_json::json;
 
 use crate::BEGINS_AGAIN;

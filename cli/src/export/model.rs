@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use exchange::lammps::{Deck, INPUT, LammpsError};
-use runner::run::prepare;
 use serde_json::json;
 
 use crate::common::Common;
@@ -18,14 +17,7 @@ pub(super) fn write(model: &Path, common: &Common) -> CommandResult {
         CommandError::bad_input(format!("LAMMPS cannot express a medium of the kind \"{kind}\""))
     })?;
     Deck::check(grains).map_err(refused)?;
-    common.refuse_too_large(&model)?;
-    let mut terminal = Terminal::new(common.quiet);
-    let cache = common.cache_folder();
-    let prepared = common.on_threads(|| prepare(grains, &cache, &mut terminal))?;
-    terminal.clear();
-    let Some(bed) = prepared.map_err(CommandError::from)? else {
-        return Err(terminal.interrupted("the same command goes on from here"));
-    };
+    let bed = common.prepared(grains, &mut Terminal::new(common.quiet))?;
     let deck = Deck::of(grains, &bed.resting).map_err(refused)?;
     let folder = common
         .out

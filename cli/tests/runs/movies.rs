@@ -152,6 +152,9 @@ fn what_cannot_be_filmed_is_told_with_what_can() {
     movie(out.path(), &gif, &["--frames", "2", "--size", "64x64"]).done();
     let message = movie(out.path(), &gif, &["--frames", "2"]).fails(2);
     assert!(message.contains("--force"), "{message}");
+    fs::write(out.path().join("summary.json"), "{").expect("a file");
+    let message = movie(out.path(), &gif, &["--frames", "2", "--force"]).fails(1);
+    assert!(message.contains("summary.json"), "{message}");
 }
 
 #[cfg(unix)]

@@ -58,12 +58,7 @@ fn project_root(folder: &Path) -> PathBuf {
 /// # Errors
 /// When it does not exist, is not a regular file, or lies outside of the allowed folders.
 pub fn resolve(named: &str, folder: &Path, allow_paths: &[PathBuf]) -> Result<PathBuf, PathError> {
-    if named.starts_with('~') {
-        return Err(PathError::Home(named.to_owned()));
-    }
-    let io = |source| PathError::Io { path: named.to_owned(), source };
-    let folder = fs::canonicalize(folder).map_err(io)?;
-    let path = fs::canonicalize(folder.join(named)).map_err(io)?;
+    let [folder, path] = canonical(named, folder)?;
     let root = project_root(&folder);
     let allowed = path.starts_with(&root)
         || allow_paths
@@ -82,16 +77,22 @@ pub fn resolve(named: &str, folder: &Path, allow_paths: &[PathBuf]) -> Result<Pa
 /// # Errors
 /// When it does not exist or lies elsewhere.
 pub fn resolve_below(named: &str, folder: &Path) -> Result<PathBuf, PathError> {
+    let [folder, path] = canonical(named, folder)?;
+    match path.starts_with(&folder) {
+        true => Ok(path),
+        false => Err(PathError::OutsideFolder(named.to_owned())),
+    }
+}
+
+/// `folder`, and what a file in it names `named`, without symbolic links.
+fn canonical(named: &str, folder: &Path) -> Result<[PathBuf; 2], PathError> {
     if named.starts_with('~') {
         return Err(PathError::Home(named.to_owned()));
     }
     let io = |source| PathError::Io { path: named.to_owned(), source };
     let folder = fs::canonicalize(folder).map_err(io)?;
     let path = fs::canonicalize(folder.join(named)).map_err(io)?;
-    match path.starts_with(&folder) {
-        true => Ok(path),
-        false => Err(PathError::OutsideFolder(named.to_owned())),
-    }
+    Ok([folder, path])
 }
 
 /// A regular file of any size, to be streamed; messages call it `named`.

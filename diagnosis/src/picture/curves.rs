@@ -8,27 +8,38 @@ use plotters::prelude::*;
 use super::panel::framed;
 
 /// Size of a panel (pixels), and panels side by side.
-const PANEL: (u32, u32) = (313, 220);
-const COLUMNS: usize = 3;
+pub(super) const PANEL: (u32, u32) = (313, 220);
+pub(super) const COLUMNS: usize = 3;
 
 /// Most conditions with a panel of their own.
 const CONDITIONS: usize = 24;
 
 /// Every reading of every run; empty of a set without curves.
 pub(super) fn curves(set: &MeasurementSet) -> Result<String, PictureError> {
+    let Some(curve) = set.kind.curve() else { return Ok(String::new()) };
+    a_panel_each(set, (curve.value.name, &[]), |panel, condition, runs| {
+        draw(panel, curve, condition, runs)
+    })
+}
+
+/// A panel for each of the first conditions, drawn by `draw` with the runs of the condition. Below them stands that there
+/// is a line per run of `what`, with more `signs`.
+pub(super) fn a_panel_each(
+    set: &MeasurementSet,
+    (what, signs): (&str, &[(Sign, String)]),
+    draw: impl Fn(&Area<'_>, &Condition, &[&Run]) -> Drawn,
+) -> Result<String, PictureError> {
     let n = set.conditions.len().min(CONDITIONS);
     let rows = n.div_ceil(COLUMNS).max(1);
-    let all = set.conditions.len();
-    let Some(curve) = set.kind.curve() else { return Ok(String::new()) };
-    let what = format!("{}, a line per run; {n} of {all} conditions", curve.value.name);
-    let signs = [(Sign::Line(colour(0)), what)];
+    let what = format!("{what}, a line per run; {n} of {} conditions", set.conditions.len());
+    let signs = [&[(Sign::Line(colour(0)), what)], signs].concat();
     let height = PANEL.1 * rows as u32;
     svg((PANEL.0 * COLUMNS as u32, height + legend::height(signs.len())), |area| {
         let (charts, below) = area.split_vertically(height);
         let panels = charts.split_evenly((rows, COLUMNS));
         for (at, (condition, panel)) in set.conditions.iter().zip(&panels).take(n).enumerate() {
             let own: Vec<&Run> = set.runs.iter().filter(|run| run.condition == at).collect();
-            draw(panel, curve, condition, &own)?;
+            draw(panel, condition, &own)?;
         }
         legend::draw(&below, &signs)
     })

@@ -3,17 +3,10 @@
 use measurements::{Condition, Kind, MeasurementSet, Run};
 use plotters::prelude::*;
 
-use super::curves::curves;
+use super::curves::{COLUMNS, PANEL, a_panel_each, curves};
 use super::panel::framed;
 use plots::legend::{self, Sign};
 use plots::{Area, Drawn, Hover, PictureError, colour, fitting, letters, padded, short, svg};
-
-/// Size of a panel (pixels), and panels side by side.
-const PANEL: (u32, u32) = (313, 220);
-const COLUMNS: usize = 3;
-
-/// Most conditions with a panel of their own.
-const CONDITIONS: usize = 24;
 
 /// Share of its time in which the speed of a run is near that of the impact.
 const EARLY: f64 = 0.3;
@@ -43,27 +36,10 @@ pub fn measured(set: &MeasurementSet) -> Result<String, PictureError> {
 }
 
 fn paths(set: &MeasurementSet) -> Result<String, PictureError> {
-    let n = set.conditions.len().min(CONDITIONS);
-    let rows = n.div_ceil(COLUMNS).max(1);
-    let all = set.conditions.len();
-    let signs = [
-        (Sign::Line(colour(0)), format!("depth, a line per run; {n} of {all} conditions")),
-        (
-            Sign::Dashed(colour(1)),
-            "fall to first contact at the stated speed, and straight on: every run follows it \
-             before t = 0"
-                .to_owned(),
-        ),
-    ];
-    let height = PANEL.1 * rows as u32;
-    svg((PANEL.0 * COLUMNS as u32, height + legend::height(signs.len())), |area| {
-        let (charts, below) = area.split_vertically(height);
-        let panels = charts.split_evenly((rows, COLUMNS));
-        for (at, (condition, panel)) in set.conditions.iter().zip(&panels).take(n).enumerate() {
-            let own: Vec<&Run> = set.runs.iter().filter(|run| run.condition == at).collect();
-            draw_paths(panel, condition, set.fall_of(condition), &own)?;
-        }
-        legend::draw(&below, &signs)
+    let fall = "fall to first contact at the stated speed, and straight on: every run follows it before t = 0";
+    let signs = [(Sign::Dashed(colour(1)), fall.to_owned())];
+    a_panel_each(set, ("depth", &signs), |panel, condition, runs| {
+        draw_paths(panel, condition, set.fall_of(condition), runs)
     })
 }
 

@@ -431,31 +431,8 @@ impl RunLog {
             };
             run.with(|writer| writer.attach(&attachment))?;
         }
-        let ids = RunChannels {
-            energy: run.define(own("/energy/budget", &budget))?,
-            states: define_states(&mut run, setup, &state)?,
-            loads: per_body(setup, |name| {
-                run.define(own(&format!("/intruder/{name}/load"), &load))
-            })?,
-            bed: match setup.bed {
-                None => None,
-                Some(channels) => Some(BedIds {
-                    activity: run.define(own("/bed/activity", &activity))?,
-                    estimates: per_body(setup, |name| {
-                        run.define(own(&format!("/intruder/{name}/estimate"), &estimate))
-                    })?,
-                    fields: match channels {
-                        BedChannels::Scalars => None,
-                        BedChannels::ScalarsAndFields => Some([
-                            run.define(drawn::<PointCloud>("/bed/field"))?,
-                            run.define(drawn::<PointCloud>("/bed/crater"))?,
-                        ]),
-                    },
-                }),
-            },
-            frames: define_frames(&mut run, setup)?,
-            events: run.define(drawn::<Log>("/log"))?,
-        };
+        let layouts = [&budget, &state, &load, &estimate, &activity];
+        let ids = RunChannels::define(&mut run, setup, layouts)?;
         let mut grain_ids = GrainChannels::default();
         let mut grains = None;
         if setup.grains {
@@ -482,6 +459,39 @@ impl RunLog {
 }
 
 impl RunChannels {
+    /// The channels of `run`, whose own messages are laid out so.
+    fn define(
+        run: &mut LogFile,
+        setup: &LogSetup,
+        [budget, state, load, estimate, activity]: [&Layout; 5],
+    ) -> Result<Self, RecordError> {
+        let of_bed = |run: &mut LogFile, channels| {
+            Ok(BedIds {
+                activity: run.define(own("/bed/activity", activity))?,
+                estimates: per_body(setup, |name| {
+                    run.define(own(&format!("/intruder/{name}/estimate"), estimate))
+                })?,
+                fields: match channels {
+                    BedChannels::Scalars => None,
+                    BedChannels::ScalarsAndFields => Some([
+                        run.define(drawn::<PointCloud>("/bed/field"))?,
+                        run.define(drawn::<PointCloud>("/bed/crater"))?,
+                    ]),
+                },
+            })
+        };
+        Ok(Self {
+            energy: run.define(own("/energy/budget", budget))?,
+            states: define_states(run, setup, state)?,
+            loads: per_body(setup, |name| {
+                run.define(own(&format!("/intruder/{name}/load"), load))
+            })?,
+            bed: setup.bed.map(|channels| of_bed(run, channels)).transpose()?,
+            frames: define_frames(run, setup)?,
+            events: run.define(drawn::<Log>("/log"))?,
+        })
+    }
+
     fn bed(&self) -> &BedIds {
         self.bed.as_ref().expect("the setup has a bed")
     }

@@ -1,10 +1,7 @@
 //! Extended XYZ: all frames in one file of text.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
 
-use super::ExportError;
-use super::grains::FrameWriter;
 use super::whole_file::WholeFile;
 use crate::frames::{Frame, Grain};
 
@@ -19,35 +16,16 @@ const SPECIES: [&str; 2] = ["Si", "Fe"];
 /// `grains.xyz`, in SI units.
 ///
 /// Source: the format of libAtoms, as ASE and OVITO document it.
-pub(super) struct ExtendedXyz(WholeFile);
-
-impl ExtendedXyz {
-    pub(super) fn create(out: &Path) -> Result<Self, ExportError> {
-        WholeFile::create(out.join("grains.xyz")).map(Self)
+pub(super) fn write(file: &mut WholeFile, frame: &Frame) -> io::Result<()> {
+    writeln!(file, "{}", frame.particles().count())?;
+    writeln!(file, "Properties={PROPERTIES} Time={:?} pbc=\"F F F\"", frame.time)?;
+    for (body, Grain { id, position, radius, velocity, speed, force }) in frame.particles() {
+        let ([x, y, z], [vx, vy, vz]) = (position, velocity);
+        let species = SPECIES[usize::from(body > 0)];
+        writeln!(
+            file,
+            "{id} {species} {body} {x:?} {y:?} {z:?} {radius:?} {vx:?} {vy:?} {vz:?} {speed:?} {force:?}"
+        )?;
     }
-
-    fn write(&mut self, frame: &Frame) -> io::Result<()> {
-        let file = &mut self.0;
-        writeln!(file, "{}", frame.particles().count())?;
-        writeln!(file, "Properties={PROPERTIES} Time={:?} pbc=\"F F F\"", frame.time)?;
-        for (body, Grain { id, position, radius, velocity, speed, force }) in frame.particles() {
-            let ([x, y, z], [vx, vy, vz]) = (position, velocity);
-            let species = SPECIES[usize::from(body > 0)];
-            writeln!(
-                file,
-                "{id} {species} {body} {x:?} {y:?} {z:?} {radius:?} {vx:?} {vy:?} {vz:?} {speed:?} {force:?}"
-            )?;
-        }
-        Ok(())
-    }
-}
-
-impl FrameWriter for ExtendedXyz {
-    fn frame(&mut self, frame: &Frame) -> Result<(), ExportError> {
-        self.write(frame).map_err(|error| self.0.failed(error))
-    }
-
-    fn finish(self) -> Result<Vec<PathBuf>, ExportError> {
-        Ok(vec![self.0.finish()?])
-    }
+    Ok(())
 }

@@ -1,8 +1,10 @@
 //! The frames of a log in a format of other programs.
 
+use std::io;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use super::whole_file::WholeFile;
 use super::{ExportError, Exported};
 use crate::Stop;
 use crate::frames::{Frame, each_frame};
@@ -13,6 +15,32 @@ pub(super) trait FrameWriter {
     fn frame(&mut self, frame: &Frame) -> Result<(), ExportError>;
     /// Completes what was written and says where it is.
     fn finish(self) -> Result<Vec<PathBuf>, ExportError>;
+}
+
+/// All frames in one file of text.
+pub(super) struct Text {
+    file: WholeFile,
+    write: fn(&mut WholeFile, &Frame) -> io::Result<()>,
+}
+
+impl Text {
+    /// The file at `path`, in which `write` writes each frame.
+    pub(super) fn create(
+        path: PathBuf,
+        write: fn(&mut WholeFile, &Frame) -> io::Result<()>,
+    ) -> Result<Self, ExportError> {
+        Ok(Self { file: WholeFile::create(path)?, write })
+    }
+}
+
+impl FrameWriter for Text {
+    fn frame(&mut self, frame: &Frame) -> Result<(), ExportError> {
+        (self.write)(&mut self.file, frame).map_err(|error| self.file.failed(error))
+    }
+
+    fn finish(self) -> Result<Vec<PathBuf>, ExportError> {
+        Ok(vec![self.file.finish()?])
+    }
 }
 
 /// Hands every frame of the log at `path` to `writer`.

@@ -1,10 +1,7 @@
 //! A dump as LAMMPS writes it: all frames in one file of text.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
 
-use super::ExportError;
-use super::grains::FrameWriter;
 use super::whole_file::WholeFile;
 use crate::frames::{Frame, Grain};
 
@@ -12,44 +9,25 @@ use crate::frames::{Frame, Grain};
 /// bodies of one type each from 2 on, in the order of their names.
 ///
 /// Source: LAMMPS documentation, dump style custom, with `ITEM: UNITS` and `ITEM: TIME`.
-pub(super) struct LammpsDump(WholeFile);
-
-impl LammpsDump {
-    pub(super) fn create(out: &Path) -> Result<Self, ExportError> {
-        WholeFile::create(out.join("grains.dump")).map(Self)
+pub(super) fn write(file: &mut WholeFile, frame: &Frame) -> io::Result<()> {
+    if frame.number == 0 {
+        writeln!(file, "ITEM: UNITS\nsi")?;
     }
-
-    fn write(&mut self, frame: &Frame) -> io::Result<()> {
-        let file = &mut self.0;
-        if frame.number == 0 {
-            writeln!(file, "ITEM: UNITS\nsi")?;
-        }
-        writeln!(file, "ITEM: TIME\n{:?}", frame.time)?;
-        writeln!(file, "ITEM: TIMESTEP\n{}", frame.number)?;
-        writeln!(file, "ITEM: NUMBER OF ATOMS\n{}", frame.particles().count())?;
-        writeln!(file, "ITEM: BOX BOUNDS ff ff ff")?;
-        for [low, high] in frame.bounds() {
-            writeln!(file, "{low:?} {high:?}")?;
-        }
-        writeln!(file, "ITEM: ATOMS id type radius x y z vx vy vz speed force")?;
-        for (body, Grain { id, position, radius, velocity, speed, force }) in frame.particles() {
-            let ([x, y, z], [vx, vy, vz]) = (position, velocity);
-            let kind = 1 + body;
-            writeln!(
-                file,
-                "{id} {kind} {radius:?} {x:?} {y:?} {z:?} {vx:?} {vy:?} {vz:?} {speed:?} {force:?}"
-            )?;
-        }
-        Ok(())
+    writeln!(file, "ITEM: TIME\n{:?}", frame.time)?;
+    writeln!(file, "ITEM: TIMESTEP\n{}", frame.number)?;
+    writeln!(file, "ITEM: NUMBER OF ATOMS\n{}", frame.particles().count())?;
+    writeln!(file, "ITEM: BOX BOUNDS ff ff ff")?;
+    for [low, high] in frame.bounds() {
+        writeln!(file, "{low:?} {high:?}")?;
     }
-}
-
-impl FrameWriter for LammpsDump {
-    fn frame(&mut self, frame: &Frame) -> Result<(), ExportError> {
-        self.write(frame).map_err(|error| self.0.failed(error))
+    writeln!(file, "ITEM: ATOMS id type radius x y z vx vy vz speed force")?;
+    for (body, Grain { id, position, radius, velocity, speed, force }) in frame.particles() {
+        let ([x, y, z], [vx, vy, vz]) = (position, velocity);
+        let kind = 1 + body;
+        writeln!(
+            file,
+            "{id} {kind} {radius:?} {x:?} {y:?} {z:?} {vx:?} {vy:?} {vz:?} {speed:?} {force:?}"
+        )?;
     }
-
-    fn finish(self) -> Result<Vec<PathBuf>, ExportError> {
-        Ok(vec![self.0.finish()?])
-    }
+    Ok(())
 }

@@ -2,29 +2,28 @@
 //!
 //! A [`Format`] is one file of this folder: tables of numbers go through `tables.rs`, states of grains
 //! through `grains.rs`. An export is written into a folder inside the one it
-//! goes to (`staging.rs`), and its files are moved there once all of them are whole.
+//! goes to ([`Staging`]), and its files are moved there once all of them are whole.
 
 mod csv;
 mod error;
 mod extended_xyz;
 mod grains;
 mod lammps_dump;
-mod parquet;
-mod staging;
+pub(crate) mod parquet;
 mod tables;
 mod vtp;
 pub(crate) mod whole_file;
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use engine::record::{GRAIN_LOG, RUN_LOG};
 
 use crate::Stop;
 use crate::run_files::RunFiles;
+use crate::staging::{STAGING, Staging};
 
 pub use error::ExportError;
-pub use staging::STAGING;
-use staging::Staging;
 
 /// What a run can be exported to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,16 +105,41 @@ pub fn export(
     if !path.is_file() {
         return Err(ExportError::NoRun { path: run.to_owned(), log });
     }
-    let staging = Staging::inside(out)?;
-    let here = staging.path();
-    let Exported { files, complete } = match format {
-        Format::Csv => tables::export(&path, (here, csv::Csv::create), stop),
-        Format::Parquet => tables::export(&path, (here, parquet::Parquet::create), stop),
-        Format::Vtp => grains::export(&path, vtp::Vtp::new(here), stop),
-        Format::LammpsDump => grains::export(&path, lammps_dump::LammpsDump::create(here)?, stop),
-        Format::ExtendedXyz => {
-            grains::export(&path, extended_xyz::ExtendedXyz::create(here)?, stop)
+    let is_new = !out.exists();
+    let refused = |path: &Path, source| ExportError::Write { path: path.to_owned(), source };
+    let staging = Staging::at(out.join(STAGING)).map_err(|source| refused(out, source))?;
+    let Exported { files, complete } =
+        written(format, &path, staging.path(), stop).inspect_err(|_| {
+            let _ = fs::remove_dir_all(staging.path());
+            if is_new {
+                // Fails where somebody else has put a file there meanwhile, which is as it should be.
+                let _ = fs::remove_dir(out);
+            }
+        })?;
+    let moved = files.iter().map(|file| {
+        let to = out.join(file.file_name().unwrap_or_default());
+        match fs::rename(file, &to) {
+            Ok(()) => Ok(to),
+            Err(source) => Err(refused(&to, source)),
         }
-    }?;
-    Ok(Exported { files: staging.hand_over(&files)?, complete })
+    });
+    Ok(Exported { files: moved.collect::<Result<_, _>>()?, complete })
+}
+
+/// Writes the log at `path` as files of `format` in the folder `here`.
+fn written(
+    format: Format,
+    path: &Path,
+    here: &Path,
+    stop: Stop<'_>,
+) -> Result<Exported, ExportError> {
+    let text =
+        |name, write| grains::export(path, grains::Text::create(here.join(name), write)?, stop);
+    match format {
+        Format::Csv => tables::export(path, (here, csv::Csv::create), stop),
+        Format::Parquet => tables::export(path, (here, parquet::Parquet::create), stop),
+        Format::Vtp => grains::export(path, vtp::Vtp::new(here), stop),
+        Format::LammpsDump => text("grains.dump", lammps_dump::write),
+        Format::ExtendedXyz => text("grains.xyz", extended_xyz::write),
+    }
 }

@@ -1,11 +1,12 @@
 //! Tables as Apache Parquet.
 
-use std::path::PathBuf;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use parquet::basic::{Compression, Repetition, Type as Physical, ZstdLevel};
 use parquet::data_type::{DoubleType, Int64Type};
-use parquet::errors::Result as Written;
+use parquet::errors::{ParquetError, Result as Written};
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
@@ -35,13 +36,8 @@ impl Parquet {
     pub(super) fn create(path: PathBuf, columns: &[Column]) -> Result<Box<dyn Sink>, ExportError> {
         let path = path.with_added_extension("parquet");
         let file = WholeFile::create(path.clone())?;
-        let properties = WriterProperties::builder()
-            .set_created_by(format!("plunge {}", env!("CARGO_PKG_VERSION")))
-            .set_compression(Compression::ZSTD(ZstdLevel::default()))
-            .build();
-        let writer = schema(columns)
-            .and_then(|schema| SerializedFileWriter::new(file, schema, Arc::new(properties)))
-            .map_err(|error| failed(&path, error))?;
+        let writer =
+            writer(file, columns.iter().map(field)).map_err(|error| failed(&path, error))?;
         let empty = |column: &Column| match column.counts {
             true => Values::Counts(Vec::new()),
             false => Values::Numbers(Vec::new()),
@@ -70,17 +66,27 @@ impl Parquet {
     }
 }
 
-fn schema(columns: &[Column]) -> Written<Arc<Type>> {
-    let field = |column: &Column| {
-        let physical = if column.counts { Physical::INT64 } else { Physical::DOUBLE };
-        let builder = Type::primitive_type_builder(&column.name, physical);
-        Ok(Arc::new(builder.with_repetition(Repetition::REQUIRED).build()?))
-    };
-    let fields = columns.iter().map(field).collect::<Written<Vec<_>>>()?;
-    Ok(Arc::new(Type::group_type_builder("schema").with_fields(fields).build()?))
+fn field(column: &Column) -> Written<Type> {
+    let physical = if column.counts { Physical::INT64 } else { Physical::DOUBLE };
+    let builder = Type::primitive_type_builder(&column.name, physical);
+    builder.with_repetition(Repetition::REQUIRED).build()
 }
 
-fn failed(path: &std::path::Path, error: parquet::errors::ParquetError) -> ExportError {
+/// Writes columns that are described by `fields` to `file`.
+pub(crate) fn writer<W: Write + Send>(
+    file: W,
+    fields: impl Iterator<Item = Written<Type>>,
+) -> Written<SerializedFileWriter<W>> {
+    let properties = WriterProperties::builder()
+        .set_created_by(format!("plunge {}", env!("CARGO_PKG_VERSION")))
+        .set_compression(Compression::ZSTD(ZstdLevel::default()))
+        .build();
+    let fields = fields.map(|field| field.map(Arc::new)).collect::<Written<_>>()?;
+    let schema = Type::group_type_builder("schema").with_fields(fields).build()?;
+    SerializedFileWriter::new(file, Arc::new(schema), Arc::new(properties))
+}
+
+pub(crate) fn failed(path: &Path, error: ParquetError) -> ExportError {
     ExportError::Write { path: path.to_owned(), source: std::io::Error::other(error) }
 }
 

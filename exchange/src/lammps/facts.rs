@@ -66,12 +66,7 @@ impl Facts {
             name: whole.run.name.clone(),
             model_hash: whole.hash(),
             seed: whole.run.seed,
-            impact: ImpactSummary {
-                speed_m_per_s: condition.speed,
-                angle_deg: condition.angle_deg(),
-                x_m: model.start_x(condition),
-                position_index: condition.position_index,
-            },
+            impact: ImpactSummary::new(condition, model.start_x(condition)),
             dimension: if medium.space == Space::Planar { 2 } else { 3 },
             gravity_m_per_s2: medium.gravity,
             surface_m: simulation.surface(),

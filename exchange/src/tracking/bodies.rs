@@ -176,6 +176,22 @@ impl Bodies {
         values.iter().find(|(other, _)| *other == key).map(|(_, value)| value.as_str())
     }
 
+    /// That nothing says the `key` of the body of `run`, which is called `name` if it has a name.
+    fn unsaid(&self, run: &str, name: Option<&str>, (key, example): (&str, &str)) -> Fault {
+        let right = match name.is_none() && !self.0.is_empty() {
+            true => format!(
+                "no name, folder or column `body` says which of {} it is; --condition \"{{body}}_{{repeat}}\" says where",
+                self.names()
+            ),
+            false => format!(
+                "write {} {example}; several bodies: --bodies bodies.csv with the columns body, diameter (mm), mass (g), and the \
+                 body in names, folders or a column `body`",
+                flag(key)
+            ),
+        };
+        Fault::new(run, format!("no table says the {key} of the body"), right)
+    }
+
     /// The body of a run with these labels, which messages call `run`.
     ///
     /// # Errors
@@ -217,20 +233,7 @@ impl Bodies {
             None => settings.quantity(key, dimension, labels),
         };
         let needed = |key: &str, dimension: Dimension, example: &str| {
-            quantity(key, dimension)?.ok_or_else(|| {
-                let right = match name.is_none() && !self.0.is_empty() {
-                    true => format!(
-                        "no name, folder or column `body` says which of {} it is; --condition \"{{body}}_{{repeat}}\" says where",
-                        self.names()
-                    ),
-                    false => format!(
-                        "write {} {example}; several bodies: --bodies bodies.csv with the columns body, diameter (mm), mass (g), and the \
-                         body in names, folders or a column `body`",
-                        flag(key)
-                    ),
-                };
-                Fault::new(run, format!("no table says the {key} of the body"), right)
-            })
+            quantity(key, dimension)?.ok_or_else(|| self.unsaid(run, name, (key, example)))
         };
         let shape = said("shape").map(|(text, _)| text).or_else(|| settings.text("shape"));
         let word = shape.unwrap_or("sphere");

@@ -195,8 +195,6 @@ fn in_order(
     settings: &Settings<'_>,
     counts_rows: bool,
 ) -> Result<Vec<Sample>, Fault> {
-    let mut samples: Vec<Sample> = Vec::with_capacity(track.samples.len());
-    let mut copies = 0;
     let has_clock = !counts_rows && !counts_frames(track, settings);
     if !counts_rows && is_out_of_order(&track.samples) && !(has_clock && is_made_even(track)) {
         track.samples.sort_by(|a, b| a.t.total_cmp(&b.t));
@@ -214,58 +212,7 @@ fn in_order(
             None => drop(is_made_even(track)),
         }
     }
-    for (at, sample) in track.samples.iter().enumerate() {
-        let Some(last) = samples.last() else {
-            samples.push(*sample);
-            continue;
-        };
-        if sample.t > last.t {
-            samples.push(*sample);
-            continue;
-        }
-        let same = |a: f64, b: f64| a.total_cmp(&b).is_eq();
-        let is_copy = same(sample.t, last.t) && same(sample.z, last.z) && same(sample.x, last.x);
-        // A coarse clock repeats its times, and a body at rest repeats its positions; some trackers write the first frame twice.
-        if counts_rows && is_copy && samples.len() == 1 {
-            samples[0] = *sample;
-            copies += 1;
-            continue;
-        }
-        if counts_rows && same(sample.t, last.t) {
-            samples.push(*sample);
-            continue;
-        }
-        if is_copy {
-            copies += 1;
-            continue;
-        }
-        if starts_again(&track.samples, at) {
-            let step = (last.t - samples[0].t) / (samples.len() - 1) as f64;
-            let what = format!("the clock starts again ({}, behind {})", sample.t, last.t);
-            let lost = last.t + step - sample.t;
-            let right = format!("add {lost:.4} to the times from here on");
-            return Err(Fault::new(&track.file, what, right).at(sample.line));
-        }
-        let (what, right) = match (same(sample.t, last.t), &track.time.unit) {
-            (true, Unit::Clock) => (
-                "a time is listed twice",
-                "its clock is too coarse: --rate 240Hz counts rows instead",
-            ),
-            (true, _) => (
-                "a time is listed twice with other positions",
-                "keep one of the rows; if times are rounded, --rate 650Hz counts rows instead",
-            ),
-            (false, _) if track.name.is_some() => {
-                ("the time runs back", "sort the rows of the run by time")
-            }
-            (false, _) => (
-                "the time runs back",
-                "sort the rows of one drop by time; several drops in one table need a column `run`",
-            ),
-        };
-        let what = format!("{what} ({}, behind {} on line {})", sample.t, last.t, last.line);
-        return Err(Fault::new(&track.file, what, right).at(sample.line));
-    }
+    let (mut samples, copies) = in_turn(track, counts_rows)?;
     let repeated = without_repeated(&mut samples);
     if repeated > 0 {
         let (frames, are) = if repeated == 1 { ("frame", "is") } else { ("frames", "are") };
@@ -293,6 +240,65 @@ fn in_order(
     Ok(samples)
 }
 
+/// The readings of `track` as long as time goes on, and how many copies were dropped.
+fn in_turn(track: &Track, counts_rows: bool) -> Result<(Vec<Sample>, usize), Fault> {
+    let mut samples: Vec<Sample> = Vec::with_capacity(track.samples.len());
+    let mut copies = 0;
+    for (at, sample) in track.samples.iter().enumerate() {
+        let Some(last) = samples.last() else {
+            samples.push(*sample);
+            continue;
+        };
+        let is_copy = same(sample.t, last.t) && same(sample.z, last.z) && same(sample.x, last.x);
+        // A coarse clock repeats its times, and a body at rest repeats its positions; some trackers write the first frame twice.
+        if sample.t > last.t {
+            samples.push(*sample);
+        } else if counts_rows && is_copy && samples.len() == 1 {
+            samples[0] = *sample;
+            copies += 1;
+        } else if counts_rows && same(sample.t, last.t) {
+            samples.push(*sample);
+        } else if is_copy {
+            copies += 1;
+        } else if starts_again(&track.samples, at) {
+            let step = (last.t - samples[0].t) / (samples.len() - 1) as f64;
+            let what = format!("the clock starts again ({}, behind {})", sample.t, last.t);
+            let lost = last.t + step - sample.t;
+            let right = format!("add {lost:.4} to the times from here on");
+            return Err(Fault::new(&track.file, what, right).at(sample.line));
+        } else {
+            return Err(out_of_turn(track, sample, last));
+        }
+    }
+    Ok((samples, copies))
+}
+
+/// That `sample` is not later than the one that was the `last` before it.
+fn out_of_turn(track: &Track, sample: &Sample, last: &Sample) -> Fault {
+    let (what, right) = match (same(sample.t, last.t), &track.time.unit) {
+        (true, Unit::Clock) => {
+            ("a time is listed twice", "its clock is too coarse: --rate 240Hz counts rows instead")
+        }
+        (true, _) => (
+            "a time is listed twice with other positions",
+            "keep one of the rows; if times are rounded, --rate 650Hz counts rows instead",
+        ),
+        (false, _) if track.name.is_some() => {
+            ("the time runs back", "sort the rows of the run by time")
+        }
+        (false, _) => (
+            "the time runs back",
+            "sort the rows of one drop by time; several drops in one table need a column `run`",
+        ),
+    };
+    let what = format!("{what} ({}, behind {} on line {})", sample.t, last.t, last.line);
+    Fault::new(&track.file, what, right).at(sample.line)
+}
+
+fn same(a: f64, b: f64) -> bool {
+    a.total_cmp(&b).is_eq()
+}
+
 /// Share of the longest step between two readings above which a body moves.
 const MOVES: f64 = 0.1;
 
@@ -305,7 +311,6 @@ fn without_repeated(samples: &mut Vec<Sample>) -> usize {
     // A body that moves by less than a pixel per frame repeats positions too.
     let pixel = steps().filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
     let moves = |pair: &[Sample]| step(pair) > (MOVES * longest).max(2.0 * pixel);
-    let same = |a: f64, b: f64| a.total_cmp(&b).is_eq();
     let is_repeated = |at: usize| match samples.get(at.wrapping_sub(2)..at + 2) {
         Some([earlier, before, here, next]) => {
             same(before.z, here.z)

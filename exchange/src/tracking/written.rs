@@ -119,7 +119,7 @@ fn measurement(known: &Known<'_>, notes: &[String]) -> Result<String, Fault> {
         line("# With bed_depth = \"14 cm\" in each, which --bed-depth writes, an effect of the bottom can be found.".to_owned());
     }
     for (id, own) in &conditions {
-        let speed = mean(own.iter().map(|run| run.speed));
+        let speed = Reading::mean(own.iter().map(|run| run.speed));
         let from = match options.get("drop_height") {
             Some(_) => "from the height of release".to_owned(),
             None => format!(
@@ -271,17 +271,6 @@ fn speed_scatter(conditions: &[(&str, Vec<&Run>)]) -> Option<f64> {
     let error = scatter.max(fit);
     // Speeds from one stated height differ only by rounding.
     (error > ROUNDING).then_some(error)
-}
-
-/// Mean with its error, from scatter or stated errors, whichever is larger.
-fn mean(readings: impl Iterator<Item = Reading>) -> Reading {
-    let all: Vec<Reading> = readings.collect();
-    let n = all.len() as f64;
-    let value = all.iter().map(|one| one.value).sum::<f64>() / n;
-    let scatter = all.iter().map(|one| (one.value - value).powi(2)).sum::<f64>();
-    let stated = all.iter().map(|one| one.se * one.se).sum::<f64>() / (n * n);
-    let seen = if n > 1.0 { scatter / (n * (n - 1.0)) } else { 0.0 };
-    Reading { value, se: seen.max(stated).sqrt() }
 }
 
 /// A number with so many significant digits, as TOML has it.

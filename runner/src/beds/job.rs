@@ -7,7 +7,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use configs::{Condition, Model, StartX};
-use engine::checkpoint;
+use engine::checkpoint::{self, CheckpointError};
 use engine::simulation::Simulation;
 
 use super::record::{Record, Recorder};
@@ -131,10 +131,15 @@ impl Job {
         Ok(Some((record, is_new)))
     }
 
-    /// Its record, if `cache` has it.
+    /// Its record, if `cache` has it. A damaged one is as good as none.
     pub(super) fn kept(cache: &Path, key: &[u8; 32]) -> Option<Record> {
-        // A damaged file is one that is not there: the impact is run again.
         checkpoint::load::<Record>(&Self::path(cache, key), key).ok()
+    }
+
+    /// Why its record is there and cannot be used.
+    pub(super) fn damage(cache: &Path, key: &[u8; 32]) -> Option<CheckpointError> {
+        let found = checkpoint::load::<Record>(&Self::path(cache, key), key);
+        found.err().filter(|error| !error.is_missing())
     }
 
     /// Keeps `record` in `cache`, whole or not at all; its lock is held.

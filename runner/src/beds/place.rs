@@ -91,6 +91,9 @@ impl Impacts for Place<'_> {
         let keys = jobs.iter().map(Job::key).collect::<Result<Vec<_>, _>>()?;
         let kept: Vec<Option<Record>> = keys.iter().map(|key| Job::kept(self.cache, key)).collect();
         let missing = first_of_each(&keys, |at| kept[at].is_none());
+        if self.elsewhere.is_none() {
+            self.tell_damages(&keys, &missing);
+        }
         let beds = self.missing_beds(jobs, &missing)?;
         let work = |&at: &usize| rate::SETTLING * jobs[at].work();
         self.side_by_side(Stage::Beds, &beds, (&work, 0), |at, heed| {
@@ -165,6 +168,12 @@ impl Place<'_> {
         jobs.iter().map(|job| Ok(Job::kept(self.cache, &job.key()?))).collect()
     }
 
+    /// Warns of records at the places `missing` that are there and cannot be used.
+    fn tell_damages(&self, keys: &[[u8; 32]], missing: &[usize]) {
+        let damages = missing.iter().filter_map(|&at| Job::damage(self.cache, &keys[at]));
+        damages.for_each(|why| self.watch.warn(&format!("{why}; the impact is run again")));
+    }
+
     fn make_folders(&self) -> Result<(), CampaignError> {
         for folder in ["beds", "impacts"] {
             let path = self.cache.join(folder);
@@ -197,6 +206,7 @@ impl Place<'_> {
     fn have_done(&self, elsewhere: &Elsewhere, jobs: &[Job]) -> Result<(), CampaignError> {
         let keys = jobs.iter().map(Job::key).collect::<Result<Vec<_>, _>>()?;
         let missing = first_of_each(&keys, |at| Job::kept(self.cache, &keys[at]).is_none());
+        self.tell_damages(&keys, &missing);
         self.have_prepared(elsewhere, jobs, &missing)?;
         let tasks: Vec<BedTask> =
             missing.iter().map(|&at| BedTask::impact(&jobs[at], &keys[at])).collect();

@@ -1,6 +1,6 @@
 //! Random numbers of the world: every set has its own, whichever others are drawn.
 
-use rand::{RngExt, SeedableRng};
+use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 /// A source of random numbers.
@@ -41,6 +41,12 @@ impl Chance {
     pub fn below(&mut self, n: usize) -> usize {
         ((self.0.random::<f64>() * n as f64) as usize).min(n.saturating_sub(1))
     }
+}
+
+/// A normal number with mean 0 and variance 1, of other sources (Box & Muller 1958, Ann. Math. Stat. 29, 610).
+pub fn normal(random: &mut impl Rng) -> f64 {
+    let radius = (-2.0 * libm::log(1.0 - random.random::<f64>())).sqrt();
+    radius * libm::cos(std::f64::consts::TAU * random.random::<f64>())
 }
 
 #[cfg(test)]

@@ -197,21 +197,7 @@ impl Size {
             Row::Scalars => self.grid(drawer, &Design::scalars(), self.share(1)),
             Row::Nulls => drawer.nothing(&full, self.share(100)),
             Row::ScalarNulls => drawer.nothing(&Design::scalars(), self.share(60)),
-            Row::Unlisted => {
-                let mut plans = Vec::new();
-                for (kind, hidden) in drawer.unlisted().enumerate() {
-                    for (level, strength) in [0.06, 0.12].into_iter().enumerate() {
-                        for draw in 0..self.share(4) {
-                            plans.push(drawer.plan(
-                                [kind, level, draw],
-                                &full,
-                                (&[hidden], strength),
-                            ));
-                        }
-                    }
-                }
-                plans
-            }
+            Row::Unlisted => self.unlisted(drawer, &full),
             Row::Pairs => drawer.pairs(&full, self.share(40)),
             Row::OneIntruder => {
                 let acts = |hidden: &Hidden| !hidden.needs_spin() && *hidden != Hidden::Packing;
@@ -235,45 +221,8 @@ impl Size {
             Row::Repeats => {
                 self.variants(drawer, [2, 5].map(|repeats| Design { repeats, ..full.clone() }))
             }
-            Row::Apparatus => {
-                let mut plans = Vec::new();
-                for (at, imperfection) in Imperfection::ALL.into_iter().enumerate() {
-                    let design = Design {
-                        imperfection,
-                        coefficient_scatter: 0.03,
-                        path_scatter: 0.08,
-                        ..full.clone()
-                    };
-                    for draw in 0..self.share(10) {
-                        plans.push(drawer.plan([at, 0, draw], &design, (&[], 0.0)));
-                        for (kind, hidden) in OF_APPARATUS.into_iter().enumerate() {
-                            let place = [at, kind + 1, draw];
-                            plans.push(drawer.plan(place, &design, (&[hidden], STRONG)));
-                        }
-                    }
-                }
-                plans
-            }
-            Row::Beyond => {
-                let design =
-                    Design { coefficient_scatter: 0.02, path_scatter: 0.05, ..full.clone() };
-                let mut plans = Vec::new();
-                for draw in 0..self.share(3) {
-                    for (kind, hidden) in drawer.unlisted().enumerate() {
-                        for (level, strength) in BEYOND.into_iter().enumerate() {
-                            let place = [kind, level, draw];
-                            plans.push(drawer.plan(place, &design, (&[hidden], strength)));
-                        }
-                    }
-                    let none = (0..NOTHING).map(|at| [NONE, at, draw]);
-                    plans.extend(none.map(|place| drawer.plan(place, &design, (&[], 0.0))));
-                    let listed = Hidden::listed().filter(|hidden| !hidden.is_of_apparatus());
-                    plans.extend(listed.enumerate().map(|(at, hidden)| {
-                        drawer.plan([LISTED, at, draw], &design, (&[hidden], BEYOND[0]))
-                    }));
-                }
-                plans
-            }
+            Row::Apparatus => self.apparatus(drawer, &full),
+            Row::Beyond => self.beyond(drawer, &full),
             Row::Next => {
                 let designs = [Design::vertical(), Design::one_intruder()];
                 // One in three of these leaves several effects: eighty sets to be extended.
@@ -287,6 +236,61 @@ impl Size {
                     .collect()
             }
         }
+    }
+
+    /// Every effect that no list has, at two strengths.
+    fn unlisted(&self, drawer: Drawer, full: &Design) -> Vec<Plan> {
+        let mut plans = Vec::new();
+        for (kind, hidden) in drawer.unlisted().enumerate() {
+            for (level, strength) in [0.06, 0.12].into_iter().enumerate() {
+                for draw in 0..self.share(4) {
+                    plans.push(drawer.plan([kind, level, draw], full, (&[hidden], strength)));
+                }
+            }
+        }
+        plans
+    }
+
+    /// Nothing and four effects before every apparatus that is not as its file says.
+    fn apparatus(&self, drawer: Drawer, full: &Design) -> Vec<Plan> {
+        let mut plans = Vec::new();
+        for (at, imperfection) in Imperfection::ALL.into_iter().enumerate() {
+            let design = Design {
+                imperfection,
+                coefficient_scatter: 0.03,
+                path_scatter: 0.08,
+                ..full.clone()
+            };
+            for draw in 0..self.share(10) {
+                plans.push(drawer.plan([at, 0, draw], &design, (&[], 0.0)));
+                for (kind, hidden) in OF_APPARATUS.into_iter().enumerate() {
+                    let place = [at, kind + 1, draw];
+                    plans.push(drawer.plan(place, &design, (&[hidden], STRONG)));
+                }
+            }
+        }
+        plans
+    }
+
+    /// Strong effects that no list has, nothing, and listed effects, in beds that scatter little.
+    fn beyond(&self, drawer: Drawer, full: &Design) -> Vec<Plan> {
+        let design = Design { coefficient_scatter: 0.02, path_scatter: 0.05, ..full.clone() };
+        let mut plans = Vec::new();
+        for draw in 0..self.share(3) {
+            for (kind, hidden) in drawer.unlisted().enumerate() {
+                for (level, strength) in BEYOND.into_iter().enumerate() {
+                    let place = [kind, level, draw];
+                    plans.push(drawer.plan(place, &design, (&[hidden], strength)));
+                }
+            }
+            let none = (0..NOTHING).map(|at| [NONE, at, draw]);
+            plans.extend(none.map(|place| drawer.plan(place, &design, (&[], 0.0))));
+            let listed = Hidden::listed().filter(|hidden| !hidden.is_of_apparatus());
+            plans.extend(listed.enumerate().map(|(at, hidden)| {
+                drawer.plan([LISTED, at, draw], &design, (&[hidden], BEYOND[0]))
+            }));
+        }
+        plans
     }
 
     /// Every listed effect at every strength.

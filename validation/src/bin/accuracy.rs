@@ -7,90 +7,81 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use clap::{Parser, ValueEnum};
 use engine::parallel::with_threads;
-use lexopt::Parser;
-use lexopt::prelude::{Long, Short, ValueExt};
 use validation::benchmark::calibration::{calibration, picture};
 use validation::benchmark::interval::quantile;
 use validation::benchmark::kept::Kept;
 use validation::benchmark::plan::{Plan, Row, Seeds, Size};
 use validation::benchmark::trial::{Trial, baseline, draw};
 use validation::benchmark::{json, run, table};
-use validation::command::conclude;
-
-const HELP: &str = "\
-Worlds in which something is hidden, measured and diagnosed blindly: how often is it found?
-
-Usage: cargo xtask bench diagnosis [--seeds development|release] [--only ROW]... [--sets N] [--quick]
-                                   [--threads N] [--keep FILE] [--json] [--out DIR] [--export DIR]
-
-  --seeds WHICH  random numbers for work on the diagnosis (default), or those of the tables
-  --only ROW     one row; may be given several times
-                 (singles, nulls, unlisted, pairs, one-intruder, vertical, scalars, scalar-nulls,
-                 camera, beds, repeats, apparatus; and next and beyond, which are drawn only where they are
-                 asked for)
-  --sets N       worlds per effect and strength (3); all rows grow with it
-  --quick        a third of singles, nulls and unlisted
-  --threads N    sets diagnosed at a time (one per core)
-  --keep FILE    outcomes so far, one JSON object per line; those that are there are not diagnosed again. They
-                 are of one program: a changed diagnosis wants another file
-  --json         one JSON object, every set in it
-  --out DIR      writes the worlds and tables as results.md and the calibration as calibration.svg to DIR
-  --export DIR   writes the sets of what is asked for to folders in DIR, and diagnoses nothing
-
-Exit status: 0 done, 1 failed, 2 the command line was not understood.
-";
+use validation::command::{STATUS, conclude};
 
 /// Sets whose time is taken on one thread.
 const TIMED: usize = 5;
 
-/// What the command line asks for.
+/// Worlds in which something is hidden, measured and diagnosed blindly: how often is it found?
+#[derive(Parser)]
+#[command(bin_name = "cargo xtask bench diagnosis", max_term_width = 100, after_help = STATUS)]
 struct Wish {
-    seeds: Seeds,
-    size: Size,
-    threads: usize,
+    /// Random numbers for work on the diagnosis (default), or those of the tables
+    #[arg(
+        long,
+        value_name = "WHICH",
+        value_enum,
+        default_value = "development",
+        hide_default_value = true
+    )]
+    seeds: Which,
+    /// One row; may be given several times. `next` and `beyond` are drawn only where they are asked for
+    #[arg(long, value_name = "ROW", value_parser = row)]
+    only: Vec<Row>,
+    /// Worlds per effect and strength (3); all rows grow with it
+    #[arg(long, value_name = "N", value_parser = count)]
+    sets: Option<usize>,
+    /// A third of singles, nulls and unlisted
+    #[arg(long)]
+    quick: bool,
+    /// Sets diagnosed at a time (one per core)
+    #[arg(long, value_name = "N", value_parser = count)]
+    threads: Option<usize>,
+    /// Outcomes so far, one JSON object per line; those that are there are not diagnosed again. They are of one
+    /// program: a changed diagnosis wants another file
+    #[arg(long, value_name = "FILE")]
     keep: Option<PathBuf>,
+    /// One JSON object, every set in it
+    #[arg(long)]
     json: bool,
+    /// Writes the worlds and tables as results.md and the calibration as calibration.svg to DIR
+    #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Writes the sets of what is asked for to folders in DIR, and diagnoses nothing
+    #[arg(long, value_name = "DIR")]
     export: Option<PathBuf>,
 }
 
-fn main() -> ExitCode {
-    conclude(HELP, parse, work)
+#[derive(Clone, Copy, ValueEnum)]
+enum Which {
+    Development,
+    Release,
 }
 
-/// `None` for help.
-fn parse(mut args: Parser) -> Result<Option<Wish>, lexopt::Error> {
-    let (mut seeds, mut size, mut only, mut draws) =
-        (Seeds::Development, Size::full(), Vec::new(), None);
-    let (mut threads, mut json, mut out) = (0, false, None);
-    let (mut keep, mut export) = (None, None);
-    while let Some(arg) = args.next()? {
-        match arg {
-            Long("seeds") => {
-                seeds = args.value()?.parse_with(|name| match name {
-                    "development" => Ok(Seeds::Development),
-                    "release" => Ok(Seeds::Release),
-                    other => Err(format!("there are no seeds `{other}`")),
-                })?;
-            }
-            Long("only") => only.push(args.value()?.parse_with(row)?),
-            Long("sets") => draws = Some(args.value()?.parse_with(count)?),
-            Long("threads") => threads = args.value()?.parse_with(count)?,
-            Long("quick") => size = Size::quick(),
-            Long("keep") => keep = Some(PathBuf::from(args.value()?)),
-            Long("json") => json = true,
-            Long("out") => out = Some(PathBuf::from(args.value()?)),
-            Long("export") => export = Some(PathBuf::from(args.value()?)),
-            Short('h') | Long("help") => return Ok(None),
-            other => return Err(other.unexpected()),
+impl Wish {
+    fn plans(&self) -> Vec<Plan> {
+        let mut size = if self.quick { Size::quick() } else { Size::full() };
+        if !self.only.is_empty() {
+            size.rows.clone_from(&self.only);
         }
+        size.draws = self.sets.unwrap_or(size.draws);
+        size.plans(match self.seeds {
+            Which::Development => Seeds::Development,
+            Which::Release => Seeds::Release,
+        })
     }
-    if !only.is_empty() {
-        size.rows = only;
-    }
-    size.draws = draws.unwrap_or(size.draws);
-    Ok(Some(Wish { seeds, size, threads, keep, json, out, export }))
+}
+
+fn main() -> ExitCode {
+    conclude(work)
 }
 
 fn row(name: &str) -> Result<Row, String> {
@@ -107,7 +98,7 @@ fn count(text: &str) -> Result<usize, String> {
 }
 
 fn work(wish: &Wish, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
-    let plans = wish.size.plans(wish.seeds);
+    let plans = wish.plans();
     if let Some(folder) = &wish.export {
         for (number, plan) in plans.iter().enumerate() {
             let folder = folder.join(format!("{:04}", number + 1));
@@ -138,7 +129,8 @@ fn work(wish: &Wish, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
     let is_plain = |plan: &&Plan| !matches!(plan.row, Row::Beyond | Row::Next);
     let timed: Vec<_> = plans.iter().filter(is_plain).take(TIMED).cloned().collect();
     let kept = wish.keep.as_deref().map(Kept::open).transpose()?;
-    let trials = with_threads(wish.threads, || run(plans, &model, kept.as_ref(), &done))??;
+    let trials =
+        with_threads(wish.threads.unwrap_or(0), || run(plans, &model, kept.as_ref(), &done))??;
     let alone = with_threads(1, || run(timed, &model, None, &|| ()))??;
     let seconds: Vec<f64> = alone.iter().filter_map(Trial::answer).map(|a| a.seconds).collect();
     let bins = calibration(&trials);

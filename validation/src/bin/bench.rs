@@ -5,16 +5,14 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::time::Instant;
 
+use clap::Parser;
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
-use lexopt::Parser;
-use lexopt::prelude::{Long, Short};
 use validation::command::conclude;
 
-const HELP: &str = "\
-Impacts per second on resistive media, on one core and without a log.
-
-Usage: cargo xtask bench resistive
-";
+/// Impacts per second on resistive media, on one core and without a log.
+#[derive(Parser)]
+#[command(bin_name = "cargo xtask bench resistive")]
+struct Nothing {}
 
 /// Impacts of each kind: enough for a second or so of work.
 const IMPACTS: u32 = 4000;
@@ -23,19 +21,10 @@ const IMPACTS: u32 = 4000;
 const REPEATS: usize = 5;
 
 fn main() -> ExitCode {
-    conclude(HELP, parse, bench)
+    conclude(bench)
 }
 
-/// `None` for help: there is nothing to choose.
-fn parse(mut args: Parser) -> Result<Option<()>, lexopt::Error> {
-    match args.next()? {
-        None => Ok(Some(())),
-        Some(Short('h') | Long("help")) => Ok(None),
-        Some(other) => Err(other.unexpected()),
-    }
-}
-
-fn bench((): &(), out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
+fn bench(_: &Nothing, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
     writeln!(
         out,
         "impacts per second on one core, without a log: median of {REPEATS} (least, most)\n"

@@ -6,99 +6,80 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use lexopt::Parser;
-use lexopt::prelude::{Long, Short, Value, ValueExt};
+use clap::{Parser, Subcommand};
+use runner::cache_folder;
 use validation::benchmark::document;
-use validation::command::conclude;
+use validation::command::{STATUS, conclude};
 use validation::speed::lammps::Lammps;
 use validation::speed::plan::{self, Plan};
 use validation::speed::problem::{PROBLEMS, Problem, usual};
 use validation::speed::report;
 use validation::speed::trial::{Extent, Order, Span};
 
-const HELP: &str = "\
-Grain-steps per second of beds under an impact: of the time loop alone, in processes of their own, in turns.
+/// What the task that starts this program takes away.
+const SIMD: &str =
+    "--simd avx2 compiles without AVX-512, into target/avx2 (what the processor has)";
 
-Usage: cargo xtask bench [--problem NAME]... [--peers] [--quick] [--repeats N] [--out DIR] [--cache DIR] [--write]
-
-  --problem NAME  2d-15k, 3d-12k, 3d-50k, 3d-200k, or growth for those in space; steel-25k, steel-50k,
-                  steel-100k; may be given several times (all up to steel-25k)
-  --peers         LAMMPS too, on the same beds, laws and steps, on one core and on two ranks; it is installed
-                  below target/peers, unless PLUNGE_LAMMPS names an lmp; every pair style that it has for the
-                  law is timed, and beside it an lmp that was built for this processor, which
-                  PLUNGE_LAMMPS_NATIVE names
-  --quick         a quarter of the steps, but 100 at least; three repeats
-  --repeats N     how often each is timed (5)
-  --out DIR       where speed.json, speed.md, problems and decks are written (target/bench)
-  --cache DIR     the folder of prepared beds (else $PLUNGE_CACHE, else runs/.cache)
-  --write         the tables to docs/performance.md
-  --simd avx2     compiles without AVX-512, into target/avx2 (what the processor has)
-
-Exit status: 0 done, 1 failed or a peer disagrees, 2 the command line was not understood.
-";
-
-/// What the command line asks for.
-enum Wish {
-    Bench(Bench),
-    /// One trial, for the benchmark itself.
-    Trial(Order),
-}
-
-/// A benchmark.
-struct Bench {
-    problems: Vec<&'static Problem>,
+/// Grain-steps per second of beds under an impact: of the time loop alone, in processes of their own, in turns.
+#[derive(Parser)]
+#[command(bin_name = "cargo xtask bench", max_term_width = 100, disable_help_subcommand = true)]
+#[command(after_help = format!("{SIMD}\n\n{STATUS}"))]
+struct Wish {
+    /// 2d-15k, 3d-12k, 3d-50k, 3d-200k, or growth for those in space; steel-25k, steel-50k, steel-100k; may be given
+    /// several times (all up to steel-25k)
+    #[arg(long = "problem", value_name = "NAME", value_parser = named)]
+    problems: Vec<Named>,
+    /// LAMMPS too, on the same beds, laws and steps, on one core and on two ranks; it is installed below target/peers,
+    /// unless PLUNGE_LAMMPS names an lmp; every pair style that it has for the law is timed, and beside it an lmp that
+    /// was built for this processor, which PLUNGE_LAMMPS_NATIVE names
+    #[arg(long)]
     peers: bool,
-    repeats: usize,
-    shorter: u64,
+    /// A quarter of the steps, but 100 at least; three repeats
+    #[arg(long)]
+    quick: bool,
+    /// How often each is timed (5)
+    #[arg(long, value_name = "N", value_parser = count)]
+    repeats: Option<usize>,
+    /// Where speed.json, speed.md, problems and decks are written
+    #[arg(long, value_name = "DIR", default_value = "target/bench")]
     out: PathBuf,
-    cache: PathBuf,
+    /// The folder of prepared beds (else $PLUNGE_CACHE, else runs/.cache)
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+    /// The tables to docs/performance.md
+    #[arg(long)]
     write: bool,
+    #[command(subcommand)]
+    within: Option<Within>,
 }
+
+/// What the benchmark calls itself for.
+#[derive(Subcommand)]
+enum Within {
+    /// One trial: model, steps of warm-up, steps, threads, and how much of a run
+    #[command(hide = true)]
+    Trial {
+        model: PathBuf,
+        warm_up: u64,
+        steps: u64,
+        threads: usize,
+        extent: String,
+        folder: Option<PathBuf>,
+    },
+}
+
+/// The problems of one name.
+type Named = Vec<&'static Problem>;
 
 fn main() -> ExitCode {
-    conclude(HELP, parse, |wish, out| match wish {
-        Wish::Trial(order) => trial(order, out),
-        Wish::Bench(wish) => bench(wish, out),
+    conclude(|wish: &Wish, out| match &wish.within {
+        Some(within) => trial(within, out),
+        None => bench(wish, out),
     })
 }
 
-/// `None` for help.
-fn parse(mut args: Parser) -> Result<Option<Wish>, lexopt::Error> {
-    let (mut problems, mut peers, mut write) = (Vec::new(), false, false);
-    let (mut repeats, mut shorter) = (None, 1);
-    let (mut out, mut cache) = (PathBuf::from("target/bench"), None);
-    while let Some(arg) = args.next()? {
-        match arg {
-            Value(word) if word == "trial" => return order(&mut args).map(Wish::Trial).map(Some),
-            Long("problem") => problems.extend(args.value()?.parse_with(named)?),
-            Long("peers") => peers = true,
-            Long("quick") => shorter = 4,
-            Long("repeats") => repeats = Some(args.value()?.parse_with(count)?),
-            Long("out") => out = PathBuf::from(args.value()?),
-            Long("cache") => cache = Some(PathBuf::from(args.value()?)),
-            Long("write") => write = true,
-            Short('h') | Long("help") => return Ok(None),
-            other => return Err(other.unexpected()),
-        }
-    }
-    if problems.is_empty() {
-        problems = usual().collect();
-    }
-    let from_environment = || std::env::var_os("PLUNGE_CACHE").filter(|folder| !folder.is_empty());
-    let cache = cache.or_else(|| from_environment().map(PathBuf::from));
-    Ok(Some(Wish::Bench(Bench {
-        problems,
-        peers,
-        repeats: repeats.unwrap_or(if shorter > 1 { 3 } else { 5 }),
-        shorter,
-        out,
-        cache: cache.unwrap_or_else(|| PathBuf::from("runs/.cache")),
-        write,
-    })))
-}
-
 /// The problems that `name` stands for.
-fn named(name: &str) -> Result<Vec<&'static Problem>, String> {
+fn named(name: &str) -> Result<Named, String> {
     if name == "growth" {
         return Ok(PROBLEMS.iter().filter(|problem| problem.name.starts_with("3d")).collect());
     }
@@ -113,25 +94,21 @@ fn count(text: &str) -> Result<usize, String> {
     found.ok_or(format!("`{text}` is no number of 1 to 100"))
 }
 
-/// What a process of the benchmark is told: model, steps of warm-up, steps, threads, and how much of a run.
-fn order(args: &mut Parser) -> Result<Order, lexopt::Error> {
-    let model = PathBuf::from(args.value()?);
-    let mut number = || args.value()?.parse::<u64>();
-    let (warm_up, steps, threads) = (number()?, number()?, number()?);
-    let extent = match args.value()?.string()?.as_str() {
-        "forces" => Extent::Forces,
-        "run" => Extent::Run(PathBuf::from(args.value()?)),
-        _ => Extent::Steps,
+fn trial(within: &Within, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
+    let Within::Trial { model, warm_up, steps, threads, extent, folder } = within;
+    let extent = match (extent.as_str(), folder) {
+        ("forces", None) => Extent::Forces,
+        ("steps", None) => Extent::Steps,
+        ("run", Some(folder)) => Extent::Run(folder.clone()),
+        (other, _) => return Err(format!("`{other}` is no part of a run").into()),
     };
-    Ok(Order { model, span: Span { warm_up, steps }, threads: threads as usize, extent })
-}
-
-fn trial(order: &Order, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
+    let span = Span { warm_up: *warm_up, steps: *steps };
+    let order = Order { model: model.clone(), span, threads: *threads, extent };
     writeln!(out, "{}", serde_json::to_string(&order.here()?)?)?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn bench(wish: &Bench, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
+fn bench(wish: &Wish, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
     let environment = PathBuf::from("target/peers");
     let lammps = match wish.peers {
         true => [Some(Lammps::find_or_install(&environment)?), Lammps::native()?],
@@ -139,11 +116,11 @@ fn bench(wish: &Bench, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> 
     };
     let lammps = lammps.into_iter().flatten().collect();
     let plan = Plan {
-        problems: wish.problems.clone(),
-        repeats: wish.repeats,
-        shorter: wish.shorter,
+        problems: if wish.problems.is_empty() { usual().collect() } else { wish.problems.concat() },
+        repeats: wish.repeats.unwrap_or(if wish.quick { 3 } else { 5 }),
+        shorter: if wish.quick { 4 } else { 1 },
         folder: wish.out.join("problems"),
-        cache: wish.cache.clone(),
+        cache: cache_folder(wish.cache.as_deref()),
         lammps,
     };
     let results = plan::run(&plan, &|what| eprintln!("{what}"))?;

@@ -1,141 +1,89 @@
 //! `cargo xtask validate`: the published results, run again and judged.
 
-#![allow(clippy::print_stdout, reason = "stdout is where a command's result belongs")]
-
 use std::error::Error;
 use std::fs;
-use std::num::NonZero;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+use clap::Parser;
 use engine::parallel::with_threads;
-use lexopt::prelude::{Long, Short, ValueExt};
 use runner::beds::Place;
-use runner::{Elsewhere, Progress, Stage, Watch};
+use runner::{Progress, Stage, Watch, cache_folder};
+use validation::command::{Impacts, conclude};
 use validation::published::{
     Effort, Judged, Laboratory, Missing, ROWS, Row, Verdict, checks_csv, markdown, tally, to_json,
 };
-use validation::{CASES, Case, command, three_shapes};
+use validation::{CASES, Case, three_shapes};
 
-const HELP: &str = "\
-The published results, run again and judged.
-
-Usage: cargo xtask validate [--quick | --full] [--so-far] [--only ID[,ID]...]... [--out DIR]
-                            [--cache DIR] [--threads N] [--on WHERE] [--expect ID=VERDICT[,...]]...
-                            [--list] [--case NAME]...
-
-  --quick      every row at a reduced cost (default): under ten minutes on two cores, if its beds are there
-  --full       what the sources ran: hours; impacts that are there are not run again
-  --so-far     runs no impact: judges those that are there, while others are still being run
-  --only ID    these rows only; may be given several times
-  --out DIR    where validation.json, checks.csv, REPORT.md and figures are written (target/validation)
-  --cache DIR  where beds and impacts are kept (else $PLUNGE_CACHE, else runs/.cache)
-  --threads N  impacts at a time (one per core)
-  --on WHERE   where impacts are run: local (default), slurm or hyperqueue, which are waited for
-  --expect E   instead of failing where a row fails, fails where the verdict of a row is not the expected one,
-               better or worse: ID=VERDICT of every row that is judged, with commas between them
-  --list       the rows, without running them
-  --case NAME  instead, every number of a case with a known answer, as the documents have it; may be
-               given several times
-
+/// What the status means.
+const STATUS: &str = "\
 Exit status: 0 no row fails, 1 one does or could not be run, 2 the command line was not understood. With --expect: 0 every
-verdict is the expected one, 1 one is not.
-";
+verdict is the expected one, 1 one is not.";
 
 /// Time between two lines of progress.
 const EVERY: Duration = Duration::from_secs(10);
 
-/// What the command line asks for.
+/// The published results, run again and judged.
+#[derive(Parser)]
+#[command(bin_name = "cargo xtask validate", max_term_width = 100, after_help = STATUS)]
 struct Wish {
-    effort: Effort,
-    missing: Missing,
-    rows: Vec<&'static Row>,
+    /// Every row at a reduced cost (default): under ten minutes on two cores, if its beds are there
+    #[arg(long = "quick", overrides_with = "full")]
+    _quick: bool,
+    /// What the sources ran: hours; impacts that are there are not run again
+    #[arg(long, overrides_with = "_quick")]
+    full: bool,
+    /// Runs no impact: judges those that are there, while others are still being run
+    #[arg(long)]
+    so_far: bool,
+    /// These rows only, with commas between them; may be given several times
+    #[arg(long, value_name = "ID", value_parser = rows)]
+    only: Vec<Rows>,
+    /// Where validation.json, checks.csv, REPORT.md and figures are written
+    #[arg(long, value_name = "DIR", default_value = "target/validation")]
     out: PathBuf,
-    cache: PathBuf,
-    threads: Option<NonZero<usize>>,
-    elsewhere: Option<Elsewhere>,
-    expected: Vec<(&'static str, Verdict)>,
+    /// Where beds and impacts are kept (else $PLUNGE_CACHE, else runs/.cache)
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+    #[command(flatten)]
+    impacts: Impacts,
+    /// Instead of failing where a row fails, fails where the verdict of a row is not the expected one, better or
+    /// worse: ID=VERDICT of every row that is judged, with commas between them
+    #[arg(long, value_name = "E", value_parser = expected)]
+    expect: Vec<Expected>,
+    /// The rows, without running them
+    #[arg(long)]
     list: bool,
+    /// Instead, every number of a case with a known answer, as the documents have it; may be given several times
+    #[arg(long = "case", value_name = "NAME", value_parser = case)]
     cases: Vec<&'static Case>,
 }
 
-fn main() -> ExitCode {
-    if let Some(status) = command::task() {
-        return status;
-    }
-    let wish = match parse(lexopt::Parser::from_env()) {
-        Ok(Some(wish)) => wish,
-        Ok(None) => {
-            print!("{HELP}");
-            return ExitCode::SUCCESS;
-        }
-        Err(error) => {
-            eprintln!("error: {error}\n\n{HELP}");
-            return ExitCode::from(2);
-        }
-    };
-    if wish.list {
-        for Row { id, title, source, how: [quick, full], .. } in &wish.rows {
-            println!("{id}: {title}\n    {source}\n    quick: {quick}\n    full: {full}");
-        }
-        return ExitCode::SUCCESS;
-    }
-    let done = match &wish.cases[..] {
-        [] => validate(&wish),
-        cases => with_threads(1, || show(cases)).map_err(Box::from),
-    };
-    match done {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::FAILURE,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
-        }
-    }
-}
+type Rows = Vec<&'static Row>;
+type Expected = Vec<(&'static str, Verdict)>;
 
-/// `None` for help.
-fn parse(mut parser: lexopt::Parser) -> Result<Option<Wish>, lexopt::Error> {
-    let cache = std::env::var_os("PLUNGE_CACHE").unwrap_or_else(|| "runs/.cache".into());
-    let mut wish = Wish {
-        effort: Effort::Quick,
-        missing: Missing::Run,
-        rows: Vec::new(),
-        out: "target/validation".into(),
-        cache: cache.into(),
-        threads: None,
-        elsewhere: None,
-        expected: Vec::new(),
-        list: false,
-        cases: Vec::new(),
-    };
-    while let Some(argument) = parser.next()? {
-        match argument {
-            Long("quick") => wish.effort = Effort::Quick,
-            Long("full") => wish.effort = Effort::Full,
-            Long("so-far") => wish.missing = Missing::LeaveOut,
-            Long("only") => wish.rows.extend(parser.value()?.parse_with(rows)?),
-            Long("out") => wish.out = parser.value()?.into(),
-            Long("cache") => wish.cache = parser.value()?.into(),
-            Long("threads") => wish.threads = Some(parser.value()?.parse()?),
-            Long("on") => wish.elsewhere = command::on(&mut parser)?,
-            Long("expect") => wish.expected.extend(parser.value()?.parse_with(expected)?),
-            Long("list") => wish.list = true,
-            Long("case") => wish.cases.push(parser.value()?.parse_with(case)?),
-            Short('h') | Long("help") => return Ok(None),
-            other => return Err(other.unexpected()),
+fn main() -> ExitCode {
+    conclude(|wish: &Wish, out| {
+        let rows = if wish.only.is_empty() { ROWS.to_vec() } else { wish.only.concat() };
+        if wish.list {
+            for Row { id, title, source, how: [quick, full], .. } in &rows {
+                writeln!(out, "{id}: {title}\n    {source}\n    quick: {quick}\n    full: {full}")?;
+            }
+            return Ok(ExitCode::SUCCESS);
         }
-    }
-    if wish.rows.is_empty() {
-        wish.rows = ROWS.to_vec();
-    }
-    Ok(Some(wish))
+        let is_well = match &wish.cases[..] {
+            [] => validate(wish, &rows, out)?,
+            cases => show(cases, out)?,
+        };
+        Ok(if is_well { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    })
 }
 
 /// The rows that `ids` names, with commas between them.
-fn rows(ids: &str) -> Result<Vec<&'static Row>, String> {
+fn rows(ids: &str) -> Result<Rows, String> {
     let find = |id: &str| {
         let row = ROWS.iter().find(|row| row.id.eq_ignore_ascii_case(id)).copied();
         let known = || ROWS.iter().map(|row| row.id).collect::<Vec<_>>().join(", ");
@@ -145,7 +93,7 @@ fn rows(ids: &str) -> Result<Vec<&'static Row>, String> {
 }
 
 /// The verdicts that `list` expects, as in `E9=pass,E14=fail`.
-fn expected(list: &str) -> Result<Vec<(&'static str, Verdict)>, String> {
+fn expected(list: &str) -> Result<Expected, String> {
     let one = |pair: &str| {
         let (id, word) = pair.split_once('=').ok_or(format!("`{pair}` is no ID=VERDICT"))?;
         let verdict = Verdict::ALL.into_iter().find(|verdict| verdict.name() == word.trim());
@@ -165,36 +113,43 @@ fn case(name: &str) -> Result<&'static Case, String> {
 }
 
 /// Runs `cases` and prints their numbers; whether every one is right.
-fn show(cases: &[&Case]) -> bool {
+fn show(cases: &[&Case], out: &mut dyn Write) -> Result<bool, Box<dyn Error>> {
     let mut holds = true;
     for case in cases {
-        println!("## {}\n\n{}\n\n| what | measured | expected |", case.name, case.claim);
-        println!("| --- | --- | --- |");
-        for row in (case.run)() {
-            println!("{}", row.markdown());
+        writeln!(out, "## {}\n\n{}\n\n| what | measured | expected |", case.name, case.claim)?;
+        writeln!(out, "| --- | --- | --- |")?;
+        for row in with_threads(1, case.run)? {
+            writeln!(out, "{}", row.markdown())?;
             holds &= row.holds();
         }
-        println!();
+        writeln!(out)?;
     }
-    holds
+    Ok(holds)
 }
 
 /// Judges the rows and prints the count, then a line of each; whether they are as they should be.
-fn validate(wish: &Wish) -> Result<bool, Box<dyn Error>> {
-    let workers = wish.threads.or(std::thread::available_parallelism().ok());
-    let shapes = three_shapes::Places { out: wish.cache.join("shapes"), cache: wish.cache.clone() };
-    let mut judged = Vec::with_capacity(wish.rows.len());
-    for row in &wish.rows {
+fn validate(
+    wish: &Wish,
+    rows: &[&'static Row],
+    out: &mut dyn Write,
+) -> Result<bool, Box<dyn Error>> {
+    let effort = if wish.full { Effort::Full } else { Effort::Quick };
+    let workers = wish.impacts.threads.or(std::thread::available_parallelism().ok());
+    let cache = cache_folder(wish.cache.as_deref());
+    let shapes = three_shapes::Places { out: cache.join("shapes"), cache: cache.clone() };
+    let expected = wish.expect.concat();
+    let mut judged = Vec::with_capacity(rows.len());
+    for row in rows {
         let start = Instant::now();
         let teller = Teller { row: row.id, said: Mutex::new(None) };
         let laboratory = Laboratory {
-            effort: wish.effort,
-            missing: wish.missing,
+            effort,
+            missing: if wish.so_far { Missing::LeaveOut } else { Missing::Run },
             place: Place {
-                cache: &wish.cache,
+                cache: &cache,
                 workers,
                 watch: &teller,
-                elsewhere: wish.elsewhere.as_ref(),
+                elsewhere: wish.impacts.elsewhere(),
             },
             shapes: shapes.clone(),
             sets: "validation/data".into(),
@@ -206,18 +161,18 @@ fn validate(wish: &Wish) -> Result<bool, Box<dyn Error>> {
         }
         judged.push(one);
         // What is judged so far stays, also where a later row is interrupted.
-        write(&wish.out, &judged, wish.effort)?;
+        write(&wish.out, &judged, effort)?;
     }
-    println!("{}", tally(&judged));
+    writeln!(out, "{}", tally(&judged))?;
     for one in &judged {
-        println!("{:4}{:14} {}", one.row.id, one.verdict(), one.row.title);
+        writeln!(out, "{:4}{:14} {}", one.row.id, one.verdict(), one.row.title)?;
     }
-    println!("{}", wish.out.join("REPORT.md").display());
-    if wish.expected.is_empty() {
+    writeln!(out, "{}", wish.out.join("REPORT.md").display())?;
+    if expected.is_empty() {
         return Ok(judged.iter().all(|one| one.verdict() < Verdict::Fail));
     }
     let found: Vec<_> = judged.iter().map(|one| (one.row.id, one.verdict())).collect();
-    let surprises = surprises(&wish.expected, &found);
+    let surprises = surprises(&expected, &found);
     surprises.iter().for_each(|surprise| eprintln!("error: {surprise}"));
     Ok(surprises.is_empty())
 }

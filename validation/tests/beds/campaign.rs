@@ -1,6 +1,8 @@
 //! Running many impacts: the same records however they are run, and nothing twice.
 
+use std::fs;
 use std::num::NonZero;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
@@ -120,4 +122,38 @@ fn a_campaign_that_was_stopped_goes_on_where_it_was_and_ends_with_the_same_bits(
     let start = Instant::now();
     assert_eq!(bits(&pair.run(&jobs).unwrap()), bits(&expected));
     assert!(start.elapsed().as_secs_f64() < 1.0);
+}
+
+/// Notes what is told.
+#[derive(Default)]
+struct Listener(Mutex<Vec<String>>);
+
+impl Watch for Listener {
+    fn progress(&self, _: &Progress) {}
+    fn warn(&self, message: &str) {
+        self.0.lock().unwrap().push(message.to_owned());
+    }
+    fn wants_to_stop(&self) -> bool {
+        false
+    }
+}
+
+#[test]
+fn a_damaged_record_is_told_once_and_its_impact_is_run_again() {
+    let job = jobs().remove(0);
+    let twice = [job.clone(), job];
+    let (cache, listener) = (tempfile::tempdir().unwrap(), Listener::default());
+    let workers = NonZero::new(1);
+    let place = Place { cache: cache.path(), workers, watch: &listener, elsewhere: None };
+    let expected = place.run(&twice).unwrap();
+    let records = || fs::read_dir(cache.path().join("impacts")).unwrap();
+    let record = records().next().expect("a record").unwrap().path();
+    assert_eq!(records().count(), 1);
+    fs::write(&record, "no record").unwrap();
+    assert_eq!(bits(&place.run(&twice).unwrap()), bits(&expected));
+    place.run(&twice).unwrap();
+    let told = listener.0.into_inner().unwrap();
+    let name = record.file_name().unwrap().to_str().unwrap();
+    assert!(told.len() == 1 && told[0].contains(name), "{told:?}");
+    assert!(told[0].ends_with("the impact is run again"), "{told:?}");
 }

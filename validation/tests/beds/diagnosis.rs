@@ -8,8 +8,9 @@ use measurements::{Condition, Crater, Instrument, Kind, MeasurementSet, Role, Ru
 use serde_json::json;
 use validation::benchmark::beds::{Case, Hidden, Outcome, Prepared, campaign, measure};
 
-use crate::imitation::{Imitation, crater, pushed, standard_normal};
+use crate::imitation::{Imitation, crater, pushed};
 use crate::world;
+use validation::benchmark::chance::normal;
 
 /// On beds that scatter by 5 %, and runs on one bed by `runs`.
 fn outcome(hidden: Hidden, runs: f64) -> Outcome {
@@ -216,10 +217,10 @@ fn pushes(rolling: f64) -> MeasurementSet {
     });
     let mut random = random(1, "pushes");
     let mut read = |name: usize, condition: usize| {
-        let friction = 4.0 * (1.0 + 4.0 * rolling) * libm::exp(0.03 * standard_normal(&mut random));
+        let friction = 4.0 * (1.0 + 4.0 * rolling) * libm::exp(0.03 * normal(&mut random));
         let sample = |at: u32| {
             let at = 1e-3 * f64::from(at);
-            let value = pushed(friction, rolling, at) + 2e-4 * standard_normal(&mut random);
+            let value = pushed(friction, rolling, at) + 2e-4 * normal(&mut random);
             Sample { at, value, sigma: None }
         };
         let samples = (1..=20).map(sample).collect();

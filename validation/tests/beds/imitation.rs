@@ -3,9 +3,9 @@
 
 use configs::engine::bed::random;
 use configs::{BedSource, GrainModel};
-use rand::RngExt;
 use runner::CampaignError;
 use runner::beds::{Impacts, Job, Lie, Outstanding, Record};
+use validation::benchmark::chance::normal;
 
 /// Step of its integration (s).
 const STEP: f64 = 5e-5;
@@ -32,11 +32,6 @@ struct Law {
     friction: f64,
     constant: f64,
     rolling: f64,
-}
-
-pub(crate) fn standard_normal(random: &mut impl RngExt) -> f64 {
-    let radius = (-2.0 * libm::log(1.0 - random.random::<f64>())).sqrt();
-    radius * libm::cos(std::f64::consts::TAU * random.random::<f64>())
 }
 
 /// Force (N) on what is pushed to a depth (m) against `friction` per depth (N/m) and rolling resistance.
@@ -90,7 +85,7 @@ impl Imitation {
     }
 
     fn normal(&self, seed: u64, purpose: &str) -> f64 {
-        standard_normal(&mut random(seed, purpose))
+        normal(&mut random(seed, purpose))
     }
 
     /// A push, which rolling resistance hinders the more the deeper it is.

@@ -10,7 +10,8 @@ use rand_pcg::Pcg64;
 use resistive::{Impact, Recorder, ResistanceLaw, Surroundings, Trajectory};
 
 use super::rig::{BED, DIAMETER, MASS, launched, law};
-use super::sets::{condition, diagnosed, normal, of_spheres};
+use super::sets::{condition, diagnosed, of_spheres};
+use validation::benchmark::chance::normal;
 
 const WATER: Fluid = Fluid { density: 998.0, viscosity: 1.0e-3 };
 

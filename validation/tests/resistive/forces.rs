@@ -19,7 +19,7 @@ use rand_pcg::Pcg64;
 use resistive::{Driven, Impact, Recorder};
 
 use super::rig::{BED, law};
-use super::sets::normal;
+use validation::benchmark::chance::normal;
 
 /// Sizes (m) and speeds (m/s) of the plates.
 const DIAMETERS: [f64; 3] = [0.03, 0.045, 0.06];

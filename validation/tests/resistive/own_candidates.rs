@@ -10,8 +10,8 @@ use diagnosis::verdict::Verdict;
 use measurements::{
     Bed, Condition, FinalDefinition, Geometry, Instrument, Kind, MeasurementSet, Run,
 };
-use rand::RngExt;
 use rand_pcg::Pcg64;
+use validation::benchmark::chance::normal;
 
 use super::late_drag;
 
@@ -68,11 +68,6 @@ fn empty_set() -> MeasurementSet {
             conditions,
         )
     }
-}
-
-fn normal(random: &mut Pcg64) -> f64 {
-    let radius = (-2.0 * libm::log(1.0 - random.random::<f64>())).sqrt();
-    radius * libm::cos(std::f64::consts::TAU * random.random::<f64>())
 }
 
 /// What the model with the hidden effect gives, in beds that differ by 2 %.

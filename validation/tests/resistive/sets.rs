@@ -1,7 +1,5 @@
 //! Sets of a sphere that falls into the bed of the rig, and their diagnosis.
 
-use std::f64::consts::PI;
-
 use configs::{LoadOptions, Model, ModelSource, find_shipped};
 use diagnosis::bench::{Bench, DEFAULT_SEED};
 use diagnosis::diagnose::diagnose;
@@ -12,9 +10,9 @@ use measurements::{
     Bed, Condition, ContradictionKind, Geometry, Instrument, Kind, MeasurementSet, Run, Sample,
     StopDefinition,
 };
-use rand::RngExt;
 use rand_pcg::Pcg64;
 use resistive::Impact;
+use validation::benchmark::chance::normal;
 
 use super::rig::{BED, DIAMETER, MASS, law, sphere};
 
@@ -56,12 +54,6 @@ pub(crate) struct Reader {
 /// Straight down at `speed` (m/s).
 pub(crate) fn condition(speed: f64) -> Condition {
     Condition::straight_down(format!("v{speed}"), ("sphere", DIAMETER, MASS), speed)
-}
-
-/// A normal number (Box & Muller).
-pub(crate) fn normal(random: &mut Pcg64) -> f64 {
-    let [a, b] = [(); 2].map(|()| random.random::<f64>());
-    (-2.0 * libm::log(1.0 - a)).sqrt() * libm::cos(2.0 * PI * b)
 }
 
 /// A set without runs.

@@ -11,7 +11,8 @@ use rand_pcg::Pcg64;
 use resistive::{Impact, State, Trajectory};
 
 use super::rig::{BED, law};
-use super::sets::{self, diagnosed_from, normal, of_spheres};
+use super::sets::{self, diagnosed_from, of_spheres};
+use validation::benchmark::chance::normal;
 
 const LENGTH: f64 = 0.15;
 const DIAMETER: f64 = 6.35e-3;

@@ -5,6 +5,7 @@ use measurements::{
 };
 use rand::RngExt;
 use rand_pcg::Pcg64;
+use validation::benchmark::chance::normal;
 
 use crate::world::{Effect, GRAVITY, Impact, Setting, TRUTH};
 
@@ -169,9 +170,4 @@ fn condition(at: usize, setting: &Setting, role: Role) -> Condition {
             setting.speed,
         )
     }
-}
-
-pub(crate) fn normal(random: &mut Pcg64) -> f64 {
-    let radius = (-2.0 * libm::log(1.0 - random.random::<f64>())).sqrt();
-    radius * libm::cos(std::f64::consts::TAU * random.random::<f64>())
 }

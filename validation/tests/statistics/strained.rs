@@ -9,8 +9,9 @@ use measurements::{Condition, Frame, Instrument, MeasurementSet, Role, Run};
 use rand_pcg::Pcg64;
 use validation::benchmark::trial::baseline;
 
-use crate::laboratory::{Laboratory, normal};
+use crate::laboratory::Laboratory;
 use crate::world::{Effect, GRAVITY, Setting};
+use validation::benchmark::chance::normal;
 
 /// Four bodies at four speeds and three angles.
 fn laboratory(effect: Effect, amplitude: f64) -> Laboratory {

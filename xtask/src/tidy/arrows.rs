@@ -58,7 +58,7 @@ const ONLY: [(&str, &[&str]); 47] = [
     ("argmin-math", &["diagnosis", "validation"]),
     ("arrayvec", &["engine"]),
     ("calamine", &["exchange"]),
-    ("clap", &["plunge"]),
+    ("clap", &["plunge", "validation"]),
     ("clap_complete", &["plunge"]),
     ("clap_mangen", &["plunge"]),
     ("comfy-table", &["plunge"]),
@@ -72,7 +72,7 @@ const ONLY: [(&str, &[&str]); 47] = [
     ("indicatif", &["plunge"]),
     ("jsonschema", &["fixtures"]),
     ("levenberg-marquardt", &["diagnosis"]),
-    ("lexopt", &["validation", "xtask"]),
+    ("lexopt", &["xtask"]),
     ("mcap", &["engine", "exchange"]),
     // The fits of `diagnosis` speak the version that `levenberg-marquardt` is built on.
     ("nalgebra", &["engine", "resistive", "measurements", "diagnosis", "validation"]),

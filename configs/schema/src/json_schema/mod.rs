@@ -13,7 +13,7 @@ mod variation;
 
 pub use gathered::{Format, Gathered};
 pub use model::{loosened, model, read_model};
-pub use variation::without_each_key;
+pub use variation::asked;
 
 /// The comment that tells an editor where the schema of a file stands.
 #[must_use]

@@ -5,28 +5,20 @@ use std::path::Path;
 use serde_json::{Map, Value, json};
 
 use super::probes;
-use super::variation::without_each_key;
-use super::{Format, Gathered};
-use crate::diagnostics::Sources;
-use crate::document::{self, Table};
+use super::{Format, Gathered, asked};
 use crate::read::{self, DataFolder, KEYS_OF_PARAMETER, PARAMETERS};
-use crate::reader::{Asked, FileKind, Reader};
+use crate::reader::{Asked, FileKind, TableReader};
 
 /// The schema of a model file.
 #[must_use]
 pub fn model() -> Value {
     let (texts, whole) = probes::models();
     let mut gathered = Gathered::new(format());
-    for (at, text) in texts.into_iter().enumerate() {
-        let mut sources = Sources::default();
-        let id = sources.add("model.toml", text);
-        let Ok(root) = document::parse(&sources, id) else { continue };
-        gathered.add(&asked(&sources, &root, Path::new(".")));
-        if at < whole {
-            for less in without_each_key(&root, &|key| key == "parameters") {
-                gathered.add(&asked(&sources, &less, Path::new(".")));
-            }
-        }
+    let is_whole = |key: &str| key == "parameters";
+    let read = reading(Path::new("."));
+    for (at, text) in texts.iter().enumerate() {
+        let gaps: Option<&dyn Fn(&str) -> bool> = (at < whole).then_some(&is_whole);
+        asked((FileKind::Model, &read), text, gaps).iter().for_each(|asked| gathered.add(asked));
     }
     gathered.schema()
 }
@@ -34,18 +26,11 @@ pub fn model() -> Value {
 /// What a reader asks of the model `text`, whose data files lie in `folder`; nothing where it is no TOML.
 #[must_use]
 pub fn read_model(text: &str, folder: &Path) -> Asked {
-    let mut sources = Sources::default();
-    let id = sources.add("model.toml", text);
-    match document::parse(&sources, id) {
-        Ok(root) => asked(&sources, &root, folder),
-        Err(_) => Asked::default(),
-    }
+    asked((FileKind::Model, &reading(folder)), text, None).pop().unwrap_or_default()
 }
 
-fn asked(sources: &Sources, root: &Table, folder: &Path) -> Asked {
-    let reader = Reader::noting(sources, FileKind::Model);
-    let _ = read::model(reader.root(root), &DataFolder { folder, allow_paths: &[], known: None });
-    reader.into_asked()
+fn reading(folder: &Path) -> impl Fn(TableReader<'_>) {
+    move |root| drop(read::model(root, &DataFolder { folder, allow_paths: &[], known: None }))
 }
 
 fn format() -> Format {

@@ -5,8 +5,8 @@ mod faller;
 mod log;
 mod summary;
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::{fs, io};
 
 use configs::engine::checkpoint::write_whole;
 use configs::engine::record::{GRAIN_LOG, RUN_LOG};
@@ -18,6 +18,7 @@ use super::samples::samples;
 use super::{DUMP, FACTS, INTRUDER_TABLE};
 use crate::Stop;
 use crate::run_files::RunFiles;
+use crate::staging::Staging;
 
 pub use error::ImportError;
 use faller::Faller;
@@ -51,52 +52,29 @@ pub fn import(folder: &Path, log: &Path, stop: Stop<'_>) -> Result<Imported, Imp
     let samples = samples(&path, &read(&path)?)?;
     let dump = Dump::open(&folder.join(DUMP), facts.space(), facts.gravity_m_per_s2)?;
     let files = RunFiles::of(log);
-    let staging = Staging::beside(&files.log)?;
+    let partial = files.log.with_added_extension("partial");
+    let staging = Staging::at(partial.clone()).map_err(|source| ImportError::Io {
+        path: partial,
+        doing: "make",
+        source,
+    })?;
     let turned = faller.turned(&samples);
-    let frames = log::write(&facts, &faller, &turned, dump, (&staging.0, stop))?;
+    let frames = log::write(&facts, &faller, &turned, dump, (staging.path(), stop))?;
     let summary = summary::of(&facts, &faller, &turned, folder);
-    staging.hand_over(&files, &summary)?;
+    let text = format!("{:#}\n", serde_json::json!(summary));
+    write_whole(&files.summary, text.as_bytes())
+        .map_err(|source| refused(&files.summary, source))?;
+    // The log comes last: where it is, all is.
+    for (name, to) in [(GRAIN_LOG, &files.grains), (RUN_LOG, &files.log)] {
+        staging.hand_over(name, to).map_err(|source| refused(to, source))?;
+    }
     Ok(Imported { summary, files, samples: samples.len(), frames })
+}
+
+fn refused(path: &Path, source: io::Error) -> ImportError {
+    ImportError::Io { path: path.to_owned(), doing: "write", source }
 }
 
 fn read(path: &Path) -> Result<String, ImportError> {
     fs::read_to_string(path).map_err(|source| ImportError::io(path, "read", source))
-}
-
-/// A folder that takes the logs until they are whole, and goes with this.
-struct Staging(PathBuf);
-
-impl Staging {
-    fn beside(log: &Path) -> Result<Self, ImportError> {
-        let mut name = log.file_name().unwrap_or_default().to_owned();
-        name.push(".partial");
-        let folder = log.with_file_name(name);
-        fs::create_dir_all(&folder).map_err(|source| ImportError::Io {
-            path: folder.clone(),
-            doing: "make",
-            source,
-        })?;
-        Ok(Self(folder))
-    }
-
-    /// Gives the files their names, the log last.
-    fn hand_over(self, files: &RunFiles, summary: &Summary) -> Result<(), ImportError> {
-        let text = format!("{:#}\n", serde_json::json!(summary));
-        let refused = |path: &Path| {
-            let path = path.to_owned();
-            move |source| ImportError::Io { path, doing: "write", source }
-        };
-        write_whole(&files.summary, text.as_bytes()).map_err(refused(&files.summary))?;
-        for (name, to) in [(GRAIN_LOG, &files.grains), (RUN_LOG, &files.log)] {
-            fs::rename(self.0.join(name), to).map_err(refused(to))?;
-        }
-        Ok(())
-    }
-}
-
-impl Drop for Staging {
-    fn drop(&mut self) {
-        // What stays behind is called partial, and the next import takes its place.
-        let _ = fs::remove_dir_all(&self.0);
-    }
 }

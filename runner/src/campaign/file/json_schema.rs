@@ -2,12 +2,15 @@
 
 use std::path::Path;
 
-use configs::json_schema::{Format, Gathered, loosened, model, without_each_key};
-use configs::reader::{Asked, FileKind, Reader};
-use configs::{Sources, document};
+use configs::json_schema::{Format, Gathered, asked, loosened, model};
+use configs::reader::{Asked, FileKind, TableReader};
 use serde_json::{Value, json};
 
 use super::read::{self, AXES, POINTS_ONE_BY_ONE, RANGES, SETTINGS};
+
+/// What is read, and by what.
+const READER: (FileKind, &dyn Fn(TableReader<'_>)) =
+    (FileKind::Campaign, &|root| drop(read::campaign(root, Path::new("."), &[])));
 
 /// A campaign with all that one can have.
 const PROBE: &str = "
@@ -31,29 +34,14 @@ seed = 1
 pub fn campaign() -> Value {
     let model = model();
     let mut gathered = Gathered::new(format(&model));
-    let mut sources = Sources::default();
-    let id = sources.add("campaign.toml", PROBE);
-    if let Ok(root) = document::parse(&sources, id) {
-        gathered.add(&asked(&sources, &root));
-        for less in without_each_key(&root, &|_| false) {
-            gathered.add(&asked(&sources, &less));
-        }
-    }
+    asked(READER, PROBE, Some(&|_| false)).iter().for_each(|asked| gathered.add(asked));
     gathered.schema()
 }
 
 /// What a reader asks of the text of a campaign; nothing where it is no TOML.
 #[must_use]
 pub fn read_campaign(text: &str) -> Asked {
-    let mut sources = Sources::default();
-    let id = sources.add("campaign.toml", text);
-    document::parse(&sources, id).map(|root| asked(&sources, &root)).unwrap_or_default()
-}
-
-fn asked(sources: &Sources, root: &document::Table) -> Asked {
-    let reader = Reader::noting(sources, FileKind::Campaign);
-    let _ = read::campaign(reader.root(root), Path::new("."), &[]);
-    reader.into_asked()
+    asked(READER, text, None).pop().unwrap_or_default()
 }
 
 fn format(model: &Value) -> Format {

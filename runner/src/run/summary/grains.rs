@@ -212,12 +212,7 @@ impl Summary {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             model_hash: model.hash(),
             medium: model.medium.kind().to_owned(),
-            impact: ImpactSummary {
-                speed_m_per_s: condition.speed,
-                angle_deg: condition.angle_deg(),
-                x_m: grains.start_x(condition),
-                position_index: condition.position_index,
-            },
+            impact: ImpactSummary::new(condition, grains.start_x(condition)),
             stop,
             energy: EnergySummary {
                 initial,

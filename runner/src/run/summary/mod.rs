@@ -7,6 +7,7 @@ mod shares;
 
 use std::collections::BTreeMap;
 
+use configs::Condition;
 use engine::ledger::{ChannelKind, Ledger, TermKind};
 use serde::{Deserialize, Serialize};
 
@@ -60,6 +61,19 @@ pub struct ImpactSummary {
     pub x_m: f64,
     /// Place of this start among those of the same speed and angle.
     pub position_index: usize,
+}
+
+impl ImpactSummary {
+    /// Of `condition`, which starts at `x` along the bed (m).
+    #[must_use]
+    pub fn new(condition: &Condition, x: f64) -> Self {
+        Self {
+            speed_m_per_s: condition.speed,
+            angle_deg: condition.angle_deg(),
+            x_m: x,
+            position_index: condition.position_index,
+        }
+    }
 }
 
 /// The force along the way of a push: means over equal parts of the depth, from the surface down. `torque_y` is

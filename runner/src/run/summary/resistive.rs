@@ -297,12 +297,7 @@ impl Summary {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             model_hash: model.hash(),
             medium: model.medium.kind().to_owned(),
-            impact: ImpactSummary {
-                speed_m_per_s: condition.speed,
-                angle_deg: condition.angle_deg(),
-                x_m: 0.0,
-                position_index: condition.position_index,
-            },
+            impact: ImpactSummary::new(condition, 0.0),
             stop: ended.stop(),
             energy: ended.energy(scale),
             bed: None,

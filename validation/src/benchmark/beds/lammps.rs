@@ -15,9 +15,10 @@ use rand::RngExt;
 use rayon::prelude::*;
 use runner::beds::{Lie, Record, STOPPED};
 
+use super::super::chance::normal;
 use super::hidden::{HEAVIER, Hidden};
 use super::prepared::{DAMPED, Prepared, ROUGH, SMOOTH, SPREAD, UNROLLING};
-use super::world::{Errors, SEEDS, normal, seen};
+use super::world::{Errors, SEEDS, seen};
 use crate::speed::SpeedError;
 use crate::speed::lammps::Lammps;
 

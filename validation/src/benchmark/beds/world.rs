@@ -7,9 +7,9 @@ use measurements::{
     Bed, Condition, FinalDefinition, Frame, Geometry, Instrument, Kind, MeasurementSet, Role, Run,
     StatedBed, StopDefinition,
 };
-use rand::Rng;
 use runner::beds::{Impacts, Lie, Record};
 
+use super::super::chance::normal;
 use diagnosis::beds::observables::{at, depth_at_contact};
 use diagnosis::beds::{BedError, Stand, Variation};
 
@@ -190,11 +190,4 @@ pub(super) fn seen(
         frames: seen.collect(),
         ..Run::new(format!("r{number:03}"), condition)
     }
-}
-
-/// A normal number, as in [`diagnosis::random`], from random numbers of the world's own.
-pub(super) fn normal(random: &mut impl Rng) -> f64 {
-    use rand::RngExt;
-    let radius = (-2.0 * libm::log(1.0 - random.random::<f64>())).sqrt();
-    radius * libm::cos(std::f64::consts::TAU * random.random::<f64>())
 }
