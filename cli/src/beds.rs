@@ -36,8 +36,8 @@ pub(crate) struct Beds {
     /// Print which impacts would be run, and how long they would take; run nothing.
     #[arg(long)]
     pub(crate) plan: bool,
-    /// Of other commands; what has ended is in the cache here.
-    #[arg(long, hide = true)]
+    /// Go on from impacts that have ended: the cache keeps them, and they are taken from it without this flag too.
+    #[arg(long)]
     resume: bool,
     /// Make this candidate a parameter of the model: its change is fitted, not ranked. Repeatable.
     #[arg(long = "free", value_name = "CANDIDATE")]
@@ -51,16 +51,6 @@ pub(crate) struct Beds {
 }
 
 impl Beds {
-    /// Refuses `--resume`: an impact is kept once it has ended, and not before.
-    pub(crate) fn refuse_resume(&self) -> CommandResult {
-        match self.resume {
-            true => Err(CommandError::bad_input(
-                "--resume is of `plunge run`; impacts that have ended are kept, and the same command goes on with the others",
-            )),
-            false => Ok(()),
-        }
-    }
-
     /// The first given flag that says how impacts on beds are run or which candidates they are run for.
     pub(crate) fn flag_of_impacts(&self) -> Option<&'static str> {
         self.flag_of_ranking().or(self.on.scheduler().is_some().then_some("--on"))

@@ -40,7 +40,6 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> CommandResult {
     let flags = &args.flags;
-    args.beds.refuse_resume()?;
     table_file::refuse(&args.first)?;
     args.second.iter().try_for_each(|second| table_file::refuse(second))?;
     match (compare_runs::what_is(&args.first), &args.second) {

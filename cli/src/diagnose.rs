@@ -46,7 +46,6 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> CommandResult {
     let flags = &args.flags;
-    args.beds.refuse_resume()?;
     table_file::refuse(&args.set)?;
     let measured = flags.measured(&args.set, args.model.as_slice())?;
     let models = flags.models(args.model.as_slice(), &measured)?;

@@ -327,15 +327,3 @@ fn a_candidate_in_the_model_is_listed_ranked_and_made_a_part_of_it() {
     let again = ["compare", text(&set), "--model", "with.toml", "--json", "--quiet"];
     assert!(relative(&json(here, &again)["models"][0], "fit") < 0.036);
 }
-
-#[test]
-fn what_only_a_run_takes_up_is_refused_with_why() {
-    let here = tempfile::tempdir().unwrap();
-    let set = shipped("s1-tables-vertical");
-    for command in ["compare", "diagnose"] {
-        let output = plunge(here.path(), &[command, text(&set), "--resume"]);
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{told}");
-        assert!(told.contains("the same command goes on"), "{told}");
-    }
-}
