@@ -90,7 +90,7 @@ pub enum Row {
 }
 
 /// Which random numbers a benchmark is drawn with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Seeds {
     /// For work on the diagnosis.
     Development,

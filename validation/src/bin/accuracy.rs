@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use clap::{Parser, ValueEnum};
+use clap::{Parser, value_parser};
 use engine::parallel::with_threads;
 use validation::benchmark::calibration::{calibration, picture};
 use validation::benchmark::interval::quantile;
@@ -24,27 +24,21 @@ const TIMED: usize = 5;
 #[derive(Parser)]
 #[command(bin_name = "cargo xtask bench diagnosis", max_term_width = 100, after_help = STATUS)]
 struct Wish {
-    /// Random numbers for work on the diagnosis (default), or those of the tables
-    #[arg(
-        long,
-        value_name = "WHICH",
-        value_enum,
-        default_value = "development",
-        hide_default_value = true
-    )]
-    seeds: Which,
+    /// Which random numbers
+    #[arg(long, value_name = "WHICH", value_enum, default_value = "development")]
+    seeds: Seeds,
     /// One row; may be given several times. `next` and `beyond` are drawn only where they are asked for
     #[arg(long, value_name = "ROW", value_parser = row)]
     only: Vec<Row>,
     /// Worlds per effect and strength (3); all rows grow with it
-    #[arg(long, value_name = "N", value_parser = count)]
-    sets: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1000))]
+    sets: Option<u16>,
     /// A third of singles, nulls and unlisted
     #[arg(long)]
     quick: bool,
     /// Sets diagnosed at a time (one per core)
-    #[arg(long, value_name = "N", value_parser = count)]
-    threads: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1000))]
+    threads: Option<u16>,
     /// Outcomes so far, one JSON object per line; those that are there are not diagnosed again. They are of one
     /// program: a changed diagnosis wants another file
     #[arg(long, value_name = "FILE")]
@@ -60,23 +54,14 @@ struct Wish {
     export: Option<PathBuf>,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum Which {
-    Development,
-    Release,
-}
-
 impl Wish {
     fn plans(&self) -> Vec<Plan> {
         let mut size = if self.quick { Size::quick() } else { Size::full() };
         if !self.only.is_empty() {
             size.rows.clone_from(&self.only);
         }
-        size.draws = self.sets.unwrap_or(size.draws);
-        size.plans(match self.seeds {
-            Which::Development => Seeds::Development,
-            Which::Release => Seeds::Release,
-        })
+        size.draws = self.sets.map_or(size.draws, usize::from);
+        size.plans(self.seeds)
     }
 }
 
@@ -88,13 +73,6 @@ fn row(name: &str) -> Result<Row, String> {
     let row = Row::all().find(|row| row.name() == name);
     let known = || Row::all().map(Row::name).collect::<Vec<_>>().join(", ");
     row.ok_or_else(|| format!("no row is called `{name}`; there are {}", known()))
-}
-
-fn count(text: &str) -> Result<usize, String> {
-    text.parse()
-        .ok()
-        .filter(|n| (1..=1000).contains(n))
-        .ok_or(format!("`{text}` is no number of 1 to 1000"))
 }
 
 fn work(wish: &Wish, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
@@ -129,8 +107,9 @@ fn work(wish: &Wish, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
     let is_plain = |plan: &&Plan| !matches!(plan.row, Row::Beyond | Row::Next);
     let timed: Vec<_> = plans.iter().filter(is_plain).take(TIMED).cloned().collect();
     let kept = wish.keep.as_deref().map(Kept::open).transpose()?;
-    let trials =
-        with_threads(wish.threads.unwrap_or(0), || run(plans, &model, kept.as_ref(), &done))??;
+    let trials = with_threads(wish.threads.map_or(0, usize::from), || {
+        run(plans, &model, kept.as_ref(), &done)
+    })??;
     let alone = with_threads(1, || run(timed, &model, None, &|| ()))??;
     let seconds: Vec<f64> = alone.iter().filter_map(Trial::answer).map(|a| a.seconds).collect();
     let bins = calibration(&trials);

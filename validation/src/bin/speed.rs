@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{Parser, Subcommand, value_parser};
 use runner::cache_folder;
 use validation::benchmark::document;
 use validation::command::{STATUS, conclude};
@@ -38,8 +38,8 @@ struct Wish {
     #[arg(long)]
     quick: bool,
     /// How often each is timed (5)
-    #[arg(long, value_name = "N", value_parser = count)]
-    repeats: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=100))]
+    repeats: Option<u16>,
     /// Where speed.json, speed.md, problems and decks are written
     #[arg(long, value_name = "DIR", default_value = "target/bench")]
     out: PathBuf,
@@ -89,11 +89,6 @@ fn named(name: &str) -> Result<Named, String> {
     problem.map(|problem| vec![problem]).ok_or_else(unknown)
 }
 
-fn count(text: &str) -> Result<usize, String> {
-    let found = text.parse().ok().filter(|n| (1..=100).contains(n));
-    found.ok_or(format!("`{text}` is no number of 1 to 100"))
-}
-
 fn trial(within: &Within, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
     let Within::Trial { model, warm_up, steps, threads, extent, folder } = within;
     let extent = match (extent.as_str(), folder) {
@@ -117,7 +112,7 @@ fn bench(wish: &Wish, out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
     let lammps = lammps.into_iter().flatten().collect();
     let plan = Plan {
         problems: if wish.problems.is_empty() { usual().collect() } else { wish.problems.concat() },
-        repeats: wish.repeats.unwrap_or(if wish.quick { 3 } else { 5 }),
+        repeats: wish.repeats.map_or(if wish.quick { 3 } else { 5 }, usize::from),
         shorter: if wish.quick { 4 } else { 1 },
         folder: wish.out.join("problems"),
         cache: cache_folder(wish.cache.as_deref()),
