@@ -31,9 +31,9 @@ pub struct Size {
 }
 
 impl Default for Size {
-    /// Eighty sets: three minutes on two cores for 16 conditions.
+    /// About forty sets: three minutes on two cores for 16 conditions.
     fn default() -> Self {
-        Self { others: 20, listed: 40 }
+        Self { others: 8, listed: 20 }
     }
 }
 
