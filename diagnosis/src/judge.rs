@@ -204,9 +204,9 @@ impl Judge<'_> {
         self.leader.noise.sessions.gain >= SEEN
     }
 
-    /// Whether the best effect is not likelier than a force of any form, by far where it leaves a part of the error or few
-    /// conditions show it: then it is only the nearest of the listed effects. Effects that are not told apart are several
-    /// forms themselves; and what takes most of a clear error is there, whatever is left.
+    /// Whether the best effect is only the nearest of the listed effects: a force of any form is about as likely. The odds have
+    /// to be larger if the effect leaves a part of the error, or if few conditions show it. Otherwise, effects that are not
+    /// told apart need no odds, since they are several forms themselves, nor does an effect that takes most of a clear error.
     fn is_one_of_many(&self, p: Option<f64>, held_out: &HeldOut) -> Result<bool, BenchError> {
         let is_doubtful =
             p.is_some_and(|p| p <= DOUBTFUL) || held_out.leaves_more_than_noise() == Some(true);

@@ -16,8 +16,8 @@ pub(crate) fn noise_floor(observed: &Observed, conditions: &[usize]) -> Errors {
     sums.errors()
 }
 
-/// Standard error of means of measurements less those of impacts, by the weights of `fitted`, over those of `conditions` that
-/// it is fitted to.
+/// Standard error of the differences between means of measurements and means of impacts, by the weights of `fitted`, over those
+/// of `conditions` that it is fitted to.
 pub(crate) fn floor_of_both(observed: &Observed, fitted: &Fitted, conditions: &[usize]) -> Errors {
     let mut sums = Sums::default();
     for (condition, weight) in observed.fit.iter().zip(&fitted.weights) {
@@ -29,7 +29,8 @@ pub(crate) fn floor_of_both(observed: &Observed, fitted: &Fitted, conditions: &[
     sums.errors()
 }
 
-/// Standard error of each number of the mean of the runs of a condition, likewise.
+/// Standard error of each number of the mean of the runs of a condition, from their scatter; of a reading, where there is one
+/// run.
 pub(crate) fn standard_errors(observed: &ObservedCondition) -> DVector<f64> {
     let runs = observed.runs.len();
     if runs > 1 {

@@ -34,8 +34,8 @@ const WRONG: f64 = 1e-3;
 /// either.
 const UNEVEN: f64 = 1.5;
 
-/// An offset of all runs alike above this (m) and above what may be from a mean surface is an error; below, a diagnosis takes it into account as that of the zero of
-/// depth.
+/// An offset of all runs alike above this (m) is an error, unless depths may count from a mean surface that lies so far below
+/// the first grains; below, a diagnosis takes it into account as that of the zero of depth.
 const WRONG_ALIKE: f64 = 4e-3;
 
 /// Share of a frame's time, and so of the way in it, that a clock may be off: contact falls between frames.
