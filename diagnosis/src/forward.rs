@@ -234,7 +234,7 @@ pub struct Prior {
 pub type Form = Vec<(&'static str, f64)>;
 
 /// An effect that could be added to a model.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Candidate {
     /// kebab-case; that of an effect in several forms is the same for all.
     pub id: String,

@@ -1,7 +1,5 @@
 //! The ranking as a diagnosis shows it: every effect, and why some have no place.
 
-use std::collections::BTreeMap;
-
 use serde_json::{Map, Value, json};
 
 use crate::bench::Bench;
@@ -61,24 +59,7 @@ pub(crate) fn ranked(bench: &Bench<'_>, ranking: Option<&Ranking>) -> Vec<Ranked
         })
         .map(|index| {
             let (status, note) = why_not(&candidates[index], ranking, index);
-            RankedEffect {
-                id: candidates[index].id.clone(),
-                form: BTreeMap::new(),
-                q: None,
-                se: None,
-                at_bound: None,
-                usual_range: candidates[index].usual,
-                unusual: false,
-                unit: candidates[index].unit.clone(),
-                delta: None,
-                predicted_top1: None,
-                status,
-                testable: status == Status::NotIntegrated,
-                detection_limit: None,
-                parameters: Map::new(),
-                note,
-                point: None,
-            }
+            RankedEffect::not_ranked(&candidates[index], status, note)
         });
     list.extend(not_ranked);
     list

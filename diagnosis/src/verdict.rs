@@ -9,7 +9,7 @@ use crate::added_force::AddedForce;
 use crate::bench::Fitted;
 use crate::between::Between;
 use crate::fit::Fit;
-use crate::forward::{Bound, Forward, ParameterKind};
+use crate::forward::{Bound, Candidate, Forward, ParameterKind};
 use crate::held_out::HeldOut;
 use crate::missing_force::MissingForce;
 use crate::rounding::{six_digits, six_digits_or_null};
@@ -48,6 +48,12 @@ impl Verdict {
             self,
             Self::NothingDetected | Self::ExplainedByApparatus | Self::ExplainedByPreparation
         )
+    }
+
+    /// Whether it names effects.
+    #[must_use]
+    pub fn names_effects(self) -> bool {
+        matches!(self, Self::Supported | Self::NotSeparable | Self::Pair)
     }
 }
 
@@ -333,6 +339,30 @@ impl ApparatusError {
     }
 }
 
+impl RankedEffect {
+    /// That of `candidate`, which was not ranked because of `note`.
+    pub(crate) fn not_ranked(candidate: &Candidate, status: Status, note: String) -> Self {
+        Self {
+            id: candidate.id.clone(),
+            form: BTreeMap::new(),
+            q: None,
+            se: None,
+            at_bound: None,
+            usual_range: candidate.usual,
+            unusual: false,
+            unit: candidate.unit.clone(),
+            delta: None,
+            predicted_top1: None,
+            status,
+            testable: status == Status::NotIntegrated,
+            detection_limit: None,
+            parameters: Map::new(),
+            note,
+            point: None,
+        }
+    }
+}
+
 /// What remains.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Unexplained {
@@ -387,6 +417,21 @@ impl Diagnosis {
         }
     }
 
+    /// Has a diagnosis that names something list the effects that could not be tested: they are not excluded.
+    pub(crate) fn tell_untested(&mut self) {
+        let is_untested = |effect: &&RankedEffect| effect.status == Status::NotTestable;
+        let ids = self.ranking.iter().filter(is_untested).map(|effect| effect.id.as_str());
+        let untested: Vec<&str> = ids.collect();
+        if untested.is_empty() || !self.verdict.names_effects() {
+            return;
+        }
+        if 2 * untested.len() >= self.ranking.len() {
+            self.strength_reasons.push(StrengthReason::FewTested);
+        }
+        let names = untested.join(", ");
+        self.warnings.push(format!("not tested, and so not excluded: {names}"));
+    }
+
     /// Whether the verdict says that the model lacks an effect.
     #[must_use]
     pub fn is_something_missing(&self) -> bool {
@@ -406,5 +451,58 @@ impl Diagnosis {
     /// Never for a diagnosis that this crate made.
     pub fn to_json(&self) -> serde_json::Result<Value> {
         serde_json::to_value(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error_unit::Unit;
+    use crate::held_out::LeftOut;
+
+    fn effects(statuses: &[Status]) -> Vec<RankedEffect> {
+        let candidate = Candidate::default();
+        let one = |status: &Status| RankedEffect::not_ranked(&candidate, *status, String::new());
+        statuses.iter().map(one).collect()
+    }
+
+    #[test]
+    fn a_name_is_suggested_where_half_of_the_effects_could_not_be_tested() {
+        let told = |verdict, statuses: &[Status]| {
+            let mut diagnosis = Diagnosis::cannot_tell(effects(statuses), String::new());
+            diagnosis.verdict = verdict;
+            diagnosis.tell_untested();
+            (diagnosis.warnings.len(), diagnosis.strength_reasons)
+        };
+        let (tested, not) = (Status::Ranked, Status::NotTestable);
+        let few = vec![StrengthReason::FewTested];
+        assert_eq!(told(Verdict::Supported, &[tested, not]), (1, few));
+        assert_eq!(told(Verdict::Supported, &[tested, tested, not]), (1, Vec::new()));
+        assert_eq!(told(Verdict::Supported, &[tested]), (0, Vec::new()));
+        assert_eq!(told(Verdict::NothingDetected, &[not]), (0, Vec::new()), "nothing is named");
+    }
+
+    #[test]
+    fn errors_on_fresh_beds_decide_whether_an_explanation_is_within_the_noise() {
+        let held_out = |before| HeldOut {
+            before: Some(before),
+            after: Some(before),
+            noise_floor: Some(1.0),
+            explained: None,
+            unit: Unit::Position,
+            conditions: LeftOut::Holdout,
+            conditions_judged: 2,
+            not_predicted: Vec::new(),
+            ratio_at_most: None,
+            log_density_gain: 0.0,
+        };
+        let mut diagnosis = Diagnosis::cannot_tell(Vec::new(), String::new());
+        diagnosis.verdict = Verdict::NothingDetected;
+        diagnosis.rest_on(held_out(3.0));
+        assert_eq!(diagnosis.strength_reasons, [StrengthReason::HeldOutAboveNoise]);
+        assert_eq!(diagnosis.strength, Strength::Suggested);
+        diagnosis.rest_on(held_out(1.0));
+        assert_eq!(diagnosis.strength, Strength::Confirmed);
+        assert_eq!(diagnosis.holdout, Some(held_out(1.0)));
     }
 }

@@ -6,14 +6,9 @@ use crate::forward::Forward;
 use crate::held_out::HeldOut;
 use crate::verdict::{Diagnosis, Verdict};
 
-/// Whether a verdict names effects.
-pub(super) fn is_named(verdict: Verdict) -> bool {
-    matches!(verdict, Verdict::Supported | Verdict::NotSeparable | Verdict::Pair)
-}
-
 /// Whether one effect is ahead of all others.
 pub(super) fn is_settled(diagnosis: &Diagnosis) -> bool {
-    is_named(diagnosis.verdict) && diagnosis.leaders.len() == 1
+    diagnosis.verdict.names_effects() && diagnosis.leaders.len() == 1
 }
 
 /// The switches to search next, each with its guess: those of the first few effects of the ranking, apparatus

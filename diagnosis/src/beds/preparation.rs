@@ -237,13 +237,7 @@ impl Preparation {
             return Ok(());
         };
         let sigma = set.bed.stated.bulk_density_sigma.unwrap_or(defaults::DENSITY * value);
-        let unit = match set.bed.geometry {
-            Geometry::Planar => "kg/m^2",
-            Geometry::Spatial => "kg/m^3",
-        };
-        if !(1.0 / ABSURD..=ABSURD).contains(&(value / own.value)) {
-            return Err(BedError::Density { stated: value, own: own.value, unit });
-        }
+        let unit = of_one_unit(value, own.value, set.bed.geometry)?;
         let difference = Known { value, se: sigma }.less(own);
         self.say(difference, ("bulk-density", unit), |d| {
             let word = if d.value < 0.0 { "lighter" } else { "heavier" };
@@ -278,6 +272,21 @@ impl Preparation {
                 .push(format!("the measured bed is {} ({errors:.0} σ)", sentence(difference)));
         }
         self.differences.push(difference.named(id, unit));
+    }
+}
+
+/// The unit of a bulk density of `stated`, where the model's is `own` and both can be meant in it.
+///
+/// # Errors
+/// Where they are so far apart that `stated` is in another unit.
+fn of_one_unit(stated: f64, own: f64, geometry: Geometry) -> Result<&'static str, BedError> {
+    let unit = match geometry {
+        Geometry::Planar => "kg/m^2",
+        Geometry::Spatial => "kg/m^3",
+    };
+    match (1.0 / ABSURD..=ABSURD).contains(&(stated / own)) {
+        true => Ok(unit),
+        false => Err(BedError::Density { stated, own, unit }),
     }
 }
 
@@ -466,5 +475,17 @@ mod tests {
         let still = Known { value: 0.001, se: 0.0016 }.named("packing", "1");
         let [one] = &listed(&preparation, vec![still])[..] else { panic!("one of one") };
         assert!(one.named && (one.value - 0.021).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_bulk_density_in_another_unit_is_refused() {
+        // Discs of 4.8 mm that weigh what spheres weigh, per volume and per area of the plane.
+        let (per_volume, per_area) = (1321.0, 5.1);
+        let refused = of_one_unit(per_volume, per_area, Geometry::Planar).unwrap_err();
+        assert!(refused.to_string().contains("kg/m^2"), "{refused}");
+        assert!(of_one_unit(per_area, per_volume, Geometry::Spatial).is_err());
+        for ratio in [0.4, 1.0, 2.5] {
+            assert!(of_one_unit(ratio * per_area, per_area, Geometry::Planar).is_ok(), "{ratio}");
+        }
     }
 }

@@ -10,7 +10,7 @@ use super::confirmation::Confirmation;
 use super::emulator::{BedForward, Screened};
 use super::error::BedError;
 use super::found::{BedDiagnosis, change_at};
-use super::leaders::{is_beaten, is_named, is_settled, leaders};
+use super::leaders::{is_beaten, is_settled, leaders};
 use super::line_search::{Against, LineSearch};
 use super::observables::observables;
 use super::plan::{Plan, RIVALS, SEARCHES, SIDE_DRAWS};
@@ -415,7 +415,7 @@ impl Work<'_> {
         let (Some(proposed), Some(baseline)) = (&diagnosis.proposed, &diagnosis.baseline) else {
             return Ok(None);
         };
-        if !is_named(diagnosis.verdict) || self.plan.confirm.is_empty() {
+        if !diagnosis.verdict.names_effects() || self.plan.confirm.is_empty() {
             return Ok(None);
         }
         self.on_fresh_beds(forward, [&baseline.fit, &proposed.fit], (draws, plain), measured)
@@ -533,7 +533,7 @@ impl Work<'_> {
         forward: &BedForward,
         confirmation: Option<&Confirmation>,
     ) -> Result<Diagnosis, BedError> {
-        if !is_named(diagnosis.verdict) {
+        if !diagnosis.verdict.names_effects() {
             return Ok(diagnosis);
         }
         let bench = Bench { set: self.stand.set, observed: &self.observed, forward };
@@ -578,17 +578,8 @@ impl Work<'_> {
         if confirmation.is_some_and(|one| one.held_out.is_nearer() != Some(true)) {
             reasons.push(StrengthReason::FreshBedsNoNearer);
         }
-        let status = |effect: &&RankedEffect| effect.status == Status::NotTestable;
-        let untested: Vec<&str> =
-            diagnosis.ranking.iter().filter(status).map(|effect| effect.id.as_str()).collect();
-        if is_named(diagnosis.verdict) && !untested.is_empty() {
-            if 2 * untested.len() >= diagnosis.ranking.len() {
-                reasons.push(StrengthReason::FewTested);
-            }
-            let names = untested.join(", ");
-            diagnosis.warnings.push(format!("not tested, and so not excluded: {names}"));
-        }
-        if !reasons.is_empty() {
+        diagnosis.tell_untested();
+        if !diagnosis.strength_reasons.is_empty() {
             diagnosis.strength = Strength::Suggested;
         }
         let lost = |effect: &RankedEffect| effect.status != Status::Ranked;

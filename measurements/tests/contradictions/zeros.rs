@@ -1,6 +1,6 @@
 //! Zeros of depth and clock, and speeds at contact.
 
-use measurements::{Frame, MeasurementSet, Severity, SpeedRatio, Zero, Zeros};
+use measurements::{Frame, MeasurementSet, Severity, SpeedRatio, SurfaceDefinition, Zero, Zeros};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
@@ -110,6 +110,23 @@ fn a_body_may_meet_a_grain_above_or_below_the_mean_surface() {
     assert_eq!(severity(&set, 0.010), None);
     set.bed.grain_diameter = Some(0.0005);
     assert_eq!(severity(&set, 0.010), Some(Severity::Wrong), "what a set states counts");
+}
+
+#[test]
+fn coarse_grains_are_met_more_than_a_diameter_above_a_mean_surface() {
+    let mut set = Laboratory::default().measure(4);
+    set.bed.grain_diameter = Some(0.005);
+    for frame in set.runs.iter_mut().flat_map(|run| &mut run.frames) {
+        frame.z -= 1.2 * 0.005;
+    }
+    let severity = |set: &MeasurementSet| Zeros::of(set).offset.map(|offset| offset.severity);
+    set.surface = SurfaceDefinition::Mean;
+    assert_ne!(severity(&set), Some(Severity::Wrong));
+    set.surface = SurfaceDefinition::FirstContact;
+    assert_eq!(severity(&set), Some(Severity::Wrong), "first contact is at zero by definition");
+    set.surface = SurfaceDefinition::Mean;
+    set.bed.grain_diameter = Some(0.0008);
+    assert_eq!(severity(&set), Some(Severity::Wrong), "fine grains do not reach so high");
 }
 
 #[test]

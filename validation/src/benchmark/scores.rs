@@ -73,7 +73,7 @@ fn is_named_alone((_, answer): &Answered<'_>) -> bool {
 
 /// Whether the verdict names anything: one effect, a set or a pair.
 fn is_anything_named((_, answer): &Answered<'_>) -> bool {
-    matches!(answer.verdict, Verdict::Supported | Verdict::NotSeparable | Verdict::Pair)
+    answer.verdict.names_effects()
 }
 
 /// Whether a verdict is wrong that names something, where one effect is hidden: another effect alone, a set without it, or
