@@ -182,6 +182,23 @@ impl BedForward {
         self.describe();
     }
 
+    /// Takes what screening found of every switch for what the switch does, and says why that is not known of those
+    /// that it lost in the scatter, by their index.
+    pub(super) fn take_at_face_value(&mut self) -> Vec<(usize, String)> {
+        let screened = self.screened.iter_mut().enumerate();
+        let lost = screened.filter_map(|(at, one)| Some((at, one.not_testable.take()?))).collect();
+        self.describe();
+        lost
+    }
+
+    /// Takes the switches `lost`, by their index, out again, each with its reason.
+    pub(super) fn give_up(&mut self, lost: Vec<(usize, String)>) {
+        for (at, why) in lost {
+            self.screened[at].not_testable = Some(why);
+        }
+        self.describe();
+    }
+
     /// Whether a parameter that all runs share is in `fit` farther from what is known of it than one may expect.
     pub(super) fn is_strained(&self, fit: &Fit) -> bool {
         let each = self.parameters.iter().zip(&fit.point.parameters);

@@ -37,6 +37,18 @@ pub(super) fn leaders(
         .collect()
 }
 
+/// Whether there is room for an effect that screening lost: nothing else explains the data, or what does leaves more
+/// than noise on the beds that it was `confirmed` on.
+pub(super) fn leaves_room(diagnosis: &Diagnosis, confirmed: Option<&HeldOut>) -> bool {
+    match diagnosis.verdict {
+        Verdict::NoneOfTheCandidates | Verdict::CannotTell => true,
+        named if named.names_effects() => {
+            confirmed.is_some_and(|one| one.leaves_more_than_noise() == Some(true))
+        }
+        _ => false,
+    }
+}
+
 /// Whether fresh beds tell `rival` from `leader`, which explains as much of what was fitted to: with it, held-out
 /// conditions are missed by what would call for a name, or hardly less than without it, and with the leader they are not.
 pub(super) fn is_beaten(rival: &HeldOut, leader: &HeldOut) -> bool {
@@ -74,5 +86,20 @@ mod tests {
         assert!(!is_beaten(&with(1.4), &with(0.8)), "both are within the noise");
         assert!(!is_beaten(&with(2.5), &with(1.6)), "the leader misses too");
         assert!(!is_beaten(&HeldOut { after: None, ..with(1.0) }, &with(1.0)), "nothing is known");
+    }
+
+    #[test]
+    fn there_is_room_where_what_is_named_leaves_more_than_noise_and_where_nothing_can_be_named() {
+        let mut diagnosis = Diagnosis::cannot_tell(Vec::new(), String::new());
+        let mut room = |verdict, confirmed: Option<&HeldOut>| {
+            diagnosis.verdict = verdict;
+            leaves_room(&diagnosis, confirmed)
+        };
+        assert!(room(Verdict::NoneOfTheCandidates, None));
+        assert!(room(Verdict::CannotTell, None));
+        assert!(!room(Verdict::NothingDetected, None));
+        assert!(room(Verdict::Supported, Some(&with(1.6))));
+        assert!(!room(Verdict::Supported, Some(&with(1.1))), "it explains all that exceeds noise");
+        assert!(!room(Verdict::BelowNoise, Some(&with(1.6))), "too small to be named");
     }
 }

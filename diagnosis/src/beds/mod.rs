@@ -20,11 +20,13 @@ mod plan;
 pub mod preparation;
 mod response;
 mod screening;
+mod searches;
 mod shared;
 mod stand;
 mod switch;
 mod switches;
 mod variation;
+mod work;
 mod workflow;
 
 pub use baseline::BaselineError;

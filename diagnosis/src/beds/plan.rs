@@ -272,7 +272,9 @@ impl Plan {
         let of_sides =
             SIDE_DRAWS.min(self.size.draws) * fitted + SIDE_DRAWS.min(confirm_draws) * confirming;
         let beds_of_sides = sides * (beds_of(SIDE_DRAWS, fitted) + beds_of(SIDE_DRAWS, confirming));
-        let lines = SEARCHES * LEADERS * line_search::AMPLITUDES * line_draws * self.fit.len();
+        // One search more is of what screening lost.
+        let lines =
+            (SEARCHES + 1) * LEADERS * line_search::AMPLITUDES * line_draws * self.fit.len();
         let confirm = confirming * confirm_draws;
         Ok(vec![
             stage("scatter of beds", &baseline)?,

@@ -113,6 +113,22 @@ impl BetweenDraws {
     }
 }
 
+/// Correlation of two numbers, from the scatter of their differences over `pairs`: it costs one degree of freedom less
+/// than a coefficient of Pearson, and is below it where what is changed changes the scatter. None from fewer than three.
+pub(super) fn correlation_of_pairs(pairs: &[[f64; 2]]) -> Option<f64> {
+    if pairs.len() < 3 {
+        return None;
+    }
+    let variance = |values: Vec<f64>| {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        values.iter().map(|value| (value - mean).powi(2)).sum::<f64>()
+    };
+    let of = |at: usize| variance(pairs.iter().map(|pair| pair[at]).collect());
+    let difference = variance(pairs.iter().map(|[a, b]| a - b).collect());
+    let both = of(0) + of(1);
+    (both > 0.0).then(|| 1.0 - difference / both)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

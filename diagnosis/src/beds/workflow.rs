@@ -7,28 +7,25 @@ use runner::beds::Record;
 
 use super::baseline::Baseline;
 use super::confirmation::Confirmation;
-use super::emulator::{BedForward, Screened};
+use super::emulator::BedForward;
 use super::error::BedError;
 use super::found::{BedDiagnosis, change_at};
-use super::leaders::{is_beaten, is_settled, leaders};
-use super::line_search::{Against, LineSearch};
+use super::leaders::{is_beaten, leaves_room};
 use super::observables::observables;
-use super::plan::{Plan, RIVALS, SEARCHES, SIDE_DRAWS};
+use super::plan::{Plan, RIVALS, SIDE_DRAWS};
 use super::preparation::{Known, Preparation, UNTOLD, at_level, dense, listed};
-use super::response::Response;
-use super::screening::screened;
+use super::response::correlation_of_pairs;
 use super::shared::{Column, Shared};
 use super::stand::{Draw, Stand};
-use super::switch::Switch;
 use super::variation::Variation;
+use super::work::{Standing, Work};
 use crate::apparatus::is_looked_for;
 use crate::bench::{Bench, BenchError};
-use crate::diagnose::{ALPHA, as_it_is, diagnose, withdraw};
+use crate::diagnose::{ALPHA, as_it_is, withdraw};
 use crate::fit::Fit;
 use crate::forward::{Parameter, ParameterKind};
 use crate::frequency::of_bed_benchmark;
 use crate::held_out::HeldOut;
-use crate::observable::Layout;
 use crate::observed::Observed;
 use crate::verdict::{Diagnosis, RankedEffect, Status, Strength, StrengthReason, Verdict};
 
@@ -77,30 +74,6 @@ pub fn compare_jobs(stand: &Stand<'_>, observed: &Observed) -> Result<Vec<Job>, 
     let conditions = [&observed.fit[..], &observed.holdout].concat();
     let draws = stand.draws(0, COMPARED, conditions.len());
     Ok(stand.jobs(&conditions, &draws, &Variation::default())?)
-}
-
-/// Impacts of the model as it stands, which others are held against.
-#[derive(Clone, Copy)]
-struct Standing<'a> {
-    /// One list per condition.
-    draws: &'a [Vec<Draw>],
-    /// Likewise; none where one did not end.
-    runs: &'a [Vec<Option<Record>>],
-    /// Of two runs on one draw.
-    correlation: f64,
-}
-
-/// A diagnosis under way.
-struct Work<'a> {
-    stand: &'a Stand<'a>,
-    place: &'a dyn Impacts,
-    plan: Plan,
-    layouts: Vec<Layout>,
-    /// The set, with the conditions of the plan alone to fit to.
-    observed: Observed,
-    seed: u64,
-    impacts: usize,
-    preparation: Preparation,
 }
 
 /// Diagnoses the model of `stand` by the runs of `plan`; of a plan that does not fit its budget
@@ -170,30 +143,19 @@ impl Work<'_> {
         of_laws.retain(|id| !is_looked_for(set, id));
         let mut forward = forward.with(screened, &wish.free, &of_laws);
 
-        let mut diagnosis = self.judge(&forward)?;
-        let mut searched: Vec<usize> = Vec::new();
-        for _ in 0..SEARCHES {
-            let leaders = leaders(&diagnosis, &forward, &searched);
-            if leaders.is_empty() {
-                break;
-            }
-            for (at, guess) in leaders {
-                searched.push(at);
-                self.refine(&mut forward, (at, guess), standing)?;
-            }
-            let before = std::mem::replace(&mut diagnosis, self.judge(&forward)?);
-            // Ahead of all others by the odds twice in a row: more impacts would not change that.
-            if is_settled(&before) && is_settled(&diagnosis) && before.leaders == diagnosis.leaders
-            {
-                break;
-            }
+        let fresh = (&draws.confirm[..], &plain[..]);
+        let mut searched = Vec::new();
+        let mut diagnosis = self.settle(&mut forward, &mut searched, standing)?;
+        let mut confirmation = self.confirm(&forward, &diagnosis, fresh, measured)?;
+        if leaves_room(&diagnosis, confirmation.as_ref().map(|one| &one.held_out))
+            && self.search_lost(&mut forward, &mut searched, standing)?
+        {
+            diagnosis = self.settle(&mut forward, &mut searched, standing)?;
+            confirmation = self.confirm(&forward, &diagnosis, fresh, measured)?;
         }
-        let confirmation =
-            self.confirm(&forward, &diagnosis, (&draws.confirm, &plain), measured)?;
         let mut diagnosis = self.held_against(diagnosis, &forward, confirmation.as_ref())?;
         if let Some(leader) = &confirmation {
-            let fresh = (leader, &draws.confirm[..], &plain[..]);
-            self.narrow(&mut diagnosis, &forward, fresh, measured)?;
+            self.narrow(&mut diagnosis, &forward, (leader, fresh), measured)?;
         }
         if let (None, Some(baseline)) = (&confirmation, &diagnosis.baseline) {
             let fresh = self.unchanged(&forward, &baseline.fit, measured, &plain)?;
@@ -301,19 +263,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    fn run(&mut self, jobs: &[Job]) -> Result<Vec<Option<Record>>, BedError> {
-        self.impacts += jobs.len();
-        Ok(self.place.run(jobs)?)
-    }
-
-    fn judge(&self, forward: &BedForward) -> Result<Diagnosis, BedError> {
-        let bench = Bench { set: self.stand.set, observed: &self.observed, forward };
-        Ok(diagnose(&bench, self.seed)?)
-    }
-
-    /// Correlation of the depths of two runs on one draw, from the scatter of their differences: it costs
-    /// one degree of freedom less than a coefficient of Pearson, and is below it where the change of the
-    /// parameter changes the scatter. None from fewer than three pairs.
+    /// Correlation of the depths of two runs on one draw; none from fewer than three pairs.
     fn correlation(
         &mut self,
         draws: &[Vec<Draw>],
@@ -327,82 +277,7 @@ impl Work<'_> {
             .zip(&again)
             .filter_map(|(a, b)| Some([a.as_ref()?.deepest, b.as_ref()?.deepest]))
             .collect();
-        if pairs.len() < 3 {
-            return Ok(None);
-        }
-        let variance = |values: Vec<f64>| {
-            let mean = values.iter().sum::<f64>() / values.len() as f64;
-            values.iter().map(|value| (value - mean).powi(2)).sum::<f64>()
-        };
-        let of = |at: usize| variance(pairs.iter().map(|pair| pair[at]).collect());
-        let difference = variance(pairs.iter().map(|[a, b]| a - b).collect());
-        let both = of(0) + of(1);
-        Ok((both > 0.0).then(|| 1.0 - difference / both))
-    }
-
-    fn refine(
-        &mut self,
-        forward: &mut BedForward,
-        (at, guess): (usize, f64),
-        standing: Standing<'_>,
-    ) -> Result<(), BedError> {
-        let (draws, fit) = (self.searched(standing.draws), self.plan.fit.clone());
-        let search = LineSearch::around(forward.screened()[at].switch, guess, &fit, &draws);
-        let Some(responses) = self.search(&search, forward.baseline(), standing)? else {
-            return Ok(());
-        };
-        let tried = search.tried();
-        forward.refine(at, responses, tried);
-        Ok(())
-    }
-
-    /// Those of `draws` that a switch alone is tried on.
-    fn searched(&self, draws: &[Vec<Draw>]) -> Vec<Vec<Draw>> {
-        let most = self.plan.size.line_draws;
-        draws.iter().map(|draws| draws[..most.min(draws.len())].to_vec()).collect()
-    }
-
-    /// What every switch does alone, at the amplitude that is screened.
-    fn one_at_a_time(
-        &mut self,
-        switches: &[&'static Switch],
-        baseline: &Baseline,
-        standing: Standing<'_>,
-    ) -> Result<Vec<Screened>, BedError> {
-        let (draws, fit) = (self.searched(standing.draws), self.plan.fit.clone());
-        let mut all = Vec::with_capacity(switches.len());
-        let runs_of_all = switches.len() * draws.iter().map(Vec::len).sum::<usize>();
-        for &switch in switches {
-            let search = LineSearch::once(switch, &fit, &draws);
-            let found = self.search(&search, baseline, standing)?;
-            let responses = found.unwrap_or_else(|| vec![None; self.layouts.len()]);
-            all.push(screened(switch, responses, (baseline, runs_of_all)));
-        }
-        Ok(all)
-    }
-
-    /// The responses that `search` finds; none where the step of the model is too long for an amplitude:
-    /// then what screening found has to do.
-    fn search(
-        &mut self,
-        search: &LineSearch<'_>,
-        baseline: &Baseline,
-        Standing { runs, correlation, .. }: Standing<'_>,
-    ) -> Result<Option<Vec<Option<Response>>>, BedError> {
-        let Ok(jobs) = search.jobs(self.stand) else { return Ok(None) };
-        let records = self.run(&jobs)?;
-        let n = search.draws.first().map_or(0, Vec::len);
-        let against = Against {
-            layouts: &self.layouts,
-            baseline: runs
-                .iter()
-                .map(|runs| runs[..n].iter().map(Option::as_ref).collect())
-                .collect(),
-            means: baseline.observed.conditions.iter().map(|one| &one.mean).collect(),
-            spread: &baseline.spread,
-            correlation,
-        };
-        Ok(Some(search.responses(self.stand, &records, &against)))
+        Ok(correlation_of_pairs(&pairs))
     }
 
     fn confirm(
@@ -445,7 +320,7 @@ impl Work<'_> {
         &mut self,
         diagnosis: &mut Diagnosis,
         forward: &BedForward,
-        (leader, draws, plain): (&Confirmation, &[Vec<Draw>], &[Option<Record>]),
+        (leader, (draws, plain)): (&Confirmation, (&[Vec<Draw>], &[Option<Record>])),
         measured: &Observed,
     ) -> Result<(), BedError> {
         let (Some(proposed), Some(baseline)) = (&diagnosis.proposed, &diagnosis.baseline) else {
