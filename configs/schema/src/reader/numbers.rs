@@ -239,11 +239,13 @@ impl TableReader<'_> {
 
     /// Reports a string where a bare number is wanted; a quantity is shown in SI.
     fn report_quoted(&self, text: &str, span: Span, spec: &ParamSpec) {
-        let bare = text.trim().parse::<f64>().is_ok_and(f64::is_finite);
-        let value = match (bare, units::parse(text, spec.dimension)) {
-            (true, _) => text.trim().to_owned(),
-            (false, Ok(value)) => format!("{value:?}"),
-            (false, Err(_)) => self.example(spec),
+        let number = |text: &str| text.trim().parse().ok().filter(|value: &f64| value.is_finite());
+        let percent = text.trim().strip_suffix('%').filter(|_| spec.dimension == Dimension::NONE);
+        let value = match (percent.and_then(number), units::parse(text, spec.dimension)) {
+            _ if number(text).is_some() => text.trim().to_owned(),
+            (Some(percent), _) => format!("{}", percent / 100.0),
+            (None, Ok(value)) => format!("{value:?}"),
+            (None, Err(_)) => self.example(spec),
         };
         let what = match spec.dimension {
             Dimension::NONE => "it is a pure number".to_owned(),
