@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 use crate::common::Common;
 use crate::output::{self, CommandError, CommandResult, stderr_color};
-use crate::workbench::write_whole;
+use crate::workbench::{overruled_by, write_whole};
 
 /// The file of a set, in its folder.
 const SET: &str = "measurement.toml";
@@ -78,9 +78,11 @@ pub(crate) fn run(path: &Path, common: &Common) -> CommandResult {
     }
     match loaded.contradictions.is_empty() {
         true => Ok(()),
-        false => Err(CommandError::BadInput(
+        false => Err(CommandError::BadInput(format!(
+            "{}error: the set contradicts itself; in compare and diagnose, {}\n",
             loaded.render_contradictions(&ContradictionKind::ALL, stderr_color()),
-        )),
+            overruled_by(&loaded, &ContradictionKind::ALL)
+        ))),
     }
 }
 

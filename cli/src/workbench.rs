@@ -307,7 +307,7 @@ impl Flags {
 }
 
 /// Which flags go on with `loaded` all the same.
-fn overruled_by(loaded: &measurements::Loaded, doubted: &[ContradictionKind]) -> String {
+pub(crate) fn overruled_by(loaded: &measurements::Loaded, doubted: &[ContradictionKind]) -> String {
     let met = |kind: &ContradictionKind| {
         loaded.contradictions.iter().any(|one| one.kind == *kind) && doubted.contains(kind)
     };
