@@ -43,8 +43,9 @@ impl Apart {
         let pull = beside.tr_mul(&response.left_by(&process.mean));
         let covariances = LENGTHS.map(|length| of_each(&places, grid, length));
         let sizes = SIZES.map(|size| size * unit);
-        let Averaged { mean, covariance, .. } =
-            Averaged::over(&covariances, &sizes, (&gram, &pull))?;
+        let averaged = Averaged::over(&covariances, &sizes, (&gram, &pull))?;
+        let covariance = averaged.covariance();
+        let mean = averaged.mean;
         let follow = fit.free_covariance() * fit.jacobian.tr_mul(&answers);
         Some(Self { places, mean, covariance, follow })
     }

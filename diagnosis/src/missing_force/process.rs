@@ -5,6 +5,8 @@
 //! apparatus are projected out of the answer and of the residual. Its size and its four lengths are averaged over a
 //! grid, weighed by the evidence of each (ibid., eq. 5.8).
 
+use std::sync::{Arc, OnceLock};
+
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 
@@ -31,14 +33,31 @@ const NOTHING: f64 = 1e-8;
 const NEGLIGIBLE: f64 = 8.0;
 
 /// What measurements say of the force at the nodes, in units of ρ g A D.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Process {
     /// By node of the grid; nothing where no path comes near.
     pub(super) mean: DVector<f64>,
-    /// Of the nodes that some path comes near.
-    covariance: DMatrix<f64>,
     /// Logarithm of the odds of such a force against none.
     pub(super) log_odds: f64,
+    told: Told,
+    /// Of the nodes that some path comes near: most processes are a step of a search, which asks for the mean alone.
+    covariance: OnceLock<DMatrix<f64>>,
+}
+
+/// What a process follows from.
+#[derive(Debug)]
+struct Told {
+    /// Of forces of size 1 at the nodes that some path comes near, by lengths.
+    covariances: Vec<DMatrix<f64>>,
+    sizes: [f64; SIZES.len()],
+    gram: DMatrix<f64>,
+    pull: DVector<f64>,
+}
+
+impl Told {
+    fn averaged(&self) -> Option<Averaged<'_>> {
+        Averaged::over(&self.covariances, &self.sizes, (&self.gram, &self.pull))
+    }
 }
 
 /// The measurements of the force at the nodes, compressed to the few numbers that carry their information.
@@ -118,48 +137,56 @@ impl<'a> Settings<'a> {
 }
 
 /// What settings say together, each weighed by its evidence.
-pub(super) struct Averaged {
+pub(super) struct Averaged<'a> {
     /// Logarithm of the odds of such a force against none.
     pub(super) log_odds: f64,
     /// By node.
     pub(super) mean: DVector<f64>,
-    /// Of the nodes.
-    pub(super) covariance: DMatrix<f64>,
+    /// Those that count, with the share of each and what it alone says is the mean.
+    told: Vec<(f64, DVector<f64>, Arc<Settings<'a>>, usize)>,
 }
 
-impl Averaged {
+impl<'a> Averaged<'a> {
     /// Over `sizes` and over lengths, which `covariances` of forces of size 1 are of; `gram` and `pull` are the products of
     /// the answers with themselves and with what they explain. `None` where nothing can be told.
     pub(super) fn over(
-        covariances: &[DMatrix<f64>],
+        covariances: &'a [DMatrix<f64>],
         sizes: &[f64],
         (gram, pull): (&DMatrix<f64>, &DVector<f64>),
     ) -> Option<Self> {
         let most = sizes.iter().copied().fold(0.0, f64::max);
         let seen = Seen::of(gram, pull, most);
-        let of_each = covariances.par_iter().map(|one| Settings::of(one, sizes, &seen));
-        let of_each: Vec<Settings<'_>> = of_each.collect();
-        let all: Vec<(&Settings<'_>, &Setting)> =
-            of_each.iter().flat_map(|one| one.each.iter().map(move |own| (one, own))).collect();
-        let best = all.iter().map(|(_, one)| one.log_odds).fold(f64::NEG_INFINITY, f64::max);
-        let share = |one: &Setting| libm::exp(one.log_odds - best);
-        let total: f64 = all.iter().map(|(_, one)| share(one)).sum();
+        let of_each = covariances.par_iter().map(|one| Arc::new(Settings::of(one, sizes, &seen)));
+        let of_each: Vec<Arc<Settings<'a>>> = of_each.collect();
+        let all = of_each.iter().flat_map(|one| (0..one.each.len()).map(move |at| (one, at)));
+        let all: Vec<(&Arc<Settings<'a>>, usize)> = all.collect();
+        let log_odds = |(of, at): &(&Arc<Settings<'a>>, usize)| of.each[*at].log_odds;
+        let best = all.iter().map(log_odds).fold(f64::NEG_INFINITY, f64::max);
+        let share = |one| libm::exp(log_odds(one) - best);
+        let total: f64 = all.iter().map(share).sum();
+        let counted: Vec<_> = all.iter().filter(|one| log_odds(one) > best - NEGLIGIBLE).collect();
+        let told = counted.par_iter().map(|one| {
+            let (of, at) = **one;
+            (share(one) / total, of.mean(&of.each[at], &seen), Arc::clone(of), at)
+        });
+        let told: Vec<_> = told.collect();
+        let mut mean = DVector::zeros(pull.len());
+        told.iter().for_each(|(share, own, ..)| mean.axpy(*share, own, 1.0));
         let log_odds = best + libm::log(total / all.len() as f64);
-        let counted: Vec<_> =
-            all.into_iter().filter(|(_, one)| one.log_odds > best - NEGLIGIBLE).collect();
-        let told = |(of, one): &(&Settings<'_>, &Setting)| {
-            (share(one) / total, of.mean(one, &seen), of.spread(one))
-        };
-        let told: Vec<(f64, DVector<f64>, DMatrix<f64>)> = counted.par_iter().map(told).collect();
-        let n = pull.len();
-        let mut mean = DVector::zeros(n);
-        told.iter().for_each(|(share, own, _)| mean.axpy(*share, own, 1.0));
+        log_odds.is_finite().then_some(Self { log_odds, mean, told })
+    }
+
+    /// Of the nodes.
+    pub(super) fn covariance(&self) -> DMatrix<f64> {
+        let n = self.mean.len();
+        let spread = |(_, _, of, at): &(_, _, Arc<Settings<'a>>, usize)| of.spread(&of.each[*at]);
+        let spreads: Vec<DMatrix<f64>> = self.told.par_iter().map(spread).collect();
         let mut covariance = DMatrix::zeros(n, n);
-        for (share, own, spread) in told {
-            let off = own - &mean;
-            covariance += (spread + &off * off.transpose()) * share;
+        for ((share, own, ..), spread) in self.told.iter().zip(spreads) {
+            let off = own - &self.mean;
+            covariance += (spread + &off * off.transpose()) * *share;
         }
-        log_odds.is_finite().then_some(Self { log_odds, mean, covariance })
+        covariance
     }
 }
 
@@ -176,16 +203,19 @@ impl Process {
         };
         let tried = lengths(varied(2, &ANGLES), varied(3, &DIAMETERS)).into_par_iter();
         let covariances: Vec<DMatrix<f64>> = tried.map(|lengths| alike(&places, lengths)).collect();
-        let Averaged { log_odds, mean, covariance } =
-            Averaged::over(&covariances, &SIZES.map(|size| size * unit), (&gram, &pull))?;
+        let told = Told { covariances, sizes: SIZES.map(|size| size * unit), gram, pull };
+        let Averaged { log_odds, mean, .. } = told.averaged()?;
         let mut whole = DVector::zeros(grid.len());
         response.nodes.iter().zip(mean.iter()).for_each(|(&node, value)| whole[node] = *value);
-        Some(Self { mean: whole, covariance, log_odds })
+        Some(Self { mean: whole, log_odds, told, covariance: OnceLock::new() })
     }
 
     /// Variance of the sum of the forces at the nodes that some path comes near, times `weights`.
     pub(super) fn variance(&self, weights: &DVector<f64>) -> f64 {
-        weights.dot(&(&self.covariance * weights)).max(0.0)
+        let of_told =
+            || self.told.averaged().map_or_else(|| DMatrix::zeros(0, 0), |one| one.covariance());
+        let covariance = self.covariance.get_or_init(of_told);
+        weights.dot(&(covariance * weights)).max(0.0)
     }
 }
 
@@ -244,12 +274,12 @@ mod tests {
     }
 
     /// What one covariance and one size say.
-    fn said(
-        covariance: &DMatrix<f64>,
+    fn said<'a>(
+        covariance: &'a DMatrix<f64>,
         size: f64,
         answer: &DMatrix<f64>,
         read: &DVector<f64>,
-    ) -> Averaged {
+    ) -> Averaged<'a> {
         let (gram, pull) = (answer.tr_mul(answer), answer.tr_mul(read));
         let covariances = std::slice::from_ref(covariance);
         Averaged::over(covariances, &[size], (&gram, &pull)).expect("a force")
@@ -263,7 +293,7 @@ mod tests {
         let one = said(&covariance, 2.0, &DMatrix::zeros(1, n), &DVector::zeros(1));
         assert!(one.log_odds.abs() < 1e-12, "nothing is learned");
         assert!(one.mean.norm() < 1e-12);
-        let sd = one.covariance[(0, 0)].sqrt();
+        let sd = one.covariance()[(0, 0)].sqrt();
         assert!((sd - 2.0).abs() < 1e-5, "{sd}");
     }
 
@@ -275,10 +305,10 @@ mod tests {
         let answer = DMatrix::from_row_slice(1, 2, &[1e3, 0.0]);
         let one = said(&covariance, 1.0, &answer, &DVector::from_element(1, 3e3));
         assert!((one.mean[0] - 3.0).abs() < 1e-4, "{}", one.mean[0]);
-        assert!((one.covariance[(0, 0)].sqrt() / 1e-3 - 1.0).abs() < 1e-3);
+        assert!((one.covariance()[(0, 0)].sqrt() / 1e-3 - 1.0).abs() < 1e-3);
         // Far away half of the variance is shared still, over a length of 2: exp(−1/8) of it at a distance of 1.
         let shared = 0.5 * libm::exp(-0.125);
-        let there = one.covariance[(1, 1)];
+        let there = one.covariance()[(1, 1)];
         assert!((there - (1.0 - shared * shared)).abs() < 1e-4, "{there}");
         assert!((one.mean[1] - 3.0 * shared).abs() < 1e-4, "{}", one.mean[1]);
         // Its odds are those of a normal of variance 1 + 1e-6 against one of 1e-6.
@@ -301,6 +331,6 @@ mod tests {
         let whole = DMatrix::identity(7, 7) + &answer * &covariance * answer.transpose();
         let gain = &covariance * answer.transpose() * whole.try_inverse().expect("regular");
         assert!((&gain * &read - &one.mean).norm() < 1e-6);
-        assert!((&covariance - gain * &answer * &covariance - &one.covariance).norm() < 1e-6);
+        assert!((&covariance - gain * &answer * &covariance - one.covariance()).norm() < 1e-6);
     }
 }
