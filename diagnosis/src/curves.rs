@@ -20,6 +20,9 @@ const BEFORE_STOP: f64 = 0.9;
 /// Share of the speed at contact that counts as stopped.
 const STOPPED: f64 = 0.05;
 
+/// Share of a record, at its end, over which a body that rests has one velocity.
+const AT_REST: f64 = 0.25;
+
 /// Readings so many steps beside the contact are left out, and those beyond this share of the range.
 const BESIDE: f64 = 1.5;
 const WITHIN: f64 = 0.99;
@@ -70,7 +73,8 @@ impl CommonCurve {
             is_seen && (!is_felt || grid[*at].abs() > BESIDE * step)
         };
         let known = (condition.speed, set.bed_of(condition).gravity);
-        let stop = BEFORE_STOP * stopped(set.kind, &grid, &mean, known);
+        let is_clipped = values.iter().flatten().any(|value| value.abs() >= WITHIN * range);
+        let stop = BEFORE_STOP * stopped((set.kind, is_clipped), &grid, &mean, known);
         let (before, after): (Vec<usize>, Vec<usize>) = (0..grid.len())
             .filter(is_kept)
             .filter(|&at| grid[at] <= stop)
@@ -206,10 +210,17 @@ fn path(kind: Kind, at: &[f64], read: &[f64], known: (f64, f64)) -> Option<Vec<[
     }
 }
 
-/// When (s) the velocity falls below 5 % of the speed at contact; infinite where it does not, or is not known.
-fn stopped(kind: Kind, at: &[f64], read: &[f64], known: (f64, f64)) -> f64 {
+/// When (s) the velocity falls below 5 % of the speed at contact; infinite where it does not, or is not known. Readings
+/// without their peak leave a part of the speed, so a body whose velocity is the same over the last quarter rests.
+fn stopped((kind, is_clipped): (Kind, bool), at: &[f64], read: &[f64], known: (f64, f64)) -> f64 {
     let path = path(kind, at, read, known).unwrap_or_default();
-    path.iter().find(|[_, v, _]| *v < STOPPED * known.0).map_or(f64::INFINITY, |[t, ..]| *t)
+    let small = STOPPED * known.0;
+    let rests = |&[end, last, _]: &[f64; 3]| {
+        let is_late = |[t, ..]: &&[f64; 3]| *t >= (1.0 - AT_REST) * end;
+        path.iter().filter(is_late).all(|[_, v, _]| (v - last).abs() < small)
+    };
+    let left = path.last().filter(|end| is_clipped && rests(end)).map_or(0.0, |[_, v, _]| *v);
+    path.iter().find(|[_, v, _]| *v < left.max(0.0) + small).map_or(f64::INFINITY, |[t, ..]| *t)
 }
 
 /// How deep (m) a body comes whose `kind` of curve is `read` at the times `at` (s), from a speed (m/s) and in gravity
@@ -278,8 +289,27 @@ mod tests {
         // 2 m/s less 20 m/s² from 1 ms on, on average: after 95 ms 5 % are left, on a way of 0.1 m to rest.
         let known = (2.0, 10.0);
         let way = way(Kind::Acceleration, &at, &felt, known).expect("a way");
-        assert!((stopped(Kind::Acceleration, &at, &felt, known) - 0.0958).abs() < 1.5e-3);
+        assert!((stopped((Kind::Acceleration, false), &at, &felt, known) - 0.0958).abs() < 1.5e-3);
         assert!((way / 0.1 - 1.0).abs() < 0.03);
+    }
+
+    #[test]
+    fn a_body_stops_where_it_rests_if_the_peak_of_what_it_felt_is_cut_off() {
+        let at: Vec<f64> = (0..=200).map(|k| 1e-3 * f64::from(k)).collect();
+        // 2 m/s less 20 m/s² for 100 ms, then rest; beyond 25 m/s² nothing is read for 50 ms.
+        let read = |t: &f64| match *t {
+            t if t <= 0.05 => 25.0,
+            t if t <= 0.1 => 30.0,
+            _ => 10.0,
+        };
+        let felt: Vec<f64> = at.iter().map(read).collect();
+        let known = (2.0, 10.0);
+        assert!(stopped((Kind::Acceleration, false), &at, &felt, known).is_infinite());
+        let stop = stopped((Kind::Acceleration, true), &at, &felt, known);
+        assert!((stop - 0.095).abs() < 2e-3, "{stop}");
+        // A record that ends on the way shows no rest.
+        let on_the_way = stopped((Kind::Acceleration, true), &at[..80], &felt[..80], known);
+        assert!(on_the_way.is_infinite());
     }
 
     #[test]

@@ -4,6 +4,7 @@ use configs::{Diagnostic, shorten};
 
 use super::conditions::ConditionPlaces;
 use super::contradiction::{Contradiction, ContradictionKind};
+use super::curve::Written;
 use super::findings::Findings;
 use super::{MeasurementSet, Run, Sample, over_time};
 
@@ -30,14 +31,14 @@ const FLAT: usize = 4;
 /// Refuses what is no vertical impact, times that run back and signs; names zeros and units.
 pub(super) fn check(
     set: &MeasurementSet,
-    places: &[ConditionPlaces],
+    (places, columns): Written<'_>,
     findings: &mut Findings,
 ) -> Vec<Contradiction> {
     let why = "an accelerometer reads along its own axis, which has to be that of the motion";
     over_time::check_vertical(set, places, ("accelerations", why), findings);
     over_time::check_times(set, places, findings);
     if findings.errors() == 0 {
-        check_signs(set, places, findings);
+        check_signs(set, (places, columns), findings);
         check_range(set, places, findings);
     }
     match findings.errors() {
@@ -51,7 +52,7 @@ pub(super) fn check(
 }
 
 /// Refuses readings that count downward, or from another zero.
-fn check_signs(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+fn check_signs(set: &MeasurementSet, (places, columns): Written<'_>, findings: &mut Findings) {
     let largest = |run: &Run| {
         let after = run.samples.iter().filter(|one| one.at > 0.0).map(|one| one.value);
         after.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
@@ -65,10 +66,10 @@ fn check_signs(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut 
                 contrary.len()
             ))
             .at(places[contrary[0].condition].id, "the bed pushes upward")
-            .help(
-                "does it count downward? then say below [columns]: \
-                 acceleration = { name = \"acceleration\", unit = \"m/s^2\", sign = -1 }",
-            ),
+            .help(format!(
+                "does it count downward? then say below [columns]: {}",
+                columns.turned("acceleration", "m/s^2")
+            )),
         );
         return;
     }

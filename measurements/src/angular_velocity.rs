@@ -3,9 +3,8 @@
 use engine::units::Dimension;
 
 use super::columns::ColumnSpec;
-use super::conditions::ConditionPlaces;
 use super::contradiction::Contradiction;
-use super::curve::{Along, Axis, Curve};
+use super::curve::{Along, Axis, Curve, Written};
 use super::findings::Findings;
 use super::{Kind, MeasurementSet, Run, over_time};
 
@@ -34,7 +33,7 @@ const MOST: f64 = 5.0;
 
 fn check(
     set: &MeasurementSet,
-    places: &[ConditionPlaces],
+    (places, _): Written<'_>,
     findings: &mut Findings,
 ) -> Vec<Contradiction> {
     over_time::check_times(set, places, findings);

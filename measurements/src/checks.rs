@@ -35,10 +35,11 @@ pub(super) fn check(
     if findings.errors() > 0 {
         return Vec::new();
     }
+    let written = (&document.places[..], &document.files.format.columns);
     let contradictions = match set.kind.curve() {
-        Some(curve) => (curve.check)(set, &document.places, findings),
+        Some(curve) => (curve.check)(set, written, findings),
         None => {
-            signs::check(set, &document.places, findings);
+            signs::check(set, written, findings);
             magnitudes::check(set, &document.places, findings)
         }
     };

@@ -93,6 +93,16 @@ impl ColumnNames {
         self.0.iter().find(|renamed| renamed.key == key)
     }
 
+    /// Column `key`, in `unit` where the file names no other, counted the other way, as `[columns]` says it.
+    pub(super) fn turned(&self, key: &str, unit: &str) -> String {
+        let known = self.of(key);
+        let name = known.map_or(key, |one| one.name.as_str());
+        let unit = known.and_then(|one| one.unit.as_deref()).unwrap_or(unit);
+        let is_turned = known.is_some_and(|one| one.sign < 0.0);
+        let sign = if is_turned { "" } else { ", sign = -1" };
+        format!("{key} = {{ name = \"{name}\", unit = \"{unit}\"{sign} }}")
+    }
+
     /// Reads `[columns]` of the table of runs and of one with these `readings`; faults are reported.
     pub(super) fn read(table: TableReader<'_>, readings: &[ColumnSpec]) -> Self {
         let mut columns: Vec<Renamed> = Vec::new();

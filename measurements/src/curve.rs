@@ -1,6 +1,6 @@
 //! Readings along one axis that are no positions, such as a force over depth.
 
-use super::columns::ColumnSpec;
+use super::columns::{ColumnNames, ColumnSpec};
 use super::conditions::ConditionPlaces;
 use super::contradiction::Contradiction;
 use super::findings::Findings;
@@ -38,8 +38,10 @@ pub struct Curve {
 }
 
 /// Checks of a set whose tables were read.
-pub(super) type Check =
-    fn(&MeasurementSet, &[ConditionPlaces], &mut Findings) -> Vec<Contradiction>;
+pub(super) type Check = fn(&MeasurementSet, Written<'_>, &mut Findings) -> Vec<Contradiction>;
+
+/// Where a set says what of its conditions, and what of the columns of its tables.
+pub(super) type Written<'a> = (&'a [ConditionPlaces], &'a ColumnNames);
 
 /// What readings lie along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

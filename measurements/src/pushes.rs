@@ -6,6 +6,7 @@ use configs::{Diagnostic, shorten};
 
 use super::conditions::ConditionPlaces;
 use super::contradiction::{Contradiction, ContradictionKind};
+use super::curve::Written;
 use super::findings::Findings;
 use super::median;
 use super::{Condition, Geometry, MeasurementSet, Run, Sample};
@@ -26,7 +27,7 @@ const DEEPEST: f64 = 500.0;
 /// Refuses what cannot be pushed, and signs that go against a push; names units that look like others.
 pub(super) fn check(
     set: &MeasurementSet,
-    places: &[ConditionPlaces],
+    (places, columns): Written<'_>,
     findings: &mut Findings,
 ) -> Vec<Contradiction> {
     for (condition, place) in set.conditions.iter().zip(places) {
@@ -46,7 +47,7 @@ pub(super) fn check(
         findings.report(Diagnostic::error(message).help(help));
     }
     if findings.errors() == 0 {
-        check_signs(set, places, findings);
+        check_signs(set, (places, columns), findings);
     }
     if findings.errors() == 0 {
         check_lengths(set, places, findings);
@@ -87,7 +88,7 @@ fn check_condition(condition: &Condition, place: &ConditionPlaces, findings: &mu
 }
 
 /// Refuses depths and forces that count the other way.
-fn check_signs(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+fn check_signs(set: &MeasurementSet, (places, columns): Written<'_>, findings: &mut Findings) {
     let farthest = |run: &Run, of: fn(&Sample) -> f64| {
         run.samples.iter().map(of).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
     };
@@ -110,8 +111,8 @@ fn check_signs(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut 
             Diagnostic::error(format!("the {what} is negative in {n} of {all} runs"))
                 .at(places[condition].id, right)
                 .help(format!(
-                    "does it count the other way? then say below [columns]: \
-                     {key} = {{ name = \"{key}\", unit = \"{unit}\", sign = -1 }}"
+                    "does it count the other way? then say below [columns]: {}",
+                    columns.turned(key, unit)
                 )),
         );
     }

@@ -3,6 +3,7 @@
 use configs::Diagnostic;
 
 use super::conditions::ConditionPlaces;
+use super::curve::Written;
 use super::findings::Findings;
 use super::start::Start;
 use super::{Condition, Frame, MeasurementSet, Run};
@@ -11,7 +12,7 @@ use super::{Condition, Frame, MeasurementSet, Run};
 const SHORTEST: f64 = 0.05;
 
 /// Refuses a set that goes against its own impact velocities; which of the two is wrong is asked.
-pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
+pub(super) fn check(set: &MeasurementSet, (places, columns): Written<'_>, findings: &mut Findings) {
     let depth = against(set, |run, condition| {
         let downward = condition.speed * sine(condition) > 0.0;
         let ways = [travel(run, |frame| frame.z), run.final_z];
@@ -25,10 +26,10 @@ pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: 
                     places[condition].angle,
                     format!("{angle} deg below the horizontal: the intruder goes down"),
                 )
-                .help(
-                    "is z counted upwards? then say below [columns]: \
-                     z = { name = \"z\", unit = \"m\", sign = -1 }, and so for final_z",
-                ),
+                .help(format!(
+                    "is z counted upwards? then say below [columns]: {}, and so for final_z",
+                    columns.turned("z", "m")
+                )),
         );
     }
     let range = against(set, |run, condition| {
@@ -40,10 +41,10 @@ pub(super) fn check(set: &MeasurementSet, places: &[ConditionPlaces], findings: 
         findings.report(
             Diagnostic::error(format!("the intruder goes backwards in {contrary} of {told} runs"))
                 .at(places[condition].angle, "an oblique impact: x counts along its motion")
-                .help(
-                    "does x count the other way? then say below [columns]: \
-                     x = { name = \"x\", unit = \"m\", sign = -1 }, and so for final_x",
-                ),
+                .help(format!(
+                    "does x count the other way? then say below [columns]: {}, and so for final_x",
+                    columns.turned("x", "m")
+                )),
         );
     }
     check_angles(set, places, findings);

@@ -6,7 +6,7 @@ use engine::units::Dimension;
 use super::columns::ColumnSpec;
 use super::conditions::ConditionPlaces;
 use super::contradiction::{Contradiction, ContradictionKind};
-use super::curve::{Along, Axis, Curve};
+use super::curve::{Along, Axis, Curve, Written};
 use super::findings::Findings;
 use super::median;
 use super::reading::Reading;
@@ -64,7 +64,7 @@ fn shown_speed(set: &MeasurementSet, condition: &Condition, run: &Run) -> Option
 
 fn check(
     set: &MeasurementSet,
-    places: &[ConditionPlaces],
+    (places, columns): Written<'_>,
     findings: &mut Findings,
 ) -> Vec<Contradiction> {
     let why = "a velocity is read along one axis, which has to be that of the motion";
@@ -86,10 +86,10 @@ fn check(
                 "the velocity is negative where it is largest in {n} of {all} runs"
             ))
             .at(places[contrary[0].condition].id, "a velocity counts downward")
-            .help(
-                "does it count upward? then say below [columns]: \
-                     velocity = { name = \"velocity\", unit = \"m/s\", sign = -1 }",
-            ),
+            .help(format!(
+                "does it count upward? then say below [columns]: {}",
+                columns.turned("velocity", "m/s")
+            )),
         );
         return Vec::new();
     }

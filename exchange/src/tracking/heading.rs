@@ -1,5 +1,7 @@
 //! What the name of a column says: what stands in it, of which point, in which unit.
 
+use engine::units::Dimension;
+
 use super::units::Unit;
 
 /// What stands in a column.
@@ -214,6 +216,20 @@ impl Heading {
         };
         first.is_some_and(|word| NAMES.contains(&word))
             || matches!(&self.unit, Unit::Unknown(unit) if is_unit(unit))
+    }
+
+    /// Whether its unit is one of length.
+    pub(super) fn is_length(&self) -> bool {
+        self.unit.si(Dimension::LENGTH).is_some()
+    }
+
+    /// Whether name or unit is that of a velocity.
+    pub(super) fn is_velocity(&self) -> bool {
+        const NAMES: [&str; 6] = ["vx", "vy", "vz", "vel", "velocity", "speed"];
+        const UNITS: [&str; 5] = ["m/s", "cm/s", "mm/s", "m s^-1", "km/h"];
+        let first = self.stem.split([' ', '_', '-']).next();
+        first.is_some_and(|word| NAMES.contains(&word))
+            || matches!(&self.unit, Unit::Unknown(unit) if UNITS.contains(&unit.to_lowercase().as_str()))
     }
 
     /// The coordinate and the point of names such as `y2`, `x_left`, `ball_y`; none of plain names.

@@ -81,6 +81,13 @@ fn plain_tables() {
     has(&told("a.dat", &text, &[]), &["no column of times", "--column t=NAME; found: 1, 2, 3"]);
     let text = formats::bare(&drops[0]).replace("t y\n", "t (s) az (m/s²)\n");
     has(&told("a.dat", &text, &[]), &["`az (m/s²)` is an acceleration", "plunge new"]);
+    let text = text.replace("az (m/s²)", "velocity (m/s)");
+    for asked in [&[][..], &[("length_unit", "m")]] {
+        has(
+            &told("a.dat", &text, asked),
+            &["`velocity (m/s)` is a velocity", "kind = \"velocity\""],
+        );
+    }
     has(&told("a.dat", "t,y,u\n0,,1\n1,,2\n", &[]), &["no row has a time and a position"]);
     let text = formats::bare(&drops[0]).replace("t y\n", "t q\n");
     let message = told("a.dat", &text, &[("column_z", "p")]);

@@ -58,32 +58,42 @@ const LAYOUTS: [&Layout; 15] = [
 /// # Errors
 /// What is wrong with it.
 pub(super) fn tracks(sheet: &Sheet, columns: &Columns) -> Result<Vec<Track>, Fault> {
-    refuse_accelerations(sheet, columns)?;
+    refuse_derivatives(sheet, columns)?;
     refuse_forces(sheet, columns)?;
     let layout = LAYOUTS.into_iter().find(|layout| (layout.fits)(sheet, columns));
     (layout.unwrap_or(&single::LAYOUT).read)(sheet, columns)
 }
 
-/// Refuses the table of an accelerometer, which has no positions.
-fn refuse_accelerations(sheet: &Sheet, columns: &Columns) -> Result<(), Fault> {
+/// Refuses the table of an accelerometer or of a velocimeter, which has no positions.
+fn refuse_derivatives(sheet: &Sheet, columns: &Columns) -> Result<(), Fault> {
     /// Names of accelerations and velocities, which have components as positions do.
     const OTHERS: [&str; 7] = ["a", "acc", "accel", "acceleration", "v", "vel", "velocity"];
     let Ok(grid) = Grid::found(sheet) else { return Ok(()) };
+    let is_derivative = |heading: &Heading| heading.is_acceleration() || heading.is_velocity();
     let is_place = |heading: &Heading| {
         let is_named = heading.role() == Some(Role::Vertical)
             || matches!(heading.point(), Some((Role::Vertical, name)) if !OTHERS.contains(&name.as_str()));
-        is_named && !heading.is_acceleration()
+        // Columns that have the names of drops say by their unit what they are.
+        (is_named || heading.is_length()) && !is_derivative(heading)
     };
-    let of = grid.headings.iter().find(|heading| heading.is_acceleration());
-    match of {
-        Some(of) if columns.of(Role::Vertical).is_none() && !grid.headings.iter().any(is_place) => {
-            let what = format!("`{}` is an acceleration, and no column is a position", of.name);
-            let right = "import reads positions: name their column, --column z=NAME; a set of accelerations is written by hand, \
-                         as `plunge new real-water-cones-acceleration` shows";
-            Err(sheet.fault(what, right))
-        }
-        _ => Ok(()),
+    let is_asked = columns.of(Role::Vertical).is_some();
+    if is_asked || grid.headings.iter().any(is_place) {
+        return Ok(());
     }
+    let Some(of) = grid.headings.iter().find(|heading| is_derivative(heading)) else {
+        return Ok(());
+    };
+    let (what, written) = match of.is_acceleration() {
+        true => (
+            "an acceleration",
+            "accelerations is written by hand, as `plunge new real-water-cones-acceleration` shows",
+        ),
+        false => ("a velocity", "velocities is written by hand, with kind = \"velocity\""),
+    };
+    let what = format!("`{}` is {what}, and no column is a position", of.name);
+    let right =
+        format!("import reads positions: name their column, --column z=NAME; a set of {written}");
+    Err(sheet.fault(what, right))
 }
 
 /// Refuses the table of a testing machine or a penetrometer, which pushes a body.
