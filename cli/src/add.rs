@@ -105,12 +105,16 @@ fn read_diagnosis(path: &Path, effect: Option<&str>) -> Result<Addition, Command
         .map_err(|error| CommandError::bad_input(format!("cannot read {shown}: {error}")))?;
     let object: Value = serde_json::from_str(&text)
         .map_err(|error| CommandError::bad_input(format!("{shown} is no JSON: {error}")))?;
+    let Some(verdict) = object["verdict"].as_str() else {
+        return Err(CommandError::bad_input(format!(
+            "{shown} is no diagnosis: it has no `verdict`; --from takes the diagnosis.json that `plunge diagnose` writes"
+        )));
+    };
     let named: Vec<&str> = match effect {
         Some(name) => vec![name],
         None => strings(&object["effects"]),
     };
     if named.is_empty() {
-        let verdict = object["verdict"].as_str().unwrap_or("missing");
         return Err(CommandError::bad_input(format!(
             "{shown} names no effect (its verdict is {verdict}); --effect says which to add all the \
              same"
@@ -151,6 +155,9 @@ pub(crate) fn from_diagnosis(object: &Value, effects: &[&str]) -> Result<Additio
         .map(|name| {
             let entry = amplitudes.iter().find(|entry| entry["id"] == *name);
             match entry.and_then(|entry| entry["q"].as_f64()) {
+                Some(0.0) => {
+                    Err(format!("the amplitude of `{name}` is 0 there: it changes nothing"))
+                }
                 Some(q) => {
                     let form = entry.and_then(|entry| entry["form"].as_object());
                     let form = form.into_iter().flatten();
@@ -158,16 +165,28 @@ pub(crate) fn from_diagnosis(object: &Value, effects: &[&str]) -> Result<Additio
                     let values = std::iter::once(("q".to_owned(), format!("{q}"))).chain(form);
                     Ok(AddedEffect { name: (*name).to_owned(), values: values.collect() })
                 }
-                None => {
-                    let known = ranking.iter().filter_map(|entry| entry["id"].as_str());
-                    let hint = nearest(name, known)
-                        .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
-                    Err(format!("no amplitude of `{name}` is there{hint}"))
-                }
+                None => Err(no_amplitude(name, ranking)),
             }
         })
         .collect::<Result<_, String>>()?;
     Ok(Addition { effects: additions, fitted: fitted(parameters), candidates: Vec::new() })
+}
+
+/// Why `ranking` has no amplitude of the effect `name`.
+fn no_amplitude(name: &str, ranking: &[Value]) -> String {
+    let ids = || ranking.iter().filter_map(|entry| entry["id"].as_str());
+    let why = ranking.iter().find(|entry| entry["id"] == name);
+    match (why.and_then(|entry| entry["note"].as_str()), nearest(name, ids())) {
+        (Some(why), _) => format!("`{name}` was not fitted: {why}"),
+        (None, Some(near)) => format!("no amplitude of `{name}` is there; did you mean `{near}`?"),
+        (None, None) => {
+            let known: Vec<&str> = ids().collect();
+            format!(
+                "no amplitude of `{name}` is there; of these there may be: {}",
+                known.join(", ")
+            )
+        }
+    }
 }
 
 /// The formula of the missing force that a diagnosis offers, with the parameters of the model with it.

@@ -121,7 +121,7 @@ fn ranking(diagnosis: &Diagnosis, object: &Value) -> String {
     let mut text = shown(&tables::ranking(object));
     if !diagnosis.effects.is_empty() {
         text.push_str(
-            " q and se are of each effect alone, in its listed form; the claim adds what is not known of the form.\n",
+            " q and se are of each effect alone, in the form that fits best; the claim adds what is not known of the form.\n",
         );
     }
     let alike = |effect: &&RankedEffect| diagnosis.not_separable.contains(&effect.id);

@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 
 use crate::bench::{Bench, BenchError};
 use crate::observable::Observable;
+use crate::observed::ObservedCondition;
 use crate::rounding::rounded;
 use crate::sensitivity::Point;
 
@@ -37,7 +38,7 @@ impl Errors {
                 let (found, expected) = (predicted.len(), observed.mean.len());
                 return Err(BenchError::Layout { id: observed.id.clone(), found, expected });
             }
-            sums.add(&observed.layout.kinds(), &observed.mean, &(&observed.mean - predicted));
+            sums.add(observed, &(&observed.mean - predicted));
         }
         Ok((!conditions.is_empty()).then(|| sums.errors()))
     }
@@ -63,6 +64,9 @@ impl Errors {
     }
 }
 
+/// Standard deviations of one run by which a number has to differ from zero for an error relative to it.
+const FROM_ZERO: f64 = 3.0;
+
 /// Sums of squares by kind.
 #[derive(Default)]
 pub(crate) struct Sums {
@@ -71,17 +75,15 @@ pub(crate) struct Sums {
 }
 
 impl Sums {
-    /// Adds the `errors` of numbers of these `kinds`, of which `values` were measured.
-    pub(crate) fn add(
-        &mut self,
-        kinds: &[Observable],
-        values: &DVector<f64>,
-        errors: &DVector<f64>,
-    ) {
-        for (kind, (value, error)) in kinds.iter().zip(values.iter().zip(errors.iter())) {
-            let slot = &mut self.by_kind[*kind as usize];
+    /// Adds the `errors` of the means of `observed`. A number that its scatter does not tell from zero, such as the range of a
+    /// vertical impact, has no relative error.
+    pub(crate) fn add(&mut self, observed: &ObservedCondition, errors: &DVector<f64>) {
+        let each = observed.layout.kinds().into_iter().zip(errors.iter()).enumerate();
+        for (at, (kind, error)) in each {
+            let slot = &mut self.by_kind[kind as usize];
             *slot = (slot.0 + error * error, slot.1 + 1);
-            if kind.is_scalar() && *value != 0.0 {
+            let value = observed.mean[at];
+            if kind.is_scalar() && value.abs() > FROM_ZERO * observed.scatter(at) {
                 self.relative = (self.relative.0 + (error / value).powi(2), self.relative.1 + 1);
             }
         }

@@ -149,7 +149,7 @@ impl HeldOut {
             let mut sums = Sums::default();
             for (condition, predicted) in both.iter().map(which) {
                 let observed = &bench.observed.conditions[condition];
-                sums.add(&observed.layout.kinds(), &observed.mean, &predicted.error);
+                sums.add(observed, &predicted.error);
             }
             pick(&sums.errors())
         };
@@ -327,8 +327,7 @@ impl HeldOut {
 fn ratio_at_most(observed: &Observed, all: &[&Pair], unit: Unit) -> Option<f64> {
     let error = |condition: usize, one: &Predicted| {
         let mut sums = Sums::default();
-        let condition = &observed.conditions[condition];
-        sums.add(&condition.layout.kinds(), &condition.mean, &one.error);
+        sums.add(&observed.conditions[condition], &one.error);
         Some(unit.pick(&sums.errors())?.powi(2))
     };
     let pairs: Vec<[f64; 2]> = all

@@ -11,7 +11,7 @@ pub(crate) fn noise_floor(observed: &Observed, conditions: &[usize]) -> Errors {
     let mut sums = Sums::default();
     for &condition in conditions {
         let observed = &observed.conditions[condition];
-        sums.add(&observed.layout.kinds(), &observed.mean, &standard_errors(observed));
+        sums.add(observed, &standard_errors(observed));
     }
     sums.errors()
 }
@@ -23,7 +23,7 @@ pub(crate) fn floor_of_both(observed: &Observed, fitted: &Fitted, conditions: &[
     for (condition, weight) in observed.fit.iter().zip(&fitted.weights) {
         if conditions.contains(condition) {
             let of = &observed.conditions[*condition];
-            sums.add(&of.layout.kinds(), &of.mean, &weight.standard_errors());
+            sums.add(of, &weight.standard_errors());
         }
     }
     sums.errors()

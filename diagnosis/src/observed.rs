@@ -179,6 +179,16 @@ fn keep_tracked(runs: &mut Vec<&Run>, (kind, id): (Kind, &str), notes: &mut Vec<
 }
 
 impl ObservedCondition {
+    /// Standard deviation over the runs of the number at `at`; that of its reading, where there is one run.
+    pub(crate) fn scatter(&self, at: usize) -> f64 {
+        let runs = self.runs.len();
+        if runs < 2 {
+            return self.reading[at];
+        }
+        let squares = self.runs.iter().map(|run| (run[at] - self.mean[at]).powi(2));
+        (squares.sum::<f64>() / (runs - 1) as f64).sqrt()
+    }
+
     fn of(set: &MeasurementSet, index: usize, notes: &mut Vec<String>) -> Self {
         let condition = &set.conditions[index];
         let mut runs: Vec<&Run> = set.runs.iter().filter(|run| run.condition == index).collect();

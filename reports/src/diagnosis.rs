@@ -263,7 +263,7 @@ fn ranking(diagnosis: &Value) -> Vec<Part> {
     let table = tables::ranking(diagnosis);
     let mut parts = Vec::new();
     if !table.rows.is_empty() {
-        let intro = "Estimates of each effect alone, in its listed form, by which effects are ranked. The verdict fits what \
+        let intro = "Estimates of each effect alone, in the form that fits best, by which effects are ranked. The verdict fits what \
                      it names once more, with all that is uncertain. Behind: how much less \u{3c7}\u{b2} falls than by the \
                      best. Ranked first if there: the share of simulated sets with such an effect in which it comes first. \
                      Limit: the least amplitude that is seen.";

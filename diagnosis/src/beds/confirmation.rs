@@ -87,9 +87,8 @@ impl Confirmation {
             let beside = beside[0].zip_map(&beside[1], f64::max).map(f64::sqrt);
             let floor = own.zip_map(&with.error, libm::hypot).zip_map(&beside, libm::hypot);
             gain += 0.5 * (mean_square(&errors[0], &floor) - mean_square(&errors[1], &floor));
-            let kinds = observed.layout.kinds();
             for (sums, error) in sums.iter_mut().zip(errors.iter().chain([&floor])) {
-                sums.add(&kinds, &observed.mean, error);
+                sums.add(observed, error);
             }
         }
         let unit = Unit::of(stand.set.kind);
