@@ -102,8 +102,15 @@ pub(crate) fn as_text(sequel: &Sequel, object: &Value) -> String {
         1 => String::new(),
         _ => format!("They tell {:.2} bit of which it is.\n", sequel.told_bits),
     };
+    let unexpected = match sequel.is_unexpected {
+        true => format!(
+            "No hypothesis expected this: even the nearest misses by more than chance does (p {:.1e}).\n",
+            sequel.p_nearest
+        ),
+        false => String::new(),
+    };
     format!(
-        "\nNEW RUNS  measured, and as expected from the earlier ones:\n{}\n{}{told}",
+        "\nNEW RUNS  measured, and as expected from the earlier ones:\n{}\n{}{told}{unexpected}",
         shown(&tables::new_runs(after)),
         shown(&tables::hypotheses(after))
     )

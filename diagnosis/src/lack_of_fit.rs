@@ -87,7 +87,7 @@ fn crater_sizes(layout: &Layout) -> DMatrix<f64> {
 }
 
 /// Upper tail of the χ² distribution at `chi2`: only a large misfit is evidence against the model.
-fn at_least(chi2: f64, freedom: f64) -> Option<f64> {
+pub(crate) fn at_least(chi2: f64, freedom: f64) -> Option<f64> {
     ChiSquared::new(freedom).ok().map(|distribution| distribution.sf(chi2))
 }
 

@@ -307,6 +307,12 @@ fn after(diagnosis: &Value) -> Vec<Part> {
          about 1 under a hypothesis that expected them.",
         fixed(after["told_bits"].as_f64(), 2)
     );
+    let intro = match after["is_unexpected"].as_bool() {
+        Some(true) => format!(
+            "{intro} No hypothesis expected them: even the nearest misses by more than chance does."
+        ),
+        _ => intro,
+    };
     let tables = [tables::hypotheses(after), tables::new_runs(after)].map(Part::Table);
     [Part::Text(intro)].into_iter().chain(tables).collect()
 }

@@ -8,10 +8,14 @@ use super::prospect::{Prospect, entropy, posterior};
 use super::{hypotheses, probabilities};
 use crate::bench::Bench;
 use crate::forward::{Forward, PredictError};
+use crate::lack_of_fit::at_least;
 use crate::observable::{Layout, Observable};
 use crate::observed::Observed;
 use crate::rounding::six_digits;
 use crate::verdict::Diagnosis;
+
+/// Probability below which misses are not by chance.
+const UNEXPECTED: f64 = 0.01;
 
 /// Runs that came after a diagnosis, held against what it expected.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -21,6 +25,12 @@ pub struct Sequel {
     /// What the new runs told about which of them holds (bits); negative where they raise doubts.
     #[serde(serialize_with = "six_digits")]
     pub told_bits: f64,
+    /// Probability that the numbers of `came` miss what the most likely hypothesis expected by so much: where it is small, none
+    /// of them expected what came, and their probabilities say no more than which is nearest.
+    #[serde(serialize_with = "six_digits")]
+    pub p_nearest: f64,
+    /// Whether that is below 0.01.
+    pub is_unexpected: bool,
     /// Every condition with new runs.
     pub came: Vec<Came>,
 }
@@ -134,10 +144,20 @@ pub fn sequel(
             expected: expected.collect(),
         }
     });
+    let came: Vec<Came> = came.collect();
+    let nearest = (0..after.len()).max_by(|&a, &b| after[a].total_cmp(&after[b]));
+    let miss = |one: &Came, at: usize| {
+        let Expected { value, se, .. } = one.expected[at];
+        ((one.measured - value) / se).powi(2)
+    };
+    let misses = |at: usize| came.iter().map(|one| miss(one, at)).sum::<f64>();
+    let p_nearest = nearest.and_then(|at| at_least(misses(at), came.len() as f64)).unwrap_or(1.0);
     Ok(Some(Sequel {
         hypotheses: shares.collect(),
         told_bits: entropy(&before) - entropy(&after),
-        came: came.collect(),
+        p_nearest,
+        is_unexpected: p_nearest < UNEXPECTED,
+        came,
     }))
 }
 

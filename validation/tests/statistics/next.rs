@@ -160,6 +160,7 @@ fn new_runs_come_as_what_is_there_expects_and_it_stays_the_likeliest() {
     assert!((truth.after - most).abs() == 0.0, "{sequel:?}");
     assert!(truth.chi2_per_number < 2.0, "{sequel:?}");
     assert_eq!(sequel.came.len(), best.len());
+    assert!(!sequel.is_unexpected, "{sequel:?}");
     for came in &sequel.came {
         let of_truth = came.expected.iter().find(|one| one.id == effect.id()).expect("it is there");
         let off = (came.measured - of_truth.value) / of_truth.se;
@@ -176,9 +177,10 @@ fn new_runs_that_nothing_expected_are_told_by_their_chi2() {
     let as_expected = expected_of_the_rest(&set);
     let [alone] = as_expected.hypotheses.as_slice() else { panic!("{as_expected:?}") };
     assert_eq!(alone.id, "no effect");
-    assert!(alone.chi2_per_number < 2.0, "{alone:?}");
+    assert!(alone.chi2_per_number < 2.0 && !as_expected.is_unexpected, "{alone:?}");
     // Another body than is stated.
     set.conditions[6].mass *= 2.0;
     let other = expected_of_the_rest(&set);
     assert!(other.hypotheses[0].chi2_per_number > 5.0, "{other:?}");
+    assert!(other.is_unexpected, "{other:?}");
 }
