@@ -50,7 +50,7 @@ pub(crate) fn run(args: &Args) -> CommandResult {
     let measured = flags.measured(&args.set, args.model.as_slice())?;
     let models = flags.models(args.model.as_slice(), &measured)?;
     let measured = flags.answerable(measured, &models)?;
-    let refused = |why: &str| Err(CommandError::BadInput(format!("{why}\n")));
+    let refused = |why: &str| Err(CommandError::bad_input(why));
     if models[0].loaded.model.grains().is_some() {
         return match (args.calibrate, &args.after) {
             (true, _) => refused(

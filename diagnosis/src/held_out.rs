@@ -434,6 +434,10 @@ impl Predicted {
             let own = residual.rows(start, rows).into_owned();
             let slope = jacobian.rows(start, rows).into_owned();
             start += rows;
+            if noisy.weights.len() == 1 {
+                predicted.push(Err("no other condition is fitted to".to_owned()));
+                continue;
+            }
             let Some(others) = told_apart(&all - slope.tr_mul(&slope), &all) else {
                 predicted.push(Err("it alone fixes a parameter".to_owned()));
                 continue;

@@ -210,7 +210,8 @@ fn head(table: TableReader<'_>, unstated: &mut Unstated) -> Option<Head> {
         FinalDefinition::Resting
     });
     Some(Head {
-        id: id?.value,
+        // What is wrong with a name was reported, and does not keep the kind from being known.
+        id: id.map_or_else(String::new, |id| id.value),
         kind: kind?,
         source,
         frame,
