@@ -70,7 +70,9 @@ impl MeasurementSet {
         let mut rows = vec![heads.map(str::to_owned).to_vec()];
         for (index, condition) in self.conditions.iter().enumerate() {
             let runs: Vec<&Run> = self.runs.iter().filter(|run| run.condition == index).collect();
-            let function = self.kind.curve().map_or("z(t), x(t)", |curve| curve.function);
+            let moves_along = runs.iter().flat_map(|run| &run.frames).any(|frame| frame.x != 0.0);
+            let path = if moves_along { "z(t), x(t)" } else { "z(t)" };
+            let function = self.kind.curve().map_or(path, |curve| curve.function);
             rows.push(row(condition, &runs, function));
         }
         rows

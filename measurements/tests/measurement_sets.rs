@@ -116,7 +116,7 @@ three-dimensional bed, 1480 kg/m^3, grains of 0.0008 m, gravity 9.81 m/s^2
 baseline two-term-vector
 
 condition  role     speed (m/s)  angle (deg)  shape   diameter (m)  mass (kg)  runs  readings  measured
-c01        fit      1            90           sphere  0.0254        0.0667     1     7         stop_time, final_z, z(t), x(t)
+c01        fit      1            90           sphere  0.0254        0.0667     1     7         stop_time, final_z, z(t)
 c02        holdout  2            30           sphere  0.0254        0.0667     1     7         stop_time, final_z, final_x, z(t), x(t)
 
 runs.csv: run, condition, repeat, order, stop_time (s), final_z (m), final_x (m)
