@@ -153,8 +153,9 @@ impl Judge<'_> {
         let is_named = is_explained || is_most;
         let is_one_of_many = is_named && self.is_one_of_many(p_leader, &held_out)?;
         if is_named && !is_one_of_many {
+            let leaves_more = held_out.leaves_more_than_noise() == Some(true);
             let mut found = self.one(grounds, held_out)?;
-            if !adequate(p_leader) && !found.effects.is_empty() {
+            if (!adequate(p_leader) || leaves_more) && !found.effects.is_empty() {
                 found.strength_reasons.push(StrengthReason::OfAnotherForm);
                 found.strength = Strength::of(&found.strength_reasons);
             }
