@@ -99,8 +99,8 @@ impl ColumnNames {
         let name = known.map_or(key, |one| one.name.as_str());
         let unit = known.and_then(|one| one.unit.as_deref()).unwrap_or(unit);
         let is_turned = known.is_some_and(|one| one.sign < 0.0);
-        let sign = if is_turned { "" } else { ", sign = -1" };
-        format!("{key} = {{ name = \"{name}\", unit = \"{unit}\"{sign} }}")
+        let sign = if is_turned { 1 } else { -1 };
+        format!("{key} = {{ name = \"{name}\", unit = \"{unit}\", sign = {sign} }}")
     }
 
     /// Reads `[columns]` of the table of runs and of one with these `readings`; faults are reported.

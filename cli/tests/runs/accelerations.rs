@@ -97,7 +97,10 @@ fn a_wrong_sign_unit_or_zero_of_accelerations_is_refused_with_what_would_be_righ
         (length, ["an acceleration", "write unit = \"m/s^2\""]),
         (
             turned,
-            ["the acceleration is negative where it is largest in 12 of 12 runs", "sign = -1"],
+            [
+                "the acceleration is negative where it is largest in 12 of 12 runs",
+                "unit = \"g\", sign = 1 }",
+            ],
         ),
         (shifted, ["those of a body in free fall are 0", "`zero` below [columns]"]),
     ] {

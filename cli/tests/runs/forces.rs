@@ -113,8 +113,12 @@ fn a_wrong_sign_unit_or_key_of_forces_is_refused_with_what_would_be_right() {
     let metres = UNITS.replace("unit = \"mm\"", "unit = \"m\"");
     for (columns, factors, messages) in [
         (ms.as_str(), [1.0, 1.0], ["a force", "write unit = \"N\""]),
-        (&turned, [1.0, 1.0], ["the force is negative in 8 of 8 runs", "sign = -1"]),
-        (&upward, [1.0, 1.0], ["the depth is negative in 8 of 8 runs", "sign = -1"]),
+        (&turned, [1.0, 1.0], ["the force is negative in 8 of 8 runs", "unit = \"N\", sign = 1 }"]),
+        (
+            &upward,
+            [1.0, 1.0],
+            ["the depth is negative in 8 of 8 runs", "unit = \"mm\", sign = 1 }"],
+        ),
         (&metres, [1.0, 1.0], ["the depths go to", "are they in mm or cm?"]),
         (UNITS, [1.0, 1e-3], ["times that of the weight of the bed", "is the force in kN"]),
         (UNITS, [1.0, 1e3], ["times that of the weight of the bed", "is the force in mN"]),
