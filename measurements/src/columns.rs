@@ -68,6 +68,9 @@ pub(super) const OF_ONE_RUN: [ColumnSpec; 5] = trajectories(false, true);
 /// Both.
 pub(super) const VERTICAL_OF_ONE_RUN: [ColumnSpec; 5] = trajectories(false, false);
 
+/// The unit that a file may call `g` where it is one of acceleration.
+const STANDARD_GRAVITY: &str = "gn";
+
 /// How a file names and counts one column.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Renamed {
@@ -97,7 +100,10 @@ impl ColumnNames {
     pub(super) fn turned(&self, key: &str, unit: &str) -> String {
         let known = self.of(key);
         let name = known.map_or(key, |one| one.name.as_str());
-        let unit = known.and_then(|one| one.unit.as_deref()).unwrap_or(unit);
+        let unit = match known.and_then(|one| one.unit.as_deref()).unwrap_or(unit) {
+            STANDARD_GRAVITY => "g",
+            unit => unit,
+        };
         let is_turned = known.is_some_and(|one| one.sign < 0.0);
         let sign = if is_turned { 1 } else { -1 };
         format!("{key} = {{ name = \"{name}\", unit = \"{unit}\", sign = {sign} }}")
@@ -142,7 +148,7 @@ fn renamed(table: TableReader<'_>, spec: &ColumnSpec, span: Option<Span>) -> Opt
             let mut unit = table.text("unit", None, &example, "the unit of the column")?;
             // Where an acceleration stands, no gram is meant.
             if dimension == Dimension::ACCELERATION && unit.value == "g" {
-                "gn".clone_into(&mut unit.value);
+                STANDARD_GRAVITY.clone_into(&mut unit.value);
             }
             check_unit(&table, &unit.value, unit.span, dimension);
             let sign = table.number(&keys::SIGN)?;
