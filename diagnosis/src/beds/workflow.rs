@@ -76,6 +76,10 @@ pub fn compare_jobs(stand: &Stand<'_>, observed: &Observed) -> Result<Vec<Job>, 
     Ok(stand.jobs(&conditions, &draws, &Variation::default())?)
 }
 
+/// Draws of beds that nothing was fitted to, one list per condition that confirms, and the impacts of the unchanged model on
+/// them.
+type Fresh<'a> = (&'a [Vec<Draw>], &'a [Option<Record>]);
+
 /// Diagnoses the model of `stand` by the runs of `plan`; of a plan that does not fit its budget
 /// [`unaffordable`](super::unaffordable) says what there is to say. First the model is prepared to what the set states of its bed.
 ///
@@ -284,7 +288,7 @@ impl Work<'_> {
         &mut self,
         forward: &BedForward,
         diagnosis: &Diagnosis,
-        (draws, plain): (&[Vec<Draw>], &[Option<Record>]),
+        (draws, plain): Fresh<'_>,
         measured: &Observed,
     ) -> Result<Option<Confirmation>, BedError> {
         let (Some(proposed), Some(baseline)) = (&diagnosis.proposed, &diagnosis.baseline) else {
@@ -301,7 +305,7 @@ impl Work<'_> {
         &mut self,
         forward: &BedForward,
         [baseline, proposed]: [&Fit; 2],
-        (draws, plain): (&[Vec<Draw>], &[Option<Record>]),
+        (draws, plain): Fresh<'_>,
         measured: &Observed,
     ) -> Result<Option<Confirmation>, BedError> {
         let alone = proposed.without_effects();
@@ -320,7 +324,7 @@ impl Work<'_> {
         &mut self,
         diagnosis: &mut Diagnosis,
         forward: &BedForward,
-        (leader, (draws, plain)): (&Confirmation, (&[Vec<Draw>], &[Option<Record>])),
+        (leader, (draws, plain)): (&Confirmation, Fresh<'_>),
         measured: &Observed,
     ) -> Result<(), BedError> {
         let (Some(proposed), Some(baseline)) = (&diagnosis.proposed, &diagnosis.baseline) else {
