@@ -228,7 +228,9 @@ impl Heading {
         const NAMES: [&str; 6] = ["vx", "vy", "vz", "vel", "velocity", "speed"];
         const UNITS: [&str; 5] = ["m/s", "cm/s", "mm/s", "m s^-1", "km/h"];
         let first = self.stem.split([' ', '_', '-']).next();
-        first.is_some_and(|word| NAMES.contains(&word))
+        // A drop that is called by its speed has a unit of length.
+        let is_named = !self.is_length() && first.is_some_and(|word| NAMES.contains(&word));
+        is_named
             || matches!(&self.unit, Unit::Unknown(unit) if UNITS.contains(&unit.to_lowercase().as_str()))
     }
 
