@@ -61,7 +61,7 @@ fn two_commands_lead_from_tables_to_a_named_effect() {
     let text = call.done().stdout;
     for wanted in [
         "one drop, semicolons",
-        "y (cm) (cm), up",
+        "y (cm), up",
         "Surface: one level for all runs",
         "4 conditions, 12 runs",
     ] {

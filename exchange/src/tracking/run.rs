@@ -12,6 +12,12 @@ use super::surface::{Seen, Touch};
 /// Degrees from the vertical up to which a fall counts as vertical: cameras are not held straighter.
 const UPRIGHT: f64 = 5.0;
 
+/// The column `name` with its unit and how that was `read`, which many names have already.
+fn with_unit(name: &str, (unit, read): (&str, &str)) -> String {
+    let has_it = [format!("({unit})"), format!("[{unit}]")].iter().any(|one| name.ends_with(one));
+    if has_it && read.is_empty() { name.to_owned() } else { format!("{name} ({unit}{read})") }
+}
+
 /// One drop.
 pub(super) struct Run {
     pub(super) name: String,
@@ -77,8 +83,8 @@ impl Run {
         let understood = Understood {
             layout: path.track.layout.clone(),
             rows,
-            time: format!("{} ({})", path.track.time.name, scales.time.0),
-            axis: format!("{} ({}{read}), {direction}", path.track.vertical.name, scales.length.0),
+            time: with_unit(&path.track.time.name, (&scales.time.0, "")),
+            axis: with_unit(&path.track.vertical.name, (&scales.length.0, read)) + ", " + direction,
             run: name.clone(),
             condition: String::new(),
             contact: touch.time,
