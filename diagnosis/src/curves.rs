@@ -20,7 +20,7 @@ const BEFORE_STOP: f64 = 0.9;
 /// Share of the speed at contact that counts as stopped.
 const STOPPED: f64 = 0.05;
 
-/// Share of a record, at its end, over which a body that rests has one velocity.
+/// Share of a record, at its end, over which the velocity of a body at rest is constant.
 const AT_REST: f64 = 0.25;
 
 /// Readings so many steps beside the contact are left out, and those beyond this share of the range.
@@ -210,8 +210,9 @@ fn path(kind: Kind, at: &[f64], read: &[f64], known: (f64, f64)) -> Option<Vec<[
     }
 }
 
-/// When (s) the velocity falls below 5 % of the speed at contact; infinite where it does not, or is not known. Readings
-/// without their peak leave a part of the speed, so a body whose velocity is the same over the last quarter rests.
+/// When (s) the velocity falls below 5 % of the speed at contact; infinite where it does not, or is not known. If
+/// the peak is clipped, the integral keeps a part of the speed: then a body rests if its velocity is constant over the last
+/// quarter of the record.
 fn stopped((kind, is_clipped): (Kind, bool), at: &[f64], read: &[f64], known: (f64, f64)) -> f64 {
     let path = path(kind, at, read, known).unwrap_or_default();
     let small = STOPPED * known.0;

@@ -116,6 +116,25 @@ const FAR_ABOVE: f64 = 2.5;
 const CHOICES: usize = 1000;
 const FEWEST: usize = 3;
 
+#[cfg(test)]
+impl HeldOut {
+    /// Errors on two conditions that the set holds out, in their own unit.
+    pub(crate) fn of_errors(before: f64, after: f64, noise_floor: f64) -> Self {
+        Self {
+            before: Some(before),
+            after: Some(after),
+            noise_floor: Some(noise_floor),
+            explained: None,
+            unit: Unit::Position,
+            conditions: LeftOut::Holdout,
+            conditions_judged: 2,
+            not_predicted: Vec::new(),
+            ratio_at_most: None,
+            log_density_gain: 0.0,
+        }
+    }
+}
+
 impl HeldOut {
     /// Of `before` and `after`.
     ///

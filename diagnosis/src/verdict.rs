@@ -417,7 +417,7 @@ impl Diagnosis {
         }
     }
 
-    /// Has a diagnosis that names something list the effects that could not be tested: they are not excluded.
+    /// Warns of effects that could not be tested, if the diagnosis names something: they are not excluded.
     pub(crate) fn tell_untested(&mut self) {
         let is_untested = |effect: &&RankedEffect| effect.status == Status::NotTestable;
         let ids = self.ranking.iter().filter(is_untested).map(|effect| effect.id.as_str());
@@ -457,8 +457,6 @@ impl Diagnosis {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error_unit::Unit;
-    use crate::held_out::LeftOut;
 
     fn effects(statuses: &[Status]) -> Vec<RankedEffect> {
         let candidate = Candidate::default();
@@ -484,18 +482,7 @@ mod tests {
 
     #[test]
     fn errors_on_fresh_beds_decide_whether_an_explanation_is_within_the_noise() {
-        let held_out = |before| HeldOut {
-            before: Some(before),
-            after: Some(before),
-            noise_floor: Some(1.0),
-            explained: None,
-            unit: Unit::Position,
-            conditions: LeftOut::Holdout,
-            conditions_judged: 2,
-            not_predicted: Vec::new(),
-            ratio_at_most: None,
-            log_density_gain: 0.0,
-        };
+        let held_out = |before| HeldOut::of_errors(before, before, 1.0);
         let mut diagnosis = Diagnosis::cannot_tell(Vec::new(), String::new());
         diagnosis.verdict = Verdict::NothingDetected;
         diagnosis.rest_on(held_out(3.0));

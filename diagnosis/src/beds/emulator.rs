@@ -182,8 +182,8 @@ impl BedForward {
         self.describe();
     }
 
-    /// Takes what screening found of every switch for what the switch does, and says why that is not known of those
-    /// that it lost in the scatter, by their index.
+    /// Makes every switch testable with what is known of it. Gives the index of each that is lost in the scatter, with the
+    /// reason.
     pub(super) fn take_at_face_value(&mut self) -> Vec<(usize, String)> {
         let screened = self.screened.iter_mut().enumerate();
         let lost = screened.filter_map(|(at, one)| Some((at, one.not_testable.take()?))).collect();
@@ -191,7 +191,7 @@ impl BedForward {
         lost
     }
 
-    /// Takes the switches `lost`, by their index, out again, each with its reason.
+    /// Makes the switches `lost`, given by index and reason, untestable again.
     pub(super) fn give_up(&mut self, lost: Vec<(usize, String)>) {
         for (at, why) in lost {
             self.screened[at].not_testable = Some(why);

@@ -37,8 +37,8 @@ pub(super) fn leaders(
         .collect()
 }
 
-/// Whether there is room for an effect that screening lost: nothing else explains the data, or what does leaves more
-/// than noise on the beds that it was `confirmed` on.
+/// Whether an effect that is lost in the scatter may explain what is left: no effect is named, or the named one leaves more
+/// than noise on the fresh beds that it is `confirmed` on.
 pub(super) fn leaves_room(diagnosis: &Diagnosis, confirmed: Option<&HeldOut>) -> bool {
     match diagnosis.verdict {
         Verdict::NoneOfTheCandidates | Verdict::CannotTell => true,
@@ -62,22 +62,9 @@ pub(super) fn is_beaten(rival: &HeldOut, leader: &HeldOut) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error_unit::Unit;
-    use crate::held_out::LeftOut;
 
     fn with(after: f64) -> HeldOut {
-        HeldOut {
-            before: Some(2.9),
-            after: Some(after),
-            noise_floor: Some(1.0),
-            explained: None,
-            unit: Unit::Position,
-            conditions: LeftOut::Holdout,
-            conditions_judged: 2,
-            not_predicted: Vec::new(),
-            ratio_at_most: None,
-            log_density_gain: 1.0,
-        }
+        HeldOut { log_density_gain: 1.0, ..HeldOut::of_errors(2.9, after, 1.0) }
     }
 
     #[test]

@@ -14,7 +14,7 @@ use super::work::{Standing, Work};
 use crate::verdict::Diagnosis;
 
 impl Work<'_> {
-    /// Searches the switches that lead, beside those that are `searched`, until one is ahead.
+    /// Searches the leading switches, except those `searched` before, until one is ahead of the others.
     pub(super) fn settle(
         &mut self,
         forward: &mut BedForward,
@@ -41,8 +41,8 @@ impl Work<'_> {
         Ok(diagnosis)
     }
 
-    /// Searches those switches that screening lost in the scatter, and that would lead if they were what they seem to be:
-    /// at the amplitude that the data ask for, they may stand out. Says whether there are any.
+    /// Searches the switches that screening loses in the scatter and that would lead with what it found of them. At their
+    /// best-fitting amplitudes they may be clear. Says whether there are any.
     pub(super) fn search_lost(
         &mut self,
         forward: &mut BedForward,
@@ -59,7 +59,7 @@ impl Work<'_> {
         };
         forward.give_up(lost);
         for &(at, guess) in &promising {
-            // What is not seen at the amplitude of the screening asks for no less.
+            // Screening does not show it at its amplitude, so a smaller one would not show it either.
             let least = forward.screened()[at].switch.screen;
             let guess = guess.abs().max(least).copysign(guess);
             searched.push(at);

@@ -5,7 +5,7 @@
 //! apparatus are projected out of the answer and of the residual. Its size and its four lengths are averaged over a
 //! grid, weighed by the evidence of each (ibid., eq. 5.8).
 
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
@@ -40,7 +40,8 @@ pub(super) struct Process {
     /// Logarithm of the odds of such a force against none.
     pub(super) log_odds: f64,
     told: Told,
-    /// Of the nodes that some path comes near: most processes are a step of a search, which asks for the mean alone.
+    /// Of the nodes that some path comes near; computed when it is first asked for, because a step of a search needs the mean
+    /// alone.
     covariance: OnceLock<DMatrix<f64>>,
 }
 
@@ -142,8 +143,9 @@ pub(super) struct Averaged<'a> {
     pub(super) log_odds: f64,
     /// By node.
     pub(super) mean: DVector<f64>,
-    /// Those that count, with the share of each and what it alone says is the mean.
-    told: Vec<(f64, DVector<f64>, Arc<Settings<'a>>, usize)>,
+    settings: Vec<Settings<'a>>,
+    /// The settings that count: the share of each, its mean, and its places in `settings` and below.
+    told: Vec<(f64, DVector<f64>, [usize; 2])>,
 }
 
 impl<'a> Averaged<'a> {
@@ -156,31 +158,33 @@ impl<'a> Averaged<'a> {
     ) -> Option<Self> {
         let most = sizes.iter().copied().fold(0.0, f64::max);
         let seen = Seen::of(gram, pull, most);
-        let of_each = covariances.par_iter().map(|one| Arc::new(Settings::of(one, sizes, &seen)));
-        let of_each: Vec<Arc<Settings<'a>>> = of_each.collect();
-        let all = of_each.iter().flat_map(|one| (0..one.each.len()).map(move |at| (one, at)));
-        let all: Vec<(&Arc<Settings<'a>>, usize)> = all.collect();
-        let log_odds = |(of, at): &(&Arc<Settings<'a>>, usize)| of.each[*at].log_odds;
+        let settings = covariances.par_iter().map(|one| Settings::of(one, sizes, &seen));
+        let settings: Vec<Settings<'a>> = settings.collect();
+        let below = |of: usize| (0..settings[of].each.len()).map(move |at| [of, at]);
+        let all: Vec<[usize; 2]> = (0..settings.len()).flat_map(below).collect();
+        let log_odds = |[of, at]: &[usize; 2]| settings[*of].each[*at].log_odds;
         let best = all.iter().map(log_odds).fold(f64::NEG_INFINITY, f64::max);
         let share = |one| libm::exp(log_odds(one) - best);
         let total: f64 = all.iter().map(share).sum();
         let counted: Vec<_> = all.iter().filter(|one| log_odds(one) > best - NEGLIGIBLE).collect();
         let told = counted.par_iter().map(|one| {
-            let (of, at) = **one;
-            (share(one) / total, of.mean(&of.each[at], &seen), Arc::clone(of), at)
+            let [of, at] = **one;
+            let mean = settings[of].mean(&settings[of].each[at], &seen);
+            (share(one) / total, mean, [of, at])
         });
         let told: Vec<_> = told.collect();
         let mut mean = DVector::zeros(pull.len());
         told.iter().for_each(|(share, own, ..)| mean.axpy(*share, own, 1.0));
         let log_odds = best + libm::log(total / all.len() as f64);
-        log_odds.is_finite().then_some(Self { log_odds, mean, told })
+        log_odds.is_finite().then_some(Self { log_odds, mean, settings, told })
     }
 
     /// Of the nodes.
     pub(super) fn covariance(&self) -> DMatrix<f64> {
         let n = self.mean.len();
-        let spread = |(_, _, of, at): &(_, _, Arc<Settings<'a>>, usize)| of.spread(&of.each[*at]);
-        let spreads: Vec<DMatrix<f64>> = self.told.par_iter().map(spread).collect();
+        let spread = |[of, at]: [usize; 2]| self.settings[of].spread(&self.settings[of].each[at]);
+        let spreads = self.told.par_iter().map(|(.., place)| spread(*place));
+        let spreads: Vec<DMatrix<f64>> = spreads.collect();
         let mut covariance = DMatrix::zeros(n, n);
         for ((share, own, ..), spread) in self.told.iter().zip(spreads) {
             let off = own - &self.mean;

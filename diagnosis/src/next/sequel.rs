@@ -25,8 +25,8 @@ pub struct Sequel {
     /// What the new runs told about which of them holds (bits); negative where they raise doubts.
     #[serde(serialize_with = "six_digits")]
     pub told_bits: f64,
-    /// Probability that the numbers of `came` miss what the most likely hypothesis expected by so much: where it is small, none
-    /// of them expected what came, and their probabilities say no more than which is nearest.
+    /// Probability that the numbers of `came` differ so much from what the most likely hypothesis expects. If it is small, no
+    /// hypothesis expects them, and the probabilities only say which is nearest.
     #[serde(serialize_with = "six_digits")]
     pub p_nearest: f64,
     /// Whether that is below 0.01.
