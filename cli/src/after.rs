@@ -100,6 +100,7 @@ pub(crate) fn as_text(sequel: &Sequel, object: &Value) -> String {
     let after = &object["after"];
     let told = match sequel.hypotheses.len() {
         1 => String::new(),
+        _ if sequel.is_unexpected => String::new(),
         _ => format!("They tell {:.2} bit of which it is.\n", sequel.told_bits),
     };
     let unexpected = match sequel.is_unexpected {

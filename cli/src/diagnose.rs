@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use configs::edit::add_effects;
 use diagnosis::bench::Bench;
-use diagnosis::calibrate::{Size, calibrate};
+use diagnosis::calibrate::{Calibration, Size, calibrate};
 use diagnosis::diagnose::{diagnose, seek_missing_force};
 use diagnosis::missing_force::FOUND;
 use diagnosis::next::recommend;
@@ -95,15 +95,19 @@ fn diagnose_law(args: &Args, measured: &Measured, models: &[Candidate]) -> Comma
     let next = recommend(&bench, &model.loaded.model, &mut diagnosis);
     flags.notes(&measured.set.notes);
     flags.notes(&measured.observed.notes);
-    let calibration = match args.calibrate {
-        false => None,
+    let calibration: Option<Calibration> = match args.calibrate {
+        // Sets that were simulated for the same inputs are not simulated again.
+        false => {
+            results.written_before(CALIBRATION).and_then(|text| serde_json::from_str(&text).ok())
+        }
         true => {
             let found = calibrate(&bench, &diagnosis, Size::default(), flags.seed);
-            let calibration = found.map_err(|error| failed(error, &model.name))?;
-            diagnosis.probability = Some(calibration.probability(&diagnosis));
-            Some(calibration)
+            Some(found.map_err(|error| failed(error, &model.name))?)
         }
     };
+    if let Some(calibration) = &calibration {
+        diagnosis.probability = Some(calibration.probability(&diagnosis));
+    }
     if let Some(sequel) = &sequel {
         diagnosis.after = Some(serde_json::to_value(sequel).map_err(anyhow::Error::new)?);
     }

@@ -120,9 +120,7 @@ fn ranking(diagnosis: &Diagnosis, object: &Value) -> String {
     let ranked = || diagnosis.ranking.iter().filter(|effect| effect.status == Status::Ranked);
     let mut text = shown(&tables::ranking(object));
     if !diagnosis.effects.is_empty() {
-        text.push_str(
-            " q and se are of each effect alone, in the form that fits best; the claim adds what is not known of the form.\n",
-        );
+        text.push_str(" q and se are of each effect alone, in the form that fits best.\n");
     }
     let alike = |effect: &&RankedEffect| diagnosis.not_separable.contains(&effect.id);
     for effect in ranked().filter(alike).filter(|effect| !effect.note.is_empty()) {

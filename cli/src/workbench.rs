@@ -434,6 +434,13 @@ impl Results {
         }
     }
 
+    /// The file `name` that an earlier call with the same inputs has written.
+    pub(crate) fn written_before(&self, name: &str) -> Option<String> {
+        let stamp = fs::read_to_string(self.folder.join(INPUTS)).ok()?;
+        let text = || fs::read_to_string(self.folder.join(name)).ok();
+        (stamp.trim_end() == self.inputs).then(text).flatten()
+    }
+
     /// Writes the files, and what they are from. All of them are on the disk before the first of an earlier call is
     /// touched: if there is no room for them, those are kept. Whoever has asked to stop waits for no results any more.
     pub(crate) fn write(&self, files: &[(String, String)]) -> CommandResult {

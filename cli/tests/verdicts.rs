@@ -59,7 +59,7 @@ fn the_example_of_the_readme_names_what_helps_and_nothing_else() {
     for line in [
         "VERDICT  one of {added-mass, depth-exponent, rail-friction, yield-stress, buoyancy, janssen}: \
          these data cannot tell them apart",
-        "Suggested only, because the errors are stated and not seen in repeats.",
+        "Suggested only, because the errors are stated and not seen in repeats; its amplitude is outside of its usual range.",
         "Error on held-out conditions: 10.1 % before, 1.7 % after (noise of the means 6.0 %); 100 % of what exceeds \
          noise is explained.",
     ] {
@@ -75,7 +75,7 @@ fn the_example_of_the_readme_names_what_helps_and_nothing_else() {
     let file = here.path().join("runs/s1-tables-vertical-diagnose/diagnosis.json");
     let found: Value = serde_json::from_str(&fs::read_to_string(file).unwrap()).unwrap();
     assert_eq!(found["strength"], "suggested");
-    let reasons = serde_json::json!(["stated-errors"]);
+    let reasons = serde_json::json!(["stated-errors", "amplitude-outside-usual-range"]);
     assert_eq!(found["strength_reasons"], reasons);
     let held_out = &found["holdout"];
     assert_eq!(

@@ -10,7 +10,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::diagnose::verdict;
@@ -56,7 +56,7 @@ enum Truth {
 }
 
 /// A simulated set and what was said of it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Simulated {
     /// `nothing`, `unlisted` or the effect that is missing.
     pub truth: String,
@@ -69,7 +69,7 @@ pub struct Simulated {
 }
 
 /// The simulated sets and their verdicts.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
     /// One entry per set.
     pub sets: Vec<Simulated>,

@@ -1,8 +1,8 @@
 //! Curves of several runs at common places: forces over depth, accelerations over time.
 
-use measurements::{Along, Condition, Curve, Frame, Kind, MeasurementSet, Run, Sample};
+use measurements::{Along, Condition, Curve, Frame, Kind, MeasurementSet, Run, Sample, median};
 
-use crate::resampling::{common_grid, on_lines};
+use crate::resampling::{depth_and_range, on_lines, seen_grid};
 
 /// Most places that are compared; neighbours tell the same.
 pub(crate) const PLACES: usize = 24;
@@ -51,7 +51,8 @@ impl CommonCurve {
     }
 
     /// Of `runs` over time, at common times: some before contact, and up to the stop less a tenth of the way there. Left
-    /// out are times at which any accelerometer is beyond its range, and those beside the contact, where it may jump.
+    /// out are times at which any accelerometer is beyond its range, and those at which a run is read on either side of
+    /// the contact, where a curve bends or jumps.
     fn over_time(set: &MeasurementSet, condition: &Condition, runs: &[&Run]) -> Self {
         let frame = |one: &Sample| Frame { t: one.at, z: one.value, x: 0.0, sigma: one.sigma };
         let tracks: Vec<Vec<Frame>> =
@@ -60,20 +61,26 @@ impl CommonCurve {
             return Self::default();
         }
         let each: Vec<&[Frame]> = tracks.iter().map(Vec::as_slice).collect();
-        let grid = common_grid(&each);
-        let values: Vec<Vec<f64>> = each.iter().map(|track| on_lines(track, &grid)).collect();
+        let grid = seen_grid(&each);
+        let is_felt = set.kind == Kind::Acceleration;
+        let range = set.instrument.acceleration_range.filter(|_| is_felt).unwrap_or(f64::INFINITY);
+        let is_seen = |value: f64| value.abs() < WITHIN * range;
+        let is_clipped = tracks.iter().flatten().any(|frame| !is_seen(frame.z));
+        // A cubic through readings that are cut off swings beside them.
+        let between = |track: &&[Frame]| match is_clipped {
+            true => on_lines(track, &grid),
+            false => depth_and_range(track, &grid).into_iter().map(|one| one.0).collect(),
+        };
+        let values: Vec<Vec<f64>> = each.iter().map(between).collect();
         let n = values.len() as f64;
         let mean: Vec<f64> =
             (0..grid.len()).map(|at| values.iter().map(|run| run[at]).sum::<f64>() / n).collect();
-        let step = grid.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
-        let is_felt = set.kind == Kind::Acceleration;
-        let range = set.instrument.acceleration_range.filter(|_| is_felt).unwrap_or(f64::INFINITY);
+        let step = median(grid.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(0.0);
         let is_kept = |at: &usize| {
-            let is_seen = values.iter().all(|run| run[*at].abs() < WITHIN * range);
-            is_seen && (!is_felt || grid[*at].abs() > BESIDE * step)
+            let all_seen = values.iter().all(|run| is_seen(run[*at]));
+            all_seen && (!is_felt || grid[*at].abs() > BESIDE * step)
         };
         let known = (condition.speed, set.bed_of(condition).gravity);
-        let is_clipped = values.iter().flatten().any(|value| value.abs() >= WITHIN * range);
         let stop = BEFORE_STOP * stopped((set.kind, is_clipped), &grid, &mean, known);
         let (before, after): (Vec<usize>, Vec<usize>) = (0..grid.len())
             .filter(is_kept)

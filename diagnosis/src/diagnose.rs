@@ -162,8 +162,12 @@ pub(crate) fn withdraw(
     seed: u64,
 ) -> Result<Diagnosis, BenchError> {
     let Some(baseline) = &diagnosis.baseline else { return Ok(diagnosis) };
-    let is_small = diagnosis.holdout.as_ref().and_then(HeldOut::is_above_noise) == Some(false);
+    let is_above = diagnosis.holdout.as_ref().and_then(HeldOut::is_above_noise);
+    let is_small = is_above == Some(false);
+    // What helps by more than chance, where the error is clear, is something, whether it can be named or not.
+    let is_clear = is_above == Some(true) && diagnosis.p1.is_some_and(|p| p <= ALPHA);
     let verdict = match adequate(diagnosis.p_lof) {
+        true if is_clear => Verdict::BelowNoise,
         true => nothing(bench, baseline),
         false if is_small => Verdict::BelowNoise,
         false => Verdict::NoneOfTheCandidates,

@@ -112,6 +112,11 @@ const FAR: f64 = 2.0;
 /// show it.
 const FAR_ABOVE: f64 = 2.5;
 
+/// Standard errors above an amplitude up to which the true one lies, 95 % one-sided, and those from which zero is none of
+/// the likely ones.
+const UPPER: f64 = 1.645;
+const FITTED: f64 = 3.0;
+
 /// Number of resamples of the conditions, and the least number of conditions to resample.
 const CHOICES: usize = 1000;
 const FEWEST: usize = 3;
@@ -292,11 +297,15 @@ impl HeldOut {
         })
     }
 
-    /// The reason why the effect `name`, of at most the amplitude `most`, is too small to be named by these errors;
-    /// `None` for one that is large enough, and where no error is known.
+    /// The reason why the effects `names`, the first of which has the amplitude `q` with its standard error, are too small to
+    /// be named by these errors; `None` for what is large enough, and where no error is known.
     #[must_use]
-    pub(crate) fn too_small(&self, name: &str, most: f64) -> Option<String> {
-        let hides = format!("{name} of up to {most:.3} could hide here");
+    pub(crate) fn too_small(&self, names: &[String], q: f64, se: f64) -> Option<String> {
+        let (first, name) = (names.first()?, names.join(" or "));
+        let hides = match q.abs() > FITTED * se {
+            true => format!("the fit gives {first} of {q:.3} ± {se:.3}"),
+            false => format!("{first} of up to {:.3} could hide here", q.abs() + UPPER * se),
+        };
         let (before, after) = (self.in_noise(self.before)?, self.in_noise(self.after)?);
         if let Some(below) = self.below() {
             return Some(format!("{below}: {hides}"));

@@ -8,8 +8,10 @@ use measurements::MeasurementSet;
 use crate::added_force::added_forces;
 use crate::bench::{Bench, BenchError, Fitted};
 use crate::doubts::{doubts, evidence, no_repeats};
+use crate::fit::Fit;
 use crate::fitted_parameters::parameters;
 use crate::force_error::ForceErrors;
+use crate::forward::ParameterKind;
 use crate::frequency::of_benchmark;
 use crate::held_out::HeldOut;
 use crate::lack_of_fit::lack_of_fit;
@@ -25,9 +27,6 @@ use crate::verdict::{
 /// Probability of error at which something counts as found, or a model as rejected.
 pub const ALPHA: f64 = 0.01;
 
-/// Standard errors above an amplitude up to which the true one lies, 95 % one-sided.
-const UPPER: f64 = 1.645;
-
 /// Fall of the likelihood from which a scatter between conditions is seen: two standard errors.
 const SEEN: f64 = 4.0;
 
@@ -41,6 +40,10 @@ const NOT_ANY: f64 = 10.0;
 
 /// Least log odds of a force of any form at which differences between conditions are not taken for undeclared sessions.
 const MORE_THAN_SESSIONS: f64 = 7.0;
+
+/// Fall of χ² from which the data ask for another form than the listed one: once in a hundred by chance, where its five numbers
+/// are free.
+const FORM: f64 = 15.1;
 
 /// At or below this probability of a lack of fit, an effect that leaves a part is compared with a force of any form.
 const DOUBTFUL: f64 = 0.1;
@@ -161,12 +164,16 @@ impl Judge<'_> {
             }
             return Ok(found);
         }
-        let hint = match is_one_of_many {
-            true => format!(
+        if is_one_of_many {
+            let hint = format!(
                 "{leader} is nearest among the listed effects, and a force of another form is about as likely"
-            ),
-            false => explains_a_part(&leader, &held_out),
-        };
+            );
+            let mut found = self.refuse(Grounds { hint, ..grounds })?;
+            found.strength_reasons.push(StrengthReason::NoLikelierThanAnyForce);
+            found.strength = Strength::of(&found.strength_reasons);
+            return Ok(found);
+        }
+        let hint = explains_a_part(&leader, &held_out);
         match is_judged {
             true => self.refuse(Grounds { hint, ..grounds }),
             // Impacts on fresh beds decide whether what is left matters.
@@ -287,16 +294,14 @@ impl Judge<'_> {
         self.diagnosis(verdict, &self.baseline, grounds)
     }
 
-    /// The reason why an effect with this error on held-out conditions is too small to be named, with the largest
-    /// amplitude that these data allow; `None` for an effect that is large enough.
+    /// The reason why an effect with this error on held-out conditions is too small to be named; `None` for an effect that is large enough.
     fn too_small(&self, held_out: &HeldOut) -> Option<String> {
         if !self.bench.forward.is_judged_by_held_out() {
             return None;
         }
         let best = &self.ranking.scores[0];
-        let candidate = &self.bench.forward.candidates()[best.candidate()];
-        let most = best.amplitude().abs() + UPPER * best.standard_error.unwrap_or(0.0);
-        held_out.too_small(&candidate.id, most)
+        let name = [self.name(best.candidate())];
+        held_out.too_small(&name, best.amplitude(), best.standard_error.unwrap_or(0.0))
     }
 
     pub(crate) fn diagnosis(
@@ -318,15 +323,15 @@ impl Judge<'_> {
         };
         let unexplained = unexplained(bench, verdict, left_by, (hint, self.seed))?;
         let before = if proposed.fit.point.effects.is_empty() { proposed } else { &self.weighed };
-        let amplitudes: Vec<Amplitude> = proposed
-            .fit
+        let listed = as_listed(bench, proposed)?;
+        let amplitudes: Vec<Amplitude> = listed
             .point
             .effects
             .iter()
             .enumerate()
-            .zip(added_forces(bench, &proposed.fit))
+            .zip(added_forces(bench, &listed))
             .map(|((at, &(index, q)), force)| {
-                let se = proposed.fit.standard_error(proposed.fit.point.parameters.len() + at);
+                let se = listed.standard_error(listed.point.parameters.len() + at);
                 let candidate = &bench.forward.candidates()[index];
                 let (at_bound, unusual) = (candidate.bound_at(q), candidate.is_unusual(q, se));
                 let interval_95 = candidate.interval_95(q, se);
@@ -376,9 +381,9 @@ impl Judge<'_> {
             next: Vec::new(),
             measured: measured(bench.set),
             after: None,
-            parameters: parameters(bench.forward, &proposed.fit),
+            parameters: parameters(bench.forward, &listed),
             amplitudes,
-            amplitude_correlation: correlation(proposed),
+            amplitude_correlation: correlation(&listed),
             baseline: Some(self.baseline.clone()),
             proposed: Some(proposed.clone()),
         })
@@ -416,9 +421,10 @@ fn warnings(bench: &Bench<'_>, proposed: &Fitted, amplitudes: &[Amplitude]) -> V
     let between = proposed.noise.sessions;
     let differ = (between.gain >= SEEN).then(|| {
         format!(
-            "conditions differ by {:.1} % of their resistance beyond what their repeats show: if they are of several \
+            "conditions differ by {:.1} % of their resistance beyond what their repeats show{}: if they are of several \
              days or beds, say which in a column `session` of the runs",
-            100.0 * between.sd
+            100.0 * between.sd,
+            if proposed.fit.point.effects.is_empty() { ", as a force does that the model lacks" } else { "" }
         )
     });
     let unusual = amplitudes.iter().filter(|amplitude| amplitude.unusual);
@@ -449,13 +455,28 @@ pub(crate) fn adequate(p_lof: Option<f64>) -> bool {
 }
 
 /// Of the amplitudes of a pair.
-fn correlation(fitted: &Fitted) -> Option<f64> {
-    let first = fitted.fit.point.parameters.len();
-    if fitted.fit.point.effects.len() != 2 {
+fn correlation(fit: &Fit) -> Option<f64> {
+    let first = fit.point.parameters.len();
+    if fit.point.effects.len() != 2 {
         return None;
     }
-    let (a, b) = (fitted.fit.standard_error(first)?, fitted.fit.standard_error(first + 1)?);
-    Some(fitted.fit.covariance[(first, first + 1)] / (a * b)).filter(|c| c.is_finite())
+    let (a, b) = (fit.standard_error(first)?, fit.standard_error(first + 1)?);
+    Some(fit.covariance[(first, first + 1)] / (a * b)).filter(|c| c.is_finite())
+}
+
+/// `proposed` with effects of exactly the form that is listed, as a model has them, if the data ask for no other one; else as
+/// it is. Beside a form that nothing fixes, an amplitude is one of many that give the same force where there are data.
+fn as_listed(bench: &Bench<'_>, proposed: &Fitted) -> Result<Fit, BenchError> {
+    let parameters = bench.forward.parameters();
+    let mut start = proposed.fit.point.clone();
+    let of_forms = start.parameters.iter_mut().zip(parameters);
+    let forms = of_forms.filter(|(_, one)| one.kind == ParameterKind::Form);
+    if forms.map(|(value, one)| *value = one.start).count() == 0 {
+        return Ok(proposed.fit.clone());
+    }
+    let listed = bench.data(&proposed.weights).fit_as_listed(&start)?;
+    let is_asked_for = listed.chi2 - proposed.fit.chi2 > FORM;
+    Ok(if is_asked_for { proposed.fit.clone() } else { listed })
 }
 
 pub(crate) fn cannot_tell(bench: &Bench<'_>, why: String) -> Diagnosis {

@@ -20,7 +20,7 @@ const HALF_WINDOW: usize = 3;
 /// agree, else equally spaced over what all cover, at the median spacing of frames, and no more of
 /// them than the longest track has frames.
 #[must_use]
-pub(crate) fn common_grid(tracks: &[&[Frame]]) -> Vec<f64> {
+fn common_grid(tracks: &[&[Frame]]) -> Vec<f64> {
     let start = tracks.iter().filter_map(|t| t.first()).fold(f64::MIN, |s, f| s.max(f.t));
     let end = tracks.iter().filter_map(|t| t.last()).fold(f64::MAX, |e, f| e.min(f.t));
     let inside = |track: &&[Frame]| -> Vec<f64> {

@@ -39,6 +39,8 @@ pub enum StrengthReason {
     ApparatusFarFromStated,
     /// Something is left over beside what is named: it is of another form than its formula, or there is more.
     OfAnotherForm,
+    /// The best of the listed effects explains the data, and a force of another form is about as likely.
+    NoLikelierThanAnyForce,
     /// The plan of impacts was too small to confirm anything.
     SmallPlan,
     /// Half of the effects or more could not be tested, and so are not excluded.

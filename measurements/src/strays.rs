@@ -53,7 +53,7 @@ pub struct Cleaned {
 #[must_use]
 pub fn without_strays(set: &MeasurementSet, error: f64) -> Cleaned {
     let (mut notes, mut set) = (Vec::new(), set.clone());
-    let (mut frames, mut of) = (0, 0);
+    let (mut frames, mut of, mut first) = (0, 0, None);
     let mut jumps = vec![false; set.runs.len()];
     let keep = set.keep.clone();
     let is_kept = |run: &Run| keep.contains(&run.name);
@@ -65,6 +65,10 @@ pub fn without_strays(set: &MeasurementSet, error: f64) -> Cleaned {
         let count = stray.iter().filter(|stray| **stray).count();
         if count > 0 {
             (frames, of) = (frames + count, of + 1);
+            first = first.or_else(|| {
+                let at = stray.iter().position(|stray| *stray)?;
+                Some((run.name.clone(), run.frames[at].t))
+            });
             let mut stray = stray.into_iter();
             run.frames.retain(|_| !stray.next().unwrap_or_default());
         }
@@ -72,14 +76,15 @@ pub fn without_strays(set: &MeasurementSet, error: f64) -> Cleaned {
             .iter()
             .any(|track| jumps_in(track, error));
     }
-    if frames > 0 {
+    if let Some((name, time)) = first {
         let (frames_are, runs) = match (frames, of) {
             (1, _) => ("1 stray frame is".to_owned(), "1 run".to_owned()),
             (_, 1) => (format!("{frames} stray frames are"), "1 run".to_owned()),
             _ => (format!("{frames} stray frames are"), format!("{of} runs")),
         };
         notes.push(format!(
-            "{frames_are} left out, of {runs}: `keep = [\"run\"]` keeps those of a run"
+            "{frames_are} left out, of {runs}, the first in {name} at {time:.4} s: `keep = [\"{name}\"]` keeps those \
+             of that run"
         ));
     }
     let apart = apart(&set, error);

@@ -1,5 +1,6 @@
 //! The claim of a diagnosis: one sentence, and one picture beside it.
 
+use diagnosis::diagnose::ALPHA;
 use diagnosis::error_unit::Unit;
 use plots::sheet::{Anchor, Layer, Mark, Sheet};
 use serde_json::Value;
@@ -32,9 +33,13 @@ pub fn sentence(diagnosis: &Value) -> String {
             explained(diagnosis, &effects).join(" and "),
             sizes(diagnosis)
         ),
-        "none-of-the-candidates" => {
-            format!("The model lacks something that {}", explained_by_none(diagnosis))
-        }
+        "none-of-the-candidates" => match best_fit(diagnosis).filter(|_| is_one_of_many(diagnosis))
+        {
+            Some(best) => format!(
+                "The model lacks something: {best} fits best, and a force that is not listed does about as well"
+            ),
+            None => format!("The model lacks something that {}", explained_by_none(diagnosis)),
+        },
         "nothing-detected" => "Nothing is missing that these data could show".to_owned(),
         "explained-by-apparatus" => {
             "Errors of the apparatus explain what the model misses; no effect is needed".to_owned()
@@ -43,9 +48,14 @@ pub fn sentence(diagnosis: &Value) -> String {
             "The preparation of the bed explains what the model misses; no effect is needed"
                 .to_owned()
         }
-        "below-noise" => {
-            "What the model misses is below what these data can show; no effect is named".to_owned()
-        }
+        "below-noise" => match best_fit(diagnosis) {
+            Some(best) => format!(
+                "The data contradict the model, and {best} fits best, but no effect is named: held-out conditions show too \
+                 little of it"
+            ),
+            None => "What the model misses is below what these data can show; no effect is named"
+                .to_owned(),
+        },
         _ => match text(&diagnosis["unexplained"]["hint"]).trim_end_matches('.') {
             "" => "These data cannot tell what the model lacks".to_owned(),
             why => format!("There is no verdict: {why}"),
@@ -119,6 +129,23 @@ fn explained(diagnosis: &Value, effects: &[String]) -> Vec<String> {
 /// Whether held-out conditions are missed by more than noise though no effect is named.
 pub(crate) fn misses(diagnosis: &Value) -> bool {
     texts(&diagnosis["strength_reasons"]).iter().any(|one| one == "held-out-above-noise")
+}
+
+/// Standard errors from which an amplitude is one.
+const CLEAR: f64 = 3.0;
+
+/// The first of the ranking with its size, if the best of the candidates helps by more than chance.
+fn best_fit(diagnosis: &Value) -> Option<String> {
+    let best = list(&diagnosis["ranking"]).first().filter(|best| best["status"] == "ranked")?;
+    let (q, se) = (best["q"].as_f64()?, best["se"].as_f64()?);
+    let is_seen = diagnosis["p1"].as_f64()? <= ALPHA && q.abs() > CLEAR * se;
+    is_seen.then(|| format!("{} ({} ± {})", text(&best["id"]), plots::short(q), plots::short(se)))
+}
+
+/// Whether the best of the candidates explains the data, and is not named since a force of any form is as likely.
+fn is_one_of_many(diagnosis: &Value) -> bool {
+    let mut reasons = texts(&diagnosis["strength_reasons"]).into_iter();
+    reasons.any(|one| one == "no-likelier-than-any-force")
 }
 
 fn falls(diagnosis: &Value) -> bool {

@@ -178,6 +178,9 @@ fn reason_in_words(reason: &str) -> &str {
         "of-another-form" => {
             "something is left over beside it: its form is another, or there is more"
         }
+        "no-likelier-than-any-force" => {
+            "the best of the listed effects explains the data, and a force of another form is about as likely"
+        }
         "small-plan" => "the plan of impacts is too small to confirm anything",
         "few-tested" => "half of the effects or more could not be tested",
         "fresh-beds-no-nearer" => {

@@ -32,6 +32,8 @@ pub enum Change {
     BedEffect(&'static str, Vec<(&'static str, f64)>),
     /// The grains of the bed.
     Grains(Vec<GrainKind>),
+    /// The masses of the grains that settle, over what they are (–).
+    GrainMass(f64),
     /// One more effect, with those of its parameters that are no default.
     Effect(&'static str, Vec<(&'static str, f64)>),
     /// The intruder: its shape, its sizes and its mass (kg). Sizes that are not given stay.
@@ -105,6 +107,12 @@ impl Change {
             Self::Grains(kinds) => {
                 let kinds = kinds.iter().map(|kind| of_kind(kind, span)).collect();
                 put("bed", "grains", Node { span, value: Value::Array(kinds) });
+            }
+            Self::GrainMass(factor) => {
+                let kinds = root.below("bed").map(|bed| bed.tables("grains"));
+                for kind in kinds.into_iter().flatten() {
+                    ["mass", "density"].iter().for_each(|key| kind.multiply(key, *factor));
+                }
             }
             Self::TargetPackingFraction(value) => {
                 put("bed", "target_packing_fraction", number(*value));

@@ -109,6 +109,27 @@ impl Table {
         }
     }
 
+    /// Multiplies the number at `key`, if there is one in SI.
+    pub(crate) fn multiply(&mut self, key: &str, factor: f64) {
+        let entry = self.entries.iter_mut().find(|entry| entry.key == key);
+        if let Some(Value::Si(value)) = entry.map(|entry| &mut entry.node.value) {
+            *value *= factor;
+        }
+    }
+
+    /// The tables of the list at `key`.
+    pub(crate) fn tables(&mut self, key: &str) -> impl Iterator<Item = &mut Self> {
+        let list = self.entries.iter_mut().find(|entry| entry.key == key);
+        let nodes = match list.map(|entry| &mut entry.node.value) {
+            Some(Value::Array(nodes)) => nodes.as_mut_slice(),
+            _ => &mut [],
+        };
+        nodes.iter_mut().filter_map(|node| match &mut node.value {
+            Value::Table(table) => Some(table),
+            _ => None,
+        })
+    }
+
     /// The line of `key`.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&Entry> {

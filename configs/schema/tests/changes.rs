@@ -93,6 +93,32 @@ fn a_change_is_the_same_to_the_last_bit_as_its_text() {
 }
 
 #[test]
+fn grains_that_are_heavier_settle_with_their_mass_and_make_another_bed() {
+    use configs::BedSource;
+    for model in beds() {
+        let mass = |model: &Model| {
+            let medium = model.grains().expect("a bed").medium;
+            match &medium.bed.source {
+                BedSource::Settle(settle) => {
+                    settle.grains.iter().map(|kind| kind.total_mass(medium.space)).sum::<f64>()
+                }
+                BedSource::Csv(csv) => csv.grains.iter().map(|grain| grain.mass).sum(),
+            }
+        };
+        let heavier = by_change(&model, &[Change::GrainMass(1.25)]);
+        let is_given =
+            matches!(model.grains().expect("a bed").medium.bed.source, BedSource::Csv(_));
+        let factor = if is_given { 1.0 } else { 1.25 };
+        assert!(
+            (mass(&heavier) / (factor * mass(&model)) - 1.0).abs() < 1e-12,
+            "{}",
+            model.run.name
+        );
+        assert_eq!(identity(&heavier)[2] == identity(&model)[2], is_given, "{}", model.run.name);
+    }
+}
+
+#[test]
 fn grains_of_every_distribution_are_those_of_their_text() {
     use configs::engine::bed::SizeDistribution;
     use configs::{GrainKind, Material};

@@ -20,6 +20,9 @@ pub(super) const CHANGES: &[Switch] = &[
     PACKING,
     INFLATED,
     POLYDISPERSITY,
+    GRAIN_DENSITY,
+    GRAIN_STIFFNESS,
+    TANGENTIAL_DAMPING,
     GRAIN_INERTIA,
 ];
 
@@ -31,6 +34,7 @@ const GRAIN_FRICTION: Switch = Switch {
     range: (-1.0, 4.0),
     separable_from: "from rolling-resistance: several angles",
     of_measurements: true,
+    stated_by: None,
     act: Act::Change {
         lacks: |model| without(model, "friction"),
         change: |model, q| scaled(model, "friction", q),
@@ -45,6 +49,7 @@ const INTRUDER_FRICTION: Switch = Switch {
     range: (-1.0, 4.0),
     separable_from: "from grain-friction: spin, or oblique impacts",
     of_measurements: true,
+    stated_by: None,
     act: Act::Change {
         lacks: |model| without(model, "intruder_friction"),
         change: |model, q| scaled(model, "intruder_friction", q),
@@ -59,6 +64,7 @@ const WALL_FRICTION: Switch = Switch {
     range: (-1.0, 4.0),
     separable_from: "from grain-friction: containers of two widths",
     of_measurements: true,
+    stated_by: None,
     act: Act::Change {
         lacks: |model| without(model, "wall_friction"),
         change: |model, q| scaled(model, "wall_friction", q),
@@ -73,6 +79,7 @@ const RESTITUTION: Switch = Switch {
     range: (-0.9, 4.0),
     separable_from: "from velocity-restitution: a wide range of speeds",
     of_measurements: true,
+    stated_by: None,
     act: Act::Change {
         lacks: |model| match damping(model) {
             Some(_) => None,
@@ -102,6 +109,7 @@ const PACKING: Switch = Switch {
     range: (-2.0, 1.0),
     separable_from: "from grain-friction: a bed that is weighed",
     of_measurements: false,
+    stated_by: None,
     act: Act::Change {
         lacks: |model| match preparation_friction(model) {
             Some(friction) if friction > 0.0 => None,
@@ -123,6 +131,7 @@ const INFLATED: Switch = Switch {
     range: (0.0, 0.3),
     separable_from: "from packing: a bed whose fabric is seen, or that is weighed",
     of_measurements: false,
+    stated_by: None,
     act: Act::Change {
         lacks: |model| match &model.medium.bed.source {
             BedSource::Csv(_) => Some("the bed is given"),
@@ -147,6 +156,7 @@ const POLYDISPERSITY: Switch = Switch {
     range: (0.0, 0.3),
     separable_from: "from packing: a bed that is weighed",
     of_measurements: false,
+    stated_by: None,
     act: Act::Change {
         lacks: |model| match &model.medium.bed.source {
             BedSource::Csv(_) => Some("the bed is given"),
@@ -163,6 +173,81 @@ const POLYDISPERSITY: Switch = Switch {
     },
 };
 
+const GRAIN_DENSITY: Switch = Switch {
+    id: "grain-density",
+    kind: Kind::Physics,
+    amplitude: "relative change of the mass of grains, which settle with it",
+    screen: 0.5,
+    range: (-0.5, 3.0),
+    separable_from: "from grain-friction: a bed that is weighed, or bodies of several densities",
+    of_measurements: true,
+    stated_by: Some(|bed| bed.bulk_density.is_some()),
+    act: Act::Change {
+        lacks: |model| is_given(model).then_some("the bed is given, and so are its masses"),
+        change: |_, q| Variation::before(Change::GrainMass(1.0 + q)),
+    },
+};
+
+const GRAIN_STIFFNESS: Switch = Switch {
+    id: "grain-stiffness",
+    kind: Kind::Physics,
+    amplitude: "relative change of the stiffness of contacts, in the bed too; restitution stays",
+    screen: 0.5,
+    range: (-0.9, 1.0),
+    separable_from: "from restitution: hardly by depths and times",
+    of_measurements: false,
+    stated_by: None,
+    act: Act::Change {
+        lacks: |model| {
+            is_given(model)
+                .then_some("the bed is given, and was settled with the stiffness of the model")
+        },
+        change: |model, q| {
+            let scaled = |(key, power): (&'static str, f64)| {
+                let (_, value) =
+                    model.medium.contact_law.params.iter().find(|(own, _)| *own == key)?;
+                Some(Change::ContactLaw(key, value * libm::pow(1.0 + q, power)))
+            };
+            Variation {
+                before: STIFFNESSES.into_iter().filter_map(scaled).collect(),
+                during: Vec::new(),
+            }
+        },
+    },
+};
+
+/// The numbers of contact laws that grow with the stiffness at the same restitution, and the power.
+const STIFFNESSES: [(&str, f64); 7] = [
+    ("normal_stiffness", 1.0),
+    ("tangential_stiffness", 1.0),
+    ("young_modulus", 1.0),
+    ("wall_young_modulus", 1.0),
+    ("intruder_young_modulus", 1.0),
+    ("normal_damping_rate", 0.5),
+    ("tangential_damping_rate", 0.5),
+];
+
+const TANGENTIAL_DAMPING: Switch = Switch {
+    id: "tangential-damping",
+    kind: Kind::Physics,
+    amplitude: "relative change of the damping of tangential contacts",
+    screen: 1.0,
+    range: (-1.0, 4.0),
+    separable_from: "from restitution: hardly by depths and times",
+    of_measurements: false,
+    stated_by: None,
+    act: Act::Change {
+        lacks: |model| match tangential_damping(model) {
+            Some(_) => None,
+            None => Some("the contact law has no tangential damping to change"),
+        },
+        change: |model, q| match tangential_damping(model) {
+            Some(key) => scaled(model, key, q),
+            None => Variation::default(),
+        },
+    },
+};
+
 const GRAIN_INERTIA: Switch = Switch {
     id: "grain-inertia",
     kind: Kind::Physics,
@@ -171,6 +256,7 @@ const GRAIN_INERTIA: Switch = Switch {
     range: (-0.9, 1.0),
     separable_from: "from rolling-resistance: hardly by depths and times",
     of_measurements: false,
+    stated_by: None,
     act: Act::Change {
         lacks: |model| {
             model
@@ -195,10 +281,21 @@ fn without(model: GrainModel<'_>, key: &str) -> Option<&'static str> {
 
 /// The number of the contact law that says how much a collision dissipates.
 fn damping(model: GrainModel<'_>) -> Option<&'static str> {
+    positive(model, &["normal_damping_rate", "restitution", "viscous_time"])
+}
+
+fn tangential_damping(model: GrainModel<'_>) -> Option<&'static str> {
+    positive(model, &["tangential_damping_rate", "tangential_damping"])
+}
+
+/// The first of `keys` that the contact law has above zero.
+fn positive(model: GrainModel<'_>, keys: &[&'static str]) -> Option<&'static str> {
     let params = &model.medium.contact_law.params;
-    ["normal_damping_rate", "restitution", "viscous_time"]
-        .into_iter()
-        .find(|key| params.iter().any(|(name, value)| name == *key && value > 0.0))
+    keys.iter().copied().find(|key| params.iter().any(|(name, value)| name == *key && value > 0.0))
+}
+
+fn is_given(model: GrainModel<'_>) -> bool {
+    matches!(model.medium.bed.source, BedSource::Csv(_))
 }
 
 fn preparation_friction(model: GrainModel<'_>) -> Option<f64> {

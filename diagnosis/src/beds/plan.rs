@@ -389,7 +389,11 @@ fn switches<'a>(stand: &'a Stand<'_>) -> impl Iterator<Item = &'static Switch> +
         let change = one.change(stand.grains(), one.screen);
         first.iter().all(|&draw| stand.job(0, draw, &change).is_ok())
     };
-    SWITCHES.iter().filter(|one| one.lacks(stand.grains()).is_none()).filter(is_sound)
+    let is_open = |one: &&Switch| {
+        one.lacks(stand.grains()).is_none()
+            && !one.stated_by.is_some_and(|says| says(&stand.set.bed))
+    };
+    SWITCHES.iter().filter(is_open).filter(is_sound)
 }
 
 /// `count` of `all`, evenly spaced, first and last among them; the middle where one is wanted.

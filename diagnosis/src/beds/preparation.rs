@@ -3,7 +3,7 @@
 //! What a set states of its bed decides how heavy the grains are and how densely they lie. A packing fraction that is not
 //! stated is a parameter with a prior, as every fit has it.
 
-use configs::{BedSource, Change, GrainModel, Material};
+use configs::{BedSource, Change, GrainModel};
 use engine::grains::Space;
 use measurements::{Geometry, MeasurementSet};
 use runner::CampaignError;
@@ -255,7 +255,9 @@ impl Preparation {
         if (Known { value: ratio - 1.0, se: error }).is_beyond(NAMED) {
             self.sentences
                 .push(format!("the grains of the model are made {ratio:.3} times as heavy"));
-            self.changes.extend(heavier(stand.grains(), ratio));
+            if let BedSource::Settle(_) = &stand.grains().medium.bed.source {
+                self.changes.push(Change::GrainMass(ratio));
+            }
         }
         Ok(())
     }
@@ -300,19 +302,6 @@ fn packing_of(set: &MeasurementSet) -> Option<Known> {
     };
     let value = stated.packing_fraction.or_else(of_conditions);
     Known::stated(value, stated.packing_fraction_sigma, defaults::STATED_PACKING)
-}
-
-/// The grains of `model`, `ratio` times as heavy; nothing for a bed that is given.
-fn heavier(model: GrainModel<'_>, ratio: f64) -> Option<Change> {
-    let BedSource::Settle(settle) = &model.medium.bed.source else { return None };
-    let mut grains = settle.grains.clone();
-    for kind in &mut grains {
-        kind.material = match kind.material {
-            Material::Mass(mass) => Material::Mass(ratio * mass),
-            Material::Density(density) => Material::Density(ratio * density),
-        };
-    }
-    Some(Change::Grains(grains))
 }
 
 /// How a few beds of the model with `variation` lie; `None` where that is no model.

@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_PI_6;
 
 use configs::contact_laws::{Candidate, MeanGrain};
 use configs::{BedSource, Change, GrainModel};
+use measurements::Bed;
 use resistive::Kind;
 
 use super::variation::Variation;
@@ -25,6 +26,8 @@ pub struct Switch {
     pub separable_from: &'static str,
     /// Whether measurements may have it; what only another simulation can have is a candidate where it is named.
     pub of_measurements: bool,
+    /// Whether a set says of its bed how large it is; the model is prepared to that, and it is no candidate.
+    pub(super) stated_by: Option<fn(&Bed) -> bool>,
     /// What it does to a model.
     pub(super) act: Act,
 }
@@ -54,6 +57,7 @@ impl Switch {
             range: candidate.range,
             separable_from: candidate.separable_from,
             of_measurements: true,
+            stated_by: None,
             act: Act::Effect(candidate),
         }
     }

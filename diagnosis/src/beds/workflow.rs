@@ -425,8 +425,8 @@ impl Work<'_> {
         let why = match held_out {
             Some(held_out) => {
                 let amplitude = diagnosis.amplitudes.first();
-                let most = amplitude.map_or(0.0, |one| one.q.abs() + 2.0 * one.se.unwrap_or(0.0));
-                held_out.too_small(&name, most).or_else(|| {
+                let (q, se) = amplitude.map_or((0.0, 0.0), |one| (one.q, one.se.unwrap_or(0.0)));
+                held_out.too_small(&diagnosis.leaders, q, se).or_else(|| {
                     (!explains && !held_out.is_within_noise()).then(|| {
                         format!(
                             "{name} explains a part, on fresh beds too, and leaves more than noise"

@@ -79,7 +79,8 @@ fn another_preparation_is_named_as_one_and_no_physics_is() {
 #[test]
 fn a_bed_that_is_weighed_is_said_to_be_heavier_and_nothing_else() {
     let impacts = Imitation { beds: 0.05, runs: 0.02, fades: false };
-    let case = Case { is_weighed: true, ..Case::alike(Hidden::Unlisted, 0) };
+    let heavier = Hidden::Switch("grain-density", 0.4);
+    let case = Case { is_weighed: true, ..Case::alike(heavier, 0) };
     let one = case.run(&impacts, &Wish::default(), None).unwrap();
     assert_eq!((one.verdict.as_str(), one.named.len()), ("explained-by-preparation", 0), "{one:?}");
     assert!(one.hint.contains("heavier than that of the model by"), "{one:?}");

@@ -22,6 +22,9 @@ use crate::speed::lammps::Lammps;
 const REPEATS: usize = 10;
 const FEW: usize = 5;
 
+/// A switch that a bed hides which is not weighed.
+const GRAIN_DENSITY: &str = "grain-density";
+
 /// Beds of LAMMPS that are weighed.
 const WEIGHED: usize = 3;
 
@@ -119,6 +122,7 @@ pub fn quick() -> Vec<Case> {
             is_weighed: true,
             ..Case::small(Hidden::Switch("grain-friction", 0.8), 0)
         },
+        Case::small(Hidden::Switch(GRAIN_DENSITY, 0.4), 0),
         Case { is_weighed: true, ..Case::small(Hidden::Unlisted, 0) },
     ];
     nothing.chain(effects).collect()
@@ -150,7 +154,11 @@ pub fn by_lammps(draws: u64) -> Vec<Case> {
     let ways = Prepared::ALL.into_iter().filter(|one| *one != Prepared::Tapped);
     let ways: Vec<_> = ways.map(|prepared| (prepared, &[false, true][..])).collect();
     let case = |hidden, seed| Case { is_by_lammps: true, ..Case::small(hidden, seed) };
-    crossed((20_000, draws), &hidden, &ways, case)
+    let mut cases = crossed((20_000, draws), &hidden, &ways, case);
+    // The model is prepared to a bed that is weighed.
+    let alone: Vec<_> = ways.iter().map(|&(prepared, _)| (prepared, &[false][..])).collect();
+    cases.extend(crossed((25_000, draws), &[Hidden::Switch(GRAIN_DENSITY, 0.4)], &alone, case));
+    cases
 }
 
 /// Beds of spheres, prepared like those of the model, rougher and smoother, the latter two weighed, with nothing hidden, with
@@ -190,7 +198,7 @@ fn crossed(
     cases
 }
 
-/// Five switches at two strengths, nothing, and what is not listed; `draws` of each.
+/// Six switches at two strengths, nothing, and what is not listed; `draws` of each.
 #[must_use]
 pub fn all(draws: u64) -> Vec<Case> {
     use Hidden::{Nothing, Switch, Unlisted};
@@ -210,6 +218,8 @@ pub fn all(draws: u64) -> Vec<Case> {
         Switch("pore-air", 15.0),
         Switch("side-wall", 0.1),
         Switch("side-wall", 0.3),
+        Switch(GRAIN_DENSITY, 0.4),
+        Switch(GRAIN_DENSITY, -0.25),
     ];
     let each = hidden.iter().enumerate();
     // Repeated entries of the list are other draws too.

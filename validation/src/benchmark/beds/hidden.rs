@@ -1,11 +1,14 @@
 //! What is hidden in a bed.
 
-use configs::{BedSource, Change, Material};
+use configs::Change;
 use diagnosis::beds::{SWITCHES, Stand, Variation};
 use diagnosis::verdict::Verdict;
 
-/// Factor on the mass of every grain: an effect that no switch has.
-pub(super) const HEAVIER: f64 = 1.4;
+/// Factor on gravity: an effect that no switch has.
+pub(super) const LIGHTER: f64 = 0.7;
+
+/// What the name of an effect that is not listed begins with.
+pub(super) const UNLISTED: &str = "less gravity";
 
 /// What is hidden.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,7 +17,7 @@ pub enum Hidden {
     Nothing,
     /// A switch at an amplitude.
     Switch(&'static str, f64),
-    /// Heavier grains, which no candidate is.
+    /// Less gravity than the set states, which no candidate is.
     Unlisted,
 }
 
@@ -25,7 +28,7 @@ impl Hidden {
         match self {
             Self::Nothing => "nothing".to_owned(),
             Self::Switch(id, q) => format!("{id} {q}"),
-            Self::Unlisted => format!("grains of {HEAVIER} times the mass"),
+            Self::Unlisted => format!("{UNLISTED}, {LIGHTER} of what is stated"),
         }
     }
 
@@ -58,17 +61,8 @@ impl Hidden {
                 switch.map_or_else(Variation::default, |one| one.change(stand.grains(), q))
             }
             Self::Unlisted => {
-                let BedSource::Settle(settle) = &stand.grains().medium.bed.source else {
-                    return Variation::default();
-                };
-                let mut grains = settle.grains.clone();
-                for kind in &mut grains {
-                    kind.material = match kind.material {
-                        Material::Mass(mass) => Material::Mass(HEAVIER * mass),
-                        Material::Density(density) => Material::Density(HEAVIER * density),
-                    };
-                }
-                Variation::before(Change::Grains(grains))
+                let gravity = stand.grains().medium.gravity;
+                Variation::before(Change::Gravity(LIGHTER * gravity))
             }
         }
     }

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use runner::beds::{Lie, Record, STOPPED};
 
 use super::super::chance::normal;
-use super::hidden::{HEAVIER, Hidden};
+use super::hidden::{Hidden, LIGHTER};
 use super::prepared::{DAMPED, Prepared, ROUGH, SMOOTH, SPREAD, UNROLLING};
 use super::world::{Errors, SEEDS, seen};
 use crate::speed::SpeedError;
@@ -69,6 +69,8 @@ pub(super) struct World<'a> {
     impact: Contacts,
     /// Factor on the mass of grains.
     heavier: f64,
+    /// Factor on gravity.
+    lighter: f64,
     /// Half of the width of the spread of diameters, relative.
     spread: f64,
 }
@@ -87,7 +89,8 @@ impl<'a> World<'a> {
         let plain = Contacts { friction: own, rolling: 0.0, damping: 1.0 };
         let friction = settle.preparation_friction.unwrap_or(own);
         let settling = Contacts { friction, ..plain };
-        let mut world = Self { model, settling, impact: plain, heavier: 1.0, spread: 0.0 };
+        let mut world =
+            Self { model, settling, impact: plain, heavier: 1.0, lighter: 1.0, spread: 0.0 };
         match prepared {
             Prepared::Alike => {}
             Prepared::Rough => world.settling.friction *= ROUGH,
@@ -99,7 +102,8 @@ impl<'a> World<'a> {
         }
         match hidden {
             Hidden::Nothing => {}
-            Hidden::Unlisted => world.heavier = HEAVIER,
+            Hidden::Unlisted => world.lighter = LIGHTER,
+            Hidden::Switch("grain-density", q) => world.heavier = 1.0 + q,
             Hidden::Switch("rolling-resistance", q) => world.impact.rolling = q,
             Hidden::Switch("grain-friction", q) => world.impact.friction *= 1.0 + q,
             Hidden::Switch(..) => return None,
@@ -176,7 +180,7 @@ impl<'a> World<'a> {
 
     fn input(&self, speed: f64, seed: u64) -> String {
         let medium = self.model.medium;
-        let (width, gravity) = (medium.container.width, medium.gravity);
+        let (width, gravity) = (medium.container.width, self.lighter * medium.gravity);
         let radius = self.radius();
         let mass = self.model.model.intruder.mass;
         let mut random = random(seed, "lammps");
@@ -434,8 +438,8 @@ mod tests {
     #[test]
     fn every_grain_has_the_mass_of_the_model_whether_sizes_are_spread_or_not() {
         let model = Case::small(Hidden::Nothing, 0).model().unwrap();
-        for (prepared, heavier) in [(Prepared::Spread, 1.0), (Prepared::Alike, HEAVIER)] {
-            let hidden = if heavier > 1.0 { Hidden::Unlisted } else { Hidden::Nothing };
+        for (prepared, heavier) in [(Prepared::Spread, 1.0), (Prepared::Alike, 1.4)] {
+            let hidden = Hidden::Switch("grain-density", heavier - 1.0);
             let world = with(&model, hidden, prepared).unwrap();
             let input = world.input(1.0, 7);
             let density: f64 = input

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::case::Outcome;
+use super::hidden::UNLISTED;
 
 /// Every case and the rates, as Markdown.
 #[must_use]
@@ -40,7 +41,7 @@ fn rates(outcomes: &[Outcome]) -> String {
         outcomes.iter().filter(wanted).collect()
     };
     let nothing = |one: &&Outcome| one.hidden.starts_with("nothing");
-    let unlisted = |one: &&Outcome| one.hidden.starts_with("grains of");
+    let unlisted = |one: &&Outcome| one.hidden.starts_with(UNLISTED);
     let share = |of: &[&Outcome], holds: &dyn Fn(&Outcome) -> bool| {
         format!("{} of {}", of.iter().filter(|one| holds(one)).count(), of.len())
     };
@@ -113,7 +114,7 @@ mod tests {
         let outcomes = [
             outcome("packing 1", true, false),
             outcome("nothing", false, true),
-            outcome("grains of 2", true, false),
+            outcome("less gravity", true, false),
         ];
         let text = table(&outcomes);
         assert!(text.contains(
