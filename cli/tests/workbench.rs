@@ -247,6 +247,28 @@ fn results_of_other_inputs_are_not_written_over() {
 }
 
 #[test]
+fn sets_that_were_simulated_are_kept_for_the_same_inputs_and_not_for_others() {
+    let here = tempfile::tempdir().unwrap();
+    let (set, file) = (shipped("s1-tables-vertical"), here.path().join("out/calibration.json"));
+    let args = ["diagnose", text(&set), "--json", "--quiet", "--out", "out"];
+    let plain = json(here.path(), &args);
+    assert_ne!(plain["probability"]["counted_in"], "design");
+    let simulated = [("nothing", "nothing-detected", ""), ("janssen", "not-separable", "janssen")];
+    let sets = simulated.map(|(truth, verdict, named)| {
+        let named: Vec<&str> = Some(named).filter(|name| !name.is_empty()).into_iter().collect();
+        serde_json::json!({ "truth": truth, "verdict": verdict, "named": named, "covered": null })
+    });
+    fs::write(&file, serde_json::json!({ "rows": [], "sets": sets }).to_string()).unwrap();
+    let kept = json(here.path(), &args);
+    assert_eq!(kept["probability"]["counted_in"], "design");
+    assert_eq!(kept["probability"]["right"], 1.0);
+    assert!(file.exists());
+    let other = [&args[..], &["--seed", "7", "--force"]].concat();
+    assert_ne!(json(here.path(), &other)["probability"]["counted_in"], "design");
+    assert!(!file.exists());
+}
+
+#[test]
 fn what_cannot_be_compared_is_answered_with_what_could_be() {
     let here = tempfile::tempdir().unwrap();
     let here = here.path();

@@ -267,7 +267,7 @@ pub(crate) fn note_readings(set: &MeasurementSet, curve: &Curve) -> Option<Strin
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_sets::scalar_run;
+    use crate::test_sets::{condition, scalar_run, set};
 
     fn run(samples: &[[f64; 2]]) -> Run {
         let sample = |&[at, value]: &[f64; 2]| Sample { at, value, sigma: None };
@@ -288,6 +288,27 @@ mod tests {
             }
         }
         assert_eq!((common.at.len(), common.values.len()), (3, 2));
+    }
+
+    #[test]
+    fn runs_that_are_not_in_phase_are_read_on_the_curve_and_not_on_its_chords() {
+        let condition = condition(3.0, 90.0);
+        let velocity = |t: f64| if t < 0.0 { 3.0 + 9.81 * t } else { 3.0 / (1.0 + 40.0 * t) };
+        let seen = |phase: f64| {
+            let samples = (-8..40).map(|k| 2e-3 * (f64::from(k) + phase));
+            let samples: Vec<[f64; 2]> = samples.map(|t| [t, velocity(t)]).collect();
+            run(&samples)
+        };
+        let runs = [0.0, 0.37, 0.71].map(seen);
+        let set = set(Kind::Velocity, vec![condition.clone()], runs.to_vec());
+        let common = CommonCurve::over_time(&set, &condition, &runs.each_ref());
+        assert!(common.at.len() > 20 && common.at[0] < 0.0, "{:?}", common.at);
+        for values in &common.values {
+            for (t, value) in common.at.iter().zip(values) {
+                // On chords it is up to 5 mm/s behind the contact, and more across it.
+                assert!((value - velocity(*t)).abs() < 1e-3, "{t}: {value}");
+            }
+        }
     }
 
     #[test]
