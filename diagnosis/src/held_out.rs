@@ -1,9 +1,8 @@
 //! Errors on conditions that were not fitted to.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
-use serde::Serialize;
-
 use rand::RngExt;
+use serde::Serialize;
 
 use crate::bench::{Bench, BenchError, DEFAULT_SEED, Fitted};
 use crate::error_unit::Unit;
@@ -112,8 +111,7 @@ const FAR: f64 = 2.0;
 /// show it.
 const FAR_ABOVE: f64 = 2.5;
 
-/// Standard errors above an amplitude up to which the true one lies, 95 % one-sided, and those from which zero is none of
-/// the likely ones.
+/// Standard errors above an amplitude up to which the true one lies, 95 % one-sided, and from which it is not zero.
 const UPPER: f64 = 1.645;
 const FITTED: f64 = 3.0;
 
@@ -311,9 +309,13 @@ impl HeldOut {
             return Some(format!("{below}: {hides}"));
         }
         (self.is_nearer() == Some(false)).then(|| {
+            let bound = self.ratio_at_most.filter(|_| after <= NEARER * before);
+            let in_most = bound.map_or_else(String::new, |most| {
+                format!(" in nine of ten choices of the conditions, where {most:.2} are left")
+            });
             format!(
                 "with {name}, held-out conditions are missed by {after:.2} times their noise after {before:.2} without it, \
-                 and a name needs {NEARER} of the error at most, whichever conditions are held out: {hides}"
+                 and a name needs {NEARER} of the error at most{in_most}: {hides}"
             )
         })
     }

@@ -1,6 +1,6 @@
 //! Downward velocity over time, as a Doppler velocimeter or a light gate reads it.
 
-use configs::Diagnostic;
+use configs::{Diagnostic, shorten};
 use engine::units::Dimension;
 
 use super::columns::ColumnSpec;
@@ -11,7 +11,7 @@ use super::findings::Findings;
 use super::median;
 use super::reading::Reading;
 use super::smooth::slope;
-use super::{Condition, Kind, MeasurementSet, Run, over_time};
+use super::{Condition, Kind, MeasurementSet, Run, Sample, over_time};
 
 static OF_MANY: [ColumnSpec; 4] =
     over_time::columns("velocity", "sigma_velocity", Dimension::SPEED, true);
@@ -45,6 +45,19 @@ const FALLING: usize = 6;
 /// error of it that counts.
 const GROWTH: [f64; 2] = [0.2, 5.0];
 const KNOWN: f64 = 0.05;
+
+/// Standard deviations of a reading below the line of free fall, and share of gravity that rails and air may take, from which
+/// a body is braked.
+const NOISE: f64 = 4.0;
+const BRAKED: f64 = 0.15;
+
+/// Relative difference from gravity up to which a growth of velocities is a fall.
+const SHARE: f64 = 0.3;
+
+/// Longest time between contact and a velocity that shows it, in times that a body takes for its diameter at the speed at
+/// contact; and in steps between readings.
+const SOON: f64 = 0.5;
+const STEPS: f64 = 3.0;
 
 /// From the readings before contact, each brought forward to it in free fall.
 fn shown_speed(set: &MeasurementSet, condition: &Condition, run: &Run) -> Option<Reading> {
@@ -93,7 +106,7 @@ fn check(
         );
         return Vec::new();
     }
-    if let Some(wrong) = check_fall(set, places) {
+    if let Some(wrong) = check_clock(set, places).or_else(|| check_fall(set, places)) {
         return vec![wrong];
     }
     let ratio = |run: &Run| {
@@ -108,6 +121,54 @@ fn check(
     };
     let help = "are they in mm/s or cm/s?";
     over_time::check_unit(set, places, (MOST, ratio), (told, help)).into_iter().collect()
+}
+
+/// When the velocities of `run` leave the line of its free fall; `None` where they show no such line.
+fn leaves_fall(set: &MeasurementSet, run: &Run) -> Option<f64> {
+    let gravity = set.gravity_of(run);
+    let is_dry = set.bed_of(&set.conditions[run.condition]).stated.fluid.is_none();
+    let all = &run.samples;
+    let first = all.first().filter(|_| is_dry && gravity > 0.0 && all.len() > FALLING)?;
+    let fallen = |one: &Sample| one.value - gravity * (one.at - first.at);
+    let start = all[..FALLING].iter().map(fallen).sum::<f64>() / FALLING as f64;
+    let sigma = |one: &Sample| one.sigma.or(set.instrument.velocity_sigma);
+    // Rails and air may take a share of gravity away.
+    let is_below = |one: &Sample| {
+        let known = NOISE * sigma(one)? + BRAKED * gravity * (one.at - first.at);
+        Some(fallen(one) < start - known)
+    };
+    let leaves = (FALLING..all.len().saturating_sub(2))
+        .find(|&at| all[at..at + 3].iter().all(|one| is_below(one) == Some(true)))?;
+    let slope = slope(all[..leaves].iter().map(|one| (one.at, one.value)), sigma(first)?);
+    let falls = slope.value - 2.0 * slope.se < (1.0 + SHARE) * gravity
+        && slope.value + 2.0 * slope.se > (1.0 - SHARE) * gravity;
+    (falls && slope.se < SHARE * gravity).then_some(all[leaves - 1].at)
+}
+
+/// Names a clock that does not begin at first contact: bodies leave free fall long before or behind t = 0.
+fn check_clock(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contradiction> {
+    let contact = |run: &Run| {
+        let at = leaves_fall(set, run)?;
+        let steps = run.samples.windows(2).map(|pair| pair[1].at - pair[0].at);
+        let step = median::median(steps)?;
+        let of = &set.conditions[run.condition];
+        let soon = (SOON * of.diameter / of.speed).max(STEPS * step);
+        Some((at, at < -STEPS * step || at > soon))
+    };
+    let seen: Vec<_> = set.runs.iter().filter_map(|run| Some((contact(run)?, run))).collect();
+    let off: Vec<_> = seen.iter().filter(|((_, is_off), _)| *is_off).collect();
+    let ((at, _), run) = off.first().filter(|_| 2 * off.len() > seen.len())?;
+    Some(Contradiction {
+        kind: ContradictionKind::Zeros,
+        diagnostic: Diagnostic::error(format!(
+            "t = 0 is not first contact in {} of {} runs: the velocities of `{}` leave free fall at about t = {at:.4} s",
+            off.len(),
+            set.runs.len(),
+            shorten(&run.name)
+        ))
+        .at(places[run.condition].id, "measured under this condition")
+        .help("write the time of first contact into a column `t_zero` of the table of runs"),
+    })
 }
 
 /// Names units with which no body falls: before contact a velocity grows at gravity.

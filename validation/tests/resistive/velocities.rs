@@ -69,6 +69,8 @@ fn wrong_signs_units_and_times_of_velocities_are_refused() {
             "times those of the stated speed",
         ),
         (|one| one.at = -one.at, "the time does not go on"),
+        (|one| one.at += 0.02, "leave free fall at about t = 0.02"),
+        (|one| one.at -= 0.02, "leave free fall at about t = -0.0"),
     ];
     sets::assert_refused(measured, cases);
 }
