@@ -217,7 +217,7 @@ const GRAIN_STIFFNESS: Switch = Switch {
 };
 
 /// The numbers of contact laws that grow with the stiffness at the same restitution, and the power.
-const STIFFNESSES: [(&str, f64); 7] = [
+const STIFFNESSES: [(&str, f64); 8] = [
     ("normal_stiffness", 1.0),
     ("tangential_stiffness", 1.0),
     ("young_modulus", 1.0),
@@ -225,6 +225,8 @@ const STIFFNESSES: [(&str, f64); 7] = [
     ("intruder_young_modulus", 1.0),
     ("normal_damping_rate", 0.5),
     ("tangential_damping_rate", 0.5),
+    // As long as a collision of Hertz spheres.
+    ("viscous_time", -0.4),
 ];
 
 const TANGENTIAL_DAMPING: Switch = Switch {
