@@ -294,7 +294,8 @@ impl Judge<'_> {
         self.diagnosis(verdict, &self.baseline, grounds)
     }
 
-    /// The reason why an effect with this error on held-out conditions is too small to be named; `None` for an effect that is large enough.
+    /// The reason why an effect with this error on held-out conditions is too small to be named; `None` for an effect that
+    /// is large enough.
     fn too_small(&self, held_out: &HeldOut) -> Option<String> {
         if !self.bench.forward.is_judged_by_held_out() {
             return None;
@@ -467,6 +468,9 @@ fn correlation(fit: &Fit) -> Option<f64> {
 /// `proposed` with effects of exactly the form that is listed, as a model has them, if the data ask for no other one; else as
 /// it is. Beside a form that nothing fixes, an amplitude is one of many that give the same force where there are data.
 fn as_listed(bench: &Bench<'_>, proposed: &Fitted) -> Result<Fit, BenchError> {
+    if proposed.fit.point.effects.is_empty() {
+        return Ok(proposed.fit.clone());
+    }
     let parameters = bench.forward.parameters();
     let mut start = proposed.fit.point.clone();
     let of_forms = start.parameters.iter_mut().zip(parameters);

@@ -104,19 +104,8 @@ fn check_clock(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contr
         let is_off = before.at.abs() > SOON * of.diameter / of.speed;
         (all[peak].value > set.gravity_of(run)).then_some((before.at, is_off))
     };
-    let seen: Vec<_> = set.runs.iter().filter_map(|run| Some((contact(run)?, run))).collect();
-    let off: Vec<_> = seen.iter().filter(|((_, is_off), _)| *is_off).collect();
-    let ((at, _), run) = off.first().filter(|_| 2 * off.len() > seen.len())?;
-    Some(Contradiction {
-        kind: ContradictionKind::Zeros,
-        diagnostic: Diagnostic::error(format!(
-            "t = 0 is not first contact in {} of {} runs: the readings of `{}` rise at t = {at:.4} s",
-            off.len(),
-            set.runs.len(),
-            shorten(&run.name)
-        ))
-        .at(places[run.condition].id, "measured under this condition")
-        .help("write the time of first contact into a column `t_zero` of the table of runs"),
+    over_time::check_clock(set, places, contact, |run, at| {
+        format!("the readings of `{run}` rise at t = {at:.4} s")
     })
 }
 

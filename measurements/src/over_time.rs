@@ -76,3 +76,27 @@ pub(super) fn check_unit(
             .help(format!("{help} [columns] gives the units of a table")),
     })
 }
+
+/// Names a clock that does not begin at first contact. `contact` says when a run shows it, and whether that is far from
+/// t = 0; `told` says of a run and a time what is seen then.
+pub(super) fn check_clock(
+    set: &MeasurementSet,
+    places: &[ConditionPlaces],
+    contact: impl Fn(&Run) -> Option<(f64, bool)>,
+    told: impl Fn(&str, f64) -> String,
+) -> Option<Contradiction> {
+    let seen: Vec<_> = set.runs.iter().filter_map(|run| Some((contact(run)?, run))).collect();
+    let off: Vec<_> = seen.iter().filter(|((_, is_off), _)| *is_off).collect();
+    let ((at, _), run) = off.first().filter(|_| 2 * off.len() > seen.len())?;
+    Some(Contradiction {
+        kind: ContradictionKind::Zeros,
+        diagnostic: Diagnostic::error(format!(
+            "t = 0 is not first contact in {} of {} runs: {}",
+            off.len(),
+            set.runs.len(),
+            told(&shorten(&run.name), *at)
+        ))
+        .at(places[run.condition].id, "measured under this condition")
+        .help("write the time of first contact into a column `t_zero` of the table of runs"),
+    })
+}

@@ -1,6 +1,6 @@
 //! Downward velocity over time, as a Doppler velocimeter or a light gate reads it.
 
-use configs::{Diagnostic, shorten};
+use configs::Diagnostic;
 use engine::units::Dimension;
 
 use super::columns::ColumnSpec;
@@ -155,19 +155,8 @@ fn check_clock(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Contr
         let soon = (SOON * of.diameter / of.speed).max(STEPS * step);
         Some((at, at < -STEPS * step || at > soon))
     };
-    let seen: Vec<_> = set.runs.iter().filter_map(|run| Some((contact(run)?, run))).collect();
-    let off: Vec<_> = seen.iter().filter(|((_, is_off), _)| *is_off).collect();
-    let ((at, _), run) = off.first().filter(|_| 2 * off.len() > seen.len())?;
-    Some(Contradiction {
-        kind: ContradictionKind::Zeros,
-        diagnostic: Diagnostic::error(format!(
-            "t = 0 is not first contact in {} of {} runs: the velocities of `{}` leave free fall at about t = {at:.4} s",
-            off.len(),
-            set.runs.len(),
-            shorten(&run.name)
-        ))
-        .at(places[run.condition].id, "measured under this condition")
-        .help("write the time of first contact into a column `t_zero` of the table of runs"),
+    over_time::check_clock(set, places, contact, |run, at| {
+        format!("the velocities of `{run}` leave free fall at about t = {at:.4} s")
     })
 }
 
