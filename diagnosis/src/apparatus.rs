@@ -21,6 +21,8 @@ pub mod defaults {
     pub const MEAN_OF_GRAINS: f64 = 0.25;
     /// Impact speeds, relative.
     pub const SPEED: f64 = 0.02;
+    /// Angles of oblique impacts (deg).
+    pub const ANGLE_DEG: f64 = 0.5;
     /// Scale of lengths, relative.
     pub const SCALE: f64 = 0.01;
     /// Mass of each body, relative.
@@ -35,6 +37,9 @@ pub mod defaults {
 
 /// The range of each parameter, in standard deviations of its prior.
 const RANGE: f64 = 20.0;
+
+/// Straight down (deg).
+const UPRIGHT_DEG: f64 = 90.0;
 
 /// Most that the clock of an accelerometer is off by, in its steps. At contact a reading may jump: a fit that moves the
 /// contact past a reading that it uses does not find back.
@@ -51,6 +56,9 @@ enum Fault {
     /// The level of the surface, if the clock, depths and speed of each run are read where its free fall reaches that level.
     Surface,
     Speed,
+    Angle,
+    /// The time at which ways forward are zero: that of contact, or of the first frame that shows it.
+    Start,
     Scale,
     Tilt,
     Mass {
@@ -148,9 +156,19 @@ impl Apparatus {
         all.add(Fault::Surface, "surface", "m", or(instrument.surface_sigma, 0.0));
         let speed = or(instrument.speed_bias_sigma_rel, defaults::SPEED);
         all.add(Fault::Speed, "speed-scale", "1", speed);
+        let has_ways = fitted().any(|one| one.along_x || one.final_x);
+        let is_oblique = |one: &Condition| one.role == Role::Fit && one.angle_deg < UPRIGHT_DEG;
+        let is_oblique = set.conditions.iter().any(is_oblique);
+        if is_oblique || has_ways {
+            let angle = or(instrument.angle_bias_sigma_deg, defaults::ANGLE_DEG).to_radians();
+            all.add(Fault::Angle, "launch-angle", "rad", angle);
+        }
         all.add(Fault::Scale, "camera-scale", "1", or(instrument.scale_sigma_rel, defaults::SCALE));
+        if let Some(sigma) = clock_sigma(set).filter(|_| has_ways && is_oblique) {
+            all.add(Fault::Start, "range-zero", "s", sigma);
+        }
         // Depth alone depends on the tilt to second order only.
-        if fitted().any(|one| one.along_x || one.final_x) {
+        if has_ways {
             let tilt = or(instrument.tilt_sigma_deg, defaults::TILT_DEG).to_radians();
             all.add(Fault::Tilt, "tilt", "rad", tilt);
         }
@@ -264,6 +282,8 @@ impl Apparatus {
                 Fault::Zero => all.level += value,
                 Fault::Surface => self.falls[condition].add(&mut all, value),
                 Fault::Speed => all.speed += value,
+                Fault::Angle => all.steeper += value,
+                Fault::Start => all.start += value,
                 Fault::Scale => all.scale += value,
                 Fault::Tilt => all.tilt += value,
                 Fault::Mass { body } if self.bodies.get(condition) == Some(&body) => {

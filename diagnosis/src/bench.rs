@@ -62,8 +62,11 @@ impl Fitted {
 
     /// The part of the deviance that is not the misfit.
     pub(crate) fn cost_of_noise(&self) -> f64 {
-        let Between { sd, sigma, .. } = self.noise.sessions;
-        let between = if sigma > 0.0 { (sd / sigma).powi(2) } else { 0.0 };
+        let cost = |Between { sd, sigma, .. }: Between| match sigma > 0.0 {
+            true => (sd / sigma).powi(2),
+            false => 0.0,
+        };
+        let between = cost(self.noise.sessions) + cost(self.noise.angles);
         self.weights.iter().map(Weight::log_determinant).sum::<f64>() + between
     }
 }
@@ -155,14 +158,23 @@ impl Bench<'_> {
         };
         let mut weights = weigh(&noise)?;
         let mut fit = self.data(&weights).fit(start)?;
-        let Some(sigma) = self.between_sigma(&noise) else {
-            return Ok(Fitted { fit, weights, noise });
-        };
-        let slopes: Vec<_> = sensitivities.iter().map(Sensitivity::by_coefficients).collect();
+        let of_coefficients: Vec<_> =
+            sensitivities.iter().map(Sensitivity::by_coefficients).collect();
+        let of_angles: Vec<_> = sensitivities.iter().map(Sensitivity::by_angle).collect();
+        let sigmas = [self.between_sigma(&noise), self.angle_sigma(&noise, &of_angles)];
         for _ in 0..BETWEEN_ROUNDS {
-            let held = noise.sessions.sd;
-            noise.sessions = between(&fit, &weights, &slopes, (held, sigma));
-            if (noise.sessions.sd - held).abs() <= SETTLED * held.max(SETTLED * sigma) {
+            let held = [noise.sessions.sd, noise.angles.sd];
+            if let Some(sigma) = sigmas[0] {
+                noise.sessions = between(&fit, &weights, &of_coefficients, (held[0], sigma));
+            }
+            if let Some(sigma) = sigmas[1] {
+                noise.angles = between(&fit, &weights, &of_angles, (held[1], sigma));
+            }
+            let is_settled = |(sd, (held, sigma)): (f64, (f64, Option<f64>))| {
+                sigma.is_none_or(|sigma| (sd - held).abs() <= SETTLED * held.max(SETTLED * sigma))
+            };
+            let found = [noise.sessions.sd, noise.angles.sd];
+            if found.into_iter().zip(held.into_iter().zip(sigmas)).all(is_settled) {
                 break;
             }
             weights = weigh(&noise)?;
@@ -181,7 +193,25 @@ impl Bench<'_> {
         fitted: &Fitted,
     ) -> Result<Fitted, BenchError> {
         let sessions = Between { sd, ..fitted.noise.sessions };
-        let noise = Noise { sessions, ..fitted.noise };
+        self.under(Noise { sessions, ..fitted.noise }, fitted)
+    }
+
+    /// `fitted` again, with angles of single conditions that are off by `sd` (rad); `None` where they are off by no more.
+    ///
+    /// # Errors
+    /// If the model fails.
+    pub(crate) fn with_angles_within(
+        &self,
+        sd: f64,
+        fitted: &Fitted,
+    ) -> Result<Option<Fitted>, BenchError> {
+        let angles = Between { sd, ..fitted.noise.angles };
+        let within = || self.under(Noise { angles, ..fitted.noise }, fitted);
+        (fitted.noise.angles.sd > sd).then(within).transpose()
+    }
+
+    /// `fitted` again under `noise`.
+    fn under(&self, noise: Noise, fitted: &Fitted) -> Result<Fitted, BenchError> {
         let weights = self.weights(&fitted.fit.point, &noise, &self.observed.fit)?;
         let fit = self.data(&weights).fit(&fitted.fit.point)?;
         Ok(Fitted { fit, weights, noise })
@@ -192,6 +222,16 @@ impl Bench<'_> {
     fn between_sigma(&self, noise: &Noise) -> Option<f64> {
         let is_known = self.observed.fit.len() >= CONDITIONS;
         self.session_sigma(noise).filter(|_| is_known)
+    }
+
+    /// How much the angles (rad) of conditions are off beforehand, each by its own error; `None` where nothing is to be
+    /// learned of it.
+    fn angle_sigma(&self, noise: &Noise, slopes: &[DMatrix<f64>]) -> Option<f64> {
+        let angle = self.set.instrument.angle_bias_sigma_deg.unwrap_or(defaults::ANGLE_DEG);
+        let matters = slopes.iter().flat_map(DMatrix::iter).any(|slope| *slope != 0.0);
+        let is_known =
+            noise.source == NoiseSource::Repeats && self.observed.fit.len() >= CONDITIONS;
+        (is_known && matters && angle > 0.0).then(|| angle.to_radians())
     }
 
     /// The same however many conditions there are.

@@ -46,6 +46,9 @@ const UNLISTED: f64 = 0.6;
 /// Nodes of depth between which that change is linear.
 const NODES: usize = 12;
 
+/// Most draws of a set with which the model cannot be integrated.
+const DRAWS: i32 = 3;
+
 /// What is true in a simulated set.
 #[derive(Clone, Debug, PartialEq)]
 enum Truth {
@@ -53,6 +56,16 @@ enum Truth {
     Unlisted,
     /// Index of the candidate, and its amplitude.
     Effect(usize, f64),
+}
+
+impl Truth {
+    /// The same with an effect of half the size, so many times over.
+    fn weakened(&self, halvings: i32) -> Self {
+        match *self {
+            Self::Effect(index, q) => Self::Effect(index, q * libm::ldexp(1.0, -halvings)),
+            _ => self.clone(),
+        }
+    }
 }
 
 /// A simulated set and what was said of it.
@@ -118,8 +131,10 @@ pub fn calibrate(
         .enumerate()
         .map(|(number, truth)| {
             let mut random = stream(seed, Purpose::Simulation, number);
-            // A draw of the apparatus with which the model cannot be integrated is drawn again.
-            for _ in 0..3 {
+            // A draw of the apparatus with which the model cannot be integrated is drawn again, with half the effect: a body
+            // that floats and drifts never comes to rest.
+            for halvings in 0..DRAWS {
+                let truth = &truth.weakened(halvings);
                 let Some(observed) = simulate(bench, baseline, (&noise, truth), &mut random) else {
                     continue;
                 };

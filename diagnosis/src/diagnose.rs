@@ -62,7 +62,7 @@ fn ranked_by<'a>(
         .filter(|&index| bench.forward.candidates()[index].not_testable.is_none())
         .collect();
     let marginals = marginals(bench, baseline, &candidates, seed)?;
-    let mut weighed = match marginals {
+    let weighed = match marginals {
         Some(Marginals { between, .. }) => {
             bench.fit_once(&baseline.fit.point, &Noise { between, ..baseline.noise })?
         }
@@ -72,27 +72,34 @@ fn ranked_by<'a>(
         Some(marginals) => Ranking::by_likelihood(bench, weighed, marginals, seed),
         None => Ranking::of(bench, weighed, &candidates, seed),
     };
-    let mut ranking = rank(&weighed);
-    for _ in 1..ROUNDS {
+    let settled = |mut weighed: Fitted| -> Result<Option<(Fitted, Ranking, Fitted)>, BenchError> {
+        let mut ranking = rank(&weighed);
+        for _ in 1..ROUNDS {
+            let leader = lead(bench, &mut ranking, &weighed, marginals.as_ref())?;
+            let Some(leader) = leader else { break };
+            let fit = bench.data(&leader.weights).fit(&baseline.fit.point)?;
+            weighed = Fitted { fit, ..leader };
+            ranking = rank(&weighed);
+        }
         let leader = lead(bench, &mut ranking, &weighed, marginals.as_ref())?;
-        let Some(leader) = leader else { break };
-        let fit = bench.data(&leader.weights).fit(&baseline.fit.point)?;
-        weighed = Fitted { fit, ..leader };
-        ranking = rank(&weighed);
-    }
-    let leader = lead(bench, &mut ranking, &weighed, marginals.as_ref())?;
-    let alike = ranking.not_separable(bench);
-    let baseline = baseline.clone();
-    let of_any_force = OnceCell::new();
-    Ok(leader.map(|leader| Judge {
+        Ok(leader.map(|leader| (weighed, ranking, leader)))
+    };
+    // A model that lacks a force across the motion takes it for angles that are off: effects are tried with angles as well
+    // known as they are beforehand, and with exact ones.
+    let exact = bench.with_angles_within(0.0, &weighed)?;
+    let exact = exact.and_then(|exact| settled(exact).ok().flatten());
+    let known = bench.with_angles_within(weighed.noise.angles.sigma, &weighed)?.unwrap_or(weighed);
+    let both = settled(known)?.into_iter().chain(exact);
+    let best = both.min_by(|(.., a), (.., b)| a.deviance().total_cmp(&b.deviance()));
+    Ok(best.map(|(weighed, ranking, leader)| Judge {
         bench,
         seed,
-        baseline,
+        baseline: baseline.clone(),
         weighed,
+        alike: ranking.not_separable(bench),
         ranking,
-        alike,
         leader,
-        of_any_force,
+        of_any_force: OnceCell::new(),
     }))
 }
 

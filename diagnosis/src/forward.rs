@@ -320,7 +320,7 @@ pub struct Scatter {
     pub coefficients: Vec<f64>,
     /// Relative deviation of the impact speed.
     pub speed: f64,
-    /// By how much the impact is steeper (rad); nothing is steeper than a vertical one.
+    /// By how much the impact is steeper (rad), beyond the vertical too where ways forward are measured.
     pub steeper: f64,
     /// Deviation of the level of the surface (m): positive when it lies lower than assumed.
     pub level: f64,
@@ -328,6 +328,8 @@ pub struct Scatter {
     pub clock: f64,
     /// Way forward (m) at contact.
     pub ahead: f64,
+    /// How long after contact the body is where ways forward are zero (s).
+    pub start: f64,
     /// Relative error of every length that is read.
     pub scale: f64,
     /// Relative deviation of the mass of the body from what is stated.
@@ -360,6 +362,7 @@ impl Scatter {
             level,
             clock,
             ahead,
+            start,
             scale,
             mass,
             tilt,
@@ -369,7 +372,7 @@ impl Scatter {
             ..
         } = self;
         let lists = coefficients.iter().chain(along).chain(sideways);
-        let single = [speed, steeper, level, clock, ahead, scale, mass, tilt];
+        let single = [speed, steeper, level, clock, ahead, start, scale, mass, tilt];
         let is_still = lists.chain(single).all(|value| *value == 0.0);
         is_still && field.is_none()
     }

@@ -22,13 +22,23 @@ use crate::sensitivity::{Sensitivity, Spread};
 /// Bounds of a relative scatter: below, it is nothing; above, a bed is no longer one condition.
 const SPREAD_BOUNDS: (f64, f64) = (1e-4, 1.0);
 
-/// Bounds of the scatter of what a set does not state: impact speed (relative), level (m), and clock (in frames).
+/// Bounds of the scatter of what a set does not state: impact speed (relative), its angle (rad), level (m), and clock (in
+/// frames).
 const SPEED_BOUNDS: (f64, f64) = (1e-5, 0.2);
+const ANGLE_BOUNDS: (f64, f64) = (1e-5, 0.2);
 const LEVEL_BOUNDS: (f64, f64) = (1e-6, 1e-2);
 const FRAMES_BOUNDS: (f64, f64) = (1e-3, 2.0);
 
 /// Most that readings may be worse than stated.
 const READING_MOST: f64 = 30.0;
+
+/// Fall of twice the negative logarithm of the likelihood beyond which repeats show that angles scatter: the 95 % point of
+/// a variance that is tested at its bound (Self & Liang 1987, J. Am. Stat. Assoc. 82, 605, case 5).
+const SHOWN: f64 = 2.71;
+
+/// Most searches one after the other, and the fall of twice the negative logarithm of the likelihood that is worth one.
+const SEARCHES: usize = 5;
+const MORE: f64 = 0.05;
 
 /// Iterations after which the likelihood is taken as it is; a fraction of it is common.
 const ITERATIONS: u64 = 600;
@@ -47,6 +57,8 @@ pub struct Noise {
     pub between: f64,
     /// Scatter of coefficients from condition to condition beyond that of runs: sessions that are not stated.
     pub sessions: Between,
+    /// Scatter of the angle (rad) from condition to condition beyond that of runs: each is set anew.
+    pub angles: Between,
 }
 
 /// Where a noise is from.
@@ -72,13 +84,22 @@ impl Noise {
     /// What the set states: nothing is known about the run-to-run scatter.
     #[must_use]
     pub fn stated() -> Self {
-        let spread = Spread { coefficient: 0.0, path: 0.0, speed: 0.0, level: 0.0, clock: 0.0 };
+        let spread = Spread {
+            coefficient: 0.0,
+            path: 0.0,
+            speed: 0.0,
+            angle: 0.0,
+            level: 0.0,
+            clock: 0.0,
+            start: 0.0,
+        };
         Self {
             source: NoiseSource::Stated,
             reading: 1.0,
             spread,
             between: 0.0,
             sessions: Between::default(),
+            angles: Between::default(),
         }
     }
 
@@ -105,6 +126,7 @@ impl Noise {
             spread,
             between: 0.0,
             sessions: Between::default(),
+            angles: Between::default(),
         }
     }
 
@@ -127,30 +149,29 @@ impl Noise {
             .map(|(condition, sensitivity)| Term::new(condition, sensitivity))
             .collect();
         let unstated = Unstated::of(instrument, sensitivities);
-        let likelihood = Likelihood { terms, instrument: *instrument, unstated };
-        let start = self.to_logarithms(unstated);
-        let mut simplex = vec![start.clone()];
-        for axis in 0..start.len() {
-            let mut corner = start.clone();
-            corner[axis] += 0.4;
-            simplex.push(corner);
+        let without = Unstated { angle: false, start: None, ..unstated };
+        let mut likelihood = Likelihood { terms, instrument: *instrument, unstated: without };
+        let mut found = likelihood.most_likely(*self);
+        // Neither is taken for granted: each must show in the repeats.
+        let angle = Unstated { angle: true, ..without };
+        let start = Unstated { start: unstated.start, ..without };
+        for more in
+            [unstated.angle.then_some(angle), unstated.start.map(|_| start)].into_iter().flatten()
+        {
+            let before = likelihood.unstated;
+            likelihood.unstated = before.and(more);
+            let wider = likelihood.most_likely(found);
+            match likelihood.deviance(&found) - likelihood.deviance(&wider) > SHOWN {
+                true => found = wider,
+                false => likelihood.unstated = before,
+            }
         }
-        // In the logarithms, so 1e-4 is a hundredth of a percent of a standard deviation.
-        let best = NelderMead::new(simplex)
-            .with_sd_tolerance(1e-4)
-            .and_then(|solver| {
-                let run = Executor::new(likelihood, solver);
-                run.configure(|state| state.max_iters(ITERATIONS)).run()
-            })
-            .ok()
-            .and_then(|result| result.state().get_best_param().cloned());
-        let found = best.map_or(*self, |at| from_logarithms(&at, instrument, unstated));
-        Self { between: self.between, sessions: self.sessions, ..found }
+        Self { between: self.between, sessions: self.sessions, angles: self.angles, ..found }
     }
 
     /// The logarithms of what is learned from repeats: reading, coefficients and path; then what is `unstated`.
     fn to_logarithms(self, unstated: Unstated) -> Vec<f64> {
-        let Spread { coefficient, path, speed, level, clock } = self.spread;
+        let Spread { coefficient, path, speed, angle, level, clock, start: way } = self.spread;
         let mut all = vec![libm::log(self.reading), libm::log(coefficient), libm::log(path)];
         let mut add = |value: f64, start: f64, (low, high): (f64, f64)| {
             let value = if value > 0.0 { value } else { start };
@@ -159,11 +180,17 @@ impl Noise {
         if unstated.speed {
             add(speed, 3e-3, SPEED_BOUNDS);
         }
+        if unstated.angle {
+            add(angle, 2e-3, ANGLE_BOUNDS);
+        }
         if unstated.level {
             add(level, 1e-4, LEVEL_BOUNDS);
         }
         if let Some(rate) = unstated.rate {
             add(clock * rate, 0.05, FRAMES_BOUNDS);
+        }
+        if let Some(rate) = unstated.start {
+            add(way * rate, 0.05, FRAMES_BOUNDS);
         }
         all
     }
@@ -179,9 +206,12 @@ impl Noise {
             "source": self.source,
             (key): rounded(self.reading * reading),
             "speed_sd": rounded(self.spread.speed),
+            "angle_sd_deg": rounded(self.spread.angle.to_degrees()),
             "level_sd_m": rounded(self.spread.level),
             "clock_sd_s": rounded(self.spread.clock),
+            "range_zero_sd_s": rounded(self.spread.start),
             "between_conditions_sd": rounded(self.sessions.sd),
+            "between_conditions_angle_sd_deg": rounded(self.angles.sd.to_degrees()),
         });
         // Where the model has runs of its own, those of the set scatter as they do, by this share of their numbers.
         if forward.ways_of_scatter(0).is_some() {
@@ -211,12 +241,20 @@ impl Noise {
         }
     }
 
-    /// What the mean of a condition scatters by together with all its runs, a column for each coefficient: its
-    /// covariance is the product with the transposed. `None` where nothing scatters between conditions.
+    /// What the mean of a condition scatters by together with all its runs, a column for each coefficient and for the
+    /// angle: its covariance is the product with the transposed. `None` where nothing scatters between conditions.
     #[must_use]
     pub fn between_conditions(&self, sensitivity: &Sensitivity) -> Option<DMatrix<f64>> {
-        let slope = sensitivity.by_coefficients();
-        (self.sessions.sd > 0.0 && slope.ncols() > 0).then(|| self.sessions.sd * slope)
+        let parts = [
+            (self.sessions.sd, sensitivity.by_coefficients()),
+            (self.angles.sd, sensitivity.by_angle()),
+        ];
+        let columns: Vec<DVector<f64>> = parts
+            .iter()
+            .filter(|(sd, _)| *sd > 0.0)
+            .flat_map(|(sd, slope)| slope.column_iter().map(move |column| *sd * column))
+            .collect();
+        (!columns.is_empty()).then(|| DMatrix::from_columns(&columns))
     }
 }
 
@@ -246,9 +284,12 @@ fn scaled_columns(matrix: &DMatrix<f64>, scale: &DVector<f64>) -> DMatrix<f64> {
 #[derive(Clone, Copy, Debug)]
 struct Unstated {
     speed: bool,
+    angle: bool,
     level: bool,
     /// Of the frames (1/s), where the clock scatters.
     rate: Option<f64>,
+    /// The same, where the zero of ways forward does.
+    start: Option<f64>,
 }
 
 impl Unstated {
@@ -256,9 +297,17 @@ impl Unstated {
         let matters = |input: fn(&Sensitivity) -> bool| sensitivities.iter().any(input);
         Self {
             speed: instrument.speed_sigma_rel.is_none() && matters(Sensitivity::depends_on_speed),
+            angle: instrument.angle_sigma_deg.is_none() && matters(Sensitivity::depends_on_angle),
             level: instrument.level_sigma.is_none() && matters(Sensitivity::depends_on_level),
             rate: instrument.rate.filter(|_| matters(Sensitivity::depends_on_clock)),
+            start: instrument.rate.filter(|_| matters(Sensitivity::depends_on_start)),
         }
+    }
+
+    /// With what `other` leaves unstated too.
+    fn and(self, other: Self) -> Self {
+        let angle = self.angle || other.angle;
+        Self { angle, start: self.start.or(other.start), ..self }
     }
 }
 
@@ -274,11 +323,17 @@ fn from_logarithms(at: &[f64], instrument: &Instrument, unstated: Unstated) -> N
     if unstated.speed {
         spread.speed = next(SPEED_BOUNDS);
     }
+    if unstated.angle {
+        spread.angle = next(ANGLE_BOUNDS);
+    }
     if unstated.level {
         spread.level = next(LEVEL_BOUNDS);
     }
     if let Some(rate) = unstated.rate {
         spread.clock = next(FRAMES_BOUNDS) / rate;
+    }
+    if let Some(rate) = unstated.start {
+        spread.start = next(FRAMES_BOUNDS) / rate;
     }
     Noise {
         source: NoiseSource::Repeats,
@@ -286,6 +341,7 @@ fn from_logarithms(at: &[f64], instrument: &Instrument, unstated: Unstated) -> N
         spread,
         between: 0.0,
         sessions: Between::default(),
+        angles: Between::default(),
     }
 }
 
@@ -356,14 +412,55 @@ struct Likelihood {
     unstated: Unstated,
 }
 
-impl CostFunction for Likelihood {
+impl Likelihood {
+    /// The noise of largest likelihood, searched from `start`; `start` where the search fails. A simplex that has shrunk
+    /// beside a bound, where the likelihood is flat, begins anew for as long as that finds more.
+    fn most_likely(&self, start: Noise) -> Noise {
+        let (mut best, mut least) = (start, f64::INFINITY);
+        for _ in 0..SEARCHES {
+            let next = self.search(best);
+            let deviance = self.deviance(&next);
+            if deviance > least - MORE {
+                break;
+            }
+            (best, least) = (next, deviance);
+        }
+        best
+    }
+
+    fn search(&self, start: Noise) -> Noise {
+        let first = start.to_logarithms(self.unstated);
+        let mut simplex = vec![first.clone()];
+        for axis in 0..first.len() {
+            let mut corner = first.clone();
+            corner[axis] += 0.4;
+            simplex.push(corner);
+        }
+        // In the logarithms, so 1e-4 is a hundredth of a percent of a standard deviation.
+        let best = NelderMead::new(simplex)
+            .with_sd_tolerance(1e-4)
+            .and_then(|solver| {
+                let run = Executor::new(self, solver);
+                run.configure(|state| state.max_iters(ITERATIONS)).run()
+            })
+            .ok()
+            .and_then(|result| result.state().get_best_param().cloned());
+        best.map_or(start, |at| from_logarithms(&at, &self.instrument, self.unstated))
+    }
+
+    /// Twice the negative logarithm of the likelihood.
+    fn deviance(&self, noise: &Noise) -> f64 {
+        let total = self.terms.iter().map(|term| term.cost(noise)).sum::<Option<f64>>();
+        total.unwrap_or(f64::INFINITY)
+    }
+}
+
+impl CostFunction for &Likelihood {
     type Param = Vec<f64>;
     type Output = f64;
 
     fn cost(&self, at: &Self::Param) -> Result<f64, argmin::core::Error> {
-        let noise = from_logarithms(at, &self.instrument, self.unstated);
-        let total = self.terms.iter().map(|term| term.cost(&noise)).sum::<Option<f64>>();
-        Ok(total.unwrap_or(f64::INFINITY))
+        Ok(self.deviance(&from_logarithms(at, &self.instrument, self.unstated)))
     }
 }
 

@@ -66,19 +66,24 @@ pub struct Spread {
     pub path: f64,
     /// Of the impact speed, relative.
     pub speed: f64,
+    /// Of the angle of an oblique impact (rad).
+    pub angle: f64,
     /// Of the level of the surface (m).
     pub level: f64,
     /// Of the time at which a clip is zero (s).
     pub clock: f64,
+    /// Of the time at which ways forward are zero (s).
+    pub start: f64,
 }
 
 impl Spread {
-    /// With what the instrument states about speed and level.
+    /// With what the instrument states about speed, angle and level.
     #[must_use]
     pub fn new(coefficient: f64, path: f64, instrument: &Instrument) -> Self {
         let speed = instrument.speed_sigma_rel.unwrap_or(0.0);
+        let angle = instrument.angle_sigma_deg.map_or(0.0, f64::to_radians);
         let level = instrument.level_sigma.unwrap_or(0.0);
-        Self { coefficient, path, speed, level, clock: 0.0 }
+        Self { coefficient, path, speed, angle, level, clock: 0.0, start: 0.0 }
     }
 }
 
@@ -87,8 +92,10 @@ impl Spread {
 enum Input {
     Coefficient(usize),
     Speed,
+    Angle,
     Level,
     Clock,
+    Start,
     Along(usize),
     Sideways(usize),
 }
@@ -124,7 +131,7 @@ impl Sensitivity {
         }
         let inputs: Vec<Input> = (0..coefficients)
             .map(Input::Coefficient)
-            .chain([Input::Speed, Input::Level, Input::Clock])
+            .chain([Input::Speed, Input::Angle, Input::Level, Input::Clock, Input::Start])
             .chain((0..ALONG).map(Input::Along))
             .chain((0..SIDEWAYS).map(Input::Sideways))
             .collect();
@@ -164,6 +171,11 @@ impl Sensitivity {
         self.depends_on(Input::Speed)
     }
 
+    /// Whether they follow the angle of the impact.
+    pub(crate) fn depends_on_angle(&self) -> bool {
+        self.depends_on(Input::Angle)
+    }
+
     /// Whether they follow the level of the surface.
     pub(crate) fn depends_on_level(&self) -> bool {
         self.depends_on(Input::Level)
@@ -176,9 +188,23 @@ impl Sensitivity {
 
     /// Derivative of the observables by the logarithm of each coefficient.
     pub(crate) fn by_coefficients(&self) -> DMatrix<f64> {
+        self.by(|input| matches!(input, Input::Coefficient(_)))
+    }
+
+    /// Whether they follow the zero of ways forward.
+    pub(crate) fn depends_on_start(&self) -> bool {
+        self.depends_on(Input::Start)
+    }
+
+    /// Derivative of the observables by the angle of the impact.
+    pub(crate) fn by_angle(&self) -> DMatrix<f64> {
+        self.by(|input| *input == Input::Angle)
+    }
+
+    fn by(&self, is_asked: impl Fn(&Input) -> bool) -> DMatrix<f64> {
         let inputs = self.inputs.iter().enumerate();
-        let of_coefficients = inputs.filter(|(_, input)| matches!(input, Input::Coefficient(_)));
-        let columns: Vec<usize> = of_coefficients.map(|(column, _)| column).collect();
+        let columns: Vec<usize> =
+            inputs.filter(|(_, input)| is_asked(input)).map(|(column, _)| column).collect();
         self.slope.select_columns(&columns)
     }
 
@@ -195,8 +221,10 @@ impl Sensitivity {
             self.inputs.iter().map(|input| match input {
                 Input::Coefficient(_) => spread.coefficient,
                 Input::Speed => spread.speed,
+                Input::Angle => spread.angle,
                 Input::Level => spread.level,
                 Input::Clock => spread.clock,
+                Input::Start => spread.start,
                 Input::Along(_) => spread.path,
                 Input::Sideways(_) => 0.5 * spread.path,
             }),
@@ -216,8 +244,9 @@ impl Input {
         match self {
             Self::Coefficient(_) => 0.05,
             Self::Speed => 0.01,
+            Self::Angle => 5e-3,
             Self::Level => 2e-4,
-            Self::Clock => 1e-4,
+            Self::Clock | Self::Start => 1e-4,
             Self::Along(_) => 0.1,
             Self::Sideways(_) => 0.05,
         }
@@ -232,8 +261,10 @@ impl Input {
         match self {
             Self::Coefficient(index) => scatter.coefficients[index] = value,
             Self::Speed => scatter.speed = value,
+            Self::Angle => scatter.steeper = value,
             Self::Level => scatter.level = value,
             Self::Clock => scatter.clock = value,
+            Self::Start => scatter.start = value,
             Self::Along(index) => scatter.along = only(ALONG, index),
             Self::Sideways(index) => scatter.sideways = only(SIDEWAYS, index),
         }

@@ -20,6 +20,9 @@ pub(super) struct ConditionPlaces {
     pub(super) shaft: Option<Span>,
 }
 
+/// Relative difference between the height of a cone and that of its angle that rounding explains.
+const SAME_HEIGHT: f64 = 0.03;
+
 /// Shapes that a set may name, each with the keys that it should have besides the diameter.
 const SHAPES: [(&str, &[&str]); 7] = [
     ("sphere", &[]),
@@ -113,6 +116,20 @@ fn condition(
     let wanted = SHAPES.iter().find(|(name, _)| Some(*name) == shape).map_or(&[][..], |row| row.1);
     for key in ["role", "packing", "bed_depth"].iter().chain(wanted) {
         absent.count(key, !table.has(key));
+    }
+    if let (Some("cone"), Some(size), Some(height), Some(apex)) = (shape, &diameter, height, apex) {
+        let whole = 0.5 * size.value / libm::tan(0.5 * apex.to_radians());
+        if (height / whole - 1.0).abs() > SAME_HEIGHT {
+            let message = format!(
+                "a cone of diameter {:.4} m and apex_deg {apex} is {whole:.4} m high, not {height:.4} m",
+                size.value
+            );
+            table.reader.report(
+                Diagnostic::error(message)
+                    .at(table.span_of("apex_deg"), "this is the full angle at the tip")
+                    .help("state the one of `apex_deg` and `height` that is measured"),
+            );
+        }
     }
     table.finish();
     let condition = Condition {

@@ -74,6 +74,13 @@ pub(super) const SPEED_SIGMA: ParamSpec = key(
     (0.0, 0.5),
     "the relative error of the set impact speed",
 );
+pub(super) const ANGLE_SIGMA: ParamSpec = key(
+    "angle_sigma_deg",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 30.0),
+    "the error of the set impact angle, in degrees",
+);
 pub(super) const LEVEL_SIGMA: ParamSpec = key(
     "level_sigma_m",
     LENGTH,
@@ -109,6 +116,13 @@ pub(super) const SPEED_BIAS_SIGMA: ParamSpec = key(
     NOT_NEGATIVE,
     (0.0, 0.5),
     "the relative error that all impact speeds share",
+);
+pub(super) const ANGLE_BIAS_SIGMA: ParamSpec = key(
+    "angle_bias_sigma_deg",
+    NUMBER,
+    NOT_NEGATIVE,
+    (0.0, 30.0),
+    "the error that all angles of oblique impacts share, in degrees",
 );
 pub(super) const SCALE_SIGMA: ParamSpec = key(
     "scale_sigma_rel",

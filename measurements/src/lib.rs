@@ -238,6 +238,8 @@ pub struct Instrument {
     pub acceleration_range: Option<f64>,
     /// How well the set impact speed is known, relative, per run.
     pub speed_sigma_rel: Option<f64>,
+    /// How well the set angle of an oblique impact is known, per run (deg).
+    pub angle_sigma_deg: Option<f64>,
     /// How well the level of the surface is known in one run (m).
     pub level_sigma: Option<f64>,
     /// How well the times are known that all runs share an error of (s): the zero of the clock.
@@ -249,6 +251,8 @@ pub struct Instrument {
     pub surface_sigma: Option<f64>,
     /// Relative error that all impact speeds share.
     pub speed_bias_sigma_rel: Option<f64>,
+    /// Error that the angles of all oblique impacts share (deg).
+    pub angle_bias_sigma_deg: Option<f64>,
     /// Relative error of the scale of lengths.
     pub scale_sigma_rel: Option<f64>,
     /// Relative error of the mass of each body.
@@ -269,6 +273,7 @@ impl Instrument {
             zero_sigma: none,
             surface_sigma: none,
             speed_bias_sigma_rel: none,
+            angle_bias_sigma_deg: none,
             scale_sigma_rel: none,
             mass_sigma_rel: none,
             tilt_sigma_deg: none,

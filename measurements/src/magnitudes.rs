@@ -10,7 +10,7 @@ use super::smooth::greatest_velocity;
 use super::start::Start;
 use super::strays::but_strays;
 use super::zeros::position;
-use super::{Condition, MeasurementSet, Run};
+use super::{Condition, Geometry, MeasurementSet, Run};
 
 /// Measured over stated impact speed beyond which a unit is wrong: no bed makes an intruder faster.
 const FASTEST: f64 = 5.0;
@@ -24,6 +24,10 @@ const HALF: f64 = 0.6;
 const BEFORE: usize = 2;
 /// How many times its natural scale a depth, range or stopping time may be.
 const LARGEST: f64 = 10.0;
+/// How far a ratio of speeds may be from a factor between units.
+const NEAR: f64 = 1.7;
+/// Bulk density (kg/m³) below which a bed is of no known grains; of aerogel and foam beads it is 10 or more.
+const LIGHTEST: f64 = 8.0;
 /// How far from its rate the frames of a camera may be.
 const RATE: f64 = 3.0;
 
@@ -53,6 +57,7 @@ pub(super) fn check(
         return vec![speeds];
     }
     check_rate(set, findings);
+    check_density(set, findings);
     check_ways(set, places)
 }
 
@@ -101,11 +106,16 @@ fn check_speeds(set: &MeasurementSet, places: &[ConditionPlaces]) -> Option<Cont
             false => format!("a share of {ratio:.1e} of"),
         }
     );
-    let (what, factor) = match ratio > 1.0 {
-        true => ("positions", nearest(ratio, LENGTHS)),
-        false => ("times", nearest(1.0 / ratio, TIMES)),
+    let (what, factor, by) = match ratio > 1.0 {
+        true => ("positions", nearest(ratio, LENGTHS), ratio),
+        false => ("times", nearest(1.0 / ratio, TIMES), 1.0 / ratio),
     };
-    let help = format!("the {what} look like {factor}; [columns] gives the units of a table");
+    let help = match LENGTHS.iter().chain(TIMES).any(|(unit, _)| is_near(by, *unit)) {
+        true => format!("the {what} look like {factor}; [columns] gives the units of a table"),
+        false => format!(
+            "the {what} look like \u{d7}{by:.1}, which no usual unit explains: check the rate, the scale and `speed`"
+        ),
+    };
     let speed = places[condition].speed;
     let diagnostic = Diagnostic::error(message).at(speed, "the stated speed").help(help);
     Some(Contradiction { kind: ContradictionKind::Speeds, diagnostic })
@@ -203,6 +213,25 @@ fn check_rate(set: &MeasurementSet, findings: &mut Findings) {
                 .help(format!("rate_hz = {rate}; it looks like {factor}")),
         );
     }
+}
+
+/// Warns of a bed lighter than any grains.
+fn check_density(set: &MeasurementSet, findings: &mut Findings) {
+    let is_light = |density: f64| set.bed.geometry == Geometry::Spatial && density < LIGHTEST;
+    let light = set.all_beds().filter_map(|bed| bed.bulk_density).find(|one| is_light(*one));
+    if let Some(density) = light {
+        findings.warn(
+            Diagnostic::warning(format!(
+                "a bulk density of {density} kg/m\u{b3} is that of no bed of grains"
+            ))
+            .help("is it in g/cm\u{b3}? then write bulk_density = \"1.5 g/cc\", with the unit"),
+        );
+    }
+}
+
+/// Whether `ratio` is `factor`, as well as speeds are read.
+fn is_near(ratio: f64, factor: f64) -> bool {
+    libm::log(ratio / factor).abs() < libm::log(NEAR)
 }
 
 /// The name of the factor nearest to `ratio`, which is at least 1.

@@ -1,12 +1,12 @@
 //! Whether depth, range and angle count the way that the impact velocities say.
 
-use configs::Diagnostic;
+use configs::{Diagnostic, shorten};
 
 use super::conditions::ConditionPlaces;
 use super::curve::Written;
 use super::findings::Findings;
 use super::start::Start;
-use super::{Condition, Frame, MeasurementSet, Run};
+use super::{Condition, Frame, MeasurementSet, Run, median, zeros};
 
 /// A way shorter than this share of the diameter says nothing about a direction.
 const SHORTEST: f64 = 0.05;
@@ -50,34 +50,79 @@ pub(super) fn check(set: &MeasurementSet, (places, columns): Written<'_>, findin
     check_angles(set, places, findings);
 }
 
-/// Refuses angles that the trajectories have to the vertical.
+/// Refuses angles that the trajectories do not have, or have to the vertical.
 fn check_angles(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
-    // Near 45 deg the two conventions cannot be told apart, and 90 deg is vertical in both when
-    // only the others were converted.
-    let told = |condition: &Condition| {
-        (condition.angle_deg - 45.0).abs() > 10.0 && condition.angle_deg < 89.0
-    };
-    let measured = |run: &Run| {
-        let start = Start::of(run)?;
-        Some(libm::atan2(start.dz, start.dx).to_degrees())
-    };
-    let swapped = against(set, |run, condition| {
-        let angle = measured(run).filter(|_| told(condition))?;
-        let (right, other) = (condition.angle_deg, 90.0 - condition.angle_deg);
-        match ((angle - right).abs() < 15.0, (angle - other).abs() < 10.0) {
-            (true, _) => Some(1.0),
-            (false, true) => Some(-1.0),
-            (false, false) => None,
+    let all: Vec<Angle> = (0..set.conditions.len()).filter_map(|at| Angle::of(set, at)).collect();
+    let off: Vec<&Angle> = all.iter().filter(|angle| angle.is_off(angle.stated)).collect();
+    let Some(first) = off.first() else { return };
+    let other = |angle: &&&Angle| !angle.is_off(90.0 - angle.stated);
+    let is_other = off.iter().filter(other).count() == off.len() && 2 * off.len() > all.len();
+    let place = places[first.condition].angle;
+    let id = |angle: &Angle| shorten(&set.conditions[angle.condition].id);
+    findings.report(match is_other {
+        true => Diagnostic::error(format!(
+            "the runs of {} of {} conditions start at the stated angle to the vertical",
+            off.len(),
+            all.len()
+        ))
+        .at(place, "is this the angle to the vertical?")
+        .help("angle_deg is counted from the horizontal: 90 is straight down"),
+        false => {
+            let listed = off.iter().take(LISTED).map(|angle| {
+                let Angle { stated, measured, error, .. } = angle;
+                format!("{measured:.1} \u{b1} {error:.1} deg in `{}`, not {stated}", id(angle))
+            });
+            let more = off.len().saturating_sub(LISTED);
+            let more = if more > 0 { format!(", and so in {more} more") } else { String::new() };
+            Diagnostic::error(format!(
+                "the paths start below the horizontal at {}{more}",
+                listed.collect::<Vec<_>>().join("; ")
+            ))
+            .at(place, "the frames show another angle")
+            .help("correct `angle_deg`, or the condition that runs.csv says these runs are of")
         }
     });
-    if let Some(Against { condition, contrary, told }) = swapped {
-        findings.report(
-            Diagnostic::error(format!(
-                "{contrary} of {told} runs start at the stated angle to the vertical"
-            ))
-            .at(places[condition].angle, "is this the angle to the vertical?")
-            .help("angle_deg is counted from the horizontal: 90 is straight down"),
-        );
+}
+
+/// Most conditions whose angles a message lists.
+const LISTED: usize = 4;
+
+/// Angles differ if they do by so many degrees,
+const APART_DEG: f64 = 6.0;
+
+/// and by so many standard errors.
+const CLEAR: f64 = 4.0;
+
+/// The angle at which the runs of a condition start, below the horizontal (deg).
+struct Angle {
+    condition: usize,
+    stated: f64,
+    measured: f64,
+    error: f64,
+}
+
+impl Angle {
+    /// `None` of vertical impacts, which may have an angle to the vertical, and where no run says anything.
+    fn of(set: &MeasurementSet, condition: usize) -> Option<Self> {
+        let stated = set.conditions[condition].angle_deg;
+        let own = set.runs.iter().filter(|run| run.condition == condition);
+        let read: Vec<(f64, f64)> = own
+            .filter_map(|run| {
+                let start = Start::of(run)?;
+                let way = libm::hypot(start.dx, start.dz);
+                let error = std::f64::consts::SQRT_2 * zeros::position(set, run) / way;
+                (way > 0.0).then(|| (libm::atan2(start.dz, start.dx), error))
+            })
+            .collect();
+        let n = read.len() as f64;
+        let measured = median(read.iter().map(|(angle, _)| angle.to_degrees()))?;
+        let error = (read.iter().map(|(_, error)| error * error).sum::<f64>()).sqrt() / n;
+        let error = error.to_degrees();
+        (stated < 89.0).then_some(Self { condition, stated, measured, error })
+    }
+
+    fn is_off(&self, angle: f64) -> bool {
+        (self.measured - angle).abs() > APART_DEG.max(CLEAR * self.error)
     }
 }
 

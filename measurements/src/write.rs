@@ -86,11 +86,13 @@ impl MeasurementSet {
         file.number("spin_sigma_rad_s", self.instrument.spin_sigma);
         file.number("acceleration_range_m_s2", self.instrument.acceleration_range);
         file.number("speed_sigma_rel", self.instrument.speed_sigma_rel);
+        file.number("angle_sigma_deg", self.instrument.angle_sigma_deg);
         file.number("level_sigma_m", self.instrument.level_sigma);
         file.number("time_sigma_s", self.instrument.time_sigma);
         file.number("zero_sigma_m", self.instrument.zero_sigma);
         file.number("surface_sigma_m", self.instrument.surface_sigma);
         file.number("speed_bias_sigma_rel", self.instrument.speed_bias_sigma_rel);
+        file.number("angle_bias_sigma_deg", self.instrument.angle_bias_sigma_deg);
         file.number("scale_sigma_rel", self.instrument.scale_sigma_rel);
         file.number("mass_sigma_rel", self.instrument.mass_sigma_rel);
         file.number("tilt_sigma_deg", self.instrument.tilt_sigma_deg);

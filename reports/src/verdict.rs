@@ -60,7 +60,15 @@ pub(crate) fn error_in_words(error: &Value, value: &str, se: &str) -> (String, S
         "kg/m^3" => (1.0, " kg/m³"),
         _ => (1e2, " %"),
     };
-    let number = |key: &str| error[key].as_f64().map(|value| factor * value);
+    // A coefficient of a bed or a session is the exponential of this number times that of the others.
+    let is_logarithm = ["bed", "session"].iter().any(|id| error["id"] == *id);
+    let of_mean = error[value].as_f64().filter(|_| is_logarithm).map_or(0.0, |value| value);
+    let in_unit = |key: &str, number: f64| match (is_logarithm, key == value) {
+        (false, _) => factor * number,
+        (true, true) => factor * libm::expm1(number),
+        (true, false) => factor * libm::exp(of_mean) * number,
+    };
+    let number = |key: &str| error[key].as_f64().map(|number| in_unit(key, number));
     // A small error takes more digits.
     let digits = match number(se) {
         Some(se) if se > 1e-6 && se < 0.01 => 1 - libm::log10(se).floor() as i32,
@@ -121,6 +129,10 @@ fn greatest_force(id: &str, force: &Value) -> Option<String> {
     let [greatest, of, depth, speed, share] =
         ["greatest", "of", "depth", "speed", "share_of_work"].map(|key| force[key].as_f64());
     let (greatest, share, short) = (greatest?, share?, plots::short);
+    // What is left of a force across the motion is rounding.
+    if greatest.abs() < 1e-9 * of?.abs() {
+        return Some(format!("{id} acts across the motion: it does no work."));
+    }
     let size = match greatest < 0.0 {
         true => {
             format!("weakens the resistance by up to {} N, to {} N", short(-greatest), short(of?))

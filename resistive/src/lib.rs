@@ -121,6 +121,18 @@ pub struct Motion {
     pub time: f64,
 }
 
+impl Motion {
+    /// The sense of the horizontal motion; it changes smoothly within 3° of a vertical path, where a force across the motion
+    /// has no side to act to.
+    #[must_use]
+    pub fn leaning(&self) -> f64 {
+        /// Sine of the angle from the vertical.
+        const UPRIGHT: f64 = 0.05;
+        let share = (self.direction.x / UPRIGHT).clamp(-1.0, 1.0);
+        0.5 * share * (3.0 - share * share)
+    }
+}
+
 /// What the medium does to one part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Load {

@@ -230,6 +230,7 @@ fn opposite(scatter: &Scatter) -> Scatter {
         level: -scatter.level,
         clock: -scatter.clock,
         ahead: -scatter.ahead,
+        start: -scatter.start,
         scale: -scatter.scale,
         mass: -scatter.mass,
         tilt: -scatter.tilt,

@@ -232,7 +232,9 @@ fn most_likely(
     let Some(first) = look(baseline.clone(), false)? else { return Ok(None) };
     let mut begun = vec![first];
     let Between { sd, sigma, .. } = baseline.noise.sessions;
-    for less in [sigma, 0.0].into_iter().filter(|less| *less < sd) {
+    // In steps of one ratio from what the fit takes for scatter to what is known of it beforehand, then none.
+    let steps = [libm::cbrt(sigma * sd * sd), libm::cbrt(sigma * sigma * sd), sigma, 0.0];
+    for less in steps.into_iter().filter(|less| *less < sd) {
         // A noise under which the model cannot be fitted is no candidate.
         let fitted = bench.with_scatter_between_conditions(less, baseline).ok();
         begun.extend(fitted.and_then(|under| look(under, false).ok().flatten()));

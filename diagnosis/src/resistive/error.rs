@@ -56,7 +56,9 @@ pub enum ForwardError {
         shape: &'static str,
     },
     /// A size of a shape is not given.
-    #[error("condition {condition}: a {shape} needs `{key}`, which the set does not give")]
+    #[error(
+        "condition `{condition}`: a {shape} needs `{key}`: state it in this condition of the set"
+    )]
     MissingSize {
         /// Id of the condition.
         condition: String,

@@ -38,6 +38,6 @@ impl ResistanceLaw for FieldForce {
             load.dynamic -= motion.direction * (size * faded);
         }
         let normal = Vec3::new(-motion.direction.z, 0.0, motion.direction.x);
-        load.dynamic += normal * (sideways * motion.sense[0] * faded);
+        load.dynamic += normal * (sideways * motion.leaning() * faded);
     }
 }

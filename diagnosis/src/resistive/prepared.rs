@@ -29,6 +29,9 @@ use crate::observable::{Layout, Observable};
 /// Errors near 1e-9 m, far below any camera and small beside every difference that is taken.
 const TOLERANCE: Tolerance = Tolerance { relative: 1e-8, absolute: 1e-10 };
 
+/// Angles closer than this (rad) are one.
+const ROUND_OFF: f64 = 1e-12;
+
 /// An impact takes some twenty steps and a few changes of mode; a fit that wanders to where it takes a hundred times
 /// as many has left what the model can describe, and must not wait there.
 const EFFORT: Effort = Effort { steps: 4_000, changes: 400 };
@@ -167,7 +170,7 @@ impl Law {
         Inputs {
             numbers: self.coefficients.iter().map(|one| one.at(parameters)).collect(),
             effects: all.map(|(effect, q)| (effect.clone(), q)).collect(),
-            scatter: Scatter { level: 0.0, ahead: 0.0, scale: 0.0, ..scatter.clone() },
+            scatter: Scatter { level: 0.0, ahead: 0.0, start: 0.0, scale: 0.0, ..scatter.clone() },
         }
     }
 
@@ -367,8 +370,9 @@ impl Prepared {
 
     /// What is read of `seen`.
     fn read(&self, seen: &Seen, scatter: &Scatter) -> Result<Vec<f64>, String> {
+        let ahead = scatter.ahead - scatter.start * self.speed * libm::cos(self.angle);
         let read = |&(depth, range): &(f64, f64)| {
-            let (mut depth, mut range) = (depth + scatter.level, range + scatter.ahead);
+            let (mut depth, mut range) = (depth + scatter.level, range + ahead);
             seen.laws.iter().for_each(|law| law.read(&mut depth, &mut range));
             (depth * (1.0 + scatter.scale), range * (1.0 + scatter.scale))
         };
@@ -449,12 +453,16 @@ impl Prepared {
 
     fn impact(&self, laws: Vec<Box<dyn ResistanceLaw>>, scatter: &Scatter) -> Impact {
         let speed = self.speed * (1.0 + scatter.speed);
+        // Without ways forward, an impact that leans from the vertical looks like any other.
+        let angle = match self.layout.along_x || self.layout.final_x {
+            true => self.angle + scatter.steeper,
+            false if self.angle < FRAC_PI_2 => (self.angle + scatter.steeper).min(FRAC_PI_2),
+            false => FRAC_PI_2,
+        };
         // Straight down is exactly down: a cosine of round-off size is no horizontal speed.
-        let (sine, cosine) = if self.angle >= FRAC_PI_2 {
-            (1.0, 0.0)
-        } else {
-            let angle = (self.angle + scatter.steeper).min(FRAC_PI_2);
-            (libm::sin(angle), libm::cos(angle))
+        let (sine, cosine) = match (angle - FRAC_PI_2).abs() < ROUND_OFF {
+            true => (1.0, 0.0),
+            false => (libm::sin(angle), libm::cos(angle)),
         };
         let made = (self.shape.assembly)(&Casting {
             params: &self.sizes,
@@ -526,6 +534,15 @@ fn split(times: &[f64]) -> (Vec<f64>, &[f64]) {
     (times[..n_before].iter().rev().copied().collect(), &times[n_before..])
 }
 
+/// What a set calls the size `key` of a shape.
+fn named_in_sets(key: &'static str) -> &'static str {
+    match key {
+        "apex_angle" => "apex_deg",
+        "link_angle" | "link_angle_1" | "link_angle_2" => "link_angle_deg",
+        other => other,
+    }
+}
+
 /// The sizes of the intruder of `condition`, complete for `shape`.
 fn sizes(shape: &'static ShapeEntry, condition: &Condition) -> Result<ParamTable, ForwardError> {
     let link = condition.link_angle_deg.map(f64::to_radians);
@@ -549,7 +566,7 @@ fn sizes(shape: &'static ShapeEntry, condition: &Condition) -> Result<ParamTable
                 return Err(ForwardError::MissingSize {
                     condition,
                     shape: shape.name,
-                    key: spec.key,
+                    key: named_in_sets(spec.key),
                 });
             }
         };

@@ -254,7 +254,7 @@ fn tilt_of(sights: &[Sight], begun: &[Begun], gravity: f64) -> Option<Reading> {
 fn member(run: &Run) -> Member<'_> {
     let labels = if run.fields.is_empty() { &run.labels } else { &run.fields };
     let (name, called) = (&run.name, &run.called);
-    Member { name, called, labels, body: &run.body, speed: run.speed, angle: run.angle }
+    Member { name, called, labels, body: &run.body, speed: run.speed, angle: run.angle.value }
 }
 
 /// What one run shows of itself, its picture turned back by `turn`.
@@ -409,7 +409,7 @@ fn notes(runs: &[Run], level: &Level, manner: &str, settings: &Settings<'_>) -> 
         ),
     });
     notes.push(format!("Conditions: {manner}."));
-    if runs.iter().any(|run| run.angle < 90.0) {
+    if runs.iter().any(|run| run.angle.value < 90.0) {
         notes.push(
             "Some impacts are oblique: their angles are those of the paths at contact.".to_owned(),
         );

@@ -32,8 +32,8 @@ pub(super) struct Run {
     pub(super) sign: f64,
     pub(super) touch: Touch,
     pub(super) speed: Reading,
-    /// (deg)
-    pub(super) angle: f64,
+    /// (deg); exact where the drop is straight.
+    pub(super) angle: Reading,
     /// Error of one reading (m).
     pub(super) noise: f64,
     /// Time between frames (s).
@@ -56,14 +56,20 @@ impl Run {
         let has_x = path.track.forward.is_some();
         let from_vertical = libm::atan2(forward.value.abs(), touch.sinking.value).to_degrees();
         let is_oblique = has_x && from_vertical > UPRIGHT && forward.value.abs() > 4.0 * forward.se;
-        let (way, speed) = match is_oblique {
+        let (way, speed, angle) = match is_oblique {
             true => {
-                let value = libm::hypot(touch.sinking.value, forward.value);
-                let se =
-                    libm::hypot(touch.sinking.value * touch.sinking.se, forward.value * forward.se);
-                (forward.value.signum(), Reading { value, se: se / value })
+                let sinking = touch.sinking;
+                let value = libm::hypot(sinking.value, forward.value);
+                let se = libm::hypot(sinking.value * sinking.se, forward.value * forward.se);
+                let turned =
+                    libm::hypot(forward.value * touch.own_speed_error, sinking.value * forward.se);
+                let angle = Reading {
+                    value: 90.0 - from_vertical,
+                    se: (turned / value.powi(2)).to_degrees(),
+                };
+                (forward.value.signum(), Reading { value, se: se / value }, angle)
             }
-            false => (0.0, touch.sinking),
+            false => (0.0, touch.sinking, Reading { value: 90.0, se: 0.0 }),
         };
         let before: Vec<&Frame> =
             frames[kept.clone()].iter().filter(|frame| frame.t <= touch.time.value).collect();
@@ -102,7 +108,7 @@ impl Run {
             sign: path.sign,
             touch,
             speed,
-            angle: if is_oblique { 90.0 - from_vertical } else { 90.0 },
+            angle,
             noise,
             step: seen.departure.contact.step,
             frames: frames[kept].iter().map(counted).collect(),

@@ -85,6 +85,13 @@ fn measurement(known: &Known<'_>, notes: &[String]) -> Result<String, Fault> {
             significant(scatter, 2)
         ));
     }
+    if let Some(scatter) = angle_scatter(&conditions) {
+        line(format!(
+            "angle_sigma_deg = {:<10} # of one run, by its fit or by the scatter within conditions",
+            significant(scatter, 2)
+        ));
+        line("angle_bias_sigma_deg = 0.0    # they are read from the paths".to_owned());
+    }
     let (surface, by) = match level {
         Level::Stated(error) => (*error, "as it is stated"),
         Level::Common(level) => (level.se, "the one level of all runs, by their contacts"),
@@ -129,7 +136,7 @@ fn measurement(known: &Known<'_>, notes: &[String]) -> Result<String, Fault> {
                 if own.len() == 1 { "run" } else { "runs" }
             ),
         };
-        let angle = own.iter().map(|run| run.angle).sum::<f64>() / own.len() as f64;
+        let angle = own.iter().map(|run| run.angle.value).sum::<f64>() / own.len() as f64;
         line(format!("\n[[condition]]\nid = {}", quoted(id)));
         line(format!("speed = {}  # {from}", significant(speed.value, 5)));
         line(format!("angle_deg = {}", significant(angle, 4)));
@@ -207,7 +214,7 @@ fn label(run: &Run, key: &str) -> Option<i64> {
 }
 
 fn trajectories(known: &Known<'_>) -> String {
-    let is_oblique = known.runs.iter().any(|run| run.angle < 90.0);
+    let is_oblique = known.runs.iter().any(|run| run.angle.value < 90.0);
     let columns = if is_oblique { 4 } else { 3 };
     let names = ["run", "t", "z", "x"].map(str::to_owned)[..columns].to_vec();
     let rows = known.runs.iter().flat_map(|run| {
@@ -251,26 +258,43 @@ fn id(options: &Options, out: &Path) -> String {
     }
 }
 
-/// Error of the speed of one run, relative: the scatter within conditions where they repeat, and at least that of
-/// the fits.
+/// Scatter of the speeds of runs within `conditions`, relative, or the errors of their fits where those are larger.
 fn speed_scatter(conditions: &[(&str, Vec<&Run>)]) -> Option<f64> {
-    let (mut sum, mut freedom, mut errors) = (0.0, 0.0, Vec::new());
-    for (_, own) in conditions {
-        let n = own.len() as f64;
-        let mean = own.iter().map(|run| run.speed.value).sum::<f64>() / n;
-        sum += own.iter().map(|run| (run.speed.value / mean - 1.0).powi(2)).sum::<f64>();
-        freedom += n - 1.0;
-        let error = |run: &&Run| {
-            let share = run.touch.own_speed_error / run.touch.sinking.se;
-            share * run.speed.se / run.speed.value
-        };
-        errors.extend(own.iter().map(error));
-    }
-    let fit = median(errors).unwrap_or(0.0);
-    let scatter = if freedom >= 3.0 { f64::sqrt(sum / freedom) } else { 0.0 };
-    let error = scatter.max(fit);
+    let error = |run: &Run| {
+        let share = run.touch.own_speed_error / run.touch.sinking.se;
+        share * run.speed.se / run.speed.value
+    };
+    let errors = conditions.iter().flat_map(|(_, own)| own).map(|run| error(run));
+    let from_mean = |value: f64, mean: f64| value / mean - 1.0;
+    let scatter = scatter_within(conditions, |run| run.speed.value, from_mean);
+    let error = scatter.max(median(errors).unwrap_or(0.0));
     // Speeds from one stated height differ only by rounding.
     (error > ROUNDING).then_some(error)
+}
+
+/// The same of the angles (deg) of oblique impacts; `None` if all are straight.
+fn angle_scatter(conditions: &[(&str, Vec<&Run>)]) -> Option<f64> {
+    let is_oblique = |own: &[&Run]| own.iter().any(|run| run.angle.se > 0.0);
+    let oblique: Vec<_> = conditions.iter().filter(|(_, own)| is_oblique(own)).cloned().collect();
+    let errors = oblique.iter().flat_map(|(_, own)| own).map(|run| run.angle.se);
+    let fit = median(errors)?;
+    Some(fit.max(scatter_within(&oblique, |run| run.angle.value, |value, mean| value - mean)))
+}
+
+/// Standard deviation of a number within `conditions`, by its difference from their means; 0 where too few are repeated.
+fn scatter_within(
+    conditions: &[(&str, Vec<&Run>)],
+    number: impl Fn(&Run) -> f64,
+    from_mean: impl Fn(f64, f64) -> f64,
+) -> f64 {
+    let (mut sum, mut freedom) = (0.0, 0.0);
+    for (_, own) in conditions {
+        let n = own.len() as f64;
+        let mean = own.iter().map(|run| number(run)).sum::<f64>() / n;
+        sum += own.iter().map(|run| from_mean(number(run), mean).powi(2)).sum::<f64>();
+        freedom += n - 1.0;
+    }
+    if freedom >= 3.0 { f64::sqrt(sum / freedom) } else { 0.0 }
 }
 
 /// A number with so many significant digits, as TOML has it.

@@ -7,7 +7,7 @@ use engine::params::Range;
 use super::facts::{Facts, Kind, Needs};
 use super::registry::{ResistanceEntry, Role, amplitude};
 
-/// F = q ρ A v² n̂, n̂ = s (−v̂_z, v̂_x) of (x, z), s the sense of v_x   (N)
+/// F = q ρ A v² n̂, n̂ = s (−v̂_z, v̂_x) of (x, z), s the sense of v_x, 0 on a vertical path   (N)
 ///
 /// normal to the motion in its plane, out of the bed where the body sinks; none on a vertical fall. It does
 /// no work.
@@ -45,7 +45,7 @@ pub(super) const ENTRY: ResistanceEntry = ResistanceEntry {
 impl ResistanceLaw for Lift {
     fn act(&self, at: &Immersion, motion: &Motion, bed: &Surroundings, load: &mut Load) {
         let Motion { velocity, speed, .. } = *motion;
-        let pressure = self.q * bed.bulk_density * at.loaded_area * speed * motion.sense[0];
+        let pressure = self.q * bed.bulk_density * at.loaded_area * speed * motion.leaning();
         load.dynamic += Vec3::new(-velocity.z, 0.0, velocity.x) * pressure;
     }
 }

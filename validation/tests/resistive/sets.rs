@@ -38,6 +38,8 @@ pub(crate) const INSTRUMENT: Instrument = Instrument {
     speed_bias_sigma_rel: Some(2e-3),
     scale_sigma_rel: Some(2e-3),
     mass_sigma_rel: Some(1e-3),
+    angle_sigma_deg: None,
+    angle_bias_sigma_deg: None,
     tilt_sigma_deg: None,
     session_sigma_rel: None,
 };

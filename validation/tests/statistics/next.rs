@@ -154,18 +154,38 @@ fn new_runs_come_as_what_is_there_expects_and_it_stays_the_likeliest() {
         let Condition { speed, angle_deg: angle, mass, .. } = one.condition;
         Setting { speed, angle, mass, ..like }
     }));
-    let sequel = expected_of_the_rest(&laboratory.measure(1));
-    let truth = sequel.hypotheses.iter().find(|one| one.id == effect.id()).expect("it is open");
-    let most = sequel.hypotheses.iter().map(|one| one.after).fold(0.0, f64::max);
-    assert!((truth.after - most).abs() == 0.0, "{sequel:?}");
-    assert!(truth.chi2_per_number < 2.0, "{sequel:?}");
-    assert_eq!(sequel.came.len(), best.len());
-    assert!(!sequel.is_unexpected, "{sequel:?}");
-    for came in &sequel.came {
-        let of_truth = came.expected.iter().find(|one| one.id == effect.id()).expect("it is there");
-        let off = (came.measured - of_truth.value) / of_truth.se;
-        assert!(off.abs() < 3.0, "{came:?}");
+    let n = set.conditions.len();
+    let sequels: Vec<Sequel> = (1..=5)
+        .map(|seed| {
+            let mut all = laboratory.measure(1);
+            all.runs.retain(|run| run.condition < n);
+            all.runs
+                .extend(laboratory.measure(seed).runs.into_iter().filter(|run| run.condition >= n));
+            expected_of_the_rest(&all)
+        })
+        .collect();
+    let mut offs = Vec::new();
+    for sequel in &sequels {
+        let truth = sequel.hypotheses.iter().find(|one| one.id == effect.id()).expect("it is open");
+        assert!(truth.chi2_per_number < 2.0, "{sequel:?}");
+        assert_eq!(sequel.came.len(), best.len());
+        offs.extend(sequel.came.iter().map(|came| {
+            let of_truth =
+                came.expected.iter().find(|one| one.id == effect.id()).expect("it is there");
+            (came.measured - of_truth.value) / of_truth.se
+        }));
     }
+    // One in a hundred is unexpected by chance, and one in five may be outweighed by a twin.
+    let most = |sequel: &Sequel| sequel.hypotheses.iter().map(|one| one.after).fold(0.0, f64::max);
+    let leads = |sequel: &&Sequel| {
+        let truth = sequel.hypotheses.iter().find(|one| one.id == effect.id());
+        truth.is_some_and(|truth| truth.after >= most(sequel))
+    };
+    assert!(sequels.iter().filter(leads).count() >= 4, "{sequels:?}");
+    assert!(sequels.iter().filter(|sequel| sequel.is_unexpected).count() <= 1, "{sequels:?}");
+    let mean_square = offs.iter().map(|off| off * off).sum::<f64>() / offs.len() as f64;
+    // The 99.9 % point of χ² over its degrees of freedom, for five.
+    assert!(mean_square < 4.1, "{offs:?}");
 }
 
 #[test]
