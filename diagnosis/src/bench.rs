@@ -22,6 +22,12 @@ const ROUNDS: usize = 3;
 /// Fewest conditions from which their scatter is learned: that of fewer is hardly known, and hides any effect.
 const CONDITIONS: usize = 6;
 
+/// Largest scatter of coefficients between conditions, in standard deviations of what is known beforehand.
+const MOST_BETWEEN: f64 = 4.0;
+
+/// The same of angles: a launcher is set to a degree, and a force across the motion turns paths by several.
+const MOST_OF_ANGLES: f64 = 2.0;
+
 /// How often the scatter between conditions and the fit are taken in turn in each of these rounds,
 const BETWEEN_ROUNDS: usize = 2;
 
@@ -165,10 +171,16 @@ impl Bench<'_> {
         for _ in 0..BETWEEN_ROUNDS {
             let held = [noise.sessions.sd, noise.angles.sd];
             if let Some(sigma) = sigmas[0] {
-                noise.sessions = between(&fit, &weights, &of_coefficients, (held[0], sigma));
+                noise.sessions = between(
+                    &fit,
+                    &weights,
+                    &of_coefficients,
+                    (held[0], sigma, MOST_BETWEEN * sigma),
+                );
             }
             if let Some(sigma) = sigmas[1] {
-                noise.angles = between(&fit, &weights, &of_angles, (held[1], sigma));
+                noise.angles =
+                    between(&fit, &weights, &of_angles, (held[1], sigma, MOST_OF_ANGLES * sigma));
             }
             let is_settled = |(sd, (held, sigma)): (f64, (f64, Option<f64>))| {
                 sigma.is_none_or(|sigma| (sd - held).abs() <= SETTLED * held.max(SETTLED * sigma))

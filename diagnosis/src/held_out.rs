@@ -436,7 +436,7 @@ impl Predicted {
             let residual = data.residual(&fitted.fit.point)?.rows(0, rows).into_owned();
             let jacobian = data.jacobian(&fitted.fit)?.rows(0, rows).into_owned();
             let log_density = density(&residual, &(&jacobian * &parameters * jacobian.transpose()));
-            Ok(Self { error: weights[0].colour(&residual), log_density })
+            Ok(Self { error: weights[0].colour_without_angle(&residual), log_density })
         };
         let attempt = |&condition: &usize| match one(condition) {
             Ok(predicted) => Ok(Ok(predicted)),
@@ -479,7 +479,7 @@ impl Predicted {
                 false => stepped,
             };
             let log_density = density(&residual, &(&slope * others.solve(&slope.transpose())));
-            predicted.push(Ok(Self { error: weight.colour(&residual), log_density }));
+            predicted.push(Ok(Self { error: weight.colour_without_angle(&residual), log_density }));
         }
         Ok(predicted)
     }

@@ -253,12 +253,32 @@ impl Judge<'_> {
             );
             return self.refuse(Grounds { hint, ..grounds });
         }
+        if let Some(hint) = self.needs_an_implausible_apparatus(&self.leader) {
+            return self.refuse(Grounds { hint, ..grounds });
+        }
         let held_out = Some(held_out);
         if let Some(hint) = held_out.as_ref().and_then(|held_out| self.too_small(held_out)) {
             let grounds = Grounds { hint, held_out, ..grounds };
             return self.diagnosis(Verdict::BelowNoise, &self.baseline, grounds);
         }
         self.diagnosis(self.of_the_best(), &self.leader, Grounds { held_out, ..grounds })
+    }
+
+    /// That the effects of `fitted` explain the data only with an error of the apparatus that nobody's has, in a sentence.
+    fn needs_an_implausible_apparatus(&self, fitted: &Fitted) -> Option<String> {
+        if !self.bench.forward.is_judged_by_held_out() {
+            return None;
+        }
+        let all = ApparatusError::all(self.bench.forward, fitted);
+        let error = all.iter().find(|error| error.is_implausible())?;
+        let times = error.value.abs() / error.prior_sigma?;
+        let effects = fitted.fit.point.effects.iter().map(|(effect, _)| self.name(*effect));
+        Some(format!(
+            "{} explains the data only with a {} that is {times:.0} times as far off as it is known: state how well it is \
+             known, or look at the apparatus",
+            effects.collect::<Vec<_>>().join(" and "),
+            error.id
+        ))
     }
 
     /// The two effects that explain the data, if there are two; where one does (`is_explained`), two have to be far more
@@ -274,6 +294,7 @@ impl Judge<'_> {
         let held_out = HeldOut::of(self.bench, &self.weighed, &pair.fitted)?;
         // Two effects fit what one condition shows more easily than one does.
         let stands = adequate(p_lof)
+            && self.needs_an_implausible_apparatus(&pair.fitted).is_none()
             && !held_out.refutes()
             && !held_out.is_shown_by_few()
             && self.too_small(&held_out).is_none()

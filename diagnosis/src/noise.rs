@@ -245,16 +245,19 @@ impl Noise {
     /// angle: its covariance is the product with the transposed. `None` where nothing scatters between conditions.
     #[must_use]
     pub fn between_conditions(&self, sensitivity: &Sensitivity) -> Option<DMatrix<f64>> {
-        let parts = [
-            (self.sessions.sd, sensitivity.by_coefficients()),
-            (self.angles.sd, sensitivity.by_angle()),
-        ];
-        let columns: Vec<DVector<f64>> = parts
-            .iter()
-            .filter(|(sd, _)| *sd > 0.0)
-            .flat_map(|(sd, slope)| slope.column_iter().map(move |column| *sd * column))
-            .collect();
+        let slope = sensitivity.by_coefficients();
+        let of_coefficients = slope.column_iter().filter(|_| self.sessions.sd > 0.0);
+        let mut columns: Vec<_> = of_coefficients.map(|column| self.sessions.sd * column).collect();
+        columns.extend(self.angle_of_condition(sensitivity));
         (!columns.is_empty()).then(|| DMatrix::from_columns(&columns))
+    }
+
+    /// The column of the angle among these.
+    #[must_use]
+    pub fn angle_of_condition(&self, sensitivity: &Sensitivity) -> Option<DVector<f64>> {
+        let slope = sensitivity.by_angle();
+        let column = slope.column_iter().next()?;
+        (self.angles.sd > 0.0).then(|| self.angles.sd * column)
     }
 }
 

@@ -13,9 +13,6 @@ use crate::fit::Fit;
 use crate::noise::log_determinant;
 use crate::weights::Weight;
 
-/// Largest scatter, in standard deviations of what is known beforehand.
-const MOST: f64 = 4.0;
-
 /// Relative and absolute tolerance of the search, the latter in standard deviations of what is known beforehand.
 const TOLERANCE: (f64, f64) = (1e-3, 1e-3);
 
@@ -43,13 +40,13 @@ struct Likelihood {
 }
 
 /// The most likely scatter in the residuals of `fit` under `weights`, which hold a scatter of `held`, where it is
-/// `sigma` or so beforehand. `slopes` are derivatives of the means by the logarithm of each coefficient, one for each
+/// `sigma` or so beforehand and `most` at most. `slopes` are derivatives of the means by the logarithm of each coefficient, one for each
 /// weight.
 pub(crate) fn between(
     fit: &Fit,
     weights: &[Weight],
     slopes: &[DMatrix<f64>],
-    (held, sigma): (f64, f64),
+    (held, sigma, most): (f64, f64, f64),
 ) -> Between {
     let Some(likelihood) = Likelihood::of(fit, weights, slopes, (held, sigma)) else {
         return Between::default();
@@ -57,7 +54,7 @@ pub(crate) fn between(
     let nothing = Between { sigma, ..Between::default() };
     let Some(none) = likelihood.at(0.0) else { return nothing };
     let (relative, absolute) = TOLERANCE;
-    let solver = BrentOpt::new(0.0, MOST * sigma).set_tolerance(relative, absolute * sigma);
+    let solver = BrentOpt::new(0.0, most).set_tolerance(relative, absolute * sigma);
     let run = Executor::new(likelihood, solver);
     let found = run.configure(|state| state.max_iters(EVALUATIONS)).run().ok();
     let best = found.and_then(|found| {

@@ -280,6 +280,9 @@ const CLEAR_OF_ZERO: f64 = 4.0;
 /// and at least so many standard deviations of what is known beforehand.
 const UNEXPECTED: f64 = 2.0;
 
+/// So many standard deviations of what is known beforehand are no error of an apparatus.
+const IMPLAUSIBLE: f64 = 5.0;
+
 /// The same of a preparation: what is known of a bed beforehand is that beds differ.
 const UNEXPECTED_BED: f64 = 1.5;
 
@@ -294,6 +297,17 @@ impl ApparatusError {
     /// All of the preparation in `fit`.
     pub(crate) fn of_preparation(forward: &dyn Forward, fit: &Fit) -> Vec<Self> {
         Self::of(forward, fit, ParameterKind::Preparation)
+    }
+
+    /// Whether nobody's apparatus is so far off: what is known of a scale, a speed and a direction beforehand leaves
+    /// this out. Zeros, sessions and beds are as they happen to be.
+    pub(crate) fn is_implausible(&self) -> bool {
+        let is_scale =
+            ["speed-scale", "camera-scale", "launch-angle", "tilt"].contains(&self.id.as_str());
+        let beyond = |limit: f64, sigma: Option<f64>| {
+            sigma.is_some_and(|sigma| sigma > 0.0 && self.value.abs() >= limit * sigma)
+        };
+        is_scale && beyond(IMPLAUSIBLE, self.prior_sigma) && beyond(CLEAR_OF_ZERO, self.se)
     }
 
     fn of(forward: &dyn Forward, fit: &Fit, kind: ParameterKind) -> Vec<Self> {

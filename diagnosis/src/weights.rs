@@ -17,6 +17,8 @@ pub struct Weight {
     pub shift: DVector<f64>,
     /// What conditions scatter by beyond their runs, a column for each coefficient; the factor holds it.
     between: Option<DMatrix<f64>>,
+    /// Likewise of its angle.
+    angle: Option<DVector<f64>>,
 }
 
 /// The covariance `own` of the predictions of `observed`, plus the variance of a stopping time with the `error` (s).
@@ -55,7 +57,8 @@ impl Weight {
         }
         let factor = Cholesky::new(covariance)?;
         let shift = sensitivity.shift_of_mean(&noise.spread);
-        Some(Self { factor, shift, between })
+        let angle = noise.angle_of_condition(sensitivity);
+        Some(Self { factor, shift, between, angle })
     }
 
     /// What the mean scatters by together with all its runs, as [`Noise::between_conditions`] has it.
@@ -85,6 +88,16 @@ impl Weight {
     #[must_use]
     pub fn colour(&self, white: &DVector<f64>) -> DVector<f64> {
         self.factor.l() * white
+    }
+
+    /// The same less what the condition's own angle is off by, as likely as `white` and the scatter of angles make it: the
+    /// conditional mean of normal errors. No model predicts how well a launcher was set.
+    #[must_use]
+    pub fn colour_without_angle(&self, white: &DVector<f64>) -> DVector<f64> {
+        match &self.angle {
+            Some(angle) => self.colour(white) - angle * self.whiten(angle).dot(white),
+            None => self.colour(white),
+        }
     }
 
     /// Standard error of each number of the mean.

@@ -50,38 +50,54 @@ pub(super) fn check(set: &MeasurementSet, (places, columns): Written<'_>, findin
     check_angles(set, places, findings);
 }
 
-/// Refuses angles that the trajectories do not have, or have to the vertical.
+/// Refuses angles that the trajectories have to the vertical.
 fn check_angles(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut Findings) {
-    let all: Vec<Angle> = (0..set.conditions.len()).filter_map(|at| Angle::of(set, at)).collect();
-    let off: Vec<&Angle> = all.iter().filter(|angle| angle.is_off(angle.stated)).collect();
-    let Some(first) = off.first() else { return };
-    let other = |angle: &&&Angle| !angle.is_off(90.0 - angle.stated);
-    let is_other = off.iter().filter(other).count() == off.len() && 2 * off.len() > all.len();
-    let place = places[first.condition].angle;
-    let id = |angle: &Angle| shorten(&set.conditions[angle.condition].id);
-    findings.report(match is_other {
-        true => Diagnostic::error(format!(
-            "the runs of {} of {} conditions start at the stated angle to the vertical",
-            off.len(),
-            all.len()
-        ))
-        .at(place, "is this the angle to the vertical?")
-        .help("angle_deg is counted from the horizontal: 90 is straight down"),
-        false => {
-            let listed = off.iter().take(LISTED).map(|angle| {
-                let Angle { stated, measured, error, .. } = angle;
-                format!("{measured:.1} \u{b1} {error:.1} deg in `{}`, not {stated}", id(angle))
-            });
-            let more = off.len().saturating_sub(LISTED);
-            let more = if more > 0 { format!(", and so in {more} more") } else { String::new() };
-            Diagnostic::error(format!(
-                "the paths start below the horizontal at {}{more}",
-                listed.collect::<Vec<_>>().join("; ")
-            ))
-            .at(place, "the frames show another angle")
-            .help("correct `angle_deg`, or the condition that runs.csv says these runs are of")
+    // Near 45 deg the two conventions cannot be told apart, and 90 deg is vertical in both when
+    // only the others were converted.
+    let told = |condition: &Condition| {
+        (condition.angle_deg - 45.0).abs() > 10.0 && condition.angle_deg < 89.0
+    };
+    let measured = |run: &Run| {
+        let start = Start::of(run)?;
+        Some(libm::atan2(start.dz, start.dx).to_degrees())
+    };
+    let swapped = against(set, |run, condition| {
+        let angle = measured(run).filter(|_| told(condition))?;
+        let (right, other) = (condition.angle_deg, 90.0 - condition.angle_deg);
+        match ((angle - right).abs() < 15.0, (angle - other).abs() < 10.0) {
+            (true, _) => Some(1.0),
+            (false, true) => Some(-1.0),
+            (false, false) => None,
         }
     });
+    if let Some(Against { condition, contrary, told }) = swapped {
+        findings.report(
+            Diagnostic::error(format!(
+                "{contrary} of {told} runs start at the stated angle to the vertical"
+            ))
+            .at(places[condition].angle, "is this the angle to the vertical?")
+            .help("angle_deg is counted from the horizontal: 90 is straight down"),
+        );
+        return;
+    }
+    let all = (0..set.conditions.len()).filter_map(|at| Angle::of(set, at));
+    let off: Vec<Angle> = all.filter(Angle::is_off).collect();
+    let Some(first) = off.first() else { return };
+    let listed = off.iter().take(LISTED).map(|angle| {
+        let Angle { condition, stated, measured, error } = angle;
+        let id = shorten(&set.conditions[*condition].id);
+        format!("at {measured:.1} \u{b1} {error:.1} deg in `{id}`, where {stated} is stated")
+    });
+    let more = off.len().saturating_sub(LISTED);
+    let more = if more > 0 { format!("; and so in {more} more") } else { String::new() };
+    findings.report(
+        Diagnostic::error(format!(
+            "the paths before contact go down {}{more}",
+            listed.collect::<Vec<_>>().join("; ")
+        ))
+        .at(places[first.condition].angle, "the frames show another angle")
+        .help("correct `angle_deg`, or the condition that the table of runs gives these runs"),
+    );
 }
 
 /// Most conditions whose angles a message lists.
@@ -91,9 +107,12 @@ const LISTED: usize = 4;
 const APART_DEG: f64 = 6.0;
 
 /// and by so many standard errors.
-const CLEAR: f64 = 4.0;
+const CLEAR: f64 = 5.0;
 
-/// The angle at which the runs of a condition start, below the horizontal (deg).
+/// Frames before contact that show an angle.
+const BEFORE: usize = 4;
+
+/// The angle at which the runs of a condition come to the surface, from the horizontal (deg).
 struct Angle {
     condition: usize,
     stated: f64,
@@ -102,27 +121,28 @@ struct Angle {
 }
 
 impl Angle {
-    /// `None` of vertical impacts, which may have an angle to the vertical, and where no run says anything.
+    /// By the last frames before contact, as the bed turns a path; `None` of vertical impacts, and where less than two runs
+    /// say anything.
     fn of(set: &MeasurementSet, condition: usize) -> Option<Self> {
         let stated = set.conditions[condition].angle_deg;
         let own = set.runs.iter().filter(|run| run.condition == condition);
-        let read: Vec<(f64, f64)> = own
-            .filter_map(|run| {
-                let start = Start::of(run)?;
-                let way = libm::hypot(start.dx, start.dz);
-                let error = std::f64::consts::SQRT_2 * zeros::position(set, run) / way;
-                (way > 0.0).then(|| (libm::atan2(start.dz, start.dx), error))
-            })
-            .collect();
-        let n = read.len() as f64;
-        let measured = median(read.iter().map(|(angle, _)| angle.to_degrees()))?;
-        let error = (read.iter().map(|(_, error)| error * error).sum::<f64>()).sqrt() / n;
-        let error = error.to_degrees();
-        (stated < 89.0).then_some(Self { condition, stated, measured, error })
+        let read = own.filter_map(|run| {
+            let n = run.frames.iter().filter(|frame| frame.t < 0.0).count();
+            let (first, last) = (run.frames.get(n.checked_sub(BEFORE)?)?, run.frames.get(n - 1)?);
+            let [dx, dz] = [last.x - first.x, last.z - first.z];
+            let way = libm::hypot(dx, dz);
+            let error = std::f64::consts::SQRT_2 * zeros::position(set, run) / way;
+            (way > 0.0).then(|| (libm::atan2(dz, dx).to_degrees(), error.to_degrees()))
+        });
+        let read: Vec<(f64, f64)> = read.collect();
+        let squares: f64 = read.iter().map(|(_, error)| error * error).sum();
+        let error = squares.sqrt() / read.len() as f64;
+        let measured = median(read.iter().map(|(angle, _)| *angle))?;
+        (stated < 89.0 && read.len() > 1).then_some(Self { condition, stated, measured, error })
     }
 
-    fn is_off(&self, angle: f64) -> bool {
-        (self.measured - angle).abs() > APART_DEG.max(CLEAR * self.error)
+    fn is_off(&self) -> bool {
+        (self.measured - self.stated).abs() > APART_DEG.max(CLEAR * self.error)
     }
 }
 

@@ -12,7 +12,7 @@ const HEAD: &str = r#"
 schema = 1
 condition = [
     { id = "c01", role = "fit", speed = 1, angle_deg = 90, shape = "sphere", diameter = 0.02, mass = 0.05 },
-    { id = "c02", role = "holdout", speed = 2, angle_deg = 45, shape = "cone", diameter = 0.02, mass = 0.05, height = 0.03, apex_deg = 60, spin = -3, packing = 0.6, bed_depth = 0.1 },
+    { id = "c02", role = "holdout", speed = 2, angle_deg = 45, shape = "cone", diameter = 0.02, mass = 0.05, height = 0.0173, apex_deg = 60, spin = -3, packing = 0.6, bed_depth = 0.1 },
     { id = "c03", role = "fit", speed = 2, angle_deg = 90, shape = "link", diameter = 0.02, mass = 0.05, length = 0.2, link_angle_deg = -30 },
 ]
 [measurement]

@@ -81,4 +81,18 @@ mod tests {
         Lift { q: 0.2 }.act(&SPHERE.at(0.02), &sinking(2.0), &surroundings(), &mut load);
         assert!(load.dynamic.norm() < 1e-15);
     }
+
+    #[test]
+    fn a_path_that_hardly_leans_is_hardly_lifted() {
+        let lift = |lean: f64| {
+            let mut load = Load::default();
+            let law = Lift { q: 0.2 };
+            law.act(&SPHERE.at(0.02), &oblique(lean, -1.0), &surroundings(), &mut load);
+            load.dynamic.x
+        };
+        // From one side to the other without a jump; whole from 3° on.
+        assert!((lift(1e-4) + lift(-1e-4)).abs() < 1e-12 && lift(1e-4) > 0.0);
+        assert!(lift(1e-4) < 0.004 * lift(0.06), "{} {}", lift(1e-4), lift(0.06));
+        assert!((lift(0.06) / lift(0.12) - 1.0).abs() < 0.01);
+    }
 }

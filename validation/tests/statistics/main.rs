@@ -1,5 +1,6 @@
 //! What the statistics of the workbench promise, on worlds whose truth is known.
 
+mod angles;
 mod comparison;
 mod diagnosis;
 mod laboratory;
