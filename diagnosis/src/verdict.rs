@@ -251,10 +251,11 @@ pub struct Amplitude {
     pub force: Option<AddedForce>,
 }
 
-/// An error that runs share: of the clock, the zero of depth, the speed, the scale, a mass, gravity or a session.
+/// An error that runs share: of the clock, a zero, the speed, its angle, the scale, a mass, gravity, a session or a bed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ApparatusError {
-    /// Which: `time-zero`, `depth-zero`, `speed-scale`, `camera-scale`, `tilt`, `mass` or `session`.
+    /// Which: `time-zero`, `depth-zero`, `surface`, `speed-scale`, `launch-angle`, `camera-scale`, `range-zero`, `tilt`, `mass`,
+    /// `session` or `bed`.
     pub id: String,
     /// Of which body, or of which session and coefficient.
     #[serde(skip_serializing_if = "Option::is_none")]
