@@ -224,7 +224,7 @@ fn check_density(set: &MeasurementSet, findings: &mut Findings) {
             Diagnostic::warning(format!(
                 "a bulk density of {density} kg/m\u{b3} is that of no bed of grains"
             ))
-            .help("is it in g/cm\u{b3}? then write bulk_density = \"1.5 g/cc\", with the unit"),
+            .help(format!("is it in g/cm\u{b3}? then write bulk_density = \"{density} g/cc\"")),
         );
     }
 }

@@ -201,3 +201,19 @@ fn reason_in_words(reason: &str) -> &str {
         other => other,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn coefficients_of_a_bed_are_told_as_a_share_and_not_as_a_logarithm() {
+        let error = |id: &str, value: f64| json!({ "id": id, "of": "B, drag", "unit": "1", "value": value, "se": 0.01 });
+        // ln 2.2 and ln 0.4.
+        assert_eq!(apparatus_error(&error("bed", 0.788_457)), "bed (B, drag) 120.00 ± 2.20 %");
+        assert_eq!(apparatus_error(&error("bed", -0.916_291)), "bed (B, drag) -60.00 ± 0.40 %");
+        assert_eq!(apparatus_error(&error("mass", 0.05)), "mass (B, drag) 5.00 ± 1.00 %");
+    }
+}

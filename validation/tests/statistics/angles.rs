@@ -60,7 +60,7 @@ fn angles_that_are_each_a_little_off_are_no_effect() {
     let found = diagnosis(&set);
     assert!(found.effects.is_empty(), "{:?} {:?}", found.verdict, found.effects);
     assert_ne!(found.verdict, Verdict::NoneOfTheCandidates);
-    // The root mean square of those that are fitted, about their mean; 30 % is two errors of a scatter of ten numbers.
+    // The root mean square of those that are fitted, about their mean; half is two errors of a scatter of ten numbers.
     let fitted = &OFF[..10];
     let mean = fitted.iter().sum::<f64>() / 10.0;
     let expected = (fitted.iter().map(|off| (off - mean).powi(2)).sum::<f64>() / 9.0).sqrt();
