@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use configs::engine::bed::BedReport;
-use configs::engine::grain_bed::RestingBed;
+use engine::bed::BedReport;
+use engine::grain_bed::RestingBed;
 use runner::run::{BedSummary, Control as _};
 use serde_json::json;
 

@@ -1,7 +1,7 @@
 //! Changes of a bed that its diagnosis tries, as `plunge effects` shows them.
 
-use configs::resistive::Kind;
 use diagnosis::beds::{SWITCHES, Switch};
+use resistive::Kind;
 use serde_json::{Value, json};
 
 /// Every one that is not an effect of a registry.

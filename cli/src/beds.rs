@@ -5,13 +5,13 @@ use std::num::NonZero;
 use std::path::PathBuf;
 
 use anyhow::Context as _;
-use configs::engine::units::{self, Dimension};
 use diagnosis::beds::{
     BedDiagnosis, BedError, BedForward, Plan, Stand, Wish, bed_forward, compare_jobs, diagnose_bed,
     unaffordable,
 };
 use diagnosis::bench::Bench;
 use diagnosis::compare::Comparison;
+use engine::units::{self, Dimension};
 use runner::beds::{Impacts, Place};
 use runner::{CampaignError, Elsewhere};
 use serde_json::{Value, json};

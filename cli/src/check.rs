@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use configs::estimate::Estimate;
-use configs::resistive::Space;
 use configs::{Color, GrainModel, Medium, Model, ResistiveModel, TimeStep, stability};
+use resistive::Space;
 use serde_json::{Map, Value, json};
 
 use crate::check_cost::GrainCost;

@@ -1,9 +1,9 @@
 //! What a model of grains takes on this machine, and what to do where that is too much.
 
-use configs::engine::grains::Space;
-use configs::engine::parallel::with_threads;
 use configs::estimate::{Estimate, MEMORY_SHARE, available_memory_bytes};
 use configs::{BedSource, GrainModel, SidesKind};
+use engine::grains::Space;
+use engine::parallel::with_threads;
 use runner::campaign::pace::{Pace, PaceError, is_prepared};
 use serde_json::{Value, json};
 

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use configs::engine::parallel::with_threads;
 use configs::estimate::{Estimate, MEMORY_SHARE, available_memory_bytes};
 use configs::{GrainModel, LoadOptions, Loaded, Model};
+use engine::parallel::with_threads;
 use runner::run::{PreparedBed, prepare};
 use runner::schedulers::{Scheduler, SchedulerError};
 

@@ -2,15 +2,13 @@
 
 use std::path::PathBuf;
 
-use configs::contact_laws::{
-    ActsOn, Candidacy, Candidate, GRAIN_FORCES, GrainForceEntry, LAWS, LawEntry,
-};
-use configs::engine::grains::Space;
-use configs::engine::ledger::{Channel, ChannelKind};
-use configs::engine::params::{Default, ParamSpec, Range};
-use configs::engine::units::format_si;
-use configs::resistive::{OtherForm, RESISTANCE_LAWS, ResistanceEntry, Role, Twin, twins};
 use configs::{describe_range, nearest};
+use contact_laws::{ActsOn, Candidacy, Candidate, GRAIN_FORCES, GrainForceEntry, LAWS, LawEntry};
+use engine::grains::Space;
+use engine::ledger::{Channel, ChannelKind};
+use engine::params::{Default, ParamSpec, Range};
+use engine::units::format_si;
+use resistive::{OtherForm, RESISTANCE_LAWS, ResistanceEntry, Role, Twin, twins};
 use serde_json::{Value, json};
 
 use crate::bed_changes;

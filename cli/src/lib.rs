@@ -45,10 +45,10 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::{CommandFactory, Parser, Subcommand};
-use configs::engine::parallel::with_threads;
+use engine::parallel::with_threads;
 use output::{CommandError, CommandResult};
 
-pub use configs::engine::grains::Grain;
+pub use engine::grains::Grain;
 pub use host::{Host, Progress};
 pub use output::Failure;
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use clap::ValueEnum;
-use configs::engine::units::{Dimension, parse};
+use engine::units::{Dimension, parse};
 use exchange::read::{Keep, ReadError, read_run};
 use exchange::run_files::RunFiles;
 use reports::movie::{Beside, Film, FilmFormat, MovieError, find_ffmpeg, size_for, write_png};

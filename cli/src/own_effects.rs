@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use configs::engine::units::format_si;
-use configs::resistive::Space;
-use configs::resistive::formula::FUNCTIONS;
-use configs::resistive::{Effect, OwnEffect, STATE_VARIABLES};
 use configs::{LoadOptions, Model, ModelSource, describe_range};
+use engine::units::format_si;
+use resistive::Space;
+use resistive::formula::FUNCTIONS;
+use resistive::{Effect, OwnEffect, STATE_VARIABLES};
 use serde_json::{Value, json};
 
 use crate::output::{self, CommandError, CommandResult};

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
-use configs::engine::checkpoint;
-use configs::engine::parallel::with_threads;
 use configs::estimate::{MEMORY_SHARE, available_memory_bytes};
+use engine::checkpoint;
+use engine::parallel::with_threads;
 use runner::beds::{Impacts, Place};
 use runner::campaign::file::Campaign;
 use runner::campaign::pace::Pace;

@@ -5,13 +5,13 @@ use std::io::{self, ErrorKind};
 use std::path::{Component, Path, PathBuf};
 
 use clap::Args;
-use configs::engine::checkpoint;
 use configs::{LoadOptions, Loaded, Model};
 use diagnosis::bench::BenchError;
 use diagnosis::missing_force;
 use diagnosis::observed::Observed;
 use diagnosis::resistive::ResistiveForward;
 use diagnosis::where_it_fails;
+use engine::checkpoint;
 use exchange::staging::{STAGING, Staging};
 use measurements::{ContradictionKind, MeasurementSet, SetError};
 

@@ -1,8 +1,8 @@
 //! What an effect is, as its registry says.
 
-use configs::contact_laws::{self, find_grain_force};
-use configs::resistive::find_resistance;
+use contact_laws::{self, find_grain_force};
 use diagnosis::beds::SWITCHES;
+use resistive::find_resistance;
 
 /// An effect of no registry.
 const OWN: &str = "A formula of your own.";

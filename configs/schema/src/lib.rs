@@ -50,4 +50,3 @@ pub use read::fluid;
 pub use reader::interval as describe_range;
 pub use resolved::quoted as toml_string;
 pub use shipped::{SHIPPED, Shipped, find as find_shipped};
-pub use {contact_laws, engine, intruders, resistive};

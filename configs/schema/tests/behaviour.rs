@@ -3,11 +3,11 @@
 use std::fs;
 use std::path::Path;
 
-use configs::engine::units::Dimension;
 use configs::{
     BedSource, Color, Condition, LoadOptions, Loaded, Model, ModelSource, SHIPPED, StartX,
     find_shipped,
 };
+use engine::units::Dimension;
 use proptest::prelude::*;
 
 fn shipped(name: &str) -> ModelSource {
@@ -242,7 +242,7 @@ fn a_model_argument_is_a_file_or_a_shipped_name() {
 #[test]
 fn every_shipped_length_reads_in_every_unit_of_length() {
     for (text, expected) in [("33.95 cm", 0.3395), ("339.5 mm", 0.3395), ("339500 um", 0.3395)] {
-        let value = configs::engine::units::parse(text, Dimension::LENGTH).expect("a length");
+        let value = engine::units::parse(text, Dimension::LENGTH).expect("a length");
         assert_eq!(value.to_bits(), f64::to_bits(expected));
     }
 }

@@ -46,7 +46,7 @@ fn a_change_is_the_same_to_the_last_bit_as_its_text() {
     let shape = |planar: bool| if planar { "disc" } else { "sphere" };
     for model in beds() {
         let medium = model.grains().expect("a bed").medium;
-        let shape = shape(medium.space == configs::engine::grains::Space::Planar);
+        let shape = shape(medium.space == engine::grains::Space::Planar);
         if model.intruder.recessive_wall || model.intruder.shape.name != shape {
             continue;
         }
@@ -120,8 +120,8 @@ fn grains_that_are_heavier_settle_with_their_mass_and_make_another_bed() {
 
 #[test]
 fn grains_of_every_distribution_are_those_of_their_text() {
-    use configs::engine::bed::SizeDistribution;
     use configs::{GrainKind, Material};
+    use engine::bed::SizeDistribution;
     let model = beds().find(|model| model.run.name == "vertical-2d").expect("it is shipped");
     let kind = |sizes| GrainKind { count: 90, sizes, material: Material::Density(20.0) };
     let equal = GrainKind {

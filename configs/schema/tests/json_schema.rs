@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use configs::engine::units;
 use configs::json_schema::{self, read_model};
 use configs::{LoadOptions, Model, ModelSource, SHIPPED};
+use engine::units;
 use fixtures::{Case, Schema};
 use serde_json::{Value, json};
 

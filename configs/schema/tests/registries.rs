@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use configs::SHIPPED;
-use configs::contact_laws::{GRAIN_FORCES, LAWS};
-use configs::resistive::{RESISTANCE_LAWS, Role};
+use contact_laws::{GRAIN_FORCES, LAWS};
+use resistive::{RESISTANCE_LAWS, Role};
 use toml_edit::{DocumentMut, Item, Table};
 
 /// The folders of registered laws, with the names in them.

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use configs::edit::{AddedEffect, Addition, add_effects};
-use configs::resistive::{RESISTANCE_LAWS, Role};
 use configs::{
     Color, LoadOptions, Model, ModelSource, ParameterError, ResistiveMedium, find_shipped,
 };
+use resistive::{RESISTANCE_LAWS, Role};
 
 fn load(text: &str, sets: &[&str]) -> Result<configs::Loaded, String> {
     let source = ModelSource::Text {

@@ -1,8 +1,8 @@
 //! Candidates that change what every bed of grains has: its contact law, and how it was prepared; one line of
 //! [`CHANGES`] makes one.
 
-use configs::contact_laws::restitution_key;
 use configs::{BedSource, Change, GrainKind, GrainModel, Material};
+use contact_laws::restitution_key;
 use engine::bed::{SizeDistribution, inflation_range};
 use engine::contact::Partner;
 use engine::grains::Space;

@@ -2,8 +2,8 @@
 
 use std::f64::consts::FRAC_PI_6;
 
-use configs::contact_laws::{Candidate, MeanGrain};
 use configs::{BedSource, Change, GrainModel};
+use contact_laws::{Candidate, MeanGrain};
 use measurements::Bed;
 use resistive::Kind;
 

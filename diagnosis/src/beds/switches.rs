@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use configs::contact_laws::{Candidacy, GRAIN_FORCES, LAWS};
+use contact_laws::{Candidacy, GRAIN_FORCES, LAWS};
 use resistive::{RESISTANCE_LAWS, Role};
 
 use super::changes::CHANGES;
@@ -36,7 +36,7 @@ pub(super) fn are_alike_below(one: &str, other: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use configs::contact_laws::ActsOn;
+    use contact_laws::ActsOn;
 
     use super::*;
 

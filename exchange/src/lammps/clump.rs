@@ -9,9 +9,9 @@
 
 use std::f64::consts::TAU;
 
-use configs::engine::grains::Space;
-use configs::engine::math::Vec3;
-use configs::engine::surface::Surface;
+use engine::grains::Space;
+use engine::math::Vec3;
+use engine::surface::Surface;
 
 /// How much nearer a mean grain may come than the body lets it, in radii of that grain.
 const TOLERANCE: f64 = 0.02;
@@ -246,8 +246,8 @@ impl Places {
 mod tests {
     use std::sync::Arc;
 
-    use configs::engine::params::ParamTable;
-    use configs::intruders::find;
+    use engine::params::ParamTable;
+    use intruders::find;
 
     use super::*;
 

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 use std::fmt::Write as _;
 
 use configs::GrainModel;
-use configs::engine::grains::Space;
-use configs::engine::math::Vec3;
-use configs::engine::simulation::Simulation;
+use engine::grains::Space;
+use engine::math::Vec3;
+use engine::simulation::Simulation;
 
 use super::atom_type::GRAIN;
 use super::intruder::{Intruder, body};

@@ -4,9 +4,9 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
-use configs::engine::grains::Space;
-use configs::engine::math::Vec3;
-use configs::engine::record::GrainSample;
+use engine::grains::Space;
+use engine::math::Vec3;
+use engine::record::GrainSample;
 
 use super::atom_type::GRAIN;
 use super::data::from_axes;

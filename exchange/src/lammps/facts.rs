@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use configs::engine::bed::BedReport;
-use configs::engine::grain_bed::RestingBed;
-use configs::engine::grains::Space;
-use configs::engine::math::Vec3;
-use configs::engine::simulation::Simulation;
 use configs::{Condition, GrainModel};
+use engine::bed::BedReport;
+use engine::grain_bed::RestingBed;
+use engine::grains::Space;
+use engine::math::Vec3;
+use engine::simulation::Simulation;
 use runner::run::{BedSummary, ImpactSummary};
 use serde::{Deserialize, Serialize};
 

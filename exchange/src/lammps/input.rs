@@ -1,8 +1,8 @@
 //! The input script.
 
-use configs::engine::grains::Space;
-use configs::engine::simulation::Simulation;
 use configs::{GrainModel, SidesKind};
+use engine::grains::Space;
+use engine::simulation::Simulation;
 
 use super::atom_type::INTRUDER;
 use super::data::intruder_id;

@@ -1,9 +1,9 @@
 //! The intruder among the atoms of LAMMPS: one atom, or a rigid clump of them.
 
 use configs::GrainModel;
-use configs::engine::body::RigidBody;
-use configs::engine::math::Vec3;
-use configs::engine::simulation::Simulation;
+use engine::body::RigidBody;
+use engine::math::Vec3;
+use engine::simulation::Simulation;
 
 use super::atom_type::INTRUDER;
 use super::clump::{Ball, Clump};

@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use configs::LawChoice;
-use configs::contact_laws::{damping_ratio, restitution_key};
-use configs::engine::contact::Partner;
-use configs::engine::params::ParamTable;
+use contact_laws::{damping_ratio, restitution_key};
+use engine::contact::Partner;
+use engine::params::ParamTable;
 
 use super::atom_type::{GRAIN, INTRUDER};
 

@@ -33,8 +33,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use configs::engine::grain_bed::RestingBed;
 use configs::{BuildError, GrainModel};
+use engine::grain_bed::RestingBed;
 use thiserror::Error;
 
 use facts::Facts;

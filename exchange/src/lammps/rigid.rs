@@ -1,8 +1,8 @@
 //! Mass, centre and inertia of a clump, which are those of the body and not those of its balls.
 
-use configs::engine::grains::Space;
-use configs::engine::math::Vec3;
-use configs::engine::simulation::Simulation;
+use engine::grains::Space;
+use engine::math::Vec3;
+use engine::simulation::Simulation;
 
 use super::data::{axes, centre_of_intruder, row};
 use super::intruder::body;

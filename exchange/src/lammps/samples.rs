@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use configs::engine::math::Vec3;
+use engine::math::Vec3;
 use serde::Deserialize;
 
 use super::import::error::ImportError;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use configs::engine::units::{Dimension, dimension_of, parse};
+use engine::units::{Dimension, dimension_of, parse};
 
 use super::called;
 use super::density;

@@ -2,7 +2,7 @@
 
 use std::path::{Path as File, PathBuf};
 
-use configs::engine::units::Dimension;
+use engine::units::Dimension;
 use measurements::{Frame, Reading, Tip};
 
 use super::begun::{Begun, begin, tracks};

@@ -1,6 +1,6 @@
 //! Units of paths: as tables and options say them, or as the fall before contact shows them.
 
-use configs::engine::units::Dimension;
+use engine::units::Dimension;
 use measurements::{Frame, Reading};
 
 use super::fault::Fault;

@@ -3,7 +3,7 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
-use configs::engine::checkpoint::write_whole;
+use engine::checkpoint::write_whole;
 use measurements::Reading;
 
 use super::fault::TrackingError;

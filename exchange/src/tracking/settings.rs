@@ -1,6 +1,6 @@
 //! Options as numbers.
 
-use configs::engine::units::{Dimension, parse};
+use engine::units::{Dimension, parse};
 
 use super::fault::Fault;
 use super::heading::Role;

@@ -1,6 +1,6 @@
 //! What the columns of a table count in.
 
-use configs::engine::units::{Dimension, dimension_of, parse};
+use engine::units::{Dimension, dimension_of, parse};
 
 /// The unit of a column.
 #[derive(Clone, Debug, PartialEq, Eq)]

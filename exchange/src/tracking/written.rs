@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use configs::engine::units::Dimension;
 use configs::toml_string as quoted;
+use engine::units::Dimension;
 use measurements::{Reading, median};
 
 use super::bodies::Body;

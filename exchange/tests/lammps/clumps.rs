@@ -4,8 +4,8 @@
 use std::fs;
 use std::path::Path;
 
-use configs::engine::math::{Quat, Vec3};
 use configs::{LoadOptions, Loaded, Model, ModelSource};
+use engine::math::{Quat, Vec3};
 use exchange::lammps::import;
 use exchange::read::{BodyState, Keep, read_run};
 

@@ -5,8 +5,8 @@ use std::fmt;
 use std::path::Path;
 use std::thread;
 
-use configs::engine::simulation::Simulation;
 use configs::{LoadOptions, Loaded, Model, ModelSource};
+use engine::simulation::Simulation;
 use exchange::lammps::{Deck, import};
 use exchange::read::{Keep, read_run};
 use runner::run::{Control, Progress, prepare};

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use configs::Loaded;
-use configs::engine::simulation::Simulation;
+use engine::simulation::Simulation;
 use exchange::lammps::{Deck, INPUT};
 
 /// Writes the deck of the impact of `loaded` to `folder` and runs it for so many `steps` on so many `ranks`, and says what LAMMPS

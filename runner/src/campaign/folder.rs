@@ -4,7 +4,7 @@ use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use configs::engine::checkpoint::write_whole;
+use engine::checkpoint::write_whole;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use thiserror::Error;

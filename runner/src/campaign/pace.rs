@@ -8,12 +8,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use configs::engine::body::NoIntruder;
-use configs::engine::checkpoint::write_whole;
-use configs::engine::error::StepError;
-use configs::engine::grains::Space;
-use configs::engine::world::World;
 use configs::{BedSource, BuildError, GrainMedium, GrainModel};
+use engine::body::NoIntruder;
+use engine::checkpoint::write_whole;
+use engine::error::StepError;
+use engine::grains::Space;
+use engine::world::World;
 
 use crate::run::{bed_file, bed_key, result_key};
 use serde::{Deserialize, Serialize};

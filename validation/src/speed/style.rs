@@ -2,9 +2,9 @@
 //! style of Hertz's law beside the general one.
 
 use configs::GrainModel;
-use configs::contact_laws::damping_ratio;
-use configs::engine::params::ParamTable;
-use configs::engine::simulation::Simulation;
+use contact_laws::damping_ratio;
+use engine::params::ParamTable;
+use engine::simulation::Simulation;
 
 /// How LAMMPS computes the forces between grains and with the intruder.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,9 +1,9 @@
 //! The diagnosis of a bed, with impacts that take no time.
 
-use configs::engine::bed::random;
 use diagnosis::beds::{Plan, Stand, Variation, Wish, diagnose_bed};
 use diagnosis::missing_force::Reading;
 use diagnosis::observed::Observed;
+use engine::bed::random;
 use measurements::{Condition, Crater, Instrument, Kind, MeasurementSet, Role, Run, Sample};
 use serde_json::json;
 use validation::benchmark::beds::{Case, Hidden, Outcome, Prepared, campaign, measure};

@@ -1,8 +1,8 @@
 //! Impacts without grains: a force law whose numbers follow from the switches of a model and scatter from
 //! bed to bed, so that thousands of impacts take a second.
 
-use configs::engine::bed::random;
 use configs::{BedSource, GrainModel};
+use engine::bed::random;
 use runner::CampaignError;
 use runner::beds::{Impacts, Job, Lie, Outstanding, Record};
 use validation::benchmark::chance::normal;

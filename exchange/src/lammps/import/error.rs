@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use configs::engine::record::RecordError;
+use engine::record::RecordError;
 use thiserror::Error;
 
 use super::super::{DUMP, INTRUDER_TABLE};

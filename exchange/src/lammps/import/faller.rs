@@ -4,12 +4,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use configs::engine::body::Followed;
-use configs::engine::math::{Quat, Vec3, cayley, turned_about_y};
-use configs::engine::params::ParamTable;
-use configs::engine::record::{BodySample, LoggedShape};
-use configs::engine::surface::Surface;
-use configs::intruders::find;
+use engine::body::Followed;
+use engine::math::{Quat, Vec3, cayley, turned_about_y};
+use engine::params::ParamTable;
+use engine::record::{BodySample, LoggedShape};
+use engine::surface::Surface;
+use intruders::find;
 use runner::run::shape_of;
 
 use super::super::facts::{Facts, Intruder};

@@ -2,11 +2,9 @@
 
 use std::path::Path;
 
-use configs::engine::math::Vec3;
-use configs::engine::record::{
-    BodyFrame, EventLevel, LogAttachment, LogSetup, LoggedBody, RunLog, Stamp,
-};
-use configs::engine::stopping::Stopping;
+use engine::math::Vec3;
+use engine::record::{BodyFrame, EventLevel, LogAttachment, LogSetup, LoggedBody, RunLog, Stamp};
+use engine::stopping::Stopping;
 
 use super::super::dump::Dump;
 use super::super::facts::Facts;

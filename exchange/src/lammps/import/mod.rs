@@ -8,8 +8,8 @@ mod summary;
 use std::path::Path;
 use std::{fs, io};
 
-use configs::engine::checkpoint::write_whole;
-use configs::engine::record::{GRAIN_LOG, RUN_LOG};
+use engine::checkpoint::write_whole;
+use engine::record::{GRAIN_LOG, RUN_LOG};
 use runner::run::Summary;
 
 use super::dump::Dump;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use configs::engine::stopping::Stopping;
+use engine::stopping::Stopping;
 use runner::run::{CostSummary, EnergySummary, FinalEnergy, StopSummary, Summary};
 
 use super::super::facts::Facts;

@@ -16,7 +16,7 @@ mod tracker;
 mod trackmate;
 mod wide;
 
-use configs::engine::units::Dimension;
+use engine::units::Dimension;
 use measurements::{Fall, Frame};
 
 use super::fault::Fault;
