@@ -19,7 +19,7 @@ const TO_THE_WALL: f64 = 3.0;
 const WORTH_IT: f64 = 0.9;
 
 /// How much faster cores are here than in LAMMPS, at least (`docs/performance.md`).
-const OVER_LAMMPS: f64 = 3.5;
+const OVER_LAMMPS: f64 = 2.9;
 
 /// What a model of grains takes.
 pub(crate) struct GrainCost {

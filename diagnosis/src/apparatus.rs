@@ -71,6 +71,30 @@ enum Fault {
     },
 }
 
+impl Fault {
+    /// Its name in reports; of a mass and of a group, what it is, before which one is told.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Clock => "time-zero",
+            Self::Zero => "depth-zero",
+            Self::Surface => "surface",
+            Self::Speed => "speed-scale",
+            Self::Angle => "launch-angle",
+            Self::Start => "range-zero",
+            Self::Scale => "camera-scale",
+            Self::Tilt => "tilt",
+            Self::Mass { .. } => "mass",
+            Self::Group { .. } => "group",
+        }
+    }
+}
+
+/// Errors of which what is known beforehand holds whatever happened on the day: of a scale, a speed and directions. Zeros,
+/// sessions and beds are as they happen to be.
+pub(crate) fn is_of_the_instrument(name: &str) -> bool {
+    [Fault::Speed, Fault::Scale, Fault::Angle, Fault::Tilt].iter().any(|one| one.name() == name)
+}
+
 /// The shared errors of one measurement set.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Apparatus {
@@ -136,7 +160,7 @@ impl Apparatus {
         let is_along_time = set.kind.curve().is_some_and(|curve| curve.along == Along::Time);
         let is_timed = fitted().any(|one| one.stop_time || !one.times.is_empty() || is_along_time);
         if let Some(sigma) = clock_sigma(set).filter(|_| is_timed) {
-            all.add(Fault::Clock, "time-zero", "s", sigma);
+            all.add(Fault::Clock, "s", sigma);
             if let Some(frame) = frame(set).filter(|_| is_felt) {
                 all.confine_last(FELT * frame);
             }
@@ -152,25 +176,25 @@ impl Apparatus {
             Some(_) => 0.0,
             None => defaults::ZERO.max(grain).max(level),
         };
-        all.add(Fault::Zero, "depth-zero", "m", or(instrument.zero_sigma, unstated));
-        all.add(Fault::Surface, "surface", "m", or(instrument.surface_sigma, 0.0));
+        all.add(Fault::Zero, "m", or(instrument.zero_sigma, unstated));
+        all.add(Fault::Surface, "m", or(instrument.surface_sigma, 0.0));
         let speed = or(instrument.speed_bias_sigma_rel, defaults::SPEED);
-        all.add(Fault::Speed, "speed-scale", "1", speed);
+        all.add(Fault::Speed, "1", speed);
         let has_ways = fitted().any(|one| one.along_x || one.final_x);
         let is_oblique = |one: &Condition| one.role == Role::Fit && one.angle_deg < UPRIGHT_DEG;
         let is_oblique = set.conditions.iter().any(is_oblique);
         if is_oblique || has_ways {
             let angle = or(instrument.angle_bias_sigma_deg, defaults::ANGLE_DEG).to_radians();
-            all.add(Fault::Angle, "launch-angle", "rad", angle);
+            all.add(Fault::Angle, "rad", angle);
         }
-        all.add(Fault::Scale, "camera-scale", "1", or(instrument.scale_sigma_rel, defaults::SCALE));
+        all.add(Fault::Scale, "1", or(instrument.scale_sigma_rel, defaults::SCALE));
         if let Some(sigma) = clock_sigma(set).filter(|_| has_ways && is_oblique) {
-            all.add(Fault::Start, "range-zero", "s", sigma);
+            all.add(Fault::Start, "s", sigma);
         }
         // Depth alone depends on the tilt to second order only.
         if has_ways {
             let tilt = or(instrument.tilt_sigma_deg, defaults::TILT_DEG).to_radians();
-            all.add(Fault::Tilt, "tilt", "rad", tilt);
+            all.add(Fault::Tilt, "rad", tilt);
         }
         // A drive moves any mass alike.
         if set.kind != Kind::ForceDepth {
@@ -181,12 +205,16 @@ impl Apparatus {
         all
     }
 
-    fn add(&mut self, fault: Fault, name: impl Into<String>, unit: &str, sigma: f64) {
+    fn add(&mut self, fault: Fault, unit: &str, sigma: f64) {
+        self.add_named(fault, fault.name().to_owned(), unit, sigma);
+    }
+
+    fn add_named(&mut self, fault: Fault, name: String, unit: &str, sigma: f64) {
         // A stated zero means that the quantity is exact.
         if sigma > 0.0 && sigma.is_finite() {
             self.faults.push(fault);
             self.parameters.push(Parameter {
-                name: name.into(),
+                name,
                 unit: unit.to_owned(),
                 start: 0.0,
                 min: -RANGE * sigma,
@@ -213,11 +241,12 @@ impl Apparatus {
         for (body, first) in bodies.iter().enumerate() {
             let (shape, diameter, mass) = (&first.shape, 1e3 * first.diameter, 1e3 * first.mass);
             let name = format!(
-                "mass ({shape} of {} mm, {} g)",
+                "{} ({shape} of {} mm, {} g)",
+                Fault::Mass { body }.name(),
                 plots::rounded(diameter, 4),
                 plots::rounded(mass, 4)
             );
-            self.add(Fault::Mass { body }, name, "1", sigma);
+            self.add_named(Fault::Mass { body }, name, "1", sigma);
         }
     }
 
@@ -233,7 +262,7 @@ impl Apparatus {
         self.groups.push(shares);
         for (coefficient, key) in coefficients.iter().enumerate() {
             let fault = Fault::Group { group, coefficient };
-            self.add(fault, format!("{what} ({name}, {key})"), "1", sigma);
+            self.add_named(fault, format!("{what} ({name}, {key})"), "1", sigma);
         }
     }
 
@@ -343,13 +372,12 @@ pub(crate) fn too_many(set: &MeasurementSet) -> Vec<String> {
 /// of zero.
 pub(crate) fn is_looked_for(set: &MeasurementSet, name: &str) -> bool {
     let instrument = &set.instrument;
-    let stated = match name {
-        "camera-scale" => instrument.scale_sigma_rel,
-        "depth-zero" => instrument.zero_sigma,
-        "tilt" => instrument.tilt_sigma_deg,
-        _ => return false,
-    };
-    stated != Some(0.0)
+    let stated = [
+        (Fault::Scale, instrument.scale_sigma_rel),
+        (Fault::Zero, instrument.zero_sigma),
+        (Fault::Tilt, instrument.tilt_sigma_deg),
+    ];
+    stated.iter().any(|(fault, sigma)| fault.name() == name && *sigma != Some(0.0))
 }
 
 /// Standard deviation of the zero of the clock (s); none where no time is read from a clip.

@@ -3,6 +3,7 @@
 use measurements::{Along, Condition, Curve, Frame, Kind, MeasurementSet, Run, Sample, median};
 
 use crate::resampling::{depth_and_range, on_lines, seen_grid};
+use crate::series::{evenly, stated_sigma};
 
 /// Most places that are compared; neighbours tell the same.
 pub(crate) const PLACES: usize = 24;
@@ -86,10 +87,13 @@ impl CommonCurve {
             .filter(is_kept)
             .filter(|&at| grid[at] <= stop)
             .partition(|&at| grid[at] < 0.0);
-        let kept: Vec<usize> =
-            thinned(&before, FLIGHT).into_iter().chain(thinned(&after, PLACES)).collect();
+        let mut kept: Vec<usize> =
+            evenly(before.len(), FLIGHT).into_iter().map(|at| before[at]).collect();
+        kept.extend(evenly(after.len(), PLACES).into_iter().map(|at| after[at]));
+        let sigma =
+            |&at: &usize| stated_sigma(runs.iter().map(|run| stated(&run.samples)), grid[at]);
         Self {
-            sigma: kept.iter().map(|&at| stated_sigma(runs, grid[at])).collect(),
+            sigma: kept.iter().map(sigma).collect(),
             values: values.iter().map(|run| kept.iter().map(|&at| run[at]).collect()).collect(),
             at: kept.iter().map(|&at| grid[at]).collect(),
         }
@@ -111,7 +115,8 @@ impl CommonCurve {
         let n = fewest.min(PLACES);
         let place = |k: usize| start + (stop - start) * k as f64 / (n - 1) as f64;
         let at: Vec<f64> = (0..n).map(place).collect();
-        let sigma = at.iter().map(|&place| stated_sigma(&ways, place)).collect();
+        let of_ways = || ways.iter().map(|way| stated(way));
+        let sigma = at.iter().map(|&place| stated_sigma(of_ways(), place)).collect();
         let values = ways.iter().map(|way| interpolated(way, &at)).collect();
         Self { at, values, sigma }
     }
@@ -146,41 +151,9 @@ fn interpolated(way: &[Sample], at: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// What readings of a run are.
-trait Readings {
-    fn readings(&self) -> &[Sample];
-}
-
-impl Readings for Vec<Sample> {
-    fn readings(&self) -> &[Sample] {
-        self
-    }
-}
-
-impl Readings for &Run {
-    fn readings(&self) -> &[Sample] {
-        &self.samples
-    }
-}
-
-/// Root mean square of what the runs state for the reading nearest to `place`, if all state it.
-fn stated_sigma(runs: &[impl Readings], place: f64) -> Option<f64> {
-    let mut sum = 0.0;
-    for run in runs {
-        let near = |one: &&Sample| (one.at - place).abs();
-        let nearest = run.readings().iter().min_by(|a, b| near(a).total_cmp(&near(b)));
-        sum += nearest?.sigma?.powi(2);
-    }
-    Some((sum / runs.len() as f64).sqrt())
-}
-
-/// `count` of `all`, evenly spaced, first and last among them.
-fn thinned(all: &[usize], count: usize) -> Vec<usize> {
-    let n = all.len();
-    match n <= count {
-        true => all.to_vec(),
-        false => (0..count).map(|k| all[(k * (n - 1) + (count - 1) / 2) / (count - 1)]).collect(),
-    }
+/// The place and the stated standard deviation of each reading.
+fn stated(samples: &[Sample]) -> impl Iterator<Item = (f64, Option<f64>)> {
+    samples.iter().map(|sample| (sample.at, sample.sigma))
 }
 
 /// Downward velocities (m/s) at times `at` (s) from contact on, at a speed (m/s), of what reads `felt` (m/s²) in

@@ -1,4 +1,4 @@
-//! What a verdict rests on, and why it may be no more than suggested.
+//! Reasons of a fit for which its verdict is no more than suggested, and what its noise is known from.
 
 use crate::bench::{Bench, Fitted};
 use crate::held_out::HeldOut;

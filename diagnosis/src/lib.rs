@@ -66,6 +66,7 @@ mod rounding;
 pub mod runs;
 mod score;
 pub mod sensitivity;
+mod series;
 mod signature;
 mod significance;
 mod strength;

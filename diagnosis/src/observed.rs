@@ -10,6 +10,7 @@ use crate::curves::{self, CommonCurve};
 use crate::observable::{Curve, Layout, Observable};
 use crate::reading_error::{LEAST, UNSTATED, position_error, reading, stated};
 use crate::resampling::{depth_and_range, seen_grid, stopped_at};
+use crate::series::{evenly, stated_sigma};
 
 /// How many independent numbers the frames of one run hold of the scatter of runs: two coefficients, the impact speed
 /// and the slowest changes along the path.
@@ -257,13 +258,13 @@ impl ObservedCondition {
 
     fn thinned(&self, frames: usize) -> Self {
         let all = self.layout.times.len();
-        let times = thinned(0..all, frames);
+        let times = evenly(all, frames);
         let tracks = if self.layout.along_x { 2 * all } else { all };
         let of_frames = (0..tracks)
             .step_by(all.max(1))
             .flat_map(|track| times.iter().map(move |time| track + time));
         let of_curve = self.layout.curve.as_ref().map_or(0, |curve| curve.at.len());
-        let places = thinned(0..of_curve, frames);
+        let places = evenly(of_curve, frames);
         let kept: Vec<usize> = of_frames
             .chain(places.iter().map(|place| tracks + place))
             .chain(tracks + of_curve..self.layout.len())
@@ -343,10 +344,15 @@ fn frames_of(runs: &[&Run], condition: &Condition, share: f64) -> CommonFrames {
     let flight = grid.iter().take_while(|t| **t < 0.0).count();
     let stop = stopped_at(&grid, &mean, condition.speed);
     let end = flight + (share * stop.saturating_sub(flight) as f64).ceil() as usize;
-    let kept: Vec<usize> = thinned(0..flight, FLIGHT_FRAMES)
+    let in_bed = evenly(end.saturating_sub(flight), PENETRATION_FRAMES);
+    let kept: Vec<usize> = evenly(flight, FLIGHT_FRAMES)
         .into_iter()
-        .chain(thinned(flight..end, PENETRATION_FRAMES))
+        .chain(in_bed.into_iter().map(|at| flight + at))
         .collect();
+    let sigma = |&time: &usize| {
+        let stated = tracks.iter().map(|track| track.iter().map(|frame| (frame.t, frame.sigma)));
+        stated_sigma(stated, grid[time])
+    };
     let part = |of: fn(&(f64, f64)) -> f64| {
         readings.iter().map(|run| kept.iter().map(|&time| of(&run[time])).collect()).collect()
     };
@@ -354,27 +360,8 @@ fn frames_of(runs: &[&Run], condition: &Condition, share: f64) -> CommonFrames {
         times: kept.iter().map(|&time| grid[time]).collect(),
         depth: part(|r| r.0),
         range: part(|r| r.1),
-        sigma: kept.iter().map(|&time| stated_sigma(&tracks, grid[time])).collect(),
+        sigma: kept.iter().map(sigma).collect(),
     }
-}
-
-/// `count` of `all`, evenly spaced, first and last among them.
-fn thinned(all: std::ops::Range<usize>, count: usize) -> Vec<usize> {
-    let n = all.len();
-    if n <= count {
-        return all.collect();
-    }
-    (0..count).map(|k| all.start + (k * (n - 1) + (count - 1) / 2) / (count - 1)).collect()
-}
-
-/// Root mean square of what the runs state for the reading nearest to `time`, if all state it.
-fn stated_sigma(tracks: &[&[Frame]], time: f64) -> Option<f64> {
-    let mut sum = 0.0;
-    for track in tracks {
-        let near = |frame: &&Frame| (frame.t - time).abs();
-        sum += track.iter().min_by(|a, b| near(a).total_cmp(&near(b)))?.sigma?.powi(2);
-    }
-    Some((sum / tracks.len() as f64).sqrt())
 }
 
 /// The numbers of a run: depth and range over time, and what its curve reads.

@@ -1,4 +1,4 @@
-//! What a verdict rests on, and why it is no more than suggested.
+//! How much a verdict rests on, in words of the results.
 
 use serde::Serialize;
 

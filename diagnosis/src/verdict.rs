@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::added_force::AddedForce;
+use crate::apparatus::is_of_the_instrument;
 use crate::bench::Fitted;
 use crate::between::Between;
 use crate::fit::Fit;
@@ -300,15 +301,14 @@ impl ApparatusError {
         Self::of(forward, fit, ParameterKind::Preparation)
     }
 
-    /// Whether nobody's apparatus is so far off: what is known of a scale, a speed and a direction beforehand leaves
-    /// this out. Zeros, sessions and beds are as they happen to be.
+    /// Whether nobody's apparatus is so far off: what is known of the instrument beforehand leaves this out.
     pub(crate) fn is_implausible(&self) -> bool {
-        let is_scale =
-            ["speed-scale", "camera-scale", "launch-angle", "tilt"].contains(&self.id.as_str());
         let beyond = |limit: f64, sigma: Option<f64>| {
             sigma.is_some_and(|sigma| sigma > 0.0 && self.value.abs() >= limit * sigma)
         };
-        is_scale && beyond(IMPLAUSIBLE, self.prior_sigma) && beyond(CLEAR_OF_ZERO, self.se)
+        is_of_the_instrument(&self.id)
+            && beyond(IMPLAUSIBLE, self.prior_sigma)
+            && beyond(CLEAR_OF_ZERO, self.se)
     }
 
     fn of(forward: &dyn Forward, fit: &Fit, kind: ParameterKind) -> Vec<Self> {

@@ -2,23 +2,24 @@
 //!
 //! Velocity Verlet, with everything that dissipates made second order:
 //!
-//! 1. **Neighbours.** The list of near pairs is made again once something may have left it; contact
+//! 1. **Intruder.** A few bodies get half a kick and drift; a way that jumps over grains is refused.
+//! 2. **Neighbours.** The list of near pairs is made again once something may have left it; contact
 //!    histories move along.
-//! 2. **Contacts.** What overlaps is found. Damping uses rates from `v*`: with `v_h` the rebound
+//! 3. **Contacts.** What overlaps is found. Damping uses rates from `v*`: with `v_h` the rebound
 //!    of a dashpot is first order only. Springs and the ledger use the displacement made in the
 //!    step, from `v_h`, in the contact plane of the half step, turned into the new one (Vyas et al.,
 //!    Comput. Phys. Commun. 310, 109524 (2025), on what goes wrong otherwise).
-//!    Each law books its dissipation as mean force times displacement.
-//! 3. **Kick, book, kick, drift.** Forces are summed in a fixed order; gravity and the drag of absorbing
+//!    Each law books its dissipation as mean force times displacement. The intruder gets its loads.
+//! 4. **Kick, book, kick, drift.** Forces are summed in a fixed order; gravity and the drag of absorbing
 //!    layers (with `v*`) are added. Half a kick brings velocities to the time of the positions, where
 //!    energies are taken. Half a kick more gives the velocities `v_h = v + ½ dt a` of the next step, and
 //!    positions move with them; `v* = v_h + ½ dt a` is the velocity extrapolated to the new positions. A grain
-//!    that has left through a periodic side comes in on the other.
-//! 4. **Ledger.** The energy of every channel is closed against the start.
+//!    that has left through a periodic side comes in on the other. The intruder gets its second half kick.
+//! 5. **Ledger.** The energy of every channel is closed against the start.
+//! 6. **Check.** A step that cannot be trusted is an error.
 //!
 //! So the grains lie in memory as the next step will find them, one pass over them a step;
-//! [`crate::grains::Grains`] tells where they are and how they move between two steps. The intruder, a few
-//! bodies, is kicked and drifts at the start of a step and kicked at its end.
+//! [`crate::grains::Grains`] tells where they are and how they move between two steps.
 
 use crate::body::Mechanism;
 use crate::dimension::Stride;

@@ -216,6 +216,12 @@ impl fmt::Display for Dimension {
     }
 }
 
+/// `value` to so many significant digits; what is not finite stays as it is.
+#[must_use]
+pub fn significant(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -10,6 +10,7 @@ use engine::units::Dimension;
 use resistive::{Compact, Silhouette};
 
 use crate::body::Body;
+use crate::measured::{Measured, TipForm, no_centre};
 use crate::outline::{Draft, Revolved};
 use crate::registry::{Casting, Launchable, ShapeEntry};
 use crate::shaft::{SHAFT, WithShaft};
@@ -34,8 +35,28 @@ pub(crate) const CONE: ShapeEntry = ShapeEntry {
     }),
     volume: |params, space| Wedge::new(params, space).volume(f64::INFINITY),
     contact_area: |params, space, depth| Wedge::new(params, space).contact_area(depth),
+    measured: Measured {
+        words: &["kegel", "cône", "cono"],
+        keys: &["height", "apex_deg"],
+        tip: Some(TipForm {
+            departure: 4.0,
+            is_round: false,
+            soft_entry: 0.25,
+            section: |depth, apex| of_cone(depth, apex).min(1.0),
+            entering: |depth, apex| {
+                let section = of_cone(depth, apex);
+                if section < 1.0 { section } else { 0.0 }
+            },
+        }),
+        centre: no_centre,
+    },
     assembly,
 };
+
+/// Section of an endless cone of this full apex angle (rad) over that of its diameter, so many diameters above its tip.
+fn of_cone(depth: f64, apex: f64) -> f64 {
+    (2.0 * depth * libm::tan(0.5 * apex)).powi(2)
+}
 
 const PARAMS: &[ParamSpec] = &[
     DIAMETER,

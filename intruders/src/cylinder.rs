@@ -9,6 +9,7 @@ use engine::params::{ParamSpec, ParamTable, Range};
 use resistive::{Compact, Silhouette};
 
 use crate::body::Body;
+use crate::measured::{Measured, TipForm};
 use crate::outline::{Draft, Revolved};
 use crate::registry::{Casting, Launchable, ShapeEntry};
 use crate::shaft::{SHAFT, WithShaft};
@@ -33,6 +34,18 @@ pub(crate) const CYLINDER: ShapeEntry = ShapeEntry {
     }),
     volume: |params, space| Flat::new(params, space).volume(f64::INFINITY),
     contact_area: |params, space, depth| Flat::new(params, space).contact_area(depth),
+    measured: Measured {
+        words: &["zylinder", "cylindre", "cilindro"],
+        keys: &["height"],
+        tip: Some(TipForm {
+            departure: 2.0,
+            is_round: false,
+            soft_entry: 0.0,
+            section: |_, _| 1.0,
+            entering: |_, _| 1.0,
+        }),
+        centre: |_, height| Some(0.5 * height?),
+    },
     assembly,
 };
 

@@ -9,6 +9,7 @@ use engine::params::{ParamSpec, ParamTable};
 use resistive::{Compact, Silhouette};
 
 use crate::body::Body;
+use crate::measured::{Measured, TipForm, no_centre, of_sphere, spherical};
 use crate::outline::{Draft, Revolved};
 use crate::registry::{Casting, Launchable, ShapeEntry};
 use crate::shaft::{SHAFT, WithShaft};
@@ -34,6 +35,18 @@ pub(crate) const HEMISPHERE: ShapeEntry = ShapeEntry {
     }),
     volume: |params, space| Dome::new(params, space).volume(f64::INFINITY),
     contact_area: |params, space, depth| Dome::new(params, space).contact_area(depth),
+    measured: Measured {
+        words: &["halbkugel", "hémisphère"],
+        keys: &[],
+        tip: Some(TipForm {
+            departure: 3.0,
+            is_round: false,
+            soft_entry: 0.0,
+            section: |depth, _| of_sphere(depth),
+            entering: |depth, _| if depth < 0.5 { spherical(depth) } else { 0.0 },
+        }),
+        centre: no_centre,
+    },
     assembly,
 };
 

@@ -8,6 +8,7 @@ mod equations;
 mod hemisphere;
 mod hinged_links;
 mod link;
+mod measured;
 mod outline;
 mod parry_surface;
 mod registry;
@@ -19,6 +20,7 @@ mod two_link_chain;
 
 pub use body::{Body, Drawing};
 pub use hinged_links::HingedLinks;
+pub use measured::{Measured, TipForm};
 pub use registry::{Casting, Launchable, ShapeEntry, UnderShaft};
 
 /// Every shape, in the order of the docs.
@@ -31,6 +33,24 @@ pub static SHAPES: &[&ShapeEntry] = &[
     &link::LINK,
     &two_link_chain::TWO_LINK_CHAIN,
 ];
+
+/// The names of all shapes.
+#[must_use]
+pub fn names() -> Vec<&'static str> {
+    SHAPES.iter().map(|entry| entry.name).collect()
+}
+
+/// The shapes that may have a shaft, in words.
+#[must_use]
+pub fn with_shafts() -> String {
+    let names = SHAPES.iter().filter(|entry| entry.under_shaft.is_some()).map(|entry| entry.name);
+    let names: Vec<&str> = names.collect();
+    match names.split_last() {
+        Some((last, [])) => format!("a {last}"),
+        Some((last, others)) => format!("a {} or {last}", others.join(", ")),
+        None => "no shape".to_owned(),
+    }
+}
 
 /// The shape called `name`.
 #[must_use]

@@ -6,6 +6,7 @@ use resistive::assembly::{COORDINATES, PARTS};
 use resistive::{Assembly, Part, PartLoad, State};
 
 use crate::equations::Equations;
+use crate::measured::{Measured, no_centre};
 use crate::registry::{Casting, Launchable, ShapeEntry};
 use crate::rod::{Pose, Rod, link_angle};
 use crate::specs::{DIAMETER, length};
@@ -24,6 +25,12 @@ pub(crate) const LINK: ShapeEntry = ShapeEntry {
     under_shaft: None,
     volume: |params, space| Rod::volume(params.get("length"), params.get("diameter"), space),
     contact_area: Rod::contact_area,
+    measured: Measured {
+        words: &[],
+        keys: &["length", "link_angle_deg"],
+        tip: None,
+        centre: no_centre,
+    },
     assembly,
 };
 

@@ -10,6 +10,7 @@ use resistive::{Assembly, State};
 
 use crate::body::Body;
 use crate::hinged_links::HingedLinks;
+use crate::measured::Measured;
 
 /// Makes a surface with a shaft of this length (m) on it.
 pub type UnderShaft = fn(&ParamTable, Space, f64) -> Arc<dyn Surface>;
@@ -44,6 +45,8 @@ pub struct ShapeEntry {
     /// when its lowest point is so deep (m); of a chain, one of its links. The three-shape manuscript, eqs
     /// 13–16: with the side of a cylinder and without flat tops.
     pub contact_area: fn(&ParamTable, Space, f64) -> f64,
+    /// What measurements need to know of it.
+    pub measured: Measured,
     /// Makes it for a resistive medium.
     pub assembly: fn(&Casting) -> Launchable,
 }

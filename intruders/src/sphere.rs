@@ -9,6 +9,7 @@ use engine::params::{ParamSpec, ParamTable};
 use resistive::{Compact, Silhouette};
 
 use crate::body::{Body, Drawing};
+use crate::measured::{Measured, TipForm, of_sphere, spherical};
 use crate::parry_surface::BallSurface;
 use crate::registry::{Casting, Launchable, ShapeEntry};
 use crate::specs::{DIAMETER, section};
@@ -29,6 +30,18 @@ pub(crate) const DISC: ShapeEntry = ShapeEntry {
     under_shaft: None,
     volume: |params, _| planar_area(params),
     contact_area,
+    measured: Measured {
+        words: &["disk", "scheibe", "disque", "disco"],
+        keys: &[],
+        tip: Some(TipForm {
+            departure: 2.5,
+            is_round: true,
+            soft_entry: 0.0,
+            section: |depth, _| of_sphere(depth).sqrt(),
+            entering: |depth, _| spherical(depth).max(0.0).sqrt(),
+        }),
+        centre: |diameter, _| Some(0.5 * diameter),
+    },
     assembly: |casting| compact(casting, disc),
 };
 
@@ -46,6 +59,18 @@ pub(crate) const SPHERE: ShapeEntry = ShapeEntry {
     under_shaft: None,
     volume,
     contact_area,
+    measured: Measured {
+        words: &["ball", "kugel", "sphère", "bille", "esfera", "spherical", "bead"],
+        keys: &[],
+        tip: Some(TipForm {
+            departure: 3.0,
+            is_round: true,
+            soft_entry: 0.0,
+            section: |depth, _| of_sphere(depth),
+            entering: |depth, _| spherical(depth).max(0.0),
+        }),
+        centre: |diameter, _| Some(0.5 * diameter),
+    },
     assembly: |casting| compact(casting, sphere),
 };
 

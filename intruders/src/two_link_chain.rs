@@ -5,6 +5,7 @@ use resistive::State;
 
 use crate::chain::{Chain, angles, deeper};
 use crate::hinged_links::HingedLinks;
+use crate::measured::{Measured, no_centre};
 use crate::registry::{Casting, Launchable, ShapeEntry};
 use crate::rod::{Rod, link_angle};
 use crate::specs::{DIAMETER, length};
@@ -23,6 +24,12 @@ pub(crate) const TWO_LINK_CHAIN: ShapeEntry = ShapeEntry {
     under_shaft: None,
     volume: |params, space| 2.0 * Rod::volume(params.get("length"), params.get("diameter"), space),
     contact_area: Rod::contact_area,
+    measured: Measured {
+        words: &[],
+        keys: &["length", "link_angle_deg"],
+        tip: None,
+        centre: no_centre,
+    },
     assembly,
 };
 

@@ -1,20 +1,23 @@
 //! Sizes and masses of intruders that no body has.
 
 use std::f64::consts::PI;
+use std::ops::RangeInclusive;
 
 use configs::Diagnostic;
 use configs::reader::Reader;
 use engine::fluid::Fluid;
+use engine::grains::Space;
+use engine::units::significant;
 
 use super::Condition;
 use super::conditions::ConditionPlaces;
 
 /// Least and greatest mean density of a body (kg/m³): below the first it is lighter than any foam, above the
 /// second heavier than any metal.
-const DENSITY: (f64, f64) = (10.0, 3e4);
+pub const POSSIBLE_DENSITY: RangeInclusive<f64> = 10.0..=3e4;
 
 /// Densities (kg/m³) of which intruders are made.
-const USUAL: (f64, f64) = (100.0, 2.3e4);
+pub const USUAL_DENSITY: RangeInclusive<f64> = 100.0..=2.3e4;
 
 /// Factors of units that are taken for metres and kilograms: diameter, mass, and what they are called.
 const UNITS: [(f64, f64, &str); 7] = [
@@ -47,21 +50,21 @@ fn one(reader: &Reader<'_>, condition: &Condition, places: &ConditionPlaces) {
     let Some(found) = density(1.0, 1.0) else { return };
     // The mass is that of the body and its shaft, which is as long as it may be.
     let is_shafted = condition.shaft_diameter.is_some();
-    if found >= DENSITY.0 && (found <= DENSITY.1 || is_shafted) {
+    if POSSIBLE_DENSITY.contains(&found) || (is_shafted && found > *POSSIBLE_DENSITY.end()) {
         return;
     }
     let likely = UNITS.iter().find(|(size, mass, _)| {
-        density(*size, *mass).is_some_and(|there| (USUAL.0..=USUAL.1).contains(&there))
+        density(*size, *mass).is_some_and(|there| USUAL_DENSITY.contains(&there))
     });
     let Condition { diameter, mass, shape, .. } = condition;
     let help = match likely {
         Some((size, grams, question)) => {
             let mut lines = Vec::new();
             if *size < 1.0 {
-                lines.push(format!("diameter = {}", significant(size * diameter)));
+                lines.push(format!("diameter = {}", significant(size * diameter, DIGITS)));
             }
             if *grams < 1.0 {
-                lines.push(format!("mass = {}", significant(grams * mass)));
+                lines.push(format!("mass = {}", significant(grams * mass, DIGITS)));
             }
             format!("{question} then write {}", lines.join(" and "))
         }
@@ -83,7 +86,7 @@ fn one(reader: &Reader<'_>, condition: &Condition, places: &ConditionPlaces) {
 
 /// Whether a body of this shape may have a shaft.
 fn may_have_a_shaft(shape: &str) -> bool {
-    matches!(shape, "cylinder" | "hemisphere" | "cone")
+    intruders::find(shape).is_some_and(|entry| entry.under_shaft.is_some())
 }
 
 /// Refuses shafts of shapes that have none, and those wider than the body before them.
@@ -92,7 +95,7 @@ fn shaft(reader: &Reader<'_>, condition: &Condition, places: &ConditionPlaces) {
     let (what, help) = match may_have_a_shaft(shape) {
         false => (
             format!("a {shape} has no shaft"),
-            "a cylinder, hemisphere or cone may have one".to_owned(),
+            format!("{} may have one", intruders::with_shafts()),
         ),
         true if shaft > diameter => (
             format!("a shaft of {shaft} m is wider than its {shape}, {diameter} m"),
@@ -103,10 +106,8 @@ fn shaft(reader: &Reader<'_>, condition: &Condition, places: &ConditionPlaces) {
     reader.report(Diagnostic::error(what).at(places.shaft, "a shaft").help(help));
 }
 
-/// A number as it is written, without the noise of a multiplication.
-fn significant(value: f64) -> f64 {
-    format!("{value:.9e}").parse().unwrap_or(value)
-}
+/// Digits of a number that is written: more would be the noise of a multiplication.
+const DIGITS: usize = 10;
 
 /// Acceleration (m/s²) with which the body of `condition` falls in `fluid` at its speed at contact; `None` where its volume
 /// is not known.
@@ -121,13 +122,7 @@ pub(super) fn fall(condition: &Condition, gravity: f64, fluid: &Fluid) -> Option
 
 /// (m³); `None` where the shape or the set does not say it.
 fn volume(condition: &Condition) -> Option<f64> {
-    let Condition { diameter, height, .. } = condition;
-    let base = PI / 4.0 * diameter * diameter;
-    match condition.shape.as_str() {
-        "sphere" => Some(base * diameter / 1.5),
-        "hemisphere" => Some(base * diameter / 3.0),
-        "cylinder" => Some(base * (*height)?),
-        "cone" => Some(base * (*height)? / 3.0),
-        _ => None,
-    }
+    let shape =
+        condition.shape_entry().filter(|entry| entry.spatial && entry.measured.tip.is_some())?;
+    Some((shape.volume)(&condition.sizes(shape).ok()?, Space::Spatial))
 }

@@ -7,6 +7,8 @@
 
 use nalgebra::{Matrix5, Matrix6, Vector5, Vector6};
 
+use intruders::TipForm;
+
 use super::fits::{BETWEEN_FRAMES, Fit};
 use super::{Condition, Frame};
 
@@ -35,49 +37,37 @@ const EXPOSURES: [fn(f64, f64) -> [f64; 3]; 4] = [
 
 /// The part of a body that meets the bed first.
 #[derive(Clone, Copy, Debug)]
-pub struct Tip<'a> {
-    /// As conditions call it.
-    pub shape: &'a str,
+pub struct Tip {
+    /// What its shape is there; `None` where its lowest point does not fall as its mass does.
+    pub(super) form: Option<&'static TipForm>,
     /// (m)
-    pub diameter: f64,
-    /// Full apex angle of a cone (deg); unstated, 90.
-    pub apex_deg: Option<f64>,
+    diameter: f64,
+    /// Full apex angle of a cone (rad).
+    apex: f64,
 }
 
-impl<'a> Tip<'a> {
+impl Tip {
+    /// Of a body of this `shape` and `diameter` (m), with this full apex angle (deg), 90 where it is not stated.
+    #[must_use]
+    pub fn new(shape: &str, diameter: f64, apex_deg: Option<f64>) -> Self {
+        let form = intruders::find(shape).and_then(|entry| entry.measured.tip.as_ref());
+        Self { form, diameter, apex: apex_deg.unwrap_or(90.0).to_radians() }
+    }
+
     /// Of the body of `condition`.
-    pub(super) fn of(condition: &'a Condition) -> Self {
-        let Condition { shape, diameter, apex_deg, .. } = condition;
-        Self { shape, diameter: *diameter, apex_deg: *apex_deg }
+    pub(super) fn of(condition: &Condition) -> Self {
+        Self::new(&condition.shape, condition.diameter, condition.apex_deg)
     }
 
     /// Section in the surface over the largest, `depth` (m) below first contact.
     fn section(self, depth: f64) -> f64 {
-        let share = (depth / self.diameter).max(0.0);
-        let chord = |share: f64| if share < 0.5 { 4.0 * share * (1.0 - share) } else { 1.0 };
-        match self.shape {
-            "sphere" | "hemisphere" => chord(share),
-            "disc" => chord(share).sqrt(),
-            "cone" => {
-                let half = 0.5 * self.apex_deg.unwrap_or(90.0).to_radians();
-                (2.0 * share * libm::tan(half)).min(1.0).powi(2)
-            }
-            _ => 1.0,
-        }
+        self.form.map_or(1.0, |form| (form.section)((depth / self.diameter).max(0.0), self.apex))
     }
 
     /// Immersed volume by depth over the largest section, `depth` (m) below first contact; nothing of a body that is
     /// below the surface as a whole.
     fn entering(self, depth: f64) -> f64 {
-        let share = (depth / self.diameter).max(0.0);
-        let chord = (4.0 * share * (1.0 - share)).max(0.0);
-        match self.shape {
-            "sphere" => chord,
-            "disc" => chord.sqrt(),
-            "hemisphere" if share >= 0.5 => 0.0,
-            "cone" if self.section(depth) >= 1.0 => 0.0,
-            _ => self.section(depth),
-        }
+        self.form.map_or(1.0, |form| (form.entering)((depth / self.diameter).max(0.0), self.apex))
     }
 }
 
@@ -117,7 +107,7 @@ impl Path {
 /// (s), near enough to know forces by.
 pub(super) fn fits(
     readings: &Readings<'_>,
-    tip: Tip<'_>,
+    tip: Tip,
     path: impl Fn(f64) -> [f64; 2],
 ) -> (Vec<Fit>, Path) {
     let frames = readings.frames;

@@ -23,17 +23,6 @@ pub(super) struct ConditionPlaces {
 /// Relative difference between the height of a cone and that of its angle that rounding explains.
 const SAME_HEIGHT: f64 = 0.03;
 
-/// Shapes that a set may name, each with the keys that it should have besides the diameter.
-const SHAPES: [(&str, &[&str]); 7] = [
-    ("sphere", &[]),
-    ("disc", &[]),
-    ("cylinder", &["height"]),
-    ("hemisphere", &[]),
-    ("cone", &["height", "apex_deg"]),
-    ("link", &["length", "link_angle_deg"]),
-    ("two-link-chain", &["length", "link_angle_deg"]),
-];
-
 /// Reads all conditions that can be read; the others are reported.
 pub(super) fn read(
     tables: Vec<TableReader<'_>>,
@@ -79,8 +68,7 @@ fn condition(
         false => Some(f64::NAN),
     };
     let angle = table.number(&keys::ANGLE);
-    let shape =
-        table.choice("shape", &SHAPES.map(|(name, _)| name), &[], "the shape of the intruder");
+    let shape = table.choice("shape", &intruders::names(), &[], "the shape of the intruder");
     let diameter = table.number(&keys::DIAMETER);
     // A drive moves any mass alike.
     let mass = match kind == Some(Kind::ForceDepth) && !table.has("mass") {
@@ -113,15 +101,18 @@ fn condition(
         mass: table.span_of("mass"),
         shaft: table.span_of("shaft_diameter"),
     };
-    let wanted = SHAPES.iter().find(|(name, _)| Some(*name) == shape).map_or(&[][..], |row| row.1);
+    let wanted = shape.and_then(intruders::find).map_or(&[][..], |entry| entry.measured.keys);
     for key in ["role", "packing", "bed_depth"].iter().chain(wanted) {
         absent.count(key, !table.has(key));
     }
-    if let (Some("cone"), Some(size), Some(height), Some(apex)) = (shape, &diameter, height, apex) {
+    if let (Some(size), Some(height), Some(apex)) = (&diameter, height, apex)
+        && wanted.contains(&"apex_deg")
+    {
         let whole = 0.5 * size.value / libm::tan(0.5 * apex.to_radians());
         if (height / whole - 1.0).abs() > SAME_HEIGHT {
             let message = format!(
-                "a cone of diameter {:.4} m and apex_deg {apex} is {whole:.4} m high, not {height:.4} m",
+                "a {} of diameter {:.4} m and apex_deg {apex} is {whole:.4} m high, not {height:.4} m",
+                shape.unwrap_or_default(),
                 size.value
             );
             table.reader.report(

@@ -109,10 +109,11 @@ pub(super) fn read(
         return coarse(&frames, sigma, (condition, gravity, zero));
     }
     let known = (gravity, doubt, sigma);
-    let (fits, contact) = match condition.shape.as_str() {
+    let tip = Tip::of(condition);
+    let (fits, contact) = match tip.form.is_some_and(|form| form.soft_entry > 0.0) {
         // The section of a cone reaches its full size early, so that no power of time describes the path.
-        "cone" => fit_braked(all, known, (power, Tip::of(condition))),
-        _ => fit(all, known, power),
+        true => fit_braked(all, known, (power, tip)),
+        false => fit(all, known, power),
     };
     let [first, last] = fits.ends;
     let reaches_zero = first <= zero + 1.5 * contact.step && zero <= last;
@@ -146,7 +147,7 @@ pub(super) fn fit(
 pub(super) fn fit_braked(
     all: &[Frame],
     (gravity, doubt, sigma): (f64, f64, f64),
-    (power, tip): (f64, Tip<'_>),
+    (power, tip): (f64, Tip),
 ) -> (Fits, Contact) {
     let (frames, sigma) = blocks(all, MOST_OF_FALL, sigma);
     let powers = Fits::of(&frames, (gravity, doubt, sigma), (power, true));
@@ -249,17 +250,6 @@ fn back_to_zero(
 /// The power of time with which a path departs from free fall; `None` where its lowest point does not
 /// fall like a mass.
 pub(super) fn power(condition: &Condition) -> Option<f64> {
-    let round = matches!(condition.shape.as_str(), "sphere" | "disc");
-    power_of(&condition.shape).filter(|_| condition.spin == 0.0 || round)
-}
-
-/// The same of a shape that does not spin.
-pub(super) fn power_of(shape: &str) -> Option<f64> {
-    match shape {
-        "sphere" | "hemisphere" => Some(3.0),
-        "disc" => Some(2.5),
-        "cylinder" => Some(2.0),
-        "cone" => Some(4.0),
-        _ => None,
-    }
+    let form = Tip::of(condition).form.filter(|form| condition.spin == 0.0 || form.is_round)?;
+    Some(form.departure)
 }

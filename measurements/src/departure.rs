@@ -2,7 +2,7 @@
 
 use super::Frame;
 use super::braking::Tip;
-use super::contact::{Contact, FEWEST, FREE, fit_braked, power_of};
+use super::contact::{Contact, FEWEST, FREE, fit_braked};
 use super::fall::Fall;
 use super::fits::Fit;
 use super::reading::Reading;
@@ -67,8 +67,8 @@ impl Departure {
     /// it: fewer than five frames near contact, no fall before it, or a shape whose lowest point does not fall
     /// freely.
     #[must_use]
-    pub fn of_frames(frames: &[Frame], tip: Tip<'_>, gravity: f64, sigma: f64) -> Option<Self> {
-        let power = power_of(tip.shape)?;
+    pub fn of_frames(frames: &[Frame], tip: Tip, gravity: f64, sigma: f64) -> Option<Self> {
+        let power = tip.form?.departure;
         let near = velocity_window(frames, sigma, BEHIND)?;
         // Nothing is known of the zeros: more of the fall has to tell.
         let (start, end) = (velocity_window(frames, sigma, FALLING)?[0].t, near[near.len() - 1].t);

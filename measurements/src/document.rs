@@ -91,8 +91,9 @@ pub(super) fn read(root: TableReader<'_>) -> Option<Document> {
         );
     }
     let (conditions, places) = conditions::read(tables, kind, &beds, &mut unstated);
-    let is_disc = |shape: &str| shape == "disc";
-    let planar = conditions.iter().any(|condition| is_disc(&condition.shape));
+    let is_planar =
+        |condition: &super::Condition| condition.shape_entry().is_some_and(|entry| !entry.spatial);
+    let planar = conditions.iter().any(is_planar);
     let (bed, beds) = beds.read(planar, &mut unstated);
     if bed.geometry == Geometry::Spatial {
         bodies::check(root.reader, &conditions, &places);

@@ -34,7 +34,8 @@ pub(super) fn check_vertical(
 ) {
     for (condition, place) in set.conditions.iter().zip(places) {
         let id = shorten(&condition.id);
-        if condition.angle_deg < 90.0 || condition.shape.contains("link") {
+        if condition.angle_deg < 90.0 || condition.shape_entry().is_some_and(|entry| entry.slender)
+        {
             let message = format!("the {what} of `{id}` are not of a vertical impact of one body");
             findings.report(Diagnostic::error(message).at(place.angle, "expected 90").help(why));
         }

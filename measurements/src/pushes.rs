@@ -79,9 +79,9 @@ fn check_condition(condition: &Condition, place: &ConditionPlaces, findings: &mu
                 .help("of a slow push any speed near it will do: write speed = \"1 mm/s\""),
         );
     }
-    if condition.shape == "two-link-chain" {
+    if condition.shape_entry().is_some_and(|entry| entry.links.is_some()) {
         findings.report(
-            Diagnostic::error(format!("the condition `{id}` pushes a two-link-chain"))
+            Diagnostic::error(format!("the condition `{id}` pushes a {}", condition.shape))
                 .at(place.id, "a drive pushes a body of one part"),
         );
     }

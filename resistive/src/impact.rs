@@ -15,7 +15,7 @@ use super::motion::System;
 use super::observe::{Observer, Stretch};
 use super::solver::{Plan, Solver, Tolerance};
 use super::{ResistanceLaw, Surroundings};
-use margin::{Before, COMPONENTS, FORWARD, Fired, SINKING, SLOW, SLOWING, STOPPING, SURFACE};
+use margin::{Before, COMPONENTS, FORWARD, Fired, PER_PART, SINKING, SLOW, SLOWING, STOPPING, SURFACE};
 
 /// Below this share of √(gD) a component of the velocity is what the integration has left of zero.
 const STILL: f64 = 1e-6;
@@ -387,7 +387,7 @@ impl Impact {
         let mut in_bed = progress.modes.in_bed;
         let mut changed = false;
         for index in 0..self.assembly.n_parts() {
-            let own = &fired.which[5 * index..5 * index + 5];
+            let own = &fired.which[PER_PART * index..][..PER_PART];
             let part = self.assembly.part(index, state);
             let stop = &mut progress.parts[index];
             if own[SURFACE] {

@@ -117,7 +117,8 @@ impl Elsewhere {
             move |source| CampaignError::Io { action, path, source }
         };
         fs::create_dir_all(&folder).map_err(io("make", &folder))?;
-        let text = serde_json::to_string_pretty(tasks).unwrap_or_default();
+        let text = serde_json::to_string_pretty(tasks)
+            .map_err(|error| io("write", &folder)(error.into()))?;
         let name = hexadecimal(&result_key(&text))[..16].to_owned();
         let list = folder.join(format!("{name}.json"));
         write_whole(&list, text.as_bytes()).map_err(io("write", &list))?;

@@ -4,12 +4,15 @@ mod candidates;
 
 use contact_laws::ActsOn;
 use engine::params::ParamSpec;
-use engine::units::{self, Dimension};
+use engine::units::{self, Dimension, significant};
 use resistive::Role;
 use thiserror::Error;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, Value};
 
 use crate::diagnostics::nearest;
+
+/// Digits of a value that is written: more would be the round-off of units.
+const DIGITS: usize = 9;
 
 /// What becomes part of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -310,13 +313,13 @@ fn effect_mut<'a>(
 fn replace(value: &mut Value, dimension: Option<Dimension>, si: f64) -> Option<()> {
     let decor = value.decor().clone();
     let new = match value {
-        Value::Float(_) | Value::Integer(_) => Value::from(tidy(si)),
+        Value::Float(_) | Value::Integer(_) => Value::from(significant(si, DIGITS)),
         Value::String(text) => {
             let written = text.value().trim().to_owned();
             let unit = written.trim_start_matches(|c: char| "+-.0123456789".contains(c));
             let unit = exponent_free(unit);
             let one = units::parse(&format!("1 {unit}"), dimension?).ok()?;
-            Value::from(format!("{} {unit}", tidy(si / one)))
+            Value::from(format!("{} {unit}", significant(si / one, DIGITS)))
         }
         _ => return None,
     };
@@ -328,8 +331,8 @@ fn replace(value: &mut Value, dimension: Option<Dimension>, si: f64) -> Option<(
 /// `si` as a model file says it.
 fn in_si(si: f64, dimension: Dimension) -> Value {
     match dimension == Dimension::NONE {
-        true => Value::from(tidy(si)),
-        false => Value::from(units::format_si(tidy(si), dimension)),
+        true => Value::from(significant(si, DIGITS)),
+        false => Value::from(units::format_si(significant(si, DIGITS), dimension)),
     }
 }
 
@@ -341,11 +344,6 @@ fn exponent_free(rest: &str) -> &str {
         .filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
         .map(|rest| rest.trim_start_matches(|c: char| c.is_ascii_digit()));
     digits.unwrap_or(rest).trim_start()
-}
-
-/// `value` to nine digits: more would be the round-off of units.
-fn tidy(value: f64) -> f64 {
-    format!("{value:.8e}").parse().unwrap_or(value)
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use super::switch::Switch;
 use super::switches::{OF_THE_APPARATUS, SWITCHES};
 use super::variation::Variation;
 use crate::observed::Observed;
+use crate::series::evenly;
 use crate::verdict::Diagnosis;
 
 /// How many effects a line search and a confirmation take up.
@@ -396,16 +397,9 @@ fn switches<'a>(stand: &'a Stand<'_>) -> impl Iterator<Item = &'static Switch> +
     SWITCHES.iter().filter(is_open).filter(is_sound)
 }
 
-/// `count` of `all`, evenly spaced, first and last among them; the middle where one is wanted.
-fn spread_over(all: &[usize], count: usize) -> Vec<usize> {
-    let n = all.len();
-    if n <= count {
-        return all.to_vec();
-    }
-    match count {
-        1 => vec![all[n / 2]],
-        _ => (0..count).map(|k| all[(k * (n - 1) + (count - 1) / 2) / (count - 1)]).collect(),
-    }
+/// `count` of `conditions`, evenly spaced, first and last among them.
+fn spread_over(conditions: &[usize], count: usize) -> Vec<usize> {
+    evenly(conditions.len(), count).into_iter().map(|at| conditions[at]).collect()
 }
 
 /// What there is to say where the budget of `plan` does not pay for it.
@@ -421,22 +415,4 @@ pub fn unaffordable(plan: &Plan) -> Diagnosis {
         minutes(1.1 * plan.seconds()),
     );
     Diagnosis::cannot_tell(Vec::new(), why)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_choice_of_conditions_has_both_ends_and_nothing_twice() {
-        let all: Vec<usize> = (10..19).collect();
-        assert_eq!(spread_over(&all, 3), [10, 14, 18]);
-        assert_eq!(spread_over(&all, 1), [14]);
-        for count in 2..=9 {
-            let mut chosen = spread_over(&all, count);
-            assert_eq!((chosen[0], chosen[count - 1]), (10, 18));
-            chosen.dedup();
-            assert_eq!(chosen.len(), count);
-        }
-    }
 }

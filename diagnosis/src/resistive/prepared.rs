@@ -6,10 +6,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use configs::{FreeParameter, ResistiveMedium};
 use engine::math::Vec3;
-use engine::params::{Default, ParamTable};
+use engine::params::ParamTable;
 use intruders::{Casting, ShapeEntry};
 use measurements::{
-    Condition, FinalDefinition, Geometry, Kind, MeasurementSet, Role, StopDefinition,
+    Condition, FinalDefinition, Geometry, Kind, MeasurementSet, Role, SizeError, StopDefinition,
 };
 use resistive::{Approach, Coefficients, Effect, Expression, ResistanceEntry};
 use resistive::{
@@ -241,12 +241,11 @@ impl Prepared {
             Geometry::Planar => (Space::Planar, "2d"),
             Geometry::Spatial => (Space::Spatial, "3d"),
         };
-        let shape =
-            intruders::find(&condition.shape).ok_or_else(|| ForwardError::UnknownShape {
-                condition: condition.id.clone(),
-                shape: condition.shape.clone(),
-                known: intruders::SHAPES.iter().map(|entry| entry.name).collect(),
-            })?;
+        let shape = condition.shape_entry().ok_or_else(|| ForwardError::UnknownShape {
+            condition: condition.id.clone(),
+            shape: condition.shape.clone(),
+            known: intruders::SHAPES.iter().map(|entry| entry.name).collect(),
+        })?;
         if !shape.is_of_resistance(space) {
             let condition = condition.id.clone();
             return Err(ForwardError::WrongSpace { condition, shape: shape.name, space: name });
@@ -284,7 +283,7 @@ impl Prepared {
             stop: set.stop,
             last: set.last,
             shape,
-            sizes: sizes(shape, condition)?,
+            sizes: condition.sizes(shape).map_err(|error| unsized_body(condition, shape, error))?,
             space,
             mass: condition.mass,
             speed: condition.speed,
@@ -534,51 +533,14 @@ fn split(times: &[f64]) -> (Vec<f64>, &[f64]) {
     (times[..n_before].iter().rev().copied().collect(), &times[n_before..])
 }
 
-/// What a set calls the size `key` of a shape.
-fn named_in_sets(key: &'static str) -> &'static str {
-    match key {
-        "apex_angle" => "apex_deg",
-        "link_angle" | "link_angle_1" | "link_angle_2" => "link_angle_deg",
-        other => other,
+fn unsized_body(
+    condition: &Condition,
+    shape: &'static ShapeEntry,
+    error: SizeError,
+) -> ForwardError {
+    let (condition, shape) = (condition.id.clone(), shape.name);
+    match error {
+        SizeError::Missing(key) => ForwardError::MissingSize { condition, shape, key },
+        SizeError::Bad(key, value) => ForwardError::BadSize { condition, shape, key, value },
     }
-}
-
-/// The sizes of the intruder of `condition`, complete for `shape`.
-fn sizes(shape: &'static ShapeEntry, condition: &Condition) -> Result<ParamTable, ForwardError> {
-    let link = condition.link_angle_deg.map(f64::to_radians);
-    let mut table = ParamTable::new();
-    for spec in shape.params {
-        let given = match spec.key {
-            "diameter" => Some(condition.diameter),
-            "length" => condition.length,
-            "height" => condition.height,
-            "shaft_diameter" => condition.shaft_diameter,
-            "apex_angle" => condition.apex_deg.map(f64::to_radians),
-            "link_angle" | "link_angle_1" => link,
-            "link_angle_2" => link.map(|angle| -angle),
-            _ => None,
-        };
-        let value = match (given, spec.default) {
-            (Some(value), _) | (None, Default::Value(value)) => value,
-            (None, Default::SameAs(other)) => table.get(other),
-            (None, Default::Required | Default::FromBase(_)) => {
-                let condition = condition.id.clone();
-                return Err(ForwardError::MissingSize {
-                    condition,
-                    shape: shape.name,
-                    key: named_in_sets(spec.key),
-                });
-            }
-        };
-        if !spec.allowed.contains(value) {
-            return Err(ForwardError::BadSize {
-                condition: condition.id.clone(),
-                shape: shape.name,
-                key: spec.key,
-                value,
-            });
-        }
-        table.set(spec.key, value);
-    }
-    Ok(table)
 }

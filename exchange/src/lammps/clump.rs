@@ -19,6 +19,9 @@ const TOLERANCE: f64 = 0.02;
 /// Balls at most: a larger body has a wider tolerance.
 const MOST: usize = 20_000;
 
+/// Places at most, which take 64 MB.
+const MOST_PLACES: usize = 2_000_000;
+
 /// By how much the tolerance grows where that is not enough.
 const WIDER: f64 = 1.5;
 
@@ -63,14 +66,16 @@ impl Clump {
     /// radius `grain` (m).
     pub(super) fn of(surface: &dyn Surface, space: Space, grain: f64) -> Self {
         let mut tolerance = TOLERANCE * grain;
-        let balls = loop {
-            match cover(surface, space, grain, tolerance) {
-                Some(balls) => break balls,
+        let (balls, mut places) = loop {
+            // Judged at places of another spacing than those that were covered.
+            let others = spacing(grain, tolerance) / 1.6;
+            let balls = cover(surface, space, grain, tolerance);
+            let places = || Places::around(surface, space, grain, others);
+            match balls.and_then(|balls| Some((balls, places()?))) {
+                Some(found) => break found,
                 None => tolerance *= WIDER,
             }
         };
-        // Places of another spacing than those that were covered.
-        let mut places = Places::around(surface, space, grain, spacing(grain, tolerance) / 1.6);
         for ball in &balls {
             places.see(ball, tolerance);
         }
@@ -92,10 +97,10 @@ fn spacing(grain: f64, tolerance: f64) -> f64 {
     (4.0 * grain * tolerance).sqrt() / LOOKS
 }
 
-/// Balls that hold a grain everywhere to within `tolerance` (m), the largest first; none if they
-/// would be too many.
+/// Balls that hold a grain everywhere to within `tolerance` (m), the largest first; none if they,
+/// or the places that they are asked at, would be too many.
 fn cover(surface: &dyn Surface, space: Space, grain: f64, tolerance: f64) -> Option<Vec<Ball>> {
-    let mut places = Places::around(surface, space, grain, spacing(grain, tolerance));
+    let mut places = Places::around(surface, space, grain, spacing(grain, tolerance))?;
     let mut balls = Vec::new();
     for halvings in 0..=HALVINGS {
         let radius = LARGEST * grain * 0.5_f64.powi(halvings);
@@ -167,12 +172,12 @@ struct Places {
 }
 
 impl Places {
-    /// One about every `spacing` (m).
-    fn around(surface: &dyn Surface, space: Space, grain: f64, spacing: f64) -> Self {
+    /// One about every `spacing` (m); none if they would be too many.
+    fn around(surface: &dyn Surface, space: Space, grain: f64, spacing: f64) -> Option<Self> {
         let mut places = Self { grain, rings: Vec::new(), all: Vec::new() };
         let lowest = -(surface.support(-Vec3::z()) + grain);
         let highest = surface.support(Vec3::z()) + grain;
-        places.add_ring(space, spacing, 0.0, lowest);
+        places.add_ring(space, spacing, 0.0, lowest)?;
         let mut at = Vec3::new(0.0, 0.0, lowest);
         loop {
             // Along the outline of the parallel surface, which is smooth, and back onto it.
@@ -183,18 +188,23 @@ impl Places {
             }
             let nearest = surface.closest(ahead);
             at = ahead + nearest.normal * (grain - nearest.gap);
-            places.add_ring(space, spacing, at.x, at.z);
+            places.add_ring(space, spacing, at.x, at.z)?;
         }
-        places.add_ring(space, spacing, 0.0, highest);
-        places
+        places.add_ring(space, spacing, 0.0, highest)?;
+        Some(places)
     }
 
-    fn add_ring(&mut self, space: Space, spacing: f64, from_axis: f64, height: f64) {
+    /// None if there would be too many places.
+    fn add_ring(&mut self, space: Space, spacing: f64, from_axis: f64, height: f64) -> Option<()> {
         let around = match space {
             _ if from_axis == 0.0 => 1,
             Space::Planar => 2,
             Space::Spatial => (TAU * from_axis / spacing).ceil() as usize,
         };
+        // A ring has a place at least: this bounds the rings too.
+        if self.all.len() + around > MOST_PLACES {
+            return None;
+        }
         // Every other ring is turned by half a place; in a plane both sides are alike.
         let turned = match space {
             Space::Planar => 0.0,
@@ -210,6 +220,7 @@ impl Places {
             let at = Vec3::new(from_axis * cos, from_axis * sin, height);
             Place { at, gap: f64::INFINITY }
         }));
+        Some(())
     }
 
     /// Takes note of `ball` where it leaves a gap of no more than about `most` (m).

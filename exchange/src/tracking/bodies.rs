@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use engine::units::{Dimension, dimension_of, parse};
+use intruders::TipForm;
 
 use super::called;
 use super::density;
@@ -11,7 +12,7 @@ use super::heading::Heading;
 use super::inputs;
 use super::options::flag;
 use super::settings::Settings;
-use super::shapes::{SHAPES_KNOWN, shape_of};
+use super::shapes::{known, shape_of};
 use super::sheet::Sheet;
 use super::units::Unit;
 
@@ -31,22 +32,24 @@ pub(super) struct Body {
     pub(super) shaft_diameter: Option<f64>,
 }
 
-/// Share of its diameter that the tip of a cone may go into a bed without being braked noticeably.
-const SOFT: f64 = 0.25;
-
 impl Body {
     /// How deep its tip goes before a bed resists noticeably, at most (m).
     pub(super) fn soft_entry(&self) -> f64 {
-        if self.shape == "cone" { SOFT * self.diameter } else { 0.0 }
+        self.tip().map_or(0.0, |tip| tip.soft_entry * self.diameter)
+    }
+
+    /// Whether only a planar bed has such a body.
+    pub(super) fn is_planar(&self) -> bool {
+        intruders::find(&self.shape).is_some_and(|entry| !entry.spatial)
+    }
+
+    fn tip(&self) -> Option<&'static TipForm> {
+        intruders::find(&self.shape)?.measured.tip.as_ref()
     }
 
     /// How far its lowest point is below its centre (m), where it has one centre that cameras track.
     pub(super) fn below_centre(&self) -> Option<f64> {
-        match self.shape.as_str() {
-            "sphere" | "disc" => Some(0.5 * self.diameter),
-            "cylinder" => Some(0.5 * self.height?),
-            _ => None,
-        }
+        (intruders::find(&self.shape)?.measured.centre)(self.diameter, self.height)
     }
 }
 
@@ -239,7 +242,7 @@ impl Bodies {
         let word = shape.unwrap_or("sphere");
         let Some(shape) = shape_of(word) else {
             let what = format!("the shape of {run} is \"{word}\"");
-            return Err(Fault::new(&flag("shape"), what, SHAPES_KNOWN));
+            return Err(Fault::new(&flag("shape"), what, known()));
         };
         let radius = match said("radius") {
             Some(_) => quantity("radius", Dimension::LENGTH)?,
@@ -252,25 +255,26 @@ impl Bodies {
         let height = quantity("height", Dimension::LENGTH)?;
         let stated = quantity("apex", Dimension::ANGLE)?;
         let by_height = height.map(|height| 2.0 * libm::atan2(0.5 * diameter, height));
-        // Where a cone is braked first depends much on its angle.
-        let apex = match (stated.or(by_height), shape) {
-            (None, "cone") => Some(needed("apex", Dimension::ANGLE, "60deg")?),
-            (Some(apex), "cone") => Some(apex),
+        // Where a pointed body is braked first depends much on its angle.
+        let is_pointed = shape.measured.keys.contains(&"apex_deg");
+        let apex = match stated.or(by_height) {
+            None if is_pointed => Some(needed("apex", Dimension::ANGLE, "60deg")?),
+            apex if is_pointed => apex,
             _ => stated,
         };
         let shaft_diameter = quantity("shaft_diameter", Dimension::LENGTH)?;
         if let Some(shaft) = shaft_diameter
-            && !["cylinder", "hemisphere", "cone"].contains(&shape)
+            && shape.under_shaft.is_none()
         {
-            let what = format!("{run} is a {shape} with a shaft of {:.1} mm", 1e3 * shaft);
-            let right = "a cylinder, hemisphere or cone may have one";
+            let what = format!("{run} is a {} with a shaft of {:.1} mm", shape.name, 1e3 * shaft);
+            let right = format!("{} may have one", intruders::with_shafts());
             return Err(Fault::new(&flag("shaft_diameter"), what, right));
         }
         let apex = apex.map(f64::to_degrees).map(|apex| (apex * 1e9).round() / 1e9);
         let body = Body {
             diameter,
             mass: needed("mass", Dimension::MASS, "\"67 g\"")?,
-            shape: shape.to_owned(),
+            shape: shape.name.to_owned(),
             height,
             apex,
             shaft_diameter,

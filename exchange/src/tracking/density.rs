@@ -2,13 +2,9 @@
 
 use std::f64::consts::PI;
 
+use measurements::{POSSIBLE_DENSITY, USUAL_DENSITY};
+
 use super::fault::Fault;
-
-/// Least and greatest mean density (kg/m³) of a body, as sets have it.
-const POSSIBLE: (f64, f64) = (10.0, 3e4);
-
-/// Densities (kg/m³) of which bodies are made.
-const USUAL: (f64, f64) = (100.0, 2.3e4);
 
 /// Mistakes: the written units of diameter and mass (empty for any unit), the factors that correct both, and the mistake in words.
 const MISTAKES: [(&str, &str, f64, f64, &str); 8] = [
@@ -31,7 +27,7 @@ pub(super) fn refuse(
     let density =
         |longer: f64, heavier: f64| heavier * weight / (PI / 6.0 * (longer * size).powi(3));
     let found = density(1.0, 1.0);
-    if (POSSIBLE.0..=POSSIBLE.1).contains(&found) {
+    if POSSIBLE_DENSITY.contains(&found) {
         return Ok(());
     }
     let what = format!(
@@ -46,7 +42,7 @@ pub(super) fn refuse(
     let is_likely = |(of_diameter, of_mass, longer, heavier, _): &&(&str, &str, f64, f64, &str)| {
         has(&diameter.0, of_diameter)
             && has(&mass.0, of_mass)
-            && (USUAL.0..=USUAL.1).contains(&density(*longer, *heavier))
+            && USUAL_DENSITY.contains(&density(*longer, *heavier))
     };
     let right = match MISTAKES.iter().find(is_likely) {
         Some((_, _, longer, heavier, why)) => format!(

@@ -299,7 +299,7 @@ fn see(
     let sees_surface = stated.is_some_and(|level| of_the_body[0].z < level);
     let departure = motion::contact(
         &of_the_body,
-        (Tip { shape, diameter: one.body.diameter, apex_deg: one.body.apex }, noise),
+        (Tip::new(&one.body.shape, one.body.diameter, one.body.apex), noise),
         (settings.gravity, sees_surface),
     )
     .map_err(|why| {

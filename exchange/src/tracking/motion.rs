@@ -361,7 +361,7 @@ fn clock(
 /// What its frames lack.
 pub(super) fn contact(
     frames: &[Frame],
-    (tip, noise): (Tip<'_>, f64),
+    (tip, noise): (Tip, f64),
     (gravity, sees_surface): (f64, bool),
 ) -> Result<Departure, &'static str> {
     let departure = Departure::of_frames(frames, tip, gravity, noise)
@@ -546,7 +546,7 @@ mod tests {
                 .map(|t| Frame { t, z: depth(t), x: 0.0, sigma: None })
                 .collect()
         };
-        let tip = Tip { shape: "sphere", diameter: 0.0254, apex_deg: None };
+        let tip = Tip::new("sphere", 0.0254, None);
         let seen = |frames: &[Frame]| contact(frames, (tip, 1e-5), (gravity, false)).map(|_| ());
         // At the last frame it has 2.0 + 0.196 − 0.6 m/s.
         assert_eq!(seen(&frames(100, 500.0)), Ok(()));

@@ -6,7 +6,7 @@ use super::fault::Fault;
 use super::heading::Role;
 use super::names::{Pattern, filled};
 use super::options::{Options, flag};
-use super::shapes::{SHAPES_KNOWN, shape_of};
+use super::shapes::{known, shape_of};
 use super::units::Unit;
 
 /// Columns that the user names.
@@ -91,7 +91,7 @@ impl<'a> Settings<'a> {
             _ => Tracked::Lowest,
         };
         if let Some(asked) = options.get("shape").filter(|asked| shape_of(asked).is_none()) {
-            faults.push(Fault::new("--shape", format!("\"{asked}\" is not known"), SHAPES_KNOWN));
+            faults.push(Fault::new("--shape", format!("\"{asked}\" is not known"), known()));
         }
         let mut unit = |key: &str, dimension: Dimension, example: &str| {
             let asked = Unit::of(options.get(key)?);

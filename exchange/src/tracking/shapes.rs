@@ -1,19 +1,19 @@
 //! Words for the shapes of bodies.
 
+use intruders::{SHAPES, ShapeEntry};
+
+/// Shapes of bodies whose paths show first contact.
+fn tracked() -> impl Iterator<Item = &'static ShapeEntry> {
+    SHAPES.iter().copied().filter(|entry| entry.measured.tip.is_some())
+}
+
 /// The shape that a word is for, as people write it in other languages too.
-pub(super) fn shape_of(word: &str) -> Option<&'static str> {
-    const SHAPES: [(&str, &[&str]); 5] = [
-        ("sphere", &["ball", "kugel", "sphère", "bille", "esfera", "spherical", "bead"]),
-        ("disc", &["disk", "scheibe", "disque", "disco"]),
-        ("cylinder", &["zylinder", "cylindre", "cilindro"]),
-        ("hemisphere", &["halbkugel", "hémisphère"]),
-        ("cone", &["kegel", "cône", "cono"]),
-    ];
+pub(super) fn shape_of(word: &str) -> Option<&'static ShapeEntry> {
     let lower = word.trim().to_lowercase();
-    let is_it =
-        |(shape, others): &&(&str, &[&str])| *shape == lower || others.contains(&lower.as_str());
-    SHAPES.iter().find(is_it).map(|(shape, _)| *shape)
+    tracked().find(|entry| entry.name == lower || entry.measured.words.contains(&lower.as_str()))
 }
 
 /// The shapes, for messages.
-pub(super) const SHAPES_KNOWN: &str = "known: sphere, disc, cylinder, hemisphere, cone";
+pub(super) fn known() -> String {
+    format!("known: {}", tracked().map(|entry| entry.name).collect::<Vec<_>>().join(", "))
+}

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use configs::toml_string as quoted;
-use engine::units::Dimension;
+use engine::units::{Dimension, significant};
 use measurements::{Reading, median};
 
 use super::bodies::Body;
@@ -72,23 +72,23 @@ fn measurement(known: &Known<'_>, notes: &[String]) -> Result<String, Fault> {
     let of = |number: fn(&Run) -> f64| median(runs.iter().map(number)).unwrap_or(0.0);
     let step = of(|run| run.step);
     if runs.iter().all(|run| (run.step / step - 1.0).abs() < 0.01) {
-        line(format!("rate_hz = {:<18} # by the steps between frames", significant(1.0 / step, 5)));
+        line(format!("rate_hz = {:<18} # by the steps between frames", in_toml(1.0 / step, 5)));
     }
     let noise = of(|run| run.noise);
     line(format!(
         "position_sigma_m = {:<9} # by what readings differ from a smooth path",
-        significant(noise, 2)
+        in_toml(noise, 2)
     ));
     if let Some(scatter) = speed_scatter(&conditions) {
         line(format!(
             "speed_sigma_rel = {:<10} # of one run, by its fit or by the scatter within conditions",
-            significant(scatter, 2)
+            in_toml(scatter, 2)
         ));
     }
     if let Some(scatter) = angle_scatter(&conditions) {
         line(format!(
             "angle_sigma_deg = {:<10} # of one run, by its fit or by the scatter within conditions",
-            significant(scatter, 2)
+            in_toml(scatter, 2)
         ));
         line("angle_bias_sigma_deg = 0.0    # they are read from the paths".to_owned());
     }
@@ -97,13 +97,13 @@ fn measurement(known: &Known<'_>, notes: &[String]) -> Result<String, Fault> {
         Level::Common(level) => (level.se, "the one level of all runs, by their contacts"),
         Level::Own(shared) => (*shared, "what the levels of all runs share, by their contacts"),
     };
-    line(format!("surface_sigma_m = {:<10} # of {by}", significant(surface, 2)));
+    line(format!("surface_sigma_m = {:<10} # of {by}", in_toml(surface, 2)));
     line(format!(
         "level_sigma_m = {:<12} # of one run against the others",
-        significant(of(|run| run.touch.level_error).max(LEAST), 2)
+        in_toml(of(|run| run.touch.level_error).max(LEAST), 2)
     ));
     line("\n[bed]".to_owned());
-    let is_planar = runs.iter().any(|run| run.body.shape == "disc");
+    let is_planar = runs.iter().any(|run| run.body.is_planar());
     if is_planar {
         line("geometry = \"2d\"".to_owned());
     }
@@ -131,15 +131,15 @@ fn measurement(known: &Known<'_>, notes: &[String]) -> Result<String, Fault> {
             Some(_) => "from the height of release".to_owned(),
             None => format!(
                 "± {}, from the frames before contact of {} {}",
-                significant(speed.se, 2),
+                in_toml(speed.se, 2),
                 own.len(),
                 if own.len() == 1 { "run" } else { "runs" }
             ),
         };
         let angle = own.iter().map(|run| run.angle.value).sum::<f64>() / own.len() as f64;
         line(format!("\n[[condition]]\nid = {}", quoted(id)));
-        line(format!("speed = {}  # {from}", significant(speed.value, 5)));
-        line(format!("angle_deg = {}", significant(angle, 4)));
+        line(format!("speed = {}  # {from}", in_toml(speed.value, 5)));
+        line(format!("angle_deg = {}", in_toml(angle, 4)));
         body(&own[0].body, &mut line);
         if let Some(depth) = settings.quantity("bed_depth", Dimension::LENGTH, &own[0].labels)? {
             line(format!("bed_depth = {depth:?}"));
@@ -298,7 +298,6 @@ fn scatter_within(
 }
 
 /// A number with so many significant digits, as TOML has it.
-fn significant(value: f64, digits: usize) -> String {
-    let rounded: f64 = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
-    format!("{rounded:?}")
+fn in_toml(value: f64, digits: usize) -> String {
+    format!("{:?}", significant(value, digits))
 }

@@ -67,11 +67,11 @@ impl Player {
         let states = |of: fn(&exchange::read::BodyState) -> f64, digits: i32| -> Vec<f64> {
             times
                 .iter()
-                .map(|time| rounded(course.first_at(*time).map_or(0.0, &of), digits))
+                .map(|time| to_decimals(course.first_at(*time).map_or(0.0, &of), digits))
                 .collect()
         };
         let data = json!({
-            "times": times.iter().map(|time| rounded(1e3 * time, 4)).collect::<Vec<_>>(),
+            "times": times.iter().map(|time| to_decimals(1e3 * time, 4)).collect::<Vec<_>>(),
             "depth": states(|state| 1e3 * state.depth, 2),
             "speed": states(|state| state.velocity.norm(), 3),
             "most": impact.forces.top(),
@@ -141,12 +141,13 @@ impl Packed {
         };
         let extent = |extent: &Extent| {
             let side = |[from, to]: [f64; 2], zero: f64| {
-                [rounded(1e3 * (from - zero), 3), rounded(1e3 * (to - zero), 3)]
+                [to_decimals(1e3 * (from - zero), 3), to_decimals(1e3 * (to - zero), 3)]
             };
             json!([side(extent.u, zero[0]), side(extent.v, zero[1])])
         };
-        let millimetres =
-            |[u, v]: [f64; 2]| [rounded(1e3 * (u - zero[0]), 2), rounded(1e3 * (v - zero[1]), 2)];
+        let millimetres = |[u, v]: [f64; 2]| {
+            [to_decimals(1e3 * (u - zero[0]), 2), to_decimals(1e3 * (v - zero[1]), 2)]
+        };
         let outline = |body: &Outline| {
             let corners: Vec<_> = body.corners.iter().map(|corner| millimetres(*corner)).collect();
             let near = body.near.is_finite().then(|| self.grid.nearness(body.near));
@@ -155,7 +156,7 @@ impl Packed {
         let bodies = |scene: &Scene| scene.bodies.iter().map(outline).collect::<Vec<_>>();
         let force = |force: &crate::scene::Force| {
             let [u, v] = millimetres(force.at);
-            json!([u, v, rounded(force.newton[0], 4), rounded(force.newton[1], 4)])
+            json!([u, v, to_decimals(force.newton[0], 4), to_decimals(force.newton[1], 4)])
         };
         let forces = |scene: &Scene| scene.forces.iter().map(force).collect::<Vec<_>>();
         let paths = self.scenes.last().map_or(Vec::new(), |last| {
@@ -298,7 +299,7 @@ fn zigzag(now: u16, before: u16) -> u16 {
     ((change << 1) ^ (change >> 15)) as u16
 }
 
-fn rounded(value: f64, digits: i32) -> f64 {
+fn to_decimals(value: f64, digits: i32) -> f64 {
     let scale = libm::pow(10.0, f64::from(digits));
     (value * scale).round() / scale
 }

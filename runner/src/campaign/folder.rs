@@ -119,7 +119,7 @@ impl Folder {
         }
         fs::create_dir_all(&self.path).map_err(|source| failed("make", &self.path, source))?;
         let held = self.hold()?;
-        self.write(PLAN, &pretty(plan))?;
+        self.write(PLAN, &pretty(plan, &self.path.join(PLAN))?)?;
         Ok(held)
     }
 
@@ -130,8 +130,10 @@ impl Folder {
     fn holds(&self, plan: &Plan) -> Result<(), FolderError> {
         let (file, folder) = (self.path.join(PLAN), self.path.clone());
         match fs::read(&file) {
-            Ok(found) if found == pretty(plan).as_bytes() => Ok(()),
-            Ok(_) => Err(FolderError::OtherPlan { folder }),
+            Ok(found) => match found == pretty(plan, &file)?.as_bytes() {
+                true => Ok(()),
+                false => Err(FolderError::OtherPlan { folder }),
+            },
             Err(error) if error.kind() == ErrorKind::NotFound => {
                 Err(FolderError::NoPlan { folder })
             }
@@ -172,7 +174,8 @@ impl Folder {
         let folder = self.of_point(&done.hash);
         // A point that failed before it began has none yet.
         fs::create_dir_all(&folder).map_err(|source| failed("make", &folder, source))?;
-        write(&folder.join(DONE), &pretty(done))
+        let file = folder.join(DONE);
+        write(&file, &pretty(done, &file)?)
     }
 
     fn hold(&self) -> Result<Held, FolderError> {
@@ -190,9 +193,10 @@ fn failed(action: &'static str, path: &Path, source: io::Error) -> FolderError {
     FolderError::Io { action, path: path.to_owned(), source }
 }
 
-fn pretty(value: &impl Serialize) -> String {
-    let value = serde_json::to_value(value).unwrap_or_default();
-    format!("{value:#}\n")
+/// A value for the file `path`, keys in order.
+fn pretty(value: &impl Serialize, path: &Path) -> Result<String, FolderError> {
+    let value = serde_json::to_value(value).map_err(|error| failed("write", path, error.into()))?;
+    Ok(format!("{value:#}\n"))
 }
 
 /// Writes a file whole or not at all.

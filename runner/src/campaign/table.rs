@@ -1,5 +1,6 @@
 //! The results of a campaign as one table, a row per point.
 
+use engine::units::significant;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::done::Headline;
@@ -176,8 +177,7 @@ impl Varied {
 
 /// `number` to six digits, for a table: what is drawn from a range has all of its sixteen.
 fn six_digits(number: f64) -> String {
-    let rounded = format!("{number:.5e}");
-    rounded.parse::<f64>().map_or(rounded, |number| number.to_string())
+    significant(number, 6).to_string()
 }
 
 /// The number, and the unit if there is one, of a value in TOML.

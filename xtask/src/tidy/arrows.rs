@@ -14,7 +14,7 @@ const ALLOWED: [(&str, &[&str]); 17] = [
     ("resistive", &["engine"]),
     ("intruders", &["engine", "resistive"]),
     ("configs", &["engine", "contact-laws", "resistive", "intruders"]),
-    ("measurements", &["engine", "configs"]),
+    ("measurements", &["engine", "intruders", "configs"]),
     ("plots", &[]),
     ("runner", &["engine", "resistive", "intruders", "configs"]),
     ("exchange", &["engine", "contact-laws", "intruders", "configs", "measurements", "runner"]),

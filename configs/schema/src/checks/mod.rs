@@ -4,7 +4,7 @@ mod grains;
 mod own_effects;
 mod resistive;
 
-use engine::units::{Dimension, format_si};
+use engine::units::{Dimension, format_si, significant};
 
 use crate::diagnostics::{Diagnostic, Span};
 use crate::limits;
@@ -36,24 +36,19 @@ struct Common<'a> {
 
 /// A length to six digits.
 fn metres(value: f64) -> String {
-    format_si(rounded(value, 5), Dimension::LENGTH)
+    format_si(significant(value, 6), Dimension::LENGTH)
 }
 
 /// A time to three digits, which is enough to act on.
 fn seconds(value: f64) -> String {
     let (factor, unit) = match value {
-        v if v < 1e-9 => return format!("{:e} s", rounded(value, 2)),
+        v if v < 1e-9 => return format!("{:e} s", significant(value, 3)),
         v if v < 1e-6 => (1e9, "ns"),
         v if v < 1e-3 => (1e6, "us"),
         v if v < 1.0 => (1e3, "ms"),
         _ => (1.0, "s"),
     };
-    format!("{} {unit}", rounded(value * factor, 2))
-}
-
-/// `value` with so many digits after the first.
-fn rounded(value: f64, digits: usize) -> f64 {
-    format!("{value:.digits$e}").parse().unwrap_or(value)
+    format!("{} {unit}", significant(value * factor, 3))
 }
 
 impl Common<'_> {

@@ -1,10 +1,10 @@
 //! Whether the formulas of a model's user-defined effects are forces in the states that its impacts pass.
 
 use engine::math::Vec3;
-use engine::units::{Dimension, format_si};
+use engine::units::{Dimension, format_si, significant};
 use resistive::{Approach, Effect, Motion, OwnEffect, State};
 
-use super::{Common, rounded};
+use super::Common;
 use crate::diagnostics::Diagnostic;
 use crate::limits;
 use crate::model::{Condition, ResistiveModel};
@@ -64,8 +64,8 @@ fn fault(
         };
         let approach = Approach { speed: condition.speed, angle: condition.angle_rad };
         if let Err(error) = effect.check(&part.immersion, &motion, impact.bed(), approach) {
-            let depth = format_si(rounded(depth, 5), Dimension::LENGTH);
-            let speed = format_si(rounded(speed, 5), Dimension::SPEED);
+            let depth = format_si(significant(depth, 6), Dimension::LENGTH);
+            let speed = format_si(significant(speed, 6), Dimension::SPEED);
             return Some(format!("at a depth of {depth} and a speed of {speed} it {error}"));
         }
     }

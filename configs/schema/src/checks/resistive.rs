@@ -2,10 +2,10 @@
 
 use engine::grains::Space;
 use engine::params::ParamSpec;
-use engine::units::{Dimension, format_si};
+use engine::units::{Dimension, format_si, significant};
 use resistive::{Expression, Needs};
 
-use super::{Common, own_effects, rounded, seconds};
+use super::{Common, own_effects, seconds};
 use crate::diagnostics::{Diagnostic, Span};
 use crate::limits;
 use crate::model::{AngleTable, Coefficient, ResistiveModel, degrees};
@@ -132,7 +132,7 @@ impl ResistiveChecks<'_> {
         angles: &[(f64, Option<Span>)],
     ) {
         if let Some((angle, place)) = angles.iter().find(|(angle, _)| !table.covers(*angle)) {
-            let value = rounded(table.at(*angle), 5);
+            let value = significant(table.at(*angle), 6);
             self.common.reader.report(
                 Diagnostic::warning(format!(
                     "an impact lies outside of the table of `{}`",
@@ -174,7 +174,7 @@ impl ResistiveChecks<'_> {
                             span,
                             format!(
                                 "gives {} at {} deg{at_depth}",
-                                rounded(value, 5),
+                                significant(value, 6),
                                 degrees(*angle)
                             ),
                         )

@@ -1,9 +1,9 @@
 //! Own effects in the text of a model: a candidate becomes a part of it, amplitudes get new values.
 
-use engine::units;
+use engine::units::{self, significant};
 use toml_edit::{ArrayOfTables, DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
-use super::{AddedEffect, EditError, name_of, replace, tidy};
+use super::{AddedEffect, DIGITS, EditError, name_of, replace};
 
 /// What says in `name` that an effect is a formula.
 pub(super) const EXPRESSION: &str = "expression";
@@ -72,7 +72,7 @@ pub(super) fn set_value(effect: &mut dyn TableLike, key: &str, si: f64) -> Optio
     if let Some(there) = own.get_mut("value").and_then(Item::as_value_mut) {
         return replace(there, None, value);
     }
-    own.insert("value", toml_edit::value(tidy(value)));
+    own.insert("value", toml_edit::value(significant(value, DIGITS)));
     if let Some(inline) = parameter.as_inline_table_mut() {
         // The blank before the closing brace stood behind what was last.
         inline.fmt();
