@@ -57,7 +57,7 @@ pub(crate) struct Tables {
     /// Level of the undisturbed surface on the axis of the table, such as 18.4cm or 812px; without it, from the contacts.
     #[arg(long, value_name = "LEVEL", allow_hyphen_values = true)]
     pub(crate) surface: Option<String>,
-    /// The point of the body that was tracked: lowest or centre. It matters where --surface is given.
+    /// The point of the body that was tracked: lowest or centre. It matters where --surface is given, and for bodies of several sizes.
     #[arg(long, value_name = "POINT")]
     pub(crate) tracked: Option<String>,
     /// The axis counts upward. Without it and --down, the fall tells.

@@ -3,7 +3,7 @@
 use super::contradiction::Contradiction;
 use super::document::Document;
 use super::findings::Findings;
-use super::{Kind, MeasurementSet, confounded, magnitudes, ranges, signs};
+use super::{Kind, MeasurementSet, confounded, contradicted, magnitudes, ranges, signs};
 
 impl MeasurementSet {
     /// Whether the set states the error of any number that it compares: of readings, if it has
@@ -40,7 +40,12 @@ pub(super) fn check(
         Some(curve) => (curve.check)(set, written, findings),
         None => {
             signs::check(set, written, findings);
-            magnitudes::check(set, &document.places, findings)
+            let contradictions = magnitudes::check(set, &document.places, findings);
+            // In another unit everything contradicts everything.
+            if contradictions.is_empty() {
+                contradicted::check(set, &document.places, findings);
+            }
+            contradictions
         }
     };
     if !document.is_exported {

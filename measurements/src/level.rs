@@ -49,11 +49,7 @@ pub enum Levels {
 /// Levels (m) of `runs`: the depths of free fall at contact, on their common scale. `None` without runs.
 #[must_use]
 pub fn levels(runs: &[&Departure]) -> Option<Levels> {
-    let mut forms: Vec<usize> = runs.first()?.trials.iter().map(|trial| trial.form).collect();
-    forms.sort_unstable();
-    forms.dedup();
-    let curves: Vec<Vec<Curve>> =
-        forms.iter().map(|form| runs.iter().map(|run| Curve::of(run, *form)).collect()).collect();
+    let curves = curves(runs)?;
     let (together, least_misfit) = together(runs, &curves);
     let alone: Vec<Vec<Posterior>> =
         curves.iter().map(|own| own.iter().map(Curve::alone).collect()).collect();
@@ -72,6 +68,21 @@ pub fn levels(runs: &[&Departure]) -> Option<Levels> {
     let (levels, shared): (Vec<Reading>, Vec<f64>) = (0..runs.len()).map(of_run).unzip();
     let shared = libm::sqrt(shared.iter().map(|one| one * one).sum::<f64>() / runs.len() as f64);
     Some(Levels::Each { levels, shared })
+}
+
+/// Least chi-squared of one level for all `runs`. `None` without runs.
+#[must_use]
+pub fn misfit_of_one_level(runs: &[&Departure]) -> Option<f64> {
+    Some(together(runs, &curves(runs)?).1)
+}
+
+/// By form, the curve of each run.
+fn curves(runs: &[&Departure]) -> Option<Vec<Vec<Curve>>> {
+    let mut forms: Vec<usize> = runs.first()?.trials.iter().map(|trial| trial.form).collect();
+    forms.sort_unstable();
+    forms.dedup();
+    let of_form = |form: &usize| runs.iter().map(|run| Curve::of(run, *form)).collect();
+    Some(forms.iter().map(of_form).collect())
 }
 
 /// Levels of runs for one form, if levels scatter between runs as much as `alone`, those of each run alone, say (Paule & Mandel

@@ -1,6 +1,9 @@
 //! Magnitudes that no impact has, and the factor that they look like.
 
+use std::ops::RangeInclusive;
+
 use configs::Diagnostic;
+use engine::units::significant;
 
 use super::conditions::ConditionPlaces;
 use super::contradiction::{Contradiction, ContradictionKind};
@@ -28,8 +31,11 @@ const LARGEST: f64 = 10.0;
 const NEAR: f64 = 1.7;
 /// Bulk density (kg/m³) below which a bed is of no known grains; of aerogel and foam beads it is 10 or more.
 const LIGHTEST: f64 = 8.0;
-/// How far from its rate the frames of a camera may be.
-const RATE: f64 = 3.0;
+/// Least and greatest step between readings, in those of the camera: frames may be left out, and none are added.
+const STEPS: RangeInclusive<f64> = 0.8..=3.0;
+
+/// Ratio of rates from which one is in another unit.
+const RATE_OF_A_UNIT: f64 = 5.0;
 
 /// Factors between units of length that are taken for each other.
 const LENGTHS: &[(f64, &str)] = &[
@@ -206,11 +212,15 @@ fn check_rate(set: &MeasurementSet, findings: &mut Findings) {
     let pairs = set.runs.iter().flat_map(|run| run.frames.windows(2));
     let Some(step) = median::median(pairs.map(|pair| pair[1].t - pair[0].t)) else { return };
     let ratio = step * rate;
-    if !(1.0 / RATE..=RATE).contains(&ratio) {
-        let factor = nearest(ratio.max(1.0 / ratio), TIMES);
+    if !STEPS.contains(&ratio) {
+        let factor = ratio.max(1.0 / ratio);
+        let factor = match factor < RATE_OF_A_UNIT {
+            true => format!("the readings are {} per second", significant(1.0 / step, 4)),
+            false => format!("it looks like {}", nearest(factor, TIMES)),
+        };
         findings.warn(
             Diagnostic::warning(format!("a step of {step} s between readings is not 1/rate_hz"))
-                .help(format!("rate_hz = {rate}; it looks like {factor}")),
+                .help(format!("rate_hz = {rate}; {factor}")),
         );
     }
 }

@@ -33,7 +33,7 @@ pub(super) fn check(set: &MeasurementSet, (places, columns): Written<'_>, findin
         );
     }
     let range = against(set, |run, condition| {
-        let forward = condition.speed * cosine(condition) > 0.05 * condition.speed;
+        let forward = condition.speed > 0.0 && cosine(condition) > STEEPEST;
         let ways = [travel(run, |frame| frame.x), run.final_x];
         forward.then(|| least(ways, condition)).flatten()
     });
@@ -46,8 +46,46 @@ pub(super) fn check(set: &MeasurementSet, (places, columns): Written<'_>, findin
                     columns.turned("x", "m")
                 )),
         );
+    } else if let Some((first, names)) = mirrored(set) {
+        findings.report(
+            Diagnostic::error(format!(
+                "the intruder goes backwards in {names}, as far as it goes forward in others"
+            ))
+            .at(places[first].angle, "an oblique impact: x counts along its motion")
+            .help(
+                "does x count the other way in them? then turn the sign of their x in the tables",
+            ),
+        );
     }
     check_angles(set, places, findings);
+}
+
+/// Names of the runs that go backwards from the start on, nearly as far as the runs of their condition usually go, and the
+/// condition of the first.
+fn mirrored(set: &MeasurementSet) -> Option<(usize, String)> {
+    let way = |run: &Run| {
+        let condition = &set.conditions[run.condition];
+        let is_oblique = cosine(condition) > STEEPEST;
+        travel(run, |frame| frame.x)
+            .filter(|way| is_oblique && way.abs() >= SHORTEST * condition.diameter)
+    };
+    let usual = |condition: usize| {
+        let own = set.runs.iter().filter(|run| run.condition == condition);
+        median(own.filter_map(way).map(f64::abs))
+    };
+    let goes_back = |run: &&Run| {
+        let starts_so = Start::of(run).is_some_and(|start| start.dx < 0.0);
+        starts_so
+            && way(run).zip(usual(run.condition)).is_some_and(|(way, usual)| way < -0.5 * usual)
+    };
+    let all: Vec<&Run> = set.runs.iter().filter(goes_back).collect();
+    let names = all.iter().take(LISTED).map(|run| format!("`{}`", shorten(&run.name)));
+    let names = names.collect::<Vec<_>>().join(", ");
+    let more = match all.len().saturating_sub(LISTED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    Some((all.first()?.condition, format!("{names}{more}")))
 }
 
 /// Refuses angles that the trajectories have to the vertical.
@@ -100,7 +138,10 @@ fn check_angles(set: &MeasurementSet, places: &[ConditionPlaces], findings: &mut
     );
 }
 
-/// Most conditions whose angles a message lists.
+/// Cosine of the steepest angle of an impact that goes forward clearly.
+const STEEPEST: f64 = 0.05;
+
+/// Most runs, or conditions whose angles a message lists.
 const LISTED: usize = 4;
 
 /// Angles differ if they do by so many degrees,

@@ -15,7 +15,9 @@ use super::motion::System;
 use super::observe::{Observer, Stretch};
 use super::solver::{Plan, Solver, Tolerance};
 use super::{ResistanceLaw, Surroundings};
-use margin::{Before, COMPONENTS, FORWARD, Fired, PER_PART, SINKING, SLOW, SLOWING, STOPPING, SURFACE};
+use margin::{
+    Before, COMPONENTS, FORWARD, Fired, PER_PART, SINKING, SLOW, SLOWING, STOPPING, SURFACE,
+};
 
 /// Below this share of √(gD) a component of the velocity is what the integration has left of zero.
 const STILL: f64 = 1e-6;

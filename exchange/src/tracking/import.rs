@@ -19,7 +19,7 @@ use super::settings::{Settings, Tracked};
 use super::surface::{self, Level, Seen};
 use super::tilt::{Flight, tilt, turned_back};
 use super::track::deviation;
-use super::{import_file, inputs, written};
+use super::{falls, import_file, inputs, written};
 
 /// Reads `paths` under `options` into the set that is to stand in the folder `out`.
 ///
@@ -39,13 +39,15 @@ pub fn import(paths: &[PathBuf], options: &Options, out: &File) -> Result<Set, T
     let (tracks, hashes) = tracks(&paths, &settings)?;
     let begun = begin(tracks, &bodies, &settings)?;
     let mut told = told(&begun);
-    told.extend(off_gravity(&begun, &settings));
+    told.extend(falls::off_gravity(&begun, &settings));
+    told.extend(falls::of_axes(&begun));
     told.extend(of_one_body(&begun));
     let Finished { runs, understood, level, tilt, grouping, told: seen } =
         finish(begun, &settings)?;
     told.extend(seen);
     told.extend(tilt.map(of_tilt));
     told.extend(conditions::of_other_depths(&runs, &grouping));
+    told.extend(falls::off_their_names(&runs, settings.gravity));
     let mut notes = notes(&runs, &level, &grouping.manner, &settings);
     notes.append(&mut told);
     let known = written::Known { options, settings: &settings, level: &level, runs: &runs, out };
@@ -111,6 +113,22 @@ fn of_one_body(begun: &[Begun]) -> Option<String> {
     })
 }
 
+/// A note about the point of bodies of several sizes that was tracked, if contacts show it.
+fn of_the_point(tracked: Option<Tracked>) -> String {
+    match tracked {
+        Some(point) => {
+            let point = if point == Tracked::Centre { "centre" } else { "lowest point" };
+            format!(
+                "Bodies differ in size, and their contacts are at one level if their {point} was tracked, as is assumed here. \
+                 --tracked lowest or --tracked centre says it."
+            )
+        }
+        None => "Warning: bodies differ in size, and their contacts do not show which point was tracked: the lowest is assumed. \
+                 Say --tracked lowest or --tracked centre."
+            .to_owned(),
+    }
+}
+
 /// A note about a camera that was not level.
 fn of_tilt(tilt: Reading) -> String {
     let [angle, se] = [tilt.value, tilt.se].map(|one| one.abs().to_degrees());
@@ -118,34 +136,6 @@ fn of_tilt(tilt: Reading) -> String {
         "The camera is tilted by {angle:.2} ± {se:.2} deg: before contact the bodies accelerate sideways in its picture. The paths \
          are turned back around their contacts."
     )
-}
-
-/// A warning if the acceleration before contact clearly differs from gravity.
-fn off_gravity(begun: &[Begun], settings: &Settings<'_>) -> Option<String> {
-    /// Least relative difference, and least difference in standard errors.
-    const CLEAR: (f64, f64) = (0.04, 4.0);
-    let paths: Vec<Path> = begun.iter().map(|one| one.path.clone()).collect();
-    let mut falls: Vec<Reading> = Vec::new();
-    for path in &paths {
-        let scales = path.scales(&paths, settings).ok()?;
-        falls.push(scales.fall(path)?);
-    }
-    falls.retain(|fall| fall.se > 0.0 && fall.se.is_finite());
-    let weight = |fall: &Reading| fall.se.powi(-2);
-    let weights: f64 = falls.iter().map(weight).sum();
-    let mean = falls.iter().map(|fall| weight(fall) * fall.value).sum::<f64>() / weights;
-    // Clocks that are not even scatter the accelerations by more than their errors.
-    let misfit: f64 = falls.iter().map(|fall| weight(fall) * (fall.value - mean).powi(2)).sum();
-    let excess = (misfit / (falls.len() as f64 - 1.0).max(1.0)).max(1.0);
-    let se = (excess / weights).sqrt();
-    let off = (mean - settings.gravity).abs();
-    (off > (CLEAR.0 * settings.gravity).max(CLEAR.1 * se)).then(|| {
-        format!(
-            "Warning: before contact the bodies fall at {mean:.2} ± {se:.2} m/s^2, not at {}: are the scale, the unit and \
-             the frame rate right? A guide or air brakes too; speeds and depths are as the table has them.",
-            settings.gravity
-        )
-    })
 }
 
 /// One run as its picture shows it.
@@ -198,10 +188,15 @@ fn finish(begun: Vec<Begun>, settings: &Settings<'_>) -> Result<Finished, Vec<Fa
         sights = see_all(&begun, (&paths, &turns), settings)?;
     }
     let seen: Vec<Seen> = sights.iter().map(|sight| sight.seen.clone()).collect();
-    let (level, touches) = surface::touches(&seen, settings.gravity)?;
+    let point = settings.tracked.or_else(|| surface::tracked_point(&seen));
+    let (level, touches) =
+        surface::touches(&seen, settings.gravity, point.unwrap_or(Tracked::Lowest))?;
     let mut runs = Vec::with_capacity(begun.len());
     let mut understood = Vec::with_capacity(begun.len());
-    let mut told = Vec::new();
+    let mut told: Vec<String> = Vec::new();
+    if settings.tracked.is_none() && surface::depends_on_the_point(&seen) {
+        told.push(of_the_point(point));
+    }
     for (begun, (sight, touch)) in begun.into_iter().zip(sights.iter().zip(touches)) {
         let Sight { seen, scales, frames, noise, lost } = sight;
         told.extend(lost.clone());
@@ -282,9 +277,8 @@ fn see(
     refuse_far(&of_the_body, one, &scales)?;
     let below_centre = one.body.below_centre();
     let lift = match (settings.tracked, below_centre, settings.text("surface")) {
-        (Tracked::Lowest, ..) | (_, _, None) => 0.0,
-        (Tracked::Centre, Some(below), _) => below,
-        (Tracked::Centre, None, _) => {
+        (Some(Tracked::Centre), Some(below), Some(_)) => below,
+        (Some(Tracked::Centre), None, Some(_)) => {
             let what =
                 format!("how far the lowest point of a {shape} is below its centre is not known");
             return Err(Fault::new(
@@ -293,6 +287,7 @@ fn see(
                 "give the level of the tracked point at contact, or leave --surface out",
             ));
         }
+        _ => 0.0,
     };
     let stated = settings.position("surface", &one.labels)?;
     let stated = stated.map(|level| one.path.sign * level - lift);

@@ -16,6 +16,7 @@ mod called;
 mod conditions;
 mod density;
 mod even;
+mod falls;
 mod fault;
 mod grid;
 mod heading;

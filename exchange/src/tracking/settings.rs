@@ -50,7 +50,8 @@ pub(super) struct Settings<'a> {
     pub(super) rate: Option<f64>,
     /// 1 where the axis counts downward, -1 upward.
     pub(super) sign: Option<f64>,
-    pub(super) tracked: Tracked,
+    /// `None` where the user does not say it.
+    pub(super) tracked: Option<Tracked>,
     pub(super) pattern: Option<Pattern>,
     pub(super) length_unit: Option<Unit>,
     pub(super) time_unit: Option<Unit>,
@@ -86,10 +87,9 @@ impl<'a> Settings<'a> {
             found
         };
         let sign = word("counts", &["up", "down"]).map(|way| if way == "up" { -1.0 } else { 1.0 });
-        let tracked = match word("tracked", &["lowest", "centre"]) {
-            Some("centre") => Tracked::Centre,
-            _ => Tracked::Lowest,
-        };
+        let tracked = word("tracked", &["lowest", "centre"]);
+        let tracked =
+            tracked.map(|at| if at == "centre" { Tracked::Centre } else { Tracked::Lowest });
         if let Some(asked) = options.get("shape").filter(|asked| shape_of(asked).is_none()) {
             faults.push(Fault::new("--shape", format!("\"{asked}\" is not known"), known()));
         }

@@ -1,8 +1,9 @@
 //! The level of the surface on the axes of the tables, and with it contact time and speed of each run.
 
-use measurements::{Contact, Departure, Levels, Reading, levels};
+use measurements::{Contact, Departure, Levels, Reading, levels, misfit_of_one_level};
 
 use super::fault::Fault;
+use super::settings::Tracked;
 
 /// A stated level is not where the contact is if it misses that by more than this distance (m) and this many standard errors.
 const OFF: (f64, f64) = (1e-3, 3.5);
@@ -58,11 +59,21 @@ pub(super) enum Level {
     Own(f64),
 }
 
-/// The contacts of runs under `gravity` (m/s²).
+/// Chi-squared by which one level of all runs is the better for one tracked point of bodies than for another.
+const CLEARLY: f64 = 9.0;
+
+/// Least difference (m) between bodies by which the point that was tracked matters.
+const UNLIKE: f64 = 1e-4;
+
+/// The contacts of runs under `gravity` (m/s²), `tracked` at this point of their bodies.
 ///
 /// # Errors
 /// If a level is stated that the contact is not at.
-pub(super) fn touches(runs: &[Seen], gravity: f64) -> Result<(Level, Vec<Touch>), Vec<Fault>> {
+pub(super) fn touches(
+    runs: &[Seen],
+    gravity: f64,
+    tracked: Tracked,
+) -> Result<(Level, Vec<Touch>), Vec<Fault>> {
     let is_stated = runs.iter().all(|run| run.stated.is_some());
     if is_stated {
         let error = error_of_stated(runs)?;
@@ -73,9 +84,12 @@ pub(super) fn touches(runs: &[Seen], gravity: f64) -> Result<(Level, Vec<Touch>)
         };
         return Ok((Level::Stated(error), runs.iter().map(at).collect()));
     }
-    let departures: Vec<&Departure> = runs.iter().map(|run| &run.departure).collect();
-    let at = |run: &Seen, level: Reading| Touch::at(&run.departure.contact, level, gravity);
-    Ok(match levels(&departures) {
+    let at = |run: &Seen, surface: Reading| {
+        let level = Reading { value: surface.value + run.depth_of(tracked), ..surface };
+        Touch::at(&run.departure.contact, level, gravity)
+    };
+    let departures = of_the_lowest_point(runs, tracked);
+    Ok(match levels(&departures.iter().collect::<Vec<_>>()) {
         Some(Levels::One(level)) => {
             let level = Reading { se: level.se.max(LEAST), ..level };
             (Level::Common(level), runs.iter().map(|run| at(run, level)).collect())
@@ -89,6 +103,47 @@ pub(super) fn touches(runs: &[Seen], gravity: f64) -> Result<(Level, Vec<Touch>)
         }
         None => (Level::Stated(STATED), Vec::new()),
     })
+}
+
+impl Seen {
+    /// How deep the point that was tracked is when the body touches a surface at zero (m).
+    fn depth_of(&self, tracked: Tracked) -> f64 {
+        match tracked {
+            Tracked::Lowest => 0.0,
+            Tracked::Centre => -self.below_centre.unwrap_or(0.0),
+        }
+    }
+}
+
+/// How the lowest points of `runs` depart, which were `tracked` there.
+fn of_the_lowest_point(runs: &[Seen], tracked: Tracked) -> Vec<Departure> {
+    runs.iter().map(|run| run.departure.below(run.depth_of(tracked))).collect()
+}
+
+/// Whether the level of `runs` depends on the point of their bodies that was tracked.
+pub(super) fn depends_on_the_point(runs: &[Seen]) -> bool {
+    let below = || runs.iter().filter_map(|run| run.below_centre);
+    let [least, most] = [f64::min, f64::max].map(|end| below().reduce(end).unwrap_or_default());
+    most - least >= UNLIKE
+        && below().count() == runs.len()
+        && runs.iter().all(|run| run.stated.is_none())
+}
+
+/// The point of bodies of several sizes that was tracked, if only by this one the surface has one level; `None` where levels
+/// do not tell.
+pub(super) fn tracked_point(runs: &[Seen]) -> Option<Tracked> {
+    if !depends_on_the_point(runs) {
+        return None;
+    }
+    let misfit = |tracked: Tracked| {
+        misfit_of_one_level(&of_the_lowest_point(runs, tracked).iter().collect::<Vec<_>>())
+    };
+    let better = misfit(Tracked::Lowest)? - misfit(Tracked::Centre)?;
+    match better.abs() < CLEARLY {
+        true => None,
+        false if better > 0.0 => Some(Tracked::Centre),
+        false => Some(Tracked::Lowest),
+    }
 }
 
 impl Touch {

@@ -5,6 +5,7 @@ mod formats;
 mod groups;
 mod irregular;
 mod layouts;
+mod odd_one_out;
 mod programs;
 mod refusals;
 mod statements;

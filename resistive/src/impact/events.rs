@@ -5,8 +5,8 @@ use super::super::modes::{AXES, Modes};
 use super::super::motion::System;
 use super::super::solver::Solver;
 use super::margin::{
-    Before, COMPONENTS, FORWARD, Fired, Margins, N_MARGINS, PER_PART, SINKING, SLOW, SLOWING, STOPPING,
-    SURFACE,
+    Before, COMPONENTS, FORWARD, Fired, Margins, N_MARGINS, PER_PART, SINKING, SLOW, SLOWING,
+    STOPPING, SURFACE,
 };
 use super::{Impact, Progress, State};
 use engine::math::Vec3;
@@ -39,7 +39,8 @@ impl Impact {
         let speed = speed_along(&first.velocity, modes);
         for index in 0..self.assembly.n_parts() {
             let part = if index == 0 { first } else { self.assembly.part(index, state) };
-            let (own, stop) = (&mut margins[PER_PART * index..][..PER_PART], &progress.parts[index]);
+            let (own, stop) =
+                (&mut margins[PER_PART * index..][..PER_PART], &progress.parts[index]);
             let depth = part.immersion.depth;
             own[SURFACE] = if modes.in_bed[index] { depth } else { -depth };
             if stop.contact.is_some() && stop.vertical.is_none() {

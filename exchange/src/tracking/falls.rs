@@ -1,0 +1,140 @@
+//! The acceleration before contact, against gravity.
+
+use measurements::{Reading, median};
+
+use super::begun::Begun;
+use super::motion::Path;
+use super::run::Run;
+use super::settings::Settings;
+
+/// Least difference from gravity that is told, relative, and in standard errors.
+const CLEAR: (f64, f64) = (0.04, 4.0);
+
+/// Median of the size of a normal number of variance 1.
+const MIDDLE: f64 = 0.6745;
+
+/// Most runs that are named.
+const LISTED: usize = 4;
+
+/// A warning if bodies, or those of some runs, clearly fall otherwise than under gravity.
+pub(super) fn off_gravity(begun: &[Begun], settings: &Settings<'_>) -> Option<String> {
+    let paths: Vec<Path> = begun.iter().map(|one| one.path.clone()).collect();
+    let mut falls: Vec<(&str, Reading)> = Vec::new();
+    for (path, one) in paths.iter().zip(begun) {
+        let scales = path.scales(&paths, settings).ok()?;
+        // A run that shows no fall says nothing against the others.
+        let fall = scales.fall(path).filter(|fall| fall.se > 0.0 && fall.se.is_finite());
+        falls.extend(fall.map(|fall| (one.name.as_str(), fall)));
+    }
+    let weight = |fall: &Reading| fall.se.powi(-2);
+    let weights: f64 = falls.iter().map(|(_, fall)| weight(fall)).sum();
+    let mean = falls.iter().map(|(_, fall)| weight(fall) * fall.value).sum::<f64>() / weights;
+    // Clocks that are not even scatter the accelerations by more than their errors.
+    let misfit: f64 =
+        falls.iter().map(|(_, fall)| weight(fall) * (fall.value - mean).powi(2)).sum();
+    let excess = (misfit / (falls.len() as f64 - 1.0).max(1.0)).max(1.0);
+    let all = Reading { value: mean, se: (excess / weights).sqrt() };
+    let question = "are the scale, the unit and the frame rate right? A guide or air brakes too; speeds and depths are as the \
+                    table has them.";
+    let gravity = settings.gravity;
+    if is_off(all, gravity) {
+        let Reading { value, se } = all;
+        return Some(format!(
+            "Warning: before contact the bodies fall at {value:.2} \u{b1} {se:.2} m/s^2, not at {gravity}: {question}"
+        ));
+    }
+    let usual = median(falls.iter().map(|(_, fall)| fall.value))?;
+    let scatter =
+        median(falls.iter().map(|(_, fall)| (fall.value - usual).abs() / fall.se))? / MIDDLE;
+    let own = |fall: &Reading| Reading { se: fall.se * scatter.max(1.0), ..*fall };
+    let off: Vec<&(&str, Reading)> =
+        falls.iter().filter(|(_, fall)| is_off(own(fall), gravity)).collect();
+    let named = off.iter().take(LISTED).map(|(name, fall)| format!("{name} ({:.2})", fall.value));
+    let named = named.collect::<Vec<_>>().join(", ");
+    let more = match off.len().saturating_sub(LISTED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    (!off.is_empty()).then(|| {
+        format!(
+            "Warning: before contact the bodies of {named}{more} fall otherwise than at {gravity} m/s^2, as the others do: {question}"
+        )
+    })
+}
+
+/// Fewest runs and heights by which names and speeds are compared.
+const FEWEST: (usize, usize) = (5, 3);
+
+/// Relative differences of heights that are one height, and that are two.
+const SAME: f64 = 0.15;
+const OTHER: f64 = 0.3;
+
+/// A warning if `runs` are named by heights, as `h050`, and some do not come as fast as from theirs.
+pub(super) fn off_their_names(runs: &[Run], gravity: f64) -> Option<String> {
+    let of = |run: &Run| {
+        let named = height_in(&run.name)?;
+        let fallen = run.speed.value.powi(2) / (2.0 * gravity);
+        Some((run.name.clone(), named, fallen / named))
+    };
+    let all: Vec<(String, f64, f64)> = runs.iter().filter_map(of).collect();
+    let mut heights: Vec<f64> = all.iter().map(|one| one.1).collect();
+    heights.sort_by(f64::total_cmp);
+    heights.dedup_by(|a, b| (*a / *b - 1.0).abs() < SAME);
+    if all.len() < FEWEST.0 || all.len() < runs.len() || heights.len() < FEWEST.1 {
+        return None;
+    }
+    // Of what unit the numbers are does not matter.
+    let unit = median(all.iter().map(|one| one.2))?;
+    let off = |one: &(String, f64, f64)| (one.2 / unit - 1.0).abs();
+    let as_named = all.iter().filter(|one| off(one) < SAME).count();
+    let others: Vec<_> = all.iter().filter(|one| off(one) > OTHER).collect();
+    if 3 * as_named < all.len() || as_named + others.len() < all.len() || others.is_empty() {
+        return None;
+    }
+    let named = others
+        .iter()
+        .take(LISTED)
+        .map(|(name, height, ratio)| format!("{name} (from {:.0})", height * ratio / unit));
+    let named = named.collect::<Vec<_>>().join(", ");
+    let more = match others.len().saturating_sub(LISTED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    Some(format!(
+        "Warning: by their speeds these do not fall from the heights in their names, as the others do: {named}{more}. Are names \
+         exchanged?"
+    ))
+}
+
+/// The number behind an `h` that stands alone in `name`.
+fn height_in(name: &str) -> Option<f64> {
+    let words = name.split(|c: char| !c.is_alphanumeric() && c != '.');
+    let mut heights = words.filter_map(|word| {
+        let rest = word.strip_prefix(['h', 'H'])?;
+        let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
+        rest[..end].parse::<f64>().ok().filter(|height| *height > 0.0)
+    });
+    heights.next()
+}
+
+/// A warning if the axis counts the other way in a few tables than in most.
+pub(super) fn of_axes(begun: &[Begun]) -> Option<String> {
+    let (upward, downward): (Vec<&Begun>, Vec<&Begun>) =
+        begun.iter().partition(|one| one.path.sign < 0.0);
+    let (few, many, way, others) = match upward.len() < downward.len() {
+        true => (upward, downward, "upward", "downward"),
+        false => (downward, upward, "downward", "upward"),
+    };
+    let names: Vec<&str> = few.iter().take(LISTED).map(|one| one.name.as_str()).collect();
+    (!few.is_empty() && 3 * few.len() <= many.len()).then(|| {
+        format!(
+            "Warning: the axis counts {way} in {}{}, and {others} in the others: do their levels have one zero?",
+            names.join(", "),
+            if few.len() > LISTED { " and more" } else { "" }
+        )
+    })
+}
+
+fn is_off(fall: Reading, gravity: f64) -> bool {
+    (fall.value - gravity).abs() > (CLEAR.0 * gravity).max(CLEAR.1 * fall.se)
+}
