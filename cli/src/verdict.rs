@@ -4,7 +4,7 @@ use diagnosis::bench::Bench;
 use diagnosis::calibrate::Calibration;
 use diagnosis::held_out::{Fails, LeftOut};
 use diagnosis::missing_force::MissingForce;
-use diagnosis::verdict::{Diagnosis, RankedEffect, Status};
+use diagnosis::verdict::{Diagnosis, RankedEffect, Status, Verdict};
 use diagnosis::where_it_fails::{WhereItFails, files_of};
 use reports::tables;
 use serde_json::Value;
@@ -74,7 +74,7 @@ pub(crate) fn as_text(
     for warning in &diagnosis.warnings {
         text.push_str(&format!("warning: {warning}\n"));
     }
-    text.push_str(&apparatus(object));
+    text.push_str(&apparatus(diagnosis.verdict, object));
     if !diagnosis.unexplained.hint.is_empty() {
         text.push_str(&format!("{}.\n", diagnosis.unexplained.hint));
     }
@@ -148,7 +148,7 @@ fn ranking(diagnosis: &Diagnosis, object: &Value) -> String {
 }
 
 /// Errors of the apparatus that are seen, whether they are larger than expected or not.
-fn apparatus(object: &Value) -> String {
+fn apparatus(verdict: Verdict, object: &Value) -> String {
     let shared = |key: &str, name: &str| {
         let seen = seen(&object[key]);
         match seen.is_empty() {
@@ -156,8 +156,8 @@ fn apparatus(object: &Value) -> String {
             false => format!("{name}: {}; no effect is credited with these.\n", seen.join(", ")),
         }
     };
-    let apparatus = match object["verdict"].as_str() {
-        Some("none-of-the-candidates" | "below-noise") => {
+    let apparatus = match verdict {
+        Verdict::NoneOfTheCandidates | Verdict::BelowNoise => {
             "Apparatus, as a model has it that misses the data"
         }
         _ => "Apparatus",

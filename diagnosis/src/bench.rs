@@ -23,7 +23,7 @@ const ROUNDS: usize = 3;
 const CONDITIONS: usize = 6;
 
 /// Largest scatter of coefficients between conditions, in standard deviations of what is known beforehand.
-const MOST_BETWEEN: f64 = 4.0;
+pub(crate) const MOST_BETWEEN: f64 = 4.0;
 
 /// The same of angles: a launcher is set to a degree, and a force across the motion turns paths by several.
 const MOST_OF_ANGLES: f64 = 2.0;

@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rand::RngExt;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::bench::{Bench, BenchError, DEFAULT_SEED, Fitted};
 use crate::error_unit::Unit;
@@ -72,13 +72,24 @@ pub enum Fails {
 }
 
 /// Which conditions were left out of a fit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LeftOut {
     /// Those that the set holds out.
     Holdout,
     /// Each in turn, since the set holds out none.
     OneAtATime,
+}
+
+impl LeftOut {
+    /// What an error is of that is called held out.
+    #[must_use]
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::Holdout => "held-out conditions",
+            Self::OneAtATime => "conditions left out one at a time",
+        }
+    }
 }
 
 /// A loss of predictive density beyond this (odds 20 to 1) refutes what is proposed; smaller ones are
@@ -281,8 +292,9 @@ impl HeldOut {
     #[must_use]
     pub(crate) fn in_words(&self) -> Option<String> {
         let (before, after) = (self.in_noise(self.before)?, self.in_noise(self.after)?);
+        let conditions = self.conditions.in_words();
         Some(format!(
-            "held-out conditions are missed by {before:.2} times their noise without it and {after:.2} times with it"
+            "{conditions} are missed by {before:.2} times their noise without it and {after:.2} times with it"
         ))
     }
 
@@ -291,7 +303,10 @@ impl HeldOut {
     pub(crate) fn below(&self) -> Option<String> {
         let before = self.in_noise(self.before)?;
         (self.is_above_noise() == Some(false)).then(|| {
-            format!("held-out conditions are missed by {before:.2} times their noise, and a name needs {CLEAR}")
+            let conditions = self.conditions.in_words();
+            format!(
+                "{conditions} are missed by {before:.2} times their noise, and a name needs {CLEAR}"
+            )
         })
     }
 
@@ -309,12 +324,13 @@ impl HeldOut {
             return Some(format!("{below}: {hides}"));
         }
         (self.is_nearer() == Some(false)).then(|| {
+            let conditions = self.conditions.in_words();
             let bound = self.ratio_at_most.filter(|_| after <= NEARER * before);
             let in_most = bound.map_or_else(String::new, |most| {
                 format!(" in nine of ten choices of the conditions, where {most:.2} are left")
             });
             format!(
-                "with {name}, held-out conditions are missed by {after:.2} times their noise after {before:.2} without it, \
+                "with {name}, {conditions} are missed by {after:.2} times their noise after {before:.2} without it, \
                  and a name needs {NEARER} of the error at most{in_most}: {hides}"
             )
         })

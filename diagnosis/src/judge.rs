@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use measurements::MeasurementSet;
 
 use crate::added_force::added_forces;
-use crate::bench::{Bench, BenchError, Fitted};
+use crate::bench::{Bench, BenchError, Fitted, MOST_BETWEEN};
 use crate::doubts::{doubts, evidence, no_repeats};
 use crate::fit::Fit;
 use crate::fitted_parameters::parameters;
@@ -148,8 +148,10 @@ impl Judge<'_> {
             let hint = format!(
                 "both are needed (each by chance: {by_chance:.1e} at most), or one effect outside the list"
             );
+            let leaves_more = held_out.leaves_more_than_noise() == Some(true);
             let grounds = Grounds { p_lof_with, hint, held_out: Some(held_out), ..grounds };
-            return self.diagnosis(Verdict::Pair, &pair.fitted, grounds);
+            let found = self.diagnosis(Verdict::Pair, &pair.fitted, grounds)?;
+            return Ok(if leaves_more { of_another_form(found) } else { found });
         }
         // What takes nearly all of a clear error is there, in a form that no formula here has, or not alone.
         let is_most = is_judged && self.alike.len() == 1 && held_out.takes_most();
@@ -157,12 +159,12 @@ impl Judge<'_> {
         let is_one_of_many = is_named && self.is_one_of_many(p_leader, &held_out)?;
         if is_named && !is_one_of_many {
             let leaves_more = held_out.leaves_more_than_noise() == Some(true);
-            let mut found = self.one(grounds, held_out)?;
-            if (!adequate(p_leader) || leaves_more) && !found.effects.is_empty() {
-                found.strength_reasons.push(StrengthReason::OfAnotherForm);
-                found.strength = Strength::of(&found.strength_reasons);
-            }
-            return Ok(found);
+            let found = self.one(grounds, held_out)?;
+            let is_of_another_form = !adequate(p_leader) || leaves_more;
+            return Ok(match is_of_another_form && !found.effects.is_empty() {
+                true => of_another_form(found),
+                false => found,
+            });
         }
         if is_one_of_many {
             let hint = format!(
@@ -416,6 +418,14 @@ impl Judge<'_> {
     }
 }
 
+/// `found`, which leaves more than noise.
+fn of_another_form(found: Diagnosis) -> Diagnosis {
+    let mut found = found;
+    found.strength_reasons.push(StrengthReason::OfAnotherForm);
+    found.strength = Strength::of(&found.strength_reasons);
+    found
+}
+
 /// Says that `leader` alone does not explain the data, with the errors on held-out conditions.
 fn explains_a_part(leader: &str, held_out: &HeldOut) -> String {
     let does = match held_out.is_no_nearer() {
@@ -443,8 +453,10 @@ fn warnings(bench: &Bench<'_>, proposed: &Fitted, amplitudes: &[Amplitude]) -> V
     let between = proposed.noise.sessions;
     let differ = (between.gain >= SEEN).then(|| {
         format!(
-            "conditions differ by {:.1} % of their resistance beyond what their repeats show{}: if they are of several \
+            "conditions differ by {}{:.1} % of their resistance beyond what their repeats show{}: if they are of several \
              days or beds, say which in a column `session` of the runs",
+            // The search for it ends there.
+            if between.sd >= 0.99 * MOST_BETWEEN * between.sigma { "at least " } else { "" },
             100.0 * between.sd,
             if proposed.fit.point.effects.is_empty() { ", as a force does that the model lacks" } else { "" }
         )

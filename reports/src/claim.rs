@@ -2,7 +2,10 @@
 
 use diagnosis::diagnose::ALPHA;
 use diagnosis::error_unit::Unit;
+use diagnosis::held_out::LeftOut;
+use diagnosis::verdict::Verdict;
 use plots::sheet::{Anchor, Layer, Mark, Sheet};
+use serde::Deserialize;
 use serde_json::Value;
 
 use crate::about::About;
@@ -14,41 +17,42 @@ use crate::{ReportError, Texts};
 /// What the model lacks, how large that is, and how much better it predicts what was held out.
 pub fn sentence(diagnosis: &Value) -> String {
     let effects = texts(&diagnosis["effects"]);
-    let claim = match diagnosis["verdict"].as_str().unwrap_or_default() {
-        "supported" => {
+    let claim = match verdict_of(diagnosis) {
+        Verdict::Supported => {
             format!(
                 "The model lacks {}{}",
                 explained(diagnosis, &effects).join(", "),
                 sizes(diagnosis)
             )
         }
-        "not-separable" => format!(
+        Verdict::NotSeparable => format!(
             "The model lacks one of {}; these data cannot tell which. The best is {}{}",
             texts(&diagnosis["not_separable"]).join(", "),
             explained(diagnosis, &effects).join(", "),
             sizes(diagnosis)
         ),
-        "pair" => format!(
+        Verdict::Pair => format!(
             "The model lacks {} together, or one effect outside of the list{}",
             explained(diagnosis, &effects).join(" and "),
             sizes(diagnosis)
         ),
-        "none-of-the-candidates" => match best_fit(diagnosis).filter(|_| is_one_of_many(diagnosis))
-        {
-            Some(best) => format!(
-                "The model lacks something: {best} fits best, and a force that is not listed does about as well"
-            ),
-            None => format!("The model lacks something that {}", explained_by_none(diagnosis)),
-        },
-        "nothing-detected" => "Nothing is missing that these data could show".to_owned(),
-        "explained-by-apparatus" => {
+        Verdict::NoneOfTheCandidates => {
+            match best_fit(diagnosis).filter(|_| is_one_of_many(diagnosis)) {
+                Some(best) => format!(
+                    "The model lacks something: {best} fits best, and a force that is not listed does about as well"
+                ),
+                None => format!("The model lacks something that {}", explained_by_none(diagnosis)),
+            }
+        }
+        Verdict::NothingDetected => "Nothing is missing that these data could show".to_owned(),
+        Verdict::ExplainedByApparatus => {
             "Errors of the apparatus explain what the model misses; no effect is needed".to_owned()
         }
-        "explained-by-preparation" => {
+        Verdict::ExplainedByPreparation => {
             "The preparation of the bed explains what the model misses; no effect is needed"
                 .to_owned()
         }
-        "below-noise" => match best_fit(diagnosis) {
+        Verdict::BelowNoise => match best_fit(diagnosis) {
             Some(best) => format!(
                 "The data contradict the model, and {best} fits best, but no effect is named: held-out conditions show too \
                  little of it"
@@ -56,10 +60,12 @@ pub fn sentence(diagnosis: &Value) -> String {
             None => "What the model misses is below what these data can show; no effect is named"
                 .to_owned(),
         },
-        _ => match text(&diagnosis["unexplained"]["hint"]).trim_end_matches('.') {
-            "" => "These data cannot tell what the model lacks".to_owned(),
-            why => format!("There is no verdict: {why}"),
-        },
+        Verdict::CannotTell => {
+            match text(&diagnosis["unexplained"]["hint"]).trim_end_matches('.') {
+                "" => "These data cannot tell what the model lacks".to_owned(),
+                why => format!("There is no verdict: {why}"),
+            }
+        }
     };
     match errors(&diagnosis["holdout"]) {
         Some([before, after, noise]) if !list(&diagnosis["amplitudes"]).is_empty() => {
@@ -88,10 +94,12 @@ pub fn sentence(diagnosis: &Value) -> String {
 
 /// What the errors are of that are called held out.
 pub(crate) fn held_out(diagnosis: &Value) -> &'static str {
-    match diagnosis["holdout"]["conditions"].as_str() {
-        Some("one-at-a-time") => "conditions left out one at a time",
-        _ => "held-out conditions",
-    }
+    LeftOut::deserialize(&diagnosis["holdout"]["conditions"]).unwrap_or(LeftOut::Holdout).in_words()
+}
+
+/// The verdict of a diagnosis; of a file that has none, that it cannot tell.
+pub(crate) fn verdict_of(diagnosis: &Value) -> Verdict {
+    Verdict::deserialize(&diagnosis["verdict"]).unwrap_or(Verdict::CannotTell)
 }
 
 /// That no candidate explains what is missing, and how many could be tested.
@@ -262,7 +270,8 @@ pub fn probability(diagnosis: &Value) -> Option<String> {
     let of = &diagnosis["probability"];
     let share = |key: &str| of[key].as_f64();
     let (Some(nothing), Some(unlisted)) = (share("nothing"), share("unlisted")) else {
-        let is_of_a_law = diagnosis["bed"].is_null() && diagnosis["verdict"] != "cannot-tell";
+        let is_of_a_law =
+            diagnosis["bed"].is_null() && verdict_of(diagnosis) != Verdict::CannotTell;
         return is_of_a_law.then(|| {
             "How often such a verdict is right: `--calibrate` counts in simulated sets of your design.".to_owned()
         });
@@ -271,7 +280,7 @@ pub fn probability(diagnosis: &Value) -> Option<String> {
     // An error of the apparatus counts as a name, except in the benchmark of beds, which hides none.
     let names_nothing = texts(&diagnosis["effects"]).is_empty()
         && (counted_in == Some("bed-benchmark")
-            || diagnosis["verdict"] != "explained-by-apparatus");
+            || verdict_of(diagnosis) != Verdict::ExplainedByApparatus);
     let (sets, more) = match counted_in {
         Some("design") => ("simulated sets of this design with this verdict", ""),
         Some("bed-benchmark") if names_nothing => {

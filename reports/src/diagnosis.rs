@@ -1,5 +1,6 @@
 //! The report of a diagnosis: which effect is missing, what else it could be, and what to measure next.
 
+use diagnosis::verdict::Verdict;
 use serde_json::Value;
 
 use crate::about::About;
@@ -89,7 +90,7 @@ fn verdict(diagnosis: &Value, texts_of: &Texts) -> Result<Vec<Part>, ReportError
     let unexplained = &diagnosis["unexplained"];
     let hint = text(&unexplained["hint"]);
     // Without a verdict the claim has said it.
-    if !hint.is_empty() && diagnosis["verdict"] != "cannot-tell" {
+    if !hint.is_empty() && claim::verdict_of(diagnosis) != Verdict::CannotTell {
         parts.push(Part::Text(sentence(&hint)));
     }
     let depends_on = texts(&unexplained["depends_on"]);

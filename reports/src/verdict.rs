@@ -1,5 +1,6 @@
 //! A verdict, and what it rests on, in words.
 
+use diagnosis::verdict::Verdict;
 use serde_json::Value;
 
 use crate::claim;
@@ -9,30 +10,33 @@ use crate::numbers::{text, texts};
 #[must_use]
 pub fn verdict_in_words(diagnosis: &Value) -> String {
     let effects = texts(&diagnosis["effects"]);
-    match diagnosis["verdict"].as_str().unwrap_or_default() {
-        "nothing-detected" if claim::misses(diagnosis) => {
-            "nothing detected in what was fitted; held-out conditions are missed by more than their noise".to_owned()
+    match claim::verdict_of(diagnosis) {
+        Verdict::NothingDetected if claim::misses(diagnosis) => {
+            format!(
+                "nothing detected in what was fitted; {} are missed by more than their noise",
+                claim::held_out(diagnosis)
+            )
         }
-        "nothing-detected" => "nothing detected: the data are explained".to_owned(),
-        "supported" => format!("supported: {}", effects.join(", ")),
-        "not-separable" => format!(
+        Verdict::NothingDetected => "nothing detected: the data are explained".to_owned(),
+        Verdict::Supported => format!("supported: {}", effects.join(", ")),
+        Verdict::NotSeparable => format!(
             "one of {{{}}}: these data cannot tell them apart",
             texts(&diagnosis["not_separable"]).join(", ")
         ),
-        "pair" => {
+        Verdict::Pair => {
             format!("pair: {}, or one effect outside the list", effects.join(" + "))
         }
-        "none-of-the-candidates" => "none of the candidates".to_owned(),
-        "explained-by-apparatus" => {
+        Verdict::NoneOfTheCandidates => "none of the candidates".to_owned(),
+        Verdict::ExplainedByApparatus => {
             let named = named_errors(&diagnosis["apparatus"]);
             format!("explained by the apparatus, no effect needed: {named}")
         }
-        "explained-by-preparation" => {
+        Verdict::ExplainedByPreparation => {
             let named = named_errors(&diagnosis["preparation"]);
             format!("explained by the preparation of the bed, no effect needed: {named}")
         }
-        "below-noise" => "below what these data can show: no effect is named".to_owned(),
-        _ => "cannot tell".to_owned(),
+        Verdict::BelowNoise => "below what these data can show: no effect is named".to_owned(),
+        Verdict::CannotTell => "cannot tell".to_owned(),
     }
 }
 
@@ -93,10 +97,10 @@ pub(crate) fn error_in_words(error: &Value, value: &str, se: &str) -> (String, S
 /// What the verdict of a diagnosis rests on, in a sentence; none where nothing is named.
 #[must_use]
 pub fn strength_in_words(diagnosis: &Value) -> Option<String> {
-    let names = matches!(
-        diagnosis["verdict"].as_str(),
-        Some("supported" | "not-separable" | "pair" | "none-of-the-candidates")
-    ) || claim::misses(diagnosis);
+    let verdict = claim::verdict_of(diagnosis);
+    let names = verdict.names_effects()
+        || verdict == Verdict::NoneOfTheCandidates
+        || claim::misses(diagnosis);
     match diagnosis["strength"].as_str().filter(|_| names)? {
         "suggested" => {
             let reasons = texts(&diagnosis["strength_reasons"]);

@@ -27,11 +27,8 @@ use super::{falls, import_file, inputs, written};
 /// Everything that is wrong with the options, else with the tables, else with the runs.
 pub fn import(paths: &[PathBuf], options: &Options, out: &File) -> Result<Set, TrackingError> {
     let settings = Settings::of(options)?;
-    let mut paths = inputs::expand(paths)?;
     // A folder of drops may hold the table of their bodies.
-    if let Some(bodies) = options.get("bodies").and_then(|path| std::fs::canonicalize(path).ok()) {
-        paths.retain(|path| std::fs::canonicalize(path).ok().as_ref() != Some(&bodies));
-    }
+    let paths = inputs::expand(paths, options.get("bodies").map(File::new))?;
     let bodies = match options.get("bodies") {
         Some(path) => Bodies::read(File::new(path))?,
         None => Bodies::default(),

@@ -11,21 +11,22 @@ use super::{spreadsheet, text};
 /// Most bytes of one table.
 const MOST: u64 = 512_000_000;
 
-/// The files that `paths` mean, sorted within a pattern or folder, each once.
+/// The files that `paths` mean but `bodies`, sorted within a pattern or folder, each once.
 ///
 /// # Errors
 /// If a pattern fits nothing or a folder holds no table.
-pub(super) fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Fault> {
+pub(super) fn expand(paths: &[PathBuf], bodies: Option<&Path>) -> Result<Vec<PathBuf>, Fault> {
+    let is_drop = is_not(bodies);
     let mut all: Vec<PathBuf> = Vec::new();
     for path in paths {
         let shown = path.display().to_string();
         let found = match () {
-            () if path.is_dir() => tables_in(path)?,
+            () if path.is_dir() => tables_in(path, bodies)?,
             () if !path.exists() && shown.contains(['*', '?', '[']) => fitting(&shown)?,
             () => vec![path.clone()],
         };
         for one in found {
-            if !all.contains(&one) {
+            if is_drop(&one) && !all.contains(&one) {
                 all.push(one);
             }
         }
@@ -46,12 +47,18 @@ const TABLES: [&str; 7] = ["csv", "tsv", "txt", "dat", "lvm", "tab", "itx"];
 /// How deep folders are searched.
 const DEPTH: usize = 3;
 
-/// The tables in a folder, or where there is none in the folders within it, sorted.
+/// Whether a path is another than `bodies`.
+fn is_not(bodies: Option<&Path>) -> impl Fn(&Path) -> bool {
+    let bodies = bodies.and_then(|path| std::fs::canonicalize(path).ok());
+    move |path| bodies.is_none() || std::fs::canonicalize(path).ok() != bodies
+}
+
+/// The tables but `bodies` in a folder, or where there is none in the folders within it, sorted.
 ///
 /// # Errors
 /// If the folder cannot be read or holds no table.
-pub(super) fn tables_in(folder: &Path) -> Result<Vec<PathBuf>, Fault> {
-    let found = tables_within(folder, DEPTH)?;
+pub(super) fn tables_in(folder: &Path, bodies: Option<&Path>) -> Result<Vec<PathBuf>, Fault> {
+    let found = tables_within(folder, bodies, DEPTH)?;
     match found.is_empty() {
         true => {
             let right = "a table ends in .csv, .tsv, .txt, .dat, .lvm, .xlsx or .ods";
@@ -61,14 +68,20 @@ pub(super) fn tables_in(folder: &Path) -> Result<Vec<PathBuf>, Fault> {
     }
 }
 
-fn tables_within(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, Fault> {
-    let found = directly_in(folder)?;
+fn tables_within(
+    folder: &Path,
+    bodies: Option<&Path>,
+    depth: usize,
+) -> Result<Vec<PathBuf>, Fault> {
+    let mut found = directly_in(folder)?;
+    let is_drop = is_not(bodies);
+    found.retain(|path| is_drop(path));
     if !found.is_empty() || depth == 0 {
         return Ok(found);
     }
     let mut within: Vec<PathBuf> = entries_of(folder)?.filter(|path| path.is_dir()).collect();
     within.sort();
-    let each = within.iter().map(|one| tables_within(one, depth - 1));
+    let each = within.iter().map(|one| tables_within(one, bodies, depth - 1));
     Ok(each.collect::<Result<Vec<_>, _>>()?.concat())
 }
 

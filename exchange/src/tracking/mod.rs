@@ -54,5 +54,5 @@ pub use set::{Earlier, Set, Understood};
 /// Whether a file in `folder` is called like a table.
 #[must_use]
 pub fn has_tables(folder: &Path) -> bool {
-    inputs::tables_in(folder).is_ok()
+    inputs::tables_in(folder, None).is_ok()
 }
